@@ -1,6 +1,6 @@
 """Run all benchmarks and print their figures: `make benchmark`, or `python -m benchmarks` in the project's folder.
 
-Beside them stand those of commit b5d5c0c, before speed was worked on (2 cores, AMD EPYC, 2026-11-23), or of a version
+Beside them report those of commit b5d5c0c, before speed was worked on (2 cores, AMD EPYC, 2026-11-23), or of a version
 of your own choice, measured with its own Python and these files:
     OTHER/.venv/bin/python -m benchmarks --save before.json; python -m benchmarks --before before.json
 """

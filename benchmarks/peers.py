@@ -16,7 +16,7 @@ from pymoo.util.ref_dirs import get_reference_directions
 
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.violation import FEASIBLE
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 
 from .machines import Array
@@ -29,14 +29,14 @@ _PENALTY = 1e3  # of the objectives' range: MOEA/D takes no constraints, so that
 
 
 class Reduced(PymooProblem):  # type: ignore[misc]
-    """The reduced problem as pymoo wants it, of the first sheet: the shipped jobs have one.
+    """The reduced problem as pymoo wants it, of the first branch: the shipped jobs have one.
 
     penalised: the objectives' range where a violation is added to them. seen: feasible objectives of all evaluations;
     keeping: the seconds that this took.
     """
 
     def __init__(self, problem: Problem, *, penalised: Array | None = None) -> None:
-        self.evaluator = Evaluator(problem, sheets(problem)[0])
+        self.evaluator = Evaluator(problem, elimination_branches(problem)[0])
         self.penalised = penalised
         self.seen: list[Array] = []
         self.keeping = 0.0

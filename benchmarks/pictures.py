@@ -60,7 +60,7 @@ def require_quick(seconds: float) -> None:
 
 
 def knee(name: str, folder: Path) -> None:
-    """Draw the sheet of the knee of a shipped job."""
+    """Draw the branch of the knee of a shipped job."""
     with tempfile.TemporaryDirectory() as place:
         front = solve(load_job(_JOB.with_name(f"{name}.toml")))
         (file,) = (file for file in draw_front(front, Path(place)) if file.stem == "knee")

@@ -16,7 +16,7 @@ from slidercrank.optimise.front.dominance import nondominated
 from slidercrank.optimise.front.hypervolume import hypervolume, scaling
 from slidercrank.optimise.job import load_job
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.search.search import explore
 from slidercrank.optimise.solve import solve
@@ -54,9 +54,9 @@ def _explored(problem: Problem) -> list[tuple[float, Array]]:
         times = []
         for _ in range(3):
             begin = process_time()
-            archive = explore(sized, [Evaluator(sized, sheet) for sheet in sheets(sized)])
+            archive = explore(sized, [Evaluator(sized, branch) for branch in elimination_branches(sized)])
             times.append(process_time() - begin)
-        found.append((min(times), archive.values[archive.met]))
+        found.append((min(times), archive.values[archive.is_feasible]))
     return found
 
 

@@ -1,4 +1,4 @@
-"""From a problem to its front: eliminate, search by the method asked for, deliver."""
+"""From a problem to its front: eliminate, search by the chosen method, deliver."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ from .feasibility.infeasibility import diagnose
 from .feasibility.valueless import require_finite, valueless_in_all
 from .front.front import ParetoFront, Status
 from .front.progress import REPEATING, Progress, progress_bar
-from .methods.auto.auto import deliver, searched_by
-from .methods.auto.so_far import so_far
+from .methods.auto.auto import deliver, search_with
+from .methods.auto.partial_front import partial_front
 from .methods.registry import method_of, require_eliminated, require_fit, require_gradients
 from .problem.impossible import require_possible
 from .problem.problem import Problem, require_problem
 from .problem.zero_objectives import require_ranking
-from .search.assemble import empty
-from .search.checkpoints import Cancelled, Checkpoints, Record, require_own
-from .search.elimination import sheets
+from .search.assemble import empty_front
+from .search.checkpoints import Cancelled, Checkpoints, Record, require_records_of
+from .search.elimination import elimination_branches
 from .search.evaluation import Evaluator
 from .search.fingerprint import identity_of
-from .search.mirror import once
-from .search.search import Archive, Callback, Run, searched, zoom
+from .search.mirror import drop_mirrored_branches
+from .search.search import Archive, Callback, Run, searched_evaluators, zoom
 
 
 def solve(
@@ -49,14 +49,14 @@ def solve(
 
     progress: called after every round; True shows a live bar, in a notebook too. stages: called about twice a second in
     a long stage between two rounds, or after the last. fronts: called just before `progress` with the objectives of the
-    front so far, see `Run.latest`. cancelled: asked many times a second; when it says so, what was found so far
-    is returned with status "cancelled". The same problem with the same seed gives the same designs, bit for bit.
-    keep: called with what a later run needs to go on from here: after every round, before its progress is told, and
+    front so far, see `Run.latest`. cancelled: called many times a second; once it returns True, the front
+    so far is returned with status "cancelled". The same problem with the same seed gives the same designs, bit for bit.
+    keep: called with the records that a later run resumes from: after every round, before its progress is reported, and
     about every second of a long one. resume: all records that an earlier run of this problem kept, in order, however
-    many; the run goes on from them and gives what it would have given without a stop, bit for bit.
-    engine: where heavy work is done, in this process by default; it does not show in the front. Who gives it closes it.
+    many; the run continues from them and returns the same front as without the interruption, bit for bit.
+    engine: does the expensive evaluations, by default in this process; the front is the same. The caller closes it.
 
-    Raises `InputError` for a method that does not fit the problem, and `ForeignRecords` for records of another one.
+    Raises `InputError` for a method that does not fit the problem, and `ForeignRecords` for records of another search.
     """
     require_problem(problem, "solve")
     if not (progress is None or isinstance(progress, bool) or callable(progress)):
@@ -70,107 +70,108 @@ def solve(
         if progress is True:
             progress = shown.enter_context(progress_bar())
             stages = stages or progress
-        told = progress or None
-        one = _One(checkpoints, engine, told, stages, fronts, bool(resume))
-        return _with_values(problem, one) if problem.discrete else one.solve(problem)
+        listener = progress or None
+        solver = _ContinuousSolver(checkpoints, engine, listener, stages, fronts, bool(resume))
+        return _solve_discrete(problem, solver) if problem.discrete else solver.solve(problem)
 
 
-def require_own_records(problem: Problem, records: Sequence[Record]) -> None:
+def require_records(problem: Problem, records: Sequence[Record]) -> None:
     """Raise `ForeignRecords` unless a search of the problem can resume from the records, before it begins."""
     if records:
-        require_own(records, identity_of(problem))
+        require_records_of(records, identity_of(problem))
 
 
 @dataclass(frozen=True)
-class _One:
-    """How problems without discrete numbers are solved, one after the other for one with some."""
+class _ContinuousSolver:
+    """Solver of problems without discrete numbers; a problem with some is solved as a series of these."""
 
     checkpoints: Checkpoints
     engine: Engine | None
-    told: Callback | None
+    listener: Callback | None
     stages: Callback | None
     fronts: Callable[[Array], None] | None
     resumes: bool
     runs: list[Run] = field(default_factory=list)
 
-    def begun(self, problem: Problem) -> Run:
+    def start_run(self, problem: Problem) -> Run:
         """Return the run of a problem, before anything is computed."""
-        heard = self.fronts is not None or self.told is not None
+        has_listener = self.fronts is not None or self.listener is not None
 
         def with_front(entry: Progress) -> None:
             if self.fronts is not None:
                 self.fronts(run.latest())
-            if self.told is not None:
-                self.told(entry)
+            if self.listener is not None:
+                self.listener(entry)
 
         last = self.runs[-1] if self.runs else None
-        run = Run(problem, 1, with_front if heard else None, self.checkpoints, stages=self.stages, after=last)
+        run = Run(problem, 1, with_front if has_listener else None, self.checkpoints, stages=self.stages, previous=last)
         self.runs.append(run)
         return run
 
     def evaluators(self, problem: Problem) -> list[Evaluator]:
-        """Return the evaluators of a problem, which is found to have values."""
+        """Return the evaluators of a problem. Raises `InputError` if its quantities have no values."""
         evaluators = [
-            Evaluator(problem, sheet, self.checkpoints, self.engine) for sheet in once(problem, sheets(problem))
+            Evaluator(problem, branch, self.checkpoints, self.engine)
+            for branch in drop_mirrored_branches(problem, elimination_branches(problem))
         ]
-        require_eliminated(problem, searched(evaluators))
+        require_eliminated(problem, searched_evaluators(evaluators))
         if len(self.runs) == 1:
-            require_finite(problem, searched(evaluators))
+            require_finite(problem, searched_evaluators(evaluators))
         return evaluators
 
     def solve(self, problem: Problem) -> ParetoFront:
-        """Return the front, or what was found of it."""
-        run = self.begun(problem)
+        """Return the front; after cancellation, the front so far."""
+        run = self.start_run(problem)
         evaluators: list[Evaluator] = []
         try:
             with interrupted_by(self.checkpoints.interrupt, between=self.checkpoints.poll) as interruption:
                 evaluators = self.evaluators(problem)
                 if self.resumes:
-                    run.stand(REPEATING, 0, 1, now=True)
-                return _searched(problem, evaluators, run)
+                    run.report_stage(REPEATING, 0, 1, now=True)
+                return _search_and_deliver(problem, evaluators, run)
         except Cancelled:
-            return so_far(problem, evaluators, run, silent=interruption.killed)
+            return partial_front(problem, evaluators, run, silent=interruption.killed)
 
 
-def _with_values(problem: Problem, one: _One) -> ParetoFront:
+def _solve_discrete(problem: Problem, solver: _ContinuousSolver) -> ParetoFront:
     """Return the front of a problem with discrete numbers."""
     from .discrete.front import discrete_front
 
-    run = one.begun(problem)
+    run = solver.start_run(problem)
     evaluators: list[Evaluator] = []
 
     def nothing(status: Status, message: str) -> ParetoFront:
-        return empty(problem, evaluators, run, status, message)
+        return empty_front(problem, evaluators, run, status, message)
 
     try:
-        with interrupted_by(one.checkpoints.interrupt):
-            evaluators = one.evaluators(problem)
-        return discrete_front(problem, one.solve, nothing, run.stage("judging combinations"))
+        with interrupted_by(solver.checkpoints.interrupt):
+            evaluators = solver.evaluators(problem)
+        return discrete_front(problem, solver.solve, nothing, run.stage_reporter("judging combinations"))
     except Cancelled:
         return nothing("cancelled", "cancelled while evaluating combinations of discrete values")
 
 
-def _searched(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
-    method, free = method_of(problem), searched(evaluators)
-    front = searched_by(method, problem, evaluators, run)
+def _search_and_deliver(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
+    method, free = method_of(problem), searched_evaluators(evaluators)
+    front = search_with(method, problem, evaluators, run)
     if front is not None:
         return front
     if problem.without_gradient():
-        return empty(problem, evaluators, run, "infeasible", _NOT_KNOWN.format(method.name))
+        return empty_front(problem, evaluators, run, "infeasible", _NOT_KNOWN.format(method.name))
     diagnosis = diagnose(problem, partial(_best, run=run, evaluators=evaluators), run.checkpoints, evaluators[0].engine)
     if len(diagnosis.feasible) and not method.polishes and free:
-        return empty(problem, evaluators, run, "infeasible", _MISSED.format(method.name))
+        return empty_front(problem, evaluators, run, "infeasible", _MISSED.format(method.name))
     if len(diagnosis.feasible) and free:
         archive = run.archive = Archive.empty(len(problem.objectives))
-        _seed(archive, free, diagnosis.feasible)
+        _seed_archive(archive, free, diagnosis.feasible)
         zoom(problem, free, archive, run)
         front = deliver(problem, evaluators, archive, run)
         if front is not None:
             return front
     message = diagnosis.message or valueless_in_all(problem, diagnosis.feasible) or _THIN
-    if diagnosis.message and prove_infeasible(problem, poll=partial(run.stage("proving"), 0, 1)):
+    if diagnosis.message and prove_infeasible(problem, poll=partial(run.stage_reporter("proving"), 0, 1)):
         message += "; proven: no design within the ranges meets them all"
-    return empty(problem, evaluators, run, "infeasible", message)
+    return empty_front(problem, evaluators, run, "infeasible", message)
 
 
 _DIAGNOSING = "diagnosing"
@@ -191,20 +192,20 @@ _MISSED = (
 
 
 def _best(problem: Problem, *, run: Run, evaluators: list[Evaluator]) -> Best | None:
-    """Return the best of a problem's only objective for the search that wants to know it."""
+    """Return the best value of a problem's only objective, for the diagnosis of an infeasible problem."""
 
-    def stand(at: Progress) -> None:
-        run.stand(_DIAGNOSING, at.round, at.rounds)
+    def report(at: Progress) -> None:
+        run.report_stage(_DIAGNOSING, at.round, at.rounds)
 
-    found = best_of(problem, run.checkpoints, evaluators[0].engine, stand)
-    run.tell(_DIAGNOSING, searched(evaluators), Archive.empty(len(run.problem.objectives)))
+    found = best_of(problem, run.checkpoints, evaluators[0].engine, report)
+    run.report_round(_DIAGNOSING, searched_evaluators(evaluators), Archive.empty(len(run.problem.objectives)))
     return found
 
 
-def _seed(archive: Archive, evaluators: list[Evaluator], dimensions: Array) -> None:
-    """Put designs found by the feasibility search into the archive, in the coordinates of their sheet."""
+def _seed_archive(archive: Archive, evaluators: list[Evaluator], dimensions: Array) -> None:
+    """Add designs of the feasibility search to the archive, in the coordinates of their branch."""
     for index, evaluator in enumerate(evaluators):
-        sheet = evaluator.sheet
-        own = dimensions[np.sign(dimensions[:, 2]) != -sheet.sign]
+        branch = evaluator.branch
+        own = dimensions[np.sign(dimensions[:, 2]) != -branch.sign]
         if len(own):
-            archive.screen(index, evaluator, sheet.coordinates(own))
+            archive.screen(index, evaluator, branch.coordinates(own))

@@ -16,7 +16,7 @@ from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem, require_problem
 from ..problem.requirements import Constraint, Objective
 from ..problem.violation import FEASIBLE, constraints_of, minimised
-from ..search.elimination import Sheet, sheets
+from ..search.elimination import EliminationBranch, elimination_branches
 
 if TYPE_CHECKING:
     from scipy.optimize import Bounds, LinearConstraint, NonlinearConstraint
@@ -71,14 +71,14 @@ class StandardForm:
     inequalities: tuple[str, ...]
     equalities: tuple[str, ...]
     _asked: tuple[Constraint, ...]
-    _sheet: Sheet | None = None
+    _branch: EliminationBranch | None = None
 
     def designs(self, x: ArrayLike) -> Array:
         """Return the designs (..., 3 + k) of points x; NaN where the eliminated equalities have no solution."""
         points = given_designs(x, self.names)
-        if self._sheet is None:
+        if self._branch is None:
             return points
-        found: Array = self._sheet.dimensions(points.reshape(-1, len(self.names)))
+        found: Array = self._branch.dimensions(points.reshape(-1, len(self.names)))
         return found.reshape(*points.shape[:-1], found.shape[1])
 
     def arrays(self, x: ArrayLike, *, gradients: bool = False) -> Arrays:
@@ -103,11 +103,11 @@ class StandardForm:
             value, slope = at[asked.quantity]
             for word, bound in reversed(asked.sides):
                 (h if word == "equals" else g).append(_scaled(value, slope, bound, -1.0 if word == "min" else 1.0))
-        if self._sheet is not None:
-            g += _ranges(x, self._sheet, slopes.shape[-1])
-            f, g, h = (_without_spurious(rows, x, self.problem, self._sheet) for rows in (f, g, h))
+        if self._branch is not None:
+            g += _ranges(x, self._branch, slopes.shape[-1])
+            f, g, h = (_without_spurious(rows, x, self.problem, self._branch) for rows in (f, g, h))
             if gradients:
-                chain = self._sheet.jacobian(points.reshape(-1, len(self.names)))
+                chain = self._branch.jacobian(points.reshape(-1, len(self.names)))
                 chain = chain.reshape(*points.shape[:-1], *chain.shape[1:])
                 f, g, h = ([(v, (d[..., None, :] @ chain)[..., 0, :]) for v, d in rows] for rows in (f, g, h))
         width = len(self.names) if gradients else 0
@@ -129,7 +129,7 @@ class StandardForm:
             raise InputError(f'a gradient is needed; got {lacking[0]} with gradient = "none"; use finite differences')
         constraints: list[LinearConstraint | NonlinearConstraint] = []
         first = 0
-        if self._sheet is None and self._turns:
+        if self._branch is None and self._turns:
             share, rest = _share(self._asked), np.zeros((2, len(self.names) - 3))
             turning = np.column_stack([[[1.0, -share, 1.0], [1.0, -share, -1.0]], rest])
             constraints.append(LinearConstraint(turning, -np.inf, 0.0, keep_feasible=keep_feasible))
@@ -153,13 +153,13 @@ class StandardForm:
 
         Raises `InputError` if none does.
         """
-        if self._sheet is not None or not self._turns:
+        if self._branch is not None or not self._turns:
             grid = self.lower + np.random.default_rng(1).random((4096, len(self.names))) * (self.upper - self.lower)
             found = self.arrays(grid)
             worst = np.concatenate([found.G, np.abs(found.H)], axis=1).max(axis=1, initial=-1e300)
             worst[~np.isfinite(found.F).all(axis=1)] = np.inf
             if not np.isfinite(worst).any():
-                what = "makes the swing" if self._sheet is None else "meets the equalities"
+                what = "makes the swing" if self._branch is None else "meets the equalities"
                 raise InputError(f"no design within the ranges {what}; 4,096 were tried; widen the ranges")
             return np.asarray(grid[np.argmin(worst)])
         middle = 0.5 * (self.lower + self.upper)
@@ -219,18 +219,18 @@ def standard_form(problem: Problem, *, eliminate: bool = False, elimination_bran
             "eliminate=False; set eliminate=True, or leave out elimination_branch"
         )
     asked = constraints_of(problem)
-    sheet = _sheet(problem, elimination_branch) if eliminate else None
-    if sheet is None:
+    branch = _requested_branch(problem, elimination_branch) if eliminate else None
+    if branch is None:
         names, ranges = tuple(problem.ranges), problem.ranges.values()
         lower, upper = (np.array([getattr(item, end) for item in ranges], np.float64) for end in ("lower", "upper"))
         side = problem.slow_side()
         if side is not None:
             lower[2], upper[2] = (max(lower[2], 0.0), upper[2]) if side > 0.0 else (lower[2], min(upper[2], 0.0))
     else:
-        names, lower, upper = sheet.free, np.zeros(len(sheet.free)), np.ones(len(sheet.free))
-        asked = tuple(c for c in asked if c.quantity not in sheet.eliminated)
+        names, lower, upper = branch.free, np.zeros(len(branch.free)), np.ones(len(branch.free))
+        asked = tuple(c for c in asked if c.quantity not in branch.eliminated)
     bounded = [c.quantity for c in asked if not c.equality for _ in c.sides]
-    computed = [] if sheet is None else [name for name in _computed(sheet) for _ in range(2)]
+    computed = [] if branch is None else [name for name in _computed(branch) for _ in range(2)]
     return StandardForm(
         problem,
         names,
@@ -240,58 +240,58 @@ def standard_form(problem: Problem, *, eliminate: bool = False, elimination_bran
         (*(() if problem.motion else ("turning", "turning")), *bounded, *computed),
         tuple(c.quantity for c in asked if c.equality),
         asked,
-        sheet,
+        branch,
     )
 
 
-def _sheet(problem: Problem, branch: int | None) -> Sheet | None:
+def _requested_branch(problem: Problem, index: int | None) -> EliminationBranch | None:
     """Return the requested or the only branch of a problem whose equalities are eliminated.
 
     None if there is nothing to eliminate and no branch is requested. Raises `InputError`.
     """
-    found = sheets(problem)
-    if branch is None and len(found) > 1 and not any(constraint.equality for constraint in problem.constraints):
+    found = elimination_branches(problem)
+    if index is None and len(found) > 1 and not any(constraint.equality for constraint in problem.constraints):
         return None
-    if branch is None and len(found) == 1:
-        branch = 0
-    if isinstance(branch, bool) or not isinstance(branch, int) or not 0 <= branch < len(found):
+    if index is None and len(found) == 1:
+        index = 0
+    if isinstance(index, bool) or not isinstance(index, int) or not 0 <= index < len(found):
         if len(found) == 1:
             raise InputError(
-                f"eliminating equalities gives one branch here, 0; got elimination_branch={branch!r}; leave "
+                f"eliminating equalities gives one branch here, 0; got elimination_branch={index!r}; leave "
                 "elimination_branch out"
             )
-        several = "; ".join(f"{place}: offset {_side(sheet)}" for place, sheet in enumerate(found))
+        several = "; ".join(f"{place}: offset {_side(branch)}" for place, branch in enumerate(found))
         raise InputError(
-            f"eliminating equalities needs one of their branches; got {branch!r} of {len(found)} ({several}); make a "
+            f"eliminating equalities needs one of their branches; got {index!r} of {len(found)} ({several}); make a "
             f"form for each, with elimination_branch=0 to {len(found) - 1}, or keep the equalities, with "
             "eliminate=False"
         )
-    if not found[branch].free:
+    if not found[index].free:
         raise InputError(
             "the equalities and ranges must leave something free; no unknown is left; widen a range, or use solve"
         )
-    return found[branch]
+    return found[index]
 
 
-def _side(sheet: Sheet) -> str:
+def _side(branch: EliminationBranch) -> str:
     """Return as text the sign of the offsets of a branch, and the root that it takes of several."""
-    side = "above 0" if sheet.sign > 0.0 else "below 0"
+    side = "above 0" if branch.sign > 0.0 else "below 0"
     roots = [
-        f"root {step.solutions.index(step) + 1} for {step.target}" for step in sheet.steps if len(step.solutions) > 1
+        f"root {step.solutions.index(step) + 1} for {step.target}" for step in branch.steps if len(step.solutions) > 1
     ]
     return ", ".join([side, *roots])
 
 
-def _computed(sheet: Sheet) -> list[str]:
-    return [name for name in sheet.names[:3] if any(step.target == name for step in sheet.steps)]
+def _computed(branch: EliminationBranch) -> list[str]:
+    return [name for name in branch.names[:3] if any(step.target == name for step in branch.steps)]
 
 
-def _ranges(x: Array, sheet: Sheet, width: int) -> list[Row]:
+def _ranges(x: Array, branch: EliminationBranch, width: int) -> list[Row]:
     """Rows of G for the ranges of computed dimensions, an offset by its size."""
     rows = []
-    for name in _computed(sheet):
-        column, ends = sheet.names.index(name), sheet.bounds[name]
-        sign = sheet.sign if name == "offset" else 1.0
+    for name in _computed(branch):
+        column, ends = branch.names.index(name), branch.bounds[name]
+        sign = branch.sign if name == "offset" else 1.0
         slope = np.zeros((*x.shape[:-1], width))
         slope[..., column : column + 1] = sign if width else 0.0
         value = sign * x[..., column]
@@ -299,9 +299,9 @@ def _ranges(x: Array, sheet: Sheet, width: int) -> list[Row]:
     return rows
 
 
-def _without_spurious(rows: list[Row], x: Array, problem: Problem, sheet: Sheet) -> list[Row]:
+def _without_spurious(rows: list[Row], x: Array, problem: Problem, branch: EliminationBranch) -> list[Row]:
     """Return rows that are infinite where an eliminated equality does not hold: its formula gave another root."""
-    wanted = [c for c in problem.constraints if c.quantity in sheet.eliminated]
+    wanted = [c for c in problem.constraints if c.quantity in branch.eliminated]
     values = problem.evaluate(x, [c.quantity for c in wanted])
     target = np.array([c.lower for c in wanted], dtype=np.float64)
     holds = (np.abs(values - target) <= FEASIBLE * np.maximum(np.abs(target), 1e-9)).all(axis=-1)

@@ -29,14 +29,14 @@ from ..problem.violation import restated_constraints
 from ..search.candidates import Table
 from ..search.evaluation import Evaluator
 from .cycle import Curve, best_angles
-from .enclosure import Enclosure, beside, coordinate
+from .enclosure import Enclosure, coordinate, side_by_side
 from .limits import Limits
 
 _ROUNDED = 1e-9  # relative: more than a closed form may be off where a linkage is close to locking
 _SLACK = 1e-6  # relative, by how much computed dimensions may miss their range here: more than requirements may
 
 
-def covered(problem: Problem, objective: Objective) -> str:
+def unbounded_reason(problem: Problem, objective: Objective) -> str:
     """Return why an objective cannot be bounded over a box; empty if it can.
 
     Bounded are quantities with `formulas`, and from below the peaks over the cycle of machines without friction; of
@@ -70,13 +70,13 @@ def cranks_of(mechanism: Mechanism, signal: Signal) -> tuple[Mechanism, ...]:
     return tuple(half for one in single for half in (halves(one) if cycle_turns(one) > 1 else (one,)))
 
 
-def usable(problem: Problem, constraint: Constraint) -> bool:
+def is_usable(problem: Problem, constraint: Constraint) -> bool:
     """Whether a constraint helps to rule out boxes; one that does not still holds for every design that is counted."""
     quantity = problem.quantity(constraint.quantity)
     if quantity.formulas(problem.mechanism):
         return True
     wanted = Objective(quantity=constraint.quantity, sense="minimise")
-    return constraint.upper is not None and not covered(problem, wanted)
+    return constraint.upper is not None and not unbounded_reason(problem, wanted)
 
 
 @dataclass
@@ -98,15 +98,15 @@ class Bounded(Table):
 
 
 class Boxes:
-    """Bounds boxes of the unit box of one sheet. span: (m,), by which objectives are compared."""
+    """Bounds boxes of the unit box of one branch. span: (m,), by which objectives are compared."""
 
     def __init__(self, evaluator: Evaluator, span: Array, *, objectives: bool = True) -> None:
         """Prepare the curves; raise `InputError` for an objective that cannot be bounded."""
         problem, self.evaluator = evaluator.problem, evaluator
-        self.sheet, self.problem, self.span = evaluator.sheet, problem, span
+        self.branch, self.problem, self.span = evaluator.branch, problem, span
         self.objectives = problem.objectives if objectives else ()
         for objective in self.objectives:
-            reason = covered(problem, objective)
+            reason = unbounded_reason(problem, objective)
             if reason:
                 raise InputError(
                     f"this job cannot be certified: {reason}; leave this objective out; the residuals of the front "
@@ -116,7 +116,7 @@ class Boxes:
         least = max(c.lower or 0.0 for c in asked if c.quantity == TRANSMISSION_ANGLE.name)
         self.raw = raw_vector(problem.mechanism)
         self.lean = math.cos((1.0 - _SLACK) * least)
-        used = [c for c in asked if usable(problem, c)]
+        used = [c for c in asked if is_usable(problem, c)]
         self.cheap = [c for c in used if problem.quantity(c.quantity).formulas(problem.mechanism)]
         self.costly = [c for c in used if c not in self.cheap]
         names = [item.quantity for item in self.costly] + [item.quantity for item in self.objectives]
@@ -133,13 +133,16 @@ class Boxes:
             n, k = lower.shape
             limits = Limits(n, k)
             r, l, e = self._dimensions(lower, upper, limits)
-            limits.add((r + e * self.sheet.sign - l) / l)
+            limits.add((r + e * self.branch.sign - l) / l)
             for constraint in self.cheap:
                 limits.hold(constraint, *self._closed(constraint.quantity, r, l, e))
             rows = np.flatnonzero(limits.alive)
             middle, angles = self._angles(rows, lower, upper)
-            part = [_rows(x, rows) for x in (r, l, e)]
-            curves = {name: _spread(_over(of, part, angles[name], middle), rows, n) for name, of in self.curves.items()}
+            part = [_select_boxes(x, rows) for x in (r, l, e)]
+            curves = {
+                name: _scatter_boxes(_enclose_curves(of, part, angles[name], middle), rows, n)
+                for name, of in self.curves.items()
+            }
             for constraint in self.costly:
                 curve = curves[constraint.quantity]
                 limits.hold(Constraint(quantity=constraint.quantity, upper=constraint.upper), curve, None, None)
@@ -154,11 +157,11 @@ class Boxes:
                 below, above = (end.max(axis=1) for end in value.ends(low, high))
                 below = below if least is None else np.maximum(below, least)
                 above = above if most is None else np.minimum(above, most)
-                corner[:, column] = _minimised(objective, below, above)
+                corner[:, column] = _minimised_bound(objective, below, above)
                 wide = np.abs(value.slopes).max(axis=2) * (high - low) / self.span[column]
                 smear = np.fmax(smear, wide.T)
             centre, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
-            trial = limits.inside(low, high)
+            trial = limits.feasible_points(low, high)
             smear = np.fmax(smear, limits.smear(low, high))
             return Bounded(
                 limits.alive,
@@ -172,26 +175,27 @@ class Boxes:
     def _dimensions(self, lower: Array, upper: Array, limits: Limits) -> tuple[Enclosure, Enclosure, Enclosure]:
         """Return crank, rod and offset, (n, 1); those that are computed are held to their ranges."""
         n, k = lower.shape
-        sheet = self.sheet
+        branch = self.branch
 
         def everywhere(value: float) -> Enclosure:
             return Enclosure(np.full((n, 1), value), np.zeros((k, n, 1)), np.zeros((n, 1)))
 
-        known = {name: everywhere(bounds.lower) for name, bounds in sheet.bounds.items() if bounds.fixed}
-        for column, name in enumerate(sheet.free):
+        known = {name: everywhere(bounds.lower) for name, bounds in branch.bounds.items() if bounds.fixed}
+        for column, name in enumerate(branch.free):
             first, last = [
-                sheet.lower[column] * (1.0 - u[:, column]) + sheet.upper[column] * u[:, column] for u in (lower, upper)
+                branch.lower[column] * (1.0 - u[:, column]) + branch.upper[column] * u[:, column]
+                for u in (lower, upper)
             ]
             known[name] = coordinate(first, last, column, k)
-        for step in sheet.steps:
+        for step in branch.steps:
             given = [known[name] for name in step.sources]
             found = step.formula(*given) if given else everywhere(float(step.formula()))
-            bounds = sheet.bounds[step.target]
+            bounds = branch.bounds[step.target]
             scale = max(bounds.upper, 1e-300)
             limits.add((found - bounds.upper) * (1.0 / scale))
             limits.add((bounds.lower - found) * (1.0 / scale))
-            known[step.target] = found.confined(*_room(step.target, known, bounds, self.lean, n))
-        return known["crank"], known["rod"], known["offset"] * sheet.sign
+            known[step.target] = found.confined(*_computed_ends(step.target, known, bounds, self.lean, n))
+        return known["crank"], known["rod"], known["offset"] * branch.sign
 
     def _closed(
         self, name: str, r: Enclosure, l: Enclosure, e: Enclosure
@@ -204,7 +208,7 @@ class Boxes:
             return known[slot] if slot in known else float(self.raw[slot])
 
         found = [formula(number) for formula in quantity.formulas(self.problem.mechanism)]
-        value = reduce(beside, [each if isinstance(each, Enclosure) else 0.0 * r + each for each in found])
+        value = reduce(side_by_side, [each if isinstance(each, Enclosure) else 0.0 * r + each for each in found])
         most = value.ends()[1].max(axis=1)
         if not isinstance(quantity, ClosedFormQuantity) or quantity.rises is None:
             return value, None, most
@@ -227,7 +231,7 @@ class Boxes:
 
         The angles are those of each curve of a quantity.
         """
-        middle = self.sheet.dimensions(0.5 * (lower[rows] + upper[rows]))
+        middle = self.branch.dimensions(0.5 * (lower[rows] + upper[rows]))
         turns = (middle[:, 0] > 0.0) & (middle[:, 1] > middle[:, 0] + np.abs(middle[:, 2]))
         found = {}
         for name, curves in self.curves.items():
@@ -238,13 +242,13 @@ class Boxes:
         return middle, found
 
 
-def _over(curves: list[Curve], part: list[Enclosure], angles: list[Array], middle: Array) -> Enclosure:
+def _enclose_curves(curves: list[Curve], part: list[Enclosure], angles: list[Array], middle: Array) -> Enclosure:
     """Return the curves of a quantity side by side, of which the greatest bounds its peak."""
-    found = [curve.over(part, at, middle) for curve, at in zip(curves, angles, strict=True)]
-    return reduce(beside, found)
+    found = [curve.enclose(part, at, middle) for curve, at in zip(curves, angles, strict=True)]
+    return reduce(side_by_side, found)
 
 
-def _room(name: str, known: dict[str, Enclosure], bounds: Range, lean: float, n: int) -> tuple[Array, Array]:
+def _computed_ends(name: str, known: dict[str, Enclosure], bounds: Range, lean: float, n: int) -> tuple[Array, Array]:
     """Return the ends (n, 1) of a computed dimension from its range and r + |e| <= lean l."""
     others = [known[other].ends() for other in DIMENSIONS if other != name and other in known]
     slack = _SLACK * bounds.upper
@@ -257,7 +261,7 @@ def _room(name: str, known: dict[str, Enclosure], bounds: Range, lean: float, n:
     return low, np.minimum(high, lean * four - one if name == "offset" else lean * two - three)
 
 
-def _minimised(objective: Objective, below: Array, above: Array) -> Array:
+def _minimised_bound(objective: Objective, below: Array, above: Array) -> Array:
     """Return a lower bound on an objective as it is minimised, from the ends of its value."""
     if objective.sense == "maximise":
         return -above
@@ -266,12 +270,12 @@ def _minimised(objective: Objective, below: Array, above: Array) -> Array:
     return below
 
 
-def _rows(value: Enclosure, rows: Whole) -> Enclosure:
+def _select_boxes(value: Enclosure, rows: Whole) -> Enclosure:
     empty = None if value.empty is None else value.empty[rows]
     return Enclosure(value.centre[rows], value.slopes[:, rows], value.rest[rows], empty)
 
 
-def _spread(value: Enclosure, rows: Whole, n: int) -> Enclosure:
+def _scatter_boxes(value: Enclosure, rows: Whole, n: int) -> Enclosure:
     """Return an enclosure of n boxes that says nothing of those not in `rows`."""
     parts = value.centre.shape[1]
     centre, slopes = np.zeros((n, parts)), np.zeros((len(value.slopes), n, parts))

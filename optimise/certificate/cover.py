@@ -90,7 +90,7 @@ def choose_covering(points: Array, values: Array, epsilon: float) -> Whole:
     return np.flatnonzero(chosen)
 
 
-def thinned(points: Array, values: Array, epsilon: float) -> Whole:
+def greedy_cover(points: Array, values: Array, epsilon: float) -> Whole:
     """Return few rows of values (p, m), chosen greedily, that together cover all points (n, m) to epsilon."""
     covers = np.stack([(row <= points + epsilon).all(axis=1) for row in values]) if len(values) else np.zeros((0, 0))
     if not len(points) or not covers.any(axis=0).all():

@@ -27,7 +27,7 @@ from ...model.signals.screening import screen, screens
 from ...model.signals.signal_inputs import cycle_window, signal_inputs
 from ...model.signals.signals import Signal, design_motion, signal, size_of_force
 from ...objectives.cycle_peak import CyclePeak
-from .enclosure import UNIT, Enclosure, beside, between, chosen
+from .enclosure import UNIT, Enclosure, interval, select, side_by_side
 from .gas import gas_force
 
 _TURN = 2.0 * np.pi
@@ -59,13 +59,13 @@ class Curve:
         self.steps = peak.signal.needs_forces and any(load.steps for load in mechanism.fullest.loads)
         self.shares = self.partial and peak.signal in (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
 
-    def over(self, dimensions: list[Enclosure], angles: Array, middle: Array) -> Enclosure:
+    def enclose(self, dimensions: list[Enclosure], angles: Array, middle: Array) -> Enclosure:
         """Return the signal (n, p) at crank angles (n,) for dimensions (n, 1) and middle designs (n, 3).
 
         It has two parts where it may jump at the angle, and three where a table steps. The rest is not a number where
         the angle does not count in all of the box.
         """
-        found = self._at(dimensions, angles, middle)
+        found = self._enclose_at(dimensions, angles, middle)
         if self.steps:
             # A peak on a step moves with the design: beside it all designs of the box are on one side of the step.
             r, l, e = middle.T
@@ -74,11 +74,11 @@ class Curve:
             width = np.sum([high[:, 0] - low[:, 0] for low, high in ends], axis=0)
             away = np.minimum(width / np.maximum(pace, 1e-3 * r) + width / r + _BESIDE, _FARTHEST)
             for side in (-away, away):
-                found = beside(found, self._at(dimensions, angles + side, middle))
+                found = side_by_side(found, self._enclose_at(dimensions, angles + side, middle))
         return found
 
-    def _at(self, dimensions: list[Enclosure], angles: Array, middle: Array) -> Enclosure:
-        """Return the signal as `over` does, at these angles alone."""
+    def _enclose_at(self, dimensions: list[Enclosure], angles: Array, middle: Array) -> Enclosure:
+        """Return the signal as `enclose` does, at these angles alone."""
         raw = self.raw.astype(object)[:, None]
         raw[:3, 0] = dimensions
         block = np.empty((DESIGN + LOAD_ROWS * len(self.loads.kind), 1), dtype=object)
@@ -97,9 +97,9 @@ class Curve:
         if jump is not None and jump.any():
             # The peak is the greater of what the curve tends to from either side, which are the two strokes.
             sides = [
-                chosen(jump, between(side, side, len(outward.slopes)), outward) for side in (jump + 0.0, -1.0 * jump)
+                select(jump, interval(side, side, len(outward.slopes)), outward) for side in (jump + 0.0, -1.0 * jump)
             ]
-            return beside(*(self._signal(sine, cosine, m, d, block, theta, side) for side in sides))
+            return side_by_side(*(self._signal(sine, cosine, m, d, block, theta, side) for side in sides))
         value = self._signal(sine, cosine, m, d, block, theta, outward)
         if self.partial and not self.shares:
             low, high = outward.ends()
@@ -181,7 +181,7 @@ def _by_stroke(outward: Enclosure, out: Any, back: Any) -> Enclosure:
     k = len(outward.slopes)
     least = np.where(low > 0.0, out, np.where(high < 0.0, back, min(out, back)))
     most = np.where(low > 0.0, out, np.where(high < 0.0, back, max(out, back)))
-    return between(least, most, k)
+    return interval(least, most, k)
 
 
 def _at_share(
@@ -202,9 +202,9 @@ def _at_share(
     q = (d.r * d.r + square - d.l * d.l) / (square * 2.0)
     h = np.sqrt(d.r * d.r / square - q * q) * side
     on_inner, on_outer = share < _ON_END, share > 1.0 - _ON_END
-    q = chosen(on_inner, -d.r / (d.l - d.r), chosen(on_outer, d.r / (d.l + d.r), q))
-    h = chosen(on_inner | on_outer, 0.0 * d.r, h)
-    x = chosen(on_inner, d.inner * d.branch, chosen(on_outer, d.outer * d.branch, x))
+    q = select(on_inner, -d.r / (d.l - d.r), select(on_outer, d.r / (d.l + d.r), q))
+    h = select(on_inner | on_outer, 0.0 * d.r, h)
+    x = select(on_inner, d.inner * d.branch, select(on_outer, d.outer * d.branch, x))
     return (q * d.e + h * x) / d.r, (q * x - h * d.e) / d.r
 
 
@@ -214,11 +214,11 @@ def _at_dead_centre(d: Design, sine: Array, cosine: Array, middle: Array) -> tup
     at = motion(sine, cosine, r, l, e, d.branch)
     on = np.abs(at.x_1) < _AT_REST * r
     far = at.x * d.branch > np.sqrt(l * l - e * e)  # between the two dead centres
-    q = chosen(far, d.r / (d.l + d.r), -d.r / (d.l - d.r))
-    x = chosen(far, d.outer * d.branch, d.inner * d.branch)
+    q = select(far, d.r / (d.l + d.r), -d.r / (d.l - d.r))
+    x = select(far, d.outer * d.branch, d.inner * d.branch)
     k = len(q.slopes)
     return (
         on,
-        chosen(on, q * d.e / d.r, between(sine, sine, k)),
-        chosen(on, q * x / d.r, between(cosine, cosine, k)),
+        select(on, q * d.e / d.r, interval(sine, sine, k)),
+        select(on, q * x / d.r, interval(cosine, cosine, k)),
     )

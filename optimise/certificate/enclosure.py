@@ -35,25 +35,25 @@ class Enclosure:
     nowhere. A rest that is not finite says nothing about the number.
     """
 
-    __slots__ = ("_reach", "_size", "centre", "empty", "rest", "slopes")
+    __slots__ = ("_radius", "_size", "centre", "empty", "rest", "slopes")
 
     def __init__(self, centre: Any, slopes: Any, rest: Any, empty: Mask | None = None) -> None:
         self.centre, self.slopes, self.rest, self.empty = centre, slopes, rest, empty
-        self._reach: Array | None = None
+        self._radius: Array | None = None
         self._size: Array | None = None
 
     @property
-    def reach(self) -> Array:
+    def radius(self) -> Array:
         """Greatest distance of the number from the centre."""
-        if self._reach is None:
-            self._reach = np.abs(self.slopes).sum(axis=0) + self.rest
-        return self._reach
+        if self._radius is None:
+            self._radius = np.abs(self.slopes).sum(axis=0) + self.rest
+        return self._radius
 
     @property
     def size(self) -> Array:
         """The greatest absolute value that the number may have."""
         if self._size is None:
-            self._size = np.asarray(np.abs(self.centre) + self.reach)
+            self._size = np.asarray(np.abs(self.centre) + self.radius)
         return self._size
 
     def ends(self, low: Array | None = None, high: Array | None = None) -> tuple[Array, Array]:
@@ -75,16 +75,16 @@ class Enclosure:
 
     def confined(self, low: Array, high: Array) -> Enclosure:
         """Return the number where only values from low to high (n, ...) matter: they alone where it reaches farther."""
-        clear = self.reach <= high - low
+        clear = self.radius <= high - low
         if clear.all():
             return self
-        found = chosen(clear, self, between(low, np.maximum(low, high), len(self.slopes)))
+        found = select(clear, self, interval(low, np.maximum(low, high), len(self.slopes)))
         found.empty = self.empty
         return found
 
     def magnitude(self) -> Enclosure:
         """Return the absolute value."""
-        low, high = self.centre - self.reach, self.centre + self.reach
+        low, high = self.centre - self.radius, self.centre + self.radius
         sign = np.where(low >= 0.0, 1.0, -1.0)
         both = (low < 0.0) & (high > 0.0)
         if not both.any():
@@ -113,11 +113,11 @@ class Enclosure:
                 self.centre + other.centre,
                 self.slopes + other.slopes,
                 self.rest + other.rest + UNIT * (self.size + other.size),
-                _either(self.empty, other.empty),
+                _merge_empty(self.empty, other.empty),
             )
         centre = self.centre + other
         rest = self.rest + UNIT * (self.size + np.abs(other))
-        return Enclosure(centre, _wide(self.slopes, centre), rest, self.empty)
+        return Enclosure(centre, _broadcast_slopes(self.slopes, centre), rest, self.empty)
 
     __radd__ = __add__
 
@@ -133,12 +133,12 @@ class Enclosure:
         if not isinstance(other, Enclosure):
             return self._scaled(other)
         a, b = self.centre, other.centre
-        rest = np.abs(a) * other.rest + np.abs(b) * self.rest + self.reach * other.reach
+        rest = np.abs(a) * other.rest + np.abs(b) * self.rest + self.radius * other.radius
         return Enclosure(
             a * b,
             a * other.slopes + b * self.slopes,
             rest + UNIT * (self.size * other.size),
-            _either(self.empty, other.empty),
+            _merge_empty(self.empty, other.empty),
         )
 
     __rmul__ = __mul__
@@ -150,8 +150,8 @@ class Enclosure:
         return self._inverted()._scaled(other)
 
     def _squared(self) -> Enclosure:
-        """(c + t)^2 = c^2 + 2 c t + t^2 with t^2 in [0, reach^2]."""
-        half = 0.5 * self.reach * self.reach
+        """(c + t)^2 = c^2 + 2 c t + t^2 with t^2 in [0, radius^2]."""
+        half = 0.5 * self.radius * self.radius
         rest = 2.0 * np.abs(self.centre) * self.rest + half + UNIT * self.size**2
         return Enclosure(self.centre * self.centre + half, 2.0 * self.centre * self.slopes, rest, self.empty)
 
@@ -160,12 +160,12 @@ class Enclosure:
 
         1 / (c + t) = 1 / c - t / c^2 + t^2 / (c^2 (c + t)): the last is largest at the end next to zero.
         """
-        size, reach = np.abs(self.centre), self.reach
-        clear = size > reach * (1.0 + INFLATION)
+        size, radius = np.abs(self.centre), self.radius
+        clear = size > radius * (1.0 + INFLATION)
         inverse = 1.0 / np.where(clear, self.centre, np.nan)
-        most = (reach * inverse) ** 2 / (size - reach)
+        most = (radius * inverse) ** 2 / (size - radius)
         square = inverse * inverse
-        rest = self.rest * square + 0.5 * most + UNIT * (np.abs(inverse) + reach * square + most)
+        rest = self.rest * square + 0.5 * most + UNIT * (np.abs(inverse) + radius * square + most)
         return Enclosure(inverse + np.sign(inverse) * 0.5 * most, -self.slopes * square, rest, self.empty)
 
     def _root(self) -> Enclosure:
@@ -173,19 +173,19 @@ class Enclosure:
 
         With w^2 = c + t and q^2 = c: w = q + t / (2 q) - (q - w)^2 / (2 q), the last largest at the lower end.
         """
-        reach = self.reach
-        least, most = self.centre - reach, self.centre + reach
+        radius = self.radius
+        least, most = self.centre - radius, self.centre + radius
         clear = least > 0.0
         q = np.sqrt(np.where(clear, self.centre, 1.0))
         bend = (q - np.sqrt(np.where(clear, least, 1.0))) ** 2 / (2.0 * q)
         centre, slopes = q - 0.5 * bend, self.slopes * (0.5 / q)
-        rest = self.rest * (0.5 / q) + 0.5 * bend + UNIT * (q + reach / q)
+        rest = self.rest * (0.5 / q) + 0.5 * bend + UNIT * (q + radius / q)
         if clear.all():
             return Enclosure(centre, slopes, rest, self.empty)
         # What is defined lies between zero and the root of the greatest value.
         half = np.where(np.isfinite(most), 0.5 * np.sqrt(np.maximum(most, 0.0)) * (1.0 + INFLATION), np.nan)
-        found = chosen(clear, Enclosure(centre, slopes, rest), Enclosure(half, 0.0, half))
-        found.empty = _either(self.empty, most < -INFLATION * np.abs(self.centre))
+        found = select(clear, Enclosure(centre, slopes, rest), Enclosure(half, 0.0, half))
+        found.empty = _merge_empty(self.empty, most < -INFLATION * np.abs(self.centre))
         return found
 
     def _arcsine(self) -> Enclosure:
@@ -194,17 +194,17 @@ class Enclosure:
         clear = most < 1.0
         c, x = np.where(clear, self.centre, 0.0), np.where(clear, most, 0.0)
         slope = 1.0 / np.sqrt(1.0 - c * c)
-        bend = 0.5 * self.reach**2 * x / (1.0 - x * x) ** 1.5
+        bend = 0.5 * self.radius**2 * x / (1.0 - x * x) ** 1.5
         centre, slopes = np.arcsin(c), self.slopes * slope
-        rest = self.rest * slope + bend * (1.0 + INFLATION) + 8.0 * UNIT * (1.0 + self.reach * slope)
+        rest = self.rest * slope + bend * (1.0 + INFLATION) + 8.0 * UNIT * (1.0 + self.radius * slope)
         if clear.all():
             return Enclosure(centre, slopes, rest, self.empty)
-        low = np.arcsin(np.clip(self.centre - self.reach, -1.0, 1.0))
-        high = np.arcsin(np.clip(self.centre + self.reach, -1.0, 1.0))
-        outside = np.abs(self.centre) - self.reach > 1.0 + INFLATION
+        low = np.arcsin(np.clip(self.centre - self.radius, -1.0, 1.0))
+        high = np.arcsin(np.clip(self.centre + self.radius, -1.0, 1.0))
+        outside = np.abs(self.centre) - self.radius > 1.0 + INFLATION
         wide = Enclosure(0.5 * (low + high), 0.0, 0.5 * (high - low) + 8.0 * UNIT)
-        found = chosen(clear, Enclosure(centre, slopes, rest), wide)
-        found.empty = _either(self.empty, outside)
+        found = select(clear, Enclosure(centre, slopes, rest), wide)
+        found.empty = _merge_empty(self.empty, outside)
         return found
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
@@ -225,14 +225,14 @@ _FUNCTIONS: dict[Any, Callable[..., Any]] = {
 }
 
 
-def between(low: Any, high: Any, k: int) -> Enclosure:
+def interval(low: Any, high: Any, k: int) -> Enclosure:
     """Return a number of which only the ends are known."""
     low, high = np.broadcast_arrays(np.asarray(low, dtype=np.float64), np.asarray(high, dtype=np.float64))
     rest = 0.5 * (high - low) + UNIT * (np.abs(low) + np.abs(high))
     return Enclosure(0.5 * (low + high), np.zeros((k, *low.shape)), rest)
 
 
-def beside(one: Enclosure, two: Enclosure) -> Enclosure:
+def side_by_side(one: Enclosure, two: Enclosure) -> Enclosure:
     """Return the parts (n, p) of one and of another side by side."""
     empty = None if one.empty is None or two.empty is None else one.empty & two.empty
     return Enclosure(
@@ -251,7 +251,7 @@ def coordinate(low: Array, high: Array, column: int, k: int) -> Enclosure:
     return Enclosure(0.5 * (low + high)[:, None], slopes, (UNIT * size)[:, None])
 
 
-def chosen(mask: Mask, one: Enclosure, two: Enclosure) -> Enclosure:
+def select(mask: Mask, one: Enclosure, two: Enclosure) -> Enclosure:
     """Return one number where the mask holds, another elsewhere."""
     empty = None
     if one.empty is not None or two.empty is not None:
@@ -264,13 +264,13 @@ def chosen(mask: Mask, one: Enclosure, two: Enclosure) -> Enclosure:
     )
 
 
-def _either(one: Mask | None, two: Mask | None) -> Mask | None:
+def _merge_empty(one: Mask | None, two: Mask | None) -> Mask | None:
     if one is None or two is None:
         return one if two is None else two
     return one | two
 
 
-def _wide(slopes: Array, centre: Array) -> Array:
+def _broadcast_slopes(slopes: Array, centre: Array) -> Array:
     """Return slopes as wide as a centre that an array has widened."""
     shape = (len(slopes), *np.shape(centre))
     return slopes if slopes.shape == shape else np.broadcast_to(slopes, shape)

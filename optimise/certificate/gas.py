@@ -9,7 +9,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.machine.loads.cylinder import Cylinder
 from ...model.machine.loads.engine import LimitedPressure
-from .enclosure import UNIT, Enclosure, between, chosen
+from .enclosure import UNIT, Enclosure, interval, select
 
 
 def gas_force(load: Cylinder, share: Enclosure, stroke: Enclosure, outward: Enclosure) -> Enclosure:
@@ -21,8 +21,8 @@ def gas_force(load: Cylinder, share: Enclosure, stroke: Enclosure, outward: Encl
     low, high = outward.ends()
     sides = [_pressure(load, share, stroke, expanding=(sign > 0.0) == way) for way in (True, False)]
     ends = [side.ends() for side in sides]
-    both = between(np.minimum(ends[0][0], ends[1][0]), np.maximum(ends[0][1], ends[1][1]), len(outward.slopes))
-    pressure = chosen(low > 0.0, sides[0], chosen(high < 0.0, sides[1], both))
+    both = interval(np.minimum(ends[0][0], ends[1][0]), np.maximum(ends[0][1], ends[1][1]), len(outward.slopes))
+    pressure = select(low > 0.0, sides[0], select(high < 0.0, sides[1], both))
     return (pressure - load.back_pressure) * (sign * load.area)
 
 
@@ -34,8 +34,8 @@ def _pressure(load: Cylinder, share: Enclosure, stroke: Enclosure, *, expanding:
         # It rises (expansion) or falls (compression) with the clearance: a bound by the corners.
         least, most = (load.clearance + load.clearance_volume / (load.area * end) for end in stroke.ends()[::-1])
         near, far = (most, least) if expanding else (least, most)
-        return between(_at(load, last, far, expanding), _at(load, first, near, expanding), k)
-    at_first, at_last = (_at(load, end, load.clearance, expanding) for end in (first, last))
+        return interval(_pressure_at(load, last, far, expanding), _pressure_at(load, first, near, expanding), k)
+    at_first, at_last = (_pressure_at(load, end, load.clearance, expanding) for end in (first, last))
     wide = last > first
     slope = np.where(wide, (at_last - at_first) / np.where(wide, last - first, 1.0), 0.0)
     n = load.expansion_exponent if expanding else load.compression_exponent
@@ -52,7 +52,7 @@ def _pressure(load: Cylinder, share: Enclosure, stroke: Enclosure, *, expanding:
         with np.errstate(divide="ignore"):
             bend = np.where(curved, scale * n * (n + 1.0) / (c + bent) ** (n + 2.0), 0.0)
         # Chords of the two pieces meet on the event; each curve hangs below its own by bend width^2 / 8 at most.
-        off = _at(load, event, c, expanding) - (at_first + slope * (event - first))
+        off = _pressure_at(load, event, c, expanding) - (at_first + slope * (event - first))
         between_ends = (first < event) & (event < last)
         below = np.where(between_ends, np.minimum(off, 0.0), 0.0) - 0.125 * bend * (last - first) ** 2
         above = np.where(between_ends, np.maximum(off, 0.0), 0.0)
@@ -61,7 +61,7 @@ def _pressure(load: Cylinder, share: Enclosure, stroke: Enclosure, *, expanding:
     return Enclosure(chord.centre, chord.slopes, chord.rest + 0.5 * (above - below) + 8.0 * most_of, chord.empty)
 
 
-def _at(load: Cylinder, share: Any, clearance: Any, expanding: bool) -> Array:
+def _pressure_at(load: Cylinder, share: Any, clearance: Any, expanding: bool) -> Array:
     """Return the pressure at a share of the stroke, for a clearance ratio."""
     if load.compression_exponent == 0.0:
         return np.asarray((load.low if expanding else load.high) + 0.0 * share)

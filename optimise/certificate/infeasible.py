@@ -9,9 +9,9 @@ import numpy as np
 
 from ..problem.problem import Problem
 from ..problem.violation import FEASIBLE
-from ..search.elimination import Sheet, sheets
+from ..search.elimination import EliminationBranch, elimination_branches
 from ..search.evaluation import Evaluator
-from .boxes import Boxes, usable
+from .boxes import Boxes, is_usable
 from .tree import Tree, pool
 
 SECONDS = 5.0
@@ -30,17 +30,22 @@ def prove_infeasible(problem: Problem, *, seconds: float = SECONDS, poll: Callab
         return False
     start = time.perf_counter()
     one = np.ones(len(problem.objectives))
-    tree = Tree.of([Boxes(_judging(problem, sheet), one, objectives=False) for sheet in sheets(problem)])
+    tree = Tree.of_branches(
+        [
+            Boxes(_requirement_evaluator(problem, branch), one, objectives=False)
+            for branch in elimination_branches(problem)
+        ]
+    )
     with pool() as threads:
-        fresh = [(index, *tree.first(index)) for index in range(len(tree.sheets))]
+        fresh = [(index, *tree.initial_boxes(index)) for index in range(len(tree.branches))]
         while fresh:
             for index, lower, upper in fresh:
                 poll()
                 boxes = tree.bound(index, lower, upper, threads)
                 n = len(boxes.lower)
-                if n and (tree.sheets[index].evaluator.screen(boxes.trial)[2] <= FEASIBLE).any():
+                if n and (tree.branches[index].evaluator.screen(boxes.trial)[2] <= FEASIBLE).any():
                     return False
-                tree.put(index, boxes, np.zeros((n, 0)), np.prod(boxes.upper - boxes.lower, axis=1), 0)
+                tree.add(index, boxes, np.zeros((n, 0)), np.prod(boxes.upper - boxes.lower, axis=1), 0)
             if not len(tree):
                 return True
             late = time.perf_counter() - start > seconds or tree.bounded > _MOST
@@ -51,8 +56,8 @@ def prove_infeasible(problem: Problem, *, seconds: float = SECONDS, poll: Callab
     return not len(tree)
 
 
-def _judging(problem: Problem, sheet: Sheet) -> Evaluator:
+def _requirement_evaluator(problem: Problem, branch: EliminationBranch) -> Evaluator:
     """Return an evaluator that knows only the requirements that rule out boxes: what meets these is never ruled out."""
-    evaluator = Evaluator(problem, sheet)
-    evaluator.constraints = tuple(item for item in evaluator.constraints if usable(problem, item))
+    evaluator = Evaluator(problem, branch)
+    evaluator.constraints = tuple(item for item in evaluator.constraints if is_usable(problem, item))
     return evaluator

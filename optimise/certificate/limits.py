@@ -67,7 +67,7 @@ class Limits:
         self.alive &= (low <= high).all(axis=0)
         return np.minimum(low, 1.0), np.maximum(high, -1.0)
 
-    def inside(self, low: Array, high: Array) -> Array:
+    def feasible_points(self, low: Array, high: Array) -> Array:
         """Return points (k, n) moved from the middle across the conditions that fail there, one after the other."""
         d = 0.5 * (low + high)
         for _ in range(_ROUNDS):

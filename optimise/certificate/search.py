@@ -15,12 +15,12 @@ from ..problem.problem import Problem
 from ..problem.violation import FEASIBLE, minimised, restated_constraints
 from ..search.assemble import span_of
 from ..search.candidates import Candidates
-from ..search.elimination import sheets
+from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
 from ..search.recorded import polish
-from .boxes import Boxes, usable
+from .boxes import Boxes, is_usable
 from .certificate import Certificate, Status, Step, message_of
-from .cover import choose_covering, excess, thinned, volume_gap
+from .cover import choose_covering, excess, greedy_cover, volume_gap
 from .tree import Tree, pool
 
 _BATCH = 4096  # boxes halved at a time
@@ -59,8 +59,8 @@ class Search:
         self.span, self.ideal = span_of(problem, values), values.min(axis=0)
         self.front = self._scaled(values)
         self.designs = self.front
-        self.evaluators = [Evaluator(problem, sheet) for sheet in sheets(problem)]
-        self.tree = Tree.of([Boxes(evaluator, self.span) for evaluator in self.evaluators])
+        self.evaluators = [Evaluator(problem, branch) for branch in elimination_branches(problem)]
+        self.tree = Tree.of_branches([Boxes(evaluator, self.span) for evaluator in self.evaluators])
         m = len(problem.objectives)
         self.added = Candidates.empty(m)  # values scaled
         self.needy = [np.zeros((0, m))]  # corners of closed boxes that the front alone does not cover
@@ -78,33 +78,33 @@ class Search:
         """Halve boxes until all are closed or the budget is spent."""
         with pool() as threads:
             for index in range(len(self.evaluators)):
-                self._take(index, *self.tree.first(index), threads)
+                self._take(index, *self.tree.initial_boxes(index), threads)
             while True:
-                self._tell(progress)
+                self._report(progress)
                 rows = self.tree.largest(_BATCH)
-                if not len(rows) or self._over():
+                if not len(rows) or self._should_stop():
                     break
-                for index, lower, upper in self.tree.halved(self._recovered(rows)):
+                for index, lower, upper in self.tree.halved(self._close_covered_boxes(rows)):
                     self._take(index, lower, upper, threads)
         if len(self.tree):  # all designs count for all boxes that are left open
-            self._recovered(np.arange(len(self.tree)))
+            self._close_covered_boxes(np.arange(len(self.tree)))
 
-    def _over(self) -> bool:
+    def _should_stop(self) -> bool:
         self.stopped = self.stopped or (self.cancelled is not None and self.cancelled())
         late = time.perf_counter() - self.start > self.seconds * (1.0 - _SHARE)
         return self.stopped or late or len(self.tree) > _MOST
 
-    def _recovered(self, rows: Whole) -> Whole:
+    def _close_covered_boxes(self, rows: Whole) -> Whole:
         """Close those boxes that designs added since they were opened cover; return the others."""
         tree = self.tree
         tree.excess[rows] = excess(
             tree.corner[rows],
             self.designs,
             known=tree.excess[rows],
-            first=tree.seen[rows],
+            first=tree.counted_designs[rows],
             enough=self.epsilon,
         )
-        tree.seen[rows] = len(self.designs)
+        tree.counted_designs[rows] = len(self.designs)
         done = tree.excess[rows] <= self.epsilon
         self._close(tree.corner[rows[done]], tree.excess[rows[done]])
         kept = np.ones(len(tree), dtype=bool)
@@ -114,7 +114,7 @@ class Search:
         return np.asarray(np.cumsum(kept)[rows[~done]] - 1)
 
     def _take(self, index: int, lower: Array, upper: Array, threads: object) -> None:
-        """Bound boxes of a sheet, close what can be closed, open the rest."""
+        """Bound boxes of a branch, close what can be closed, open the rest."""
         boxes = self.tree.bound(index, lower, upper, threads)  # type: ignore[arg-type]
         corner = self._scaled(boxes.corner)
         found = excess(corner, self.designs, enough=self.epsilon)
@@ -123,7 +123,7 @@ class Search:
             found[wanting] = self._add(index, boxes.trial[wanting], corner[wanting], found[wanting])
         done = found <= self.epsilon
         self._close(corner[done], found[done])
-        self.tree.put(index, boxes[~done], corner[~done], found[~done], len(self.designs))
+        self.tree.add(index, boxes[~done], corner[~done], found[~done], len(self.designs))
 
     def _add(self, index: int, trial: Array, corner: Array, found: Array) -> Array:
         """Add designs that cover the corner of their box where no other does; return the excess of the corners."""
@@ -163,7 +163,7 @@ class Search:
         self.closed_by_front = max(self.closed_by_front, float(alone.max()))
         self.needy.append(corner[alone > self.epsilon])
 
-    def _tell(self, progress: Callable[[Step], None] | None) -> None:
+    def _report(self, progress: Callable[[Step], None] | None) -> None:
         if progress is not None:
             tree = self.tree
             progress(Step(self._proven(), tree.bounded, len(tree), len(self.added), time.perf_counter() - self.start))
@@ -179,9 +179,9 @@ class Search:
 
         tree, proven = self.tree, self._proven()
         needy = np.concatenate(self.needy)
-        self._thin(needy)
+        self._drop_redundant(needy)
         self._polish()
-        self._thin(needy)
+        self._drop_redundant(needy)
         self.designs = np.concatenate([self.front, self.added.values])
         dimensions = self.added.dimensions(self.evaluators)
         beyond = excess(self.added.values, self.front)
@@ -193,7 +193,7 @@ class Search:
         status: Status = "cancelled" if self.stopped else "out of budget"
         if proven <= self.epsilon:
             status = "proven"
-        where = self._where() if len(tree) else None
+        where = self._worst_open_range() if len(tree) else None
         return Certificate(
             status=status,
             asked=self.epsilon,
@@ -219,40 +219,40 @@ class Search:
         found = []
         for constraint in restated_constraints(self.problem):
             quantity = self.problem.quantity(constraint.quantity)
-            if not usable(self.problem, constraint):
+            if not is_usable(self.problem, constraint):
                 found.append(f"the bounds ignore the requirement on {quantity.title}")
             elif isinstance(quantity, CyclePeak) and constraint.lower is not None:
                 found.append(f"the bounds ignore the minimum of {quantity.title}")
         return tuple(found)
 
-    def _thin(self, needy: Array) -> None:
+    def _drop_redundant(self, needy: Array) -> None:
         """Leave out added designs whose corners others cover."""
         if not len(self.tree) and len(self.added) * len(needy) <= _THIN:
-            self.added = self.added[thinned(needy, self.added.values, self.epsilon)]
+            self.added = self.added[greedy_cover(needy, self.added.values, self.epsilon)]
 
     def _polish(self) -> None:
         """Move added designs onto the front where that makes no objective worse: what they cover stays covered."""
         if len(self.added) > _POLISHED:
             return
         for index, evaluator in enumerate(self.evaluators):
-            own = np.flatnonzero(self.added.sheet == index)
+            own = np.flatnonzero(self.added.branch == index)
             for begin in range(0, len(own), 32):
                 rows = own[begin : begin + 32]
                 if time.perf_counter() - self.start > self.seconds or self.stopped:
                     return
                 k = evaluator.dimension
                 part = polish(evaluator, self.added.u[rows][:, :k], self.span, iterations=_STEPS)
-                fresh = self._exact(evaluator.sheet.dimensions(part.u))
+                fresh = self._exact(evaluator.branch.dimensions(part.u))
                 better = (part.violation <= FEASIBLE) & (fresh <= self.added.values[rows]).all(axis=1)
                 self.added.u[rows[better], :k] = part.u[better]
                 self.added.values[rows[better]] = fresh[better]
 
-    def _where(self) -> Array:
+    def _worst_open_range(self) -> Array:
         tree = self.tree
         row = int(np.argmax(tree.excess))
-        evaluator = self.evaluators[int(tree.sheet[row])]
+        evaluator = self.evaluators[int(tree.branch[row])]
         k = evaluator.dimension
         low, high = tree.lower[row, :k], tree.upper[row, :k]
         corners = np.array(list(itertools.product((0.0, 1.0), repeat=k))).reshape(2**k, k)
-        found = evaluator.sheet.dimensions(low + (high - low) * corners)
+        found = evaluator.branch.dimensions(low + (high - low) * corners)
         return np.stack([found.min(axis=0), found.max(axis=0)], axis=1)

@@ -21,78 +21,81 @@ _FINEST = 2.0**-40
 
 @dataclass
 class Tree(Table):
-    """The open boxes of all sheets.
+    """The open boxes of all branches.
 
-    sheet: (n,). lower, upper: (n, k), padded with zeros. corner: (n, m), scaled. excess: (n,). seen: (n,), how many
-    designs it counts. axis: (n,), which to split; -1 where none is left. bounded: boxes so far.
+    branch: (n,). lower, upper: (n, k), padded with zeros. corner: (n, m), scaled. excess: (n,).
+    counted_designs: (n,), number of designs that the excess counts. axis: (n,), the next to split; -1 where none is
+    left. bounded: boxes bounded so far.
     """
 
-    sheet: Whole
+    branch: Whole
     lower: Array
     upper: Array
     corner: Array
     excess: Array
-    seen: Whole
+    counted_designs: Whole
     axis: Whole
-    sheets: list[Boxes] = field(kw_only=True)
+    branches: list[Boxes] = field(kw_only=True)
     bounded: int = field(default=0, kw_only=True)
 
     @classmethod
-    def of(cls, sheets: list[Boxes]) -> Tree:
-        """Return the tree of these sheets, without boxes."""
+    def of_branches(cls, branches: list[Boxes]) -> Tree:
+        """Return a tree without boxes."""
         none, wide = np.zeros(0, np.int64), np.zeros((0, 3))
-        return cls(none, wide, wide, np.zeros((0, len(sheets[0].objectives))), np.zeros(0), none, none, sheets=sheets)
+        return cls(
+            none, wide, wide, np.zeros((0, len(branches[0].objectives))), np.zeros(0), none, none, branches=branches
+        )
 
     def volume(self) -> float:
-        """Return the open boxes' share of the whole, sheets counting alike."""
+        """Return the fraction of the design box that is open; all branches count alike."""
         total = 0.0
-        for index, boxes in enumerate(self.sheets):
-            own, k = self.sheet == index, len(boxes.sheet.free)
+        for index, boxes in enumerate(self.branches):
+            own, k = self.branch == index, len(boxes.branch.free)
             total += float(np.prod((self.upper - self.lower)[own][:, :k], axis=1).sum())
-        return total / len(self.sheets)
+        return total / len(self.branches)
 
-    def first(self, index: int) -> tuple[Array, Array]:
-        """Return the boxes (n, k) that a sheet begins with."""
-        k = len(self.sheets[index].sheet.free)
+    def initial_boxes(self, index: int) -> tuple[Array, Array]:
+        """Return the initial boxes (n, k) of a branch."""
+        k = len(self.branches[index].branch.free)
         count = _FIRST[k]
         places = np.array(list(itertools.product(range(count), repeat=k)), dtype=np.float64).reshape(count**k, k)
         return places / count, (places + 1.0) / count
 
     def bound(self, index: int, lower: Array, upper: Array, pool: ThreadPoolExecutor) -> Bounded:
-        """Return the bounds of boxes of a sheet, those that cannot hold a feasible design left out."""
+        """Return the bounds of boxes of a branch, without boxes that cannot hold a feasible design."""
         self.bounded += len(lower)
         parts = [slice(begin, begin + _CHUNK) for begin in range(0, len(lower), _CHUNK)]
-        first, *others = pool.map(lambda part: self.sheets[index].bound(lower[part], upper[part]), parts)
+        first, *others = pool.map(lambda part: self.branches[index].bound(lower[part], upper[part]), parts)
         found = first.join(*others)
         return found[found.alive]
 
-    def put(self, index: int, boxes: Bounded, corner: Array, excess: Array, seen: int) -> None:
-        """Take boxes in."""
+    def add(self, index: int, boxes: Bounded, corner: Array, excess: Array, counted: int) -> None:
+        """Add boxes."""
         n, k = boxes.lower.shape
         wide = boxes.upper - boxes.lower
         # Where nothing is known of what matters, the widest; a little of it always, so that none stays wide for ever.
         smear = np.where(np.isfinite(boxes.smear), boxes.smear, 0.0) + 0.05 * wide
         smear = np.where(wide > _FINEST, smear, -1.0)
         axis = np.where(smear.max(axis=1) < 0.0, -1, smear.argmax(axis=1)) if k else np.full(n, -1)
-        own = (np.full(n, index), boxes.lower, boxes.upper, corner, excess, np.full(n, seen), axis)
-        self.become(self.join(Tree(*own, sheets=self.sheets)))
+        own = (np.full(n, index), boxes.lower, boxes.upper, corner, excess, np.full(n, counted), axis)
+        self.become(self.join(Tree(*own, branches=self.branches)))
 
     def keep(self, rows: Whole | Mask) -> None:
         """Keep only these boxes."""
         self.become(self[rows])
 
     def largest(self, count: int) -> Whole:
-        """Return boxes that can be split, those of the largest excess."""
+        """Return the splittable boxes of the largest excess."""
         rows = np.flatnonzero(self.axis >= 0)
         if len(rows) <= count:
             return rows
         return rows[np.argpartition(-self.excess[rows], count)[:count]]
 
     def halved(self, rows: Whole) -> list[tuple[int, Array, Array]]:
-        """Take boxes out and return their two halves, by sheet: index, lower, upper (n, k)."""
+        """Remove boxes and return their halves by branch: index, lower, upper (n, k)."""
         found = []
-        for index, boxes in enumerate(self.sheets):
-            own, k = rows[self.sheet[rows] == index], len(boxes.sheet.free)
+        for index, boxes in enumerate(self.branches):
+            own, k = rows[self.branch[rows] == index], len(boxes.branch.free)
             if not len(own):
                 continue
             low, high, axis = self.lower[own][:, :k], self.upper[own][:, :k], self.axis[own]
@@ -109,5 +112,5 @@ class Tree(Table):
 
 
 def pool() -> ThreadPoolExecutor:
-    """Return threads of its own: bounding asks kernels that wait for the shared ones."""
+    """Return a separate thread pool: bounding calls kernels that wait for the shared one."""
     return ThreadPoolExecutor(max_workers=cpu_count() or 1, thread_name_prefix="slidercrank-boxes")

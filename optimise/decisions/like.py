@@ -21,7 +21,7 @@ from ...model.errors import InputError
 from ...model.input_warning import warn_user
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.values import in_both_units
-from ..front.dominance import beating
+from ..front.dominance import dominating
 from ..front.front import ParetoFront, pair, require_front
 from ..front.hypervolume import scaling
 from ..front.stationarity import STATIONARY
@@ -30,13 +30,13 @@ from ..methods.registry import require_gradients
 from ..problem.problem import Problem, Settings
 from ..problem.requirements import Constraint, Range
 from ..problem.violation import FEASIBLE
-from ..search.assemble import assemble, empty
-from ..search.candidates import Finished
-from ..search.elimination import sheets
+from ..search.assemble import assemble, empty_front
+from ..search.candidates import FrontCandidates
+from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
 from ..search.recorded import polish
 from ..search.sampling import generator
-from ..search.search import Archive, Run, enumerate_settled, explore, searched
+from ..search.search import Archive, Run, enumerate_branches, explore, searched_evaluators
 from ..solve import solve
 
 Ends = tuple[float | None, float | None]
@@ -74,15 +74,15 @@ def nearest(
     _require_new(problem, row, constraints, ranges)
     asked, contradiction = extended(problem, constraints, ranges)
     require_gradients(asked, "the search for a design like another")
-    evaluators = [Evaluator(asked, sheet) for sheet in sheets(asked)]
+    evaluators = [Evaluator(asked, branch) for branch in elimination_branches(asked)]
     run = Run(asked, 1)
     if contradiction:
-        return empty(asked, evaluators, run, "infeasible", f"no design meets all requirements: {contradiction}")
-    finished = enumerate_settled(asked, evaluators, run).only_settled(span)
-    free = searched(evaluators)
+        return empty_front(asked, evaluators, run, "infeasible", f"no design meets all requirements: {contradiction}")
+    finished = enumerate_branches(asked, evaluators, run).only_enumerated(span)
+    free = searched_evaluators(evaluators)
     archive = explore(asked, free, run) if free else Archive.empty(len(span))
     order = np.argsort(distance(archive.values, values, span), kind="stable")[:_STARTS]
-    for index, u in archive[order].by_sheet(evaluators):
+    for index, u in archive[order].by_branch(evaluators):
         finished.add(index, polish(evaluators[index], u, span))
     if not len(finished):
         return _nearest(solve(asked), values, span)
@@ -201,14 +201,14 @@ def _within(value: object, ends: Ends, factor: float) -> bool:
     )
 
 
-def _zoom(finished: Finished, evaluators: list[Evaluator], archive: Archive, values: Array, seed: int) -> None:
+def _zoom(finished: FrontCandidates, evaluators: list[Evaluator], archive: Archive, values: Array, seed: int) -> None:
     """Add polished designs around the nearest ones, closer and closer."""
     random = generator(seed, 2000)
     width = _WIDEST
     for _ in range(_ROUNDS):
         parents = _ranked(finished, archive, values)[:_PARENTS]
         before = distance(finished.values[parents[:1]], values, finished.span)[0]
-        for index, u in finished[parents].by_sheet(evaluators):
+        for index, u in finished[parents].by_branch(evaluators):
             evaluator = evaluators[index]
             points = np.repeat(u, _CHILDREN, axis=0)
             points = np.clip(points + width * random.standard_normal(points.shape), 0.0, 1.0)
@@ -223,12 +223,12 @@ def _zoom(finished: Finished, evaluators: list[Evaluator], archive: Archive, val
             break
 
 
-def _ranked(finished: Finished, archive: Archive, values: Array) -> Whole:
+def _ranked(finished: FrontCandidates, archive: Archive, values: Array) -> Whole:
     """Return the rows of designs that nothing dominates, nearest first; stationary ones before all others."""
     rows = finished.best()
-    if archive.met.any():  # samples within a band around the constraints prove nothing
-        own, screened = finished.values[rows] / finished.span, archive.values[archive.met] / finished.span
-        beaten = beating(-own, -screened, clearly=_BEATEN)
+    if archive.is_feasible.any():  # samples within a band around the constraints prove nothing
+        own, screened = finished.values[rows] / finished.span, archive.values[archive.is_feasible] / finished.span
+        beaten = dominating(-own, -screened, clearly=_BEATEN)
         rows = rows[~beaten] if not beaten.all() else rows
     apart = distance(finished.values[rows], values, finished.span)
     return rows[np.lexsort((apart, finished.residual[rows] > STATIONARY))]

@@ -11,10 +11,10 @@ Lecture Notes in Economics and Mathematical Systems 177, 1980; Miettinen and Mä
 design is better than wished in everything; otherwise all that binds gives way by the same share of its range. A little
 of the sum, rho, makes every minimiser Pareto-optimal, whether the wish can be had or not.
 
-It is solved by the polish, on every sheet of the problem - sign of the offset, choices - from the designs of the front
-that are nearest to the wish and apart. On sheets that are not theirs the same lengths are tried. Where they do not all
-end in one optimum more designs are tried. The answer is never worse than the best design of the front, and exact within
-its valley; that no other valley is deeper rests on the starts.
+It is solved by the polish, on every branch of the problem - sign of the offset, choices - from distinct
+designs of the front that are nearest to the wish. Their lengths are tried on all other branches too. Where they do not
+all end in one optimum, more designs are tried. The answer is never worse than the best design of the front, and exact
+within its valley; that no other valley is deeper depends on the starts.
 """
 
 from __future__ import annotations
@@ -32,20 +32,20 @@ from ..methods.achievement import Achievement
 from ..methods.registry import require_gradients
 from ..methods.scalar import SUM, Form
 from ..problem.violation import FEASIBLE
-from ..search.assemble import assemble, empty
-from ..search.candidates import Candidates, Finished
-from ..search.elimination import sheets
+from ..search.assemble import assemble, empty_front
+from ..search.candidates import Candidates, FrontCandidates
+from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
-from ..search.mirror import once
+from ..search.mirror import drop_mirrored_branches
 from ..search.polish import polish
-from ..search.sampling import apart
+from ..search.sampling import distant_rows
 from ..search.search import BANDS, Run
 from .wished import Wished, outcomes_of
 from .wishes import Wish, aimed, read_wishes
 
-_NEAREST, _MORE = 3, 6  # starts on a sheet, and those tried where the first end in different optima
-_SHEETS, _FINAL = 12, 2  # that are tried, the best ones; at first from one start each, then the best of them
-_WORSE = 0.5  # of the ranges: a sheet whose best start is worse than the best of all by more is left out
+_NEAREST, _MORE = 3, 6  # starts on a branch, and those tried where the first end in different optima
+_BRANCHES, _FINAL = 12, 2  # that are tried, the best ones; at first from one start each, then the best of them
+_WORSE = 0.5  # of the ranges: a branch whose best start is worse than the best of all by more is left out
 _DIFFER = 1e-9  # of the ranges: optima that are not one
 _OUTSIDE = 10.0  # what a start counts for that lies above a ceiling, or outside the requirements
 
@@ -70,7 +70,7 @@ class Wishes:
         self.ideal = front.values.min(axis=0)
         sizes = [abs(objective.target or 0.0) for objective in front.objectives]
         self.span = ranges_or_sizes(front.values, self.ideal, sizes)
-        self._sheets = once(front.problem, sheets(front.problem))
+        self._branches = drop_mirrored_branches(front.problem, elimination_branches(front.problem))
         self._starts = self._known()
 
     def wish(self, given: Mapping[str, object], *, row: int | None = None) -> Wished:
@@ -86,26 +86,26 @@ class Wishes:
         run = Run(front.problem, 1)
         if best is None:
             message = self._why_none(wishes)
-            nothing = empty(front.problem, evaluators, run, "infeasible", message)
+            nothing = empty_front(front.problem, evaluators, run, "infeasible", message)
             return Wished(found=nothing, row=row, wishes=wishes, value=np.nan, outcomes=(), message=message)
         index, u, value = best
-        finished = Finished.none(self.span)
+        finished = FrontCandidates.without_designs(self.span)
         finished.add(index, polish(evaluators[index], u[None], self.span, iterations=0))
         found = assemble(front.problem, evaluators, finished, run)
         outcomes = outcomes_of(front, wishes, aims, row, found)
         return Wished(found=found, row=row, wishes=wishes, value=value, outcomes=outcomes)
 
     def _evaluators(self) -> list[Evaluator]:
-        return [Evaluator(self.front.problem, sheet) for sheet in self._sheets]
+        return [Evaluator(self.front.problem, branch) for branch in self._branches]
 
     def _known(self) -> Candidates:
-        """Return the designs of the front on their sheets, and their numbers on all others."""
+        """Return the designs of the front on their branches, and their numbers on all others."""
         front, parts = self.front, []
         variants = np.array(front.variants or np.zeros(len(front)), dtype=np.int64)
         for index, evaluator in enumerate(self._evaluators()):
-            sheet = evaluator.sheet
-            own = (variants == sheet.variant) & (np.sign(front.dimensions[:, 2]) != -sheet.sign)
-            u = sheet.coordinates(front.dimensions)
+            branch = evaluator.branch
+            own = (variants == branch.variant) & (np.sign(front.dimensions[:, 2]) != -branch.sign)
+            u = branch.coordinates(front.dimensions)
             if own.any():
                 met = np.ones(int(own.sum()), np.bool_)
                 parts.append(Candidates(np.full(len(met), index), u[own], front.values[own], met))
@@ -140,18 +140,18 @@ class Wishes:
         return np.asarray((values - self.ideal) / self.span)
 
     def _solve(self, form: Form, evaluators: list[Evaluator]) -> tuple[int, Array, float] | None:
-        """Return sheet, point (k,) and value of the form at its minimiser; None where no start leads to a design."""
+        """Return branch, point (k,) and value of the form at its minimiser; None where no start leads to a design."""
         scaled = self._scaled(self._starts.values)
         over = np.maximum(scaled - form.ceilings, 0.0).max(axis=1)
         free = replace(form, ceilings=np.full(len(form.weights), np.inf))
-        worth = free.value(scaled) + _OUTSIDE * (over + ~self._starts.met)
-        sheet, tried = self._starts.sheet, np.zeros(len(worth), np.bool_)
+        worth = free.value(scaled) + _OUTSIDE * (over + ~self._starts.is_feasible)
+        branch, tried = self._starts.branch, np.zeros(len(worth), np.bool_)
         ends: list[tuple[float, int, Array]] = []  # the best first
         chosen = self._promising(worth)
         for count in (_NEAREST, _MORE) if len(chosen) == 1 else (1, _NEAREST, _MORE):
             for index in chosen:
-                own = np.flatnonzero((sheet == index) & ~tried)
-                rows = own[apart(worth[own], self._starts.u[own], sheet[own], count)]
+                own = np.flatnonzero((branch == index) & ~tried)
+                rows = own[distant_rows(worth[own], self._starts.u[own], branch[own], count)]
                 tried[rows] = True
                 ends += self._ends(form, evaluators[index], index, rows)
             ends.sort(key=lambda end: end[0])
@@ -166,13 +166,13 @@ class Wishes:
         return index, u, value
 
     def _promising(self, worth: Array) -> list[int]:
-        """Return the sheets to try, the best first."""
-        found = {index: float(worth[self._starts.sheet == index].min()) for index in set(self._starts.sheet.tolist())}
+        """Return the branches to try, the best first."""
+        found = {index: float(worth[self._starts.branch == index].min()) for index in set(self._starts.branch.tolist())}
         order = sorted(found, key=lambda index: (found[index], index))
-        return [index for index in order if found[index] <= found[order[0]] + _WORSE][:_SHEETS]
+        return [index for index in order if found[index] <= found[order[0]] + _WORSE][:_BRANCHES]
 
     def _ends(self, form: Form, evaluator: Evaluator, index: int, rows: Whole) -> list[tuple[float, int, Array]]:
-        """Return where the starts on a sheet end, with the form's value there; none that is not feasible."""
+        """Return where the starts on a branch end, with the form's value there; none that is not feasible."""
         if not len(rows):
             return []
         start = self._starts.u[rows][:, : evaluator.dimension]

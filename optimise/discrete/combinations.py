@@ -1,4 +1,4 @@
-"""Combinations of discrete values: how many there are, which keep every requirement, and which come nearest."""
+"""Combinations of discrete values: their number, those that meet every requirement, and the nearest ones."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from ...model.arrays import Array, Mask, Whole
 from ..front.dominance import nondominated
-from ..front.hypervolume import Stand, unheard
+from ..front.hypervolume import ReportProgress, ignore_progress
 from ..problem.problem import Problem, Variant
 from ..problem.requirements import Range
 from ..problem.robust import asks_robust
@@ -24,10 +24,10 @@ from ..problem.violation import (
     greatest_violation,
 )
 
-_AT_ONCE, _AT_ONCE_ROBUST = 1 << 15, 1 << 10  # combinations judged between two questions whether to end
+_AT_ONCE, _AT_ONCE_ROBUST = 1 << 15, 1 << 10  # combinations judged between two reports of progress
 
 
-_HELD = 1 << 17  # combinations that keep every requirement, of which the best alone are kept once there are more
+_HELD = 1 << 17  # combinations that meet every requirement; of more, only the best are stored
 _EXPANDED = 256  # designs whose neighbours are looked up together: with eight numbers each has 6,561
 
 
@@ -42,7 +42,7 @@ class Axes:
     values: tuple[Array | None, ...]
 
     @classmethod
-    def of(cls, part: Problem) -> Axes:
+    def of_problem(cls, part: Problem) -> Axes:
         """Return the axes of a problem without choices; a fixed number has its one value."""
         given = {item.name: item for item in part.discrete}
         found: list[Array | None] = []
@@ -58,13 +58,13 @@ class Axes:
         return cls(part, tuple(found))
 
     @property
-    def whole(self) -> bool:
-        """Whether a combination is a design: nothing is left free."""
+    def is_complete(self) -> bool:
+        """Whether a combination is a design, with no free number left."""
         return all(values is not None for values in self.values)
 
     @property
     def count(self) -> int:
-        """How many combinations there are."""
+        """Number of combinations."""
         return math.prod(len(values) for values in self.values if values is not None)
 
     def designs(self, begin: int, end: int) -> Array:
@@ -81,7 +81,7 @@ class Axes:
         return np.stack(columns, axis=1)
 
     def next_to(self, designs: Array) -> Whole:
-        """Return the numbers (n, s) of combinations whose values are those of a design (n, 3 + v) or next to them.
+        """Return the numbers (n, s) of the combinations at designs (n, 3 + v) and next to them.
 
         A design itself is among them, and in place of what its range does not have.
         """
@@ -107,7 +107,7 @@ class Axes:
 
 @dataclass(frozen=True)
 class Judged:
-    """Combinations that keep every requirement, and the nearest of those that do not.
+    """Combinations that meet every requirement, and the nearest of those that do not.
 
     part: the problem that the nearest answers. dimensions: (n, 3 + v). values: (n, m), objectives as minimised. judged:
     combinations looked at. nearest: the design (3 + v,) of least violation among those that turn fully, None without
@@ -122,12 +122,12 @@ class Judged:
     missed: float
 
     @classmethod
-    def none(cls, part: Problem) -> Judged:
+    def empty(cls, part: Problem) -> Judged:
         """Return no designs."""
         return cls(part, np.zeros((0, len(part.ranges))), np.zeros((0, len(part.objectives))), 0, None, np.inf)
 
-    def with_(self, other: Judged) -> Judged:
-        """Return both."""
+    def merge(self, other: Judged) -> Judged:
+        """Return these designs together with others; the nearest miss is the smaller of both."""
         nearer = other if other.missed < self.missed else self
         return Judged(
             nearer.part,
@@ -139,28 +139,28 @@ class Judged:
         )
 
     def best(self) -> Judged:
-        """Return the same with those combinations alone that no other dominates: all of millions take gigabytes."""
+        """Return only the combinations that no other dominates: millions of them would take gigabytes."""
         rows = nondominated(self.values)
         return replace(self, dimensions=self.dimensions[rows], values=self.values[rows])
 
 
-def every(axes: Axes, stand: Stand = unheard, *, dimensions_only: bool = False) -> Judged:
-    """Return all combinations of a whole variant, judged; of very many the best. stand: asked after some thousands.
+def judge_all(axes: Axes, report: ReportProgress = ignore_progress, *, dimensions_only: bool = False) -> Judged:
+    """Judge all combinations of a variant without free numbers; of very many, return the best.
 
-    dimensions_only: judge by what needs no cycle, and compute no objectives: of very many one stands for the rest.
+    report: called after every few thousand. dimensions_only: judge only what needs no cycle, without objectives.
     """
-    found = Judged.none(axes.part)
+    found = Judged.empty(axes.part)
     step = _AT_ONCE_ROBUST if asks_robust(axes.part) and not dimensions_only else _AT_ONCE
     for begin in range(0, axes.count, step):
-        stand(begin, axes.count)
-        some = judged(axes.part, axes.designs(begin, begin + step), dimensions_only=dimensions_only)
-        found = found.with_(some)
+        report(begin, axes.count)
+        some = judge(axes.part, axes.designs(begin, begin + step), dimensions_only=dimensions_only)
+        found = found.merge(some)
         found = found.best() if len(found.values) > _HELD else found
     return found
 
 
-def judged(part: Problem, designs: Array, *, dimensions_only: bool = False) -> Judged:
-    """Return which designs (n, 3 + v) keep every requirement, with their objectives."""
+def judge(part: Problem, designs: Array, *, dimensions_only: bool = False) -> Judged:
+    """Return the designs (n, 3 + v) that meet every requirement, with their objectives."""
     turning = designs[clearly_turning(designs)]
     constraints = constraints_of(part)
     slow = [item for item in constraints if costly(part.quantity(item.quantity))]
@@ -187,7 +187,7 @@ def judged(part: Problem, designs: Array, *, dimensions_only: bool = False) -> J
 def neighbours(axes: Axes, designs: Array, most: int) -> Array:
     """Return combinations (n, 3 + v) around designs, NaN where a number is free; the nearest of each design first.
 
-    They are of a window as wide as `most` allows for each design, at least the values on either side.
+    The window around each design is as wide as `most` allows, at least the values on either side.
     """
     if not len(designs):
         return designs
@@ -195,42 +195,44 @@ def neighbours(axes: Axes, designs: Array, most: int) -> Array:
     width = 2
     while free and (width + 2) ** free * len(designs) <= most:
         width += 2
-    found = [_around(axes.values, design, width) for design in designs]
+    found = [_combinations_around(axes.values, design, width) for design in designs]
     ranks = np.concatenate([np.arange(len(part)) for part in found])
     stacked = np.concatenate(found)[np.argsort(ranks, kind="stable")]
     _, first = np.unique(np.nan_to_num(stacked, nan=0.0), axis=0, return_index=True)
     return np.asarray(stacked[np.sort(first)][:most])
 
 
-def near(axes: Axes, designs: Array, window: int, most: int, stand: Stand = unheard) -> tuple[Judged, Whole]:
-    """Return the best combinations of a whole variant around designs, judged, and the numbers of all that were.
+def judge_near(
+    axes: Axes, designs: Array, window: int, most: int, report: ReportProgress = ignore_progress
+) -> tuple[Judged, Whole]:
+    """Return the best combinations around designs of a fully discrete variant, and the numbers of all judged ones.
 
-    First those of a window around each design, `window` at most. Then those next to the best so far, until these have
-    none left that was not judged, or `most` were.
+    First, a window of at most `window` combinations around the designs is judged. Then the neighbours of the best so
+    far follow, until all of them are judged, or `most` are.
     """
-    found, seen = Judged.none(axes.part), np.zeros(0, np.int64)
+    found, seen = Judged.empty(axes.part), np.zeros(0, np.int64)
     fresh = np.unique(axes.numbers(neighbours(axes, designs, window)))
     while len(fresh):
         for begin in range(0, len(fresh), _AT_ONCE):
-            stand(len(seen) + begin, most)
-            some = judged(axes.part, axes.numbered(fresh[begin : begin + _AT_ONCE]))
-            found = found.with_(some.best()).best()
+            report(len(seen) + begin, most)
+            some = judge(axes.part, axes.numbered(fresh[begin : begin + _AT_ONCE]))
+            found = found.merge(some.best()).best()
         seen = np.union1d(seen, fresh)
         fresh = np.zeros(0, np.int64)
         for begin in range(0, len(found.dimensions), _EXPANDED):
-            stand(len(seen), most)
+            report(len(seen), most)
             around = axes.next_to(found.dimensions[begin : begin + _EXPANDED])
             fresh = np.union1d(fresh, np.setdiff1d(around, seen))
         fresh = fresh[: max(0, most - len(seen))]
     return found, seen
 
 
-def surrounded(axes: Axes, designs: Array, seen: Whole) -> Mask:
+def has_judged_neighbours(axes: Axes, designs: Array, seen: Whole) -> Mask:
     """Return which combinations (n, 3 + v) have all those next to them among the numbers seen."""
     return np.array([bool(np.isin(axes.next_to(row[None]), seen).all()) for row in designs], np.bool_)
 
 
-def _around(axes: Sequence[Array | None], design: Array, width: int) -> Array:
+def _combinations_around(axes: Sequence[Array | None], design: Array, width: int) -> Array:
     """Return the combinations of the values next to a design, the nearest in ranges first."""
     ladders, ways = [], []
     for values, value in zip(axes, design.tolist(), strict=True):
@@ -249,7 +251,7 @@ def _around(axes: Sequence[Array | None], design: Array, width: int) -> Array:
 
 
 def with_values(problem: Problem, chosen: Sequence[tuple[int, Array]]) -> Problem:
-    """Return the problem whose variants are combinations: of each variant's index, designs (3 + v,).
+    """Return the problem whose variants are combinations. chosen: index of each variant and its design (3 + v,).
 
     A number that is NaN stays free in its range.
     """

@@ -14,16 +14,16 @@ import numpy as np
 
 from ...model.arrays import Array, Whole
 from ...objectives.tables.varying_column import columns_of_numbers
-from ..front.answer import Answer
+from ..front.discrete_answer import DiscreteAnswer
 from ..front.dominance import nondominated
 from ..front.front import ParetoFront, Status
-from ..front.hypervolume import Stand, choose
-from ..front.rounded import written
+from ..front.hypervolume import ReportProgress, choose
+from ..front.rounded import drop_conversion_rounding
 from ..problem.problem import Problem
 from ..problem.robust import asks_robust
 from ..problem.table_columns import STATUS
-from .combinations import Axes, Judged, every, near, neighbours, surrounded, with_values
-from .words import found_in_words, missed_in_words
+from .combinations import Axes, Judged, has_judged_neighbours, judge_all, judge_near, neighbours, with_values
+from .words import failure_message, result_message
 
 MOST, _MOST_ROBUST = 5_000_000, 1 << 13
 """Combinations that are designs, all judged; robust quantities take a hundred times as long."""
@@ -37,23 +37,23 @@ Chosen = list[tuple[int, Array]]
 
 
 def discrete_front(
-    problem: Problem, search: Search, nothing: Callable[[Status, str], ParetoFront], stand: Stand
+    problem: Problem, search: Search, nothing: Callable[[Status, str], ParetoFront], report: ReportProgress
 ) -> ParetoFront:
     """Return the front of a problem with discrete numbers.
 
-    search: solves a problem without. nothing: makes an empty front of a status and a message. stand: asked in between.
+    search: solves a problem without. nothing: makes an empty front of a status and a message. report: asked in between.
     """
-    axes = [Axes.of(part) for part in problem.parts()]
-    whole, count = all(each.whole for each in axes), sum(each.count for each in axes)
+    axes = [Axes.of_problem(part) for part in problem.parts()]
+    whole, count = all(each.is_complete for each in axes), sum(each.count for each in axes)
     most = (_MOST_ROBUST if asks_robust(problem) else MOST) if whole else SOLVED
     exact = count <= most
     found: Judged | None = None
     chosen: Chosen = []
     seen: list[Whole] = []
     if exact and whole:
-        chosen, found = _best(problem, axes, [every(each, stand) for each in axes])
+        chosen, found = _designs_to_deliver(problem, axes, [judge_all(each, report) for each in axes])
         if not chosen:
-            return nothing("infeasible", missed_in_words(problem, found))
+            return nothing("infeasible", failure_message(problem, found))
     continuous = search(replace(problem, discrete=()))
     if continuous.status == "cancelled":
         return nothing("cancelled", "cancelled before any design with discrete values was evaluated")
@@ -61,20 +61,27 @@ def discrete_front(
         return replace(continuous, problem=problem)
     if not whole:
         for index, each in enumerate(axes):
-            rows = each.designs(0, each.count) if exact else neighbours(each, _own(continuous, index), SOLVED)
+            rows = (
+                each.designs(0, each.count)
+                if exact
+                else neighbours(each, _designs_of_variant(continuous, index), SOLVED)
+            )
             chosen += [(index, row) for row in rows]
-        chosen = _fewest(chosen)
+        chosen = _first_of_each_variant(chosen)
         for index, each in enumerate(axes):
             own = [row for of, row in chosen if of == index]
             seen.append(each.numbers(np.array(own)) if own else np.zeros(0, np.int64))
     elif not exact:
         share, window = most // len(axes), min(most, _WINDOW) // len(axes)
-        both = [near(each, _own(continuous, index), window, share, stand) for index, each in enumerate(axes)]
+        both = [
+            judge_near(each, _designs_of_variant(continuous, index), window, share, report)
+            for index, each in enumerate(axes)
+        ]
         seen = [numbers for _, numbers in both]
-        chosen, found = _best(problem, axes, [part for part, _ in both])
+        chosen, found = _designs_to_deliver(problem, axes, [part for part, _ in both])
     if not chosen:
-        return nothing("infeasible", missed_in_words(problem, found or Judged.none(axes[0].part)))
-    answer = Answer(
+        return nothing("infeasible", failure_message(problem, found or Judged.empty(axes[0].part)))
+    answer = DiscreteAnswer(
         exact=exact,
         combinations=count,
         judged=found.judged if found else len(chosen),
@@ -83,23 +90,23 @@ def discrete_front(
     )
     front = search(with_values(problem, chosen))
     if not exact and len(front):
-        front = _without_proof(front, axes, chosen, seen)
-    return _told(problem, front, continuous, chosen, answer)
+        front = _downgrade_unproven(front, axes, chosen, seen)
+    return _front_of_problem(problem, front, continuous, chosen, answer)
 
 
-def _without_proof(front: ParetoFront, axes: list[Axes], chosen: Chosen, seen: list[Whole]) -> ParetoFront:
+def _downgrade_unproven(front: ParetoFront, axes: list[Axes], chosen: Chosen, seen: list[Whole]) -> ParetoFront:
     """Return a front of combinations that are called stationary only where all those next to them were judged."""
     own = [chosen[row] for row in front.variants]
-    around = np.array([surrounded(axes[of], design[None], seen[of])[0] for of, design in own], np.bool_)
+    around = np.array([has_judged_neighbours(axes[of], design[None], seen[of])[0] for of, design in own], np.bool_)
     status = np.where(around, front.columns[STATUS], "best found")
     return replace(front, columns={**front.columns, STATUS: status})
 
 
-def _best(problem: Problem, axes: list[Axes], parts: list[Judged]) -> tuple[Chosen, Judged]:
+def _designs_to_deliver(problem: Problem, axes: list[Axes], parts: list[Judged]) -> tuple[Chosen, Judged]:
     """Return the designs to deliver: the non-dominated ones of all variants, at most as many as are asked for."""
     together = parts[0]
     for part in parts[1:]:
-        together = together.with_(part)
+        together = together.merge(part)
     owner = np.concatenate([np.full(len(part.values), index) for index, part in enumerate(parts)])
     values = together.values
     if not len(values):
@@ -108,20 +115,20 @@ def _best(problem: Problem, axes: list[Axes], parts: list[Judged]) -> tuple[Chos
     if values.shape[1] == 1:
         rows = rows[:1]
     else:
-        rows = rows[_apart(values[rows])]
+        rows = rows[_distinct_rows(values[rows])]
         best = tuple(dict.fromkeys(np.argmin(values[rows], axis=0).tolist()))
         rows = rows[choose(values[rows], problem.settings.designs, always=best)]
     return [(int(owner[row]), together.dimensions[row]) for row in rows], together
 
 
-def _apart(values: Array) -> Array:
+def _distinct_rows(values: Array) -> Array:
     """Return the rows of objectives (n, m) that differ from those before by more than rounding."""
     size = np.maximum(_SAME * np.ptp(values, axis=0), 1e-300)
     _, first = np.unique(np.round(values / size), axis=0, return_index=True)
     return np.sort(first)
 
 
-def _own(front: ParetoFront, variant: int) -> Array:
+def _designs_of_variant(front: ParetoFront, variant: int) -> Array:
     """Return the designs of a variant, the best in an objective first."""
     own = np.flatnonzero(np.array(front.variants) == variant) if front.variants else np.arange(len(front))
     first = [row for row in front.extremes().values() if row in own]
@@ -129,7 +136,7 @@ def _own(front: ParetoFront, variant: int) -> Array:
     return front.dimensions[order]
 
 
-def _fewest(chosen: Chosen) -> Chosen:
+def _first_of_each_variant(chosen: Chosen) -> Chosen:
     """Return at most `SOLVED` combinations, of each variant the first ones."""
     rank: dict[int, int] = {}
     order = []
@@ -139,13 +146,15 @@ def _fewest(chosen: Chosen) -> Chosen:
     return [chosen[place] for _, place in sorted(order)[:SOLVED]]
 
 
-def _told(problem: Problem, front: ParetoFront, continuous: ParetoFront, chosen: Chosen, answer: Answer) -> ParetoFront:
+def _front_of_problem(
+    problem: Problem, front: ParetoFront, continuous: ParetoFront, chosen: Chosen, answer: DiscreteAnswer
+) -> ParetoFront:
     """Return the front of combinations as one of the problem that states them."""
     columns = dict(front.columns)
     for place, (name, (column, unit)) in enumerate(columns_of_numbers(problem.mechanism.varying).items()):
         if column in columns and any(item.name == name for item in problem.discrete):
             shown = front.dimensions[:, place] * unit.factor
-            columns[column] = np.array([written(value) for value in shown.tolist()])
+            columns[column] = np.array([drop_conversion_rounding(value) for value in shown.tolist()])
     # A design of discrete values is one of the continuous problem too.
     best = front.values.min(axis=0, initial=np.inf).tolist()
     least = tuple(min(one, other) for one, other in zip(answer.continuous, best, strict=False))
@@ -160,4 +169,4 @@ def _told(problem: Problem, front: ParetoFront, continuous: ParetoFront, chosen:
     )
     if front.status == "cancelled":
         return found
-    return replace(found, message=found_in_words(found) if len(found) else f"{found_in_words(found)}; {front.message}")
+    return replace(found, message=result_message(found) if len(found) else f"{result_message(found)}; {front.message}")

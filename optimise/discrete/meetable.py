@@ -9,8 +9,8 @@ import numpy as np
 from ...model.errors import InfeasibleError
 from ...model.linkage.dimensions import DIMENSIONS
 from ..problem.problem import Problem
-from .combinations import Axes, Judged, every
-from .words import missed_in_words
+from .combinations import Axes, Judged, judge_all
+from .words import failure_message
 
 MOST = 200_000
 """Combinations that are looked at."""
@@ -23,17 +23,17 @@ def require_meetable(problem: Problem) -> None:
     """
     if not problem.discrete:
         return
-    axes = [_of_dimensions(Axes.of(part)) for part in problem.parts()]
-    if not all(each.whole for each in axes) or sum(each.count for each in axes) > MOST:
+    axes = [_of_dimensions(Axes.of_problem(part)) for part in problem.parts()]
+    if not all(each.is_complete for each in axes) or sum(each.count for each in axes) > MOST:
         return
-    found = Judged.none(axes[0].part)
+    found = Judged.empty(axes[0].part)
     for each in axes:
-        found = found.with_(every(each, dimensions_only=True))
+        found = found.merge(judge_all(each, dimensions_only=True))
         if len(found.dimensions):
             return
     sizes = tuple(item for item in problem.discrete if item.name in DIMENSIONS)
     if sizes:
-        raise InfeasibleError(f"variables.{sizes[0].name}: {missed_in_words(replace(problem, discrete=sizes), found)}")
+        raise InfeasibleError(f"variables.{sizes[0].name}: {failure_message(replace(problem, discrete=sizes), found)}")
 
 
 def _of_dimensions(axes: Axes) -> Axes:

@@ -11,25 +11,24 @@ from ..problem.violation import constraints_of, violated_by
 from .combinations import Judged
 
 
-def rules_in_words(problem: Problem) -> str:
+def rules_text(problem: Problem) -> str:
     """Return the discrete numbers with what they may be."""
     return ", ".join(f"{item.name} ({item.rule})" for item in problem.discrete)
 
 
-def found_in_words(front: ParetoFront) -> str:
+def result_message(front: ParetoFront) -> str:
     """Return how many designs were found among how many combinations, and the best with continuous values."""
     answer, problem = front.discrete, front.problem
     assert answer is not None
-    rules = rules_in_words(problem)
+    rules = rules_text(problem)
     if not len(front):
-        return f"no design among {_many(answer.judged)} of {rules} meets every requirement"
+        return f"no design among {_count_combinations(answer.judged)} of {rules} meets every requirement"
     count = counted(len(front), "design")
     if len(front) >= problem.settings.designs:
         count += ", as many as requested"
     if answer.exact:
-        text = (
-            f"{count}, exact: {'all ' if answer.combinations > 1 else ''}{_many(answer.combinations)} of {rules} judged"
-        )
+        every = "all " if answer.combinations > 1 else ""
+        text = f"{count}, exact: {every}{_count_combinations(answer.combinations)} of {rules} judged"
     else:
         some = f"{answer.judged} of {answer.combinations} combinations of {rules}"
         left = answer.combinations - answer.judged
@@ -46,11 +45,13 @@ def found_in_words(front: ParetoFront) -> str:
     return f"{text}; with continuous values the best would be {', '.join(told)}" if told else text
 
 
-def missed_in_words(problem: Problem, found: Judged) -> str:
+def failure_message(problem: Problem, found: Judged) -> str:
     """Return that no combination keeps every requirement, by how much the nearest misses, and a remedy."""
-    rules = rules_in_words(problem)
+    rules = rules_text(problem)
     none = (
-        f"none of {_many(found.judged)} of {rules}" if found.judged != 1 else f"not even the one combination of {rules}"
+        f"none of {_count_combinations(found.judged)} of {rules}"
+        if found.judged != 1
+        else f"not even the one combination of {rules}"
     )
     if found.nearest is None:
         return f"{none} rotates fully and has all required quantities; give smaller steps or wider ranges"
@@ -77,5 +78,5 @@ def missed_in_words(problem: Problem, found: Judged) -> str:
     return f"{none} meets every requirement; the nearest, {sizes}, has {told}; {remedies}"
 
 
-def _many(count: int) -> str:
+def _count_combinations(count: int) -> str:
     return counted(count, "combination")

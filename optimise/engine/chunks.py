@@ -56,11 +56,11 @@ class Shared(Generic[Value]):
             return False
 
     def __reduce__(self) -> tuple[Any, tuple[bytes]]:
-        return _known, (self.pickled,)
+        return _shared_value, (self.pickled,)
 
 
 @lru_cache(maxsize=16)
-def _known(pickled: bytes) -> Shared[Any]:
+def _shared_value(pickled: bytes) -> Shared[Any]:
     """Return the value of these bytes, the same one for the same bytes."""
     found = Shared(pickle.loads(pickled))
     found.__dict__["pickled"] = pickled
@@ -72,13 +72,13 @@ class _Pace:
     """Time a row takes, s, and the seconds over which it was measured; negative before the first."""
 
     row: float = 0.0
-    over: float = -1.0
+    seconds: float = -1.0
 
     def measured(self, seconds: float, rows: int) -> None:
-        if self.over < 0.0:  # the first time counts for nothing: something may have been compiled
-            self.row, self.over = seconds / rows, 0.0
-        elif seconds >= _SURE or self.over < _SURE:
-            self.row, self.over = seconds / rows, seconds
+        if self.seconds < 0.0:  # the first time counts for nothing: something may have been compiled
+            self.row, self.seconds = seconds / rows, 0.0
+        elif seconds >= _SURE or self.seconds < _SURE:
+            self.row, self.seconds = seconds / rows, seconds
 
 
 @dataclass(frozen=True)
@@ -118,14 +118,14 @@ class Chunked(Generic[Subject]):
         while begin < n:
             left = n - begin
             light = pace.row * left < 2.0 * CHUNK
-            if pace.over >= _SURE and not light:
-                if self.engine.worth(pace.row * left):
+            if pace.seconds >= _SURE and not light:
+                if self.engine.should_map(pace.row * left):
                     return parts + self._mapped(work, asked, rows[begin:], pace, 1 if together else _EACH)
                 light = True
             if self.poll is not None:
                 self.poll()
-            if pace.over >= 0.0 and not together:
-                count = left if light else max(2 * count if pace.over > 0.0 else 1, int(CHUNK / pace.row))
+            if pace.seconds >= 0.0 and not together:
+                count = left if light else max(2 * count if pace.seconds > 0.0 else 1, int(CHUNK / pace.row))
             start = perf_counter()
             parts.append(work(self.shared.value, asked, rows[begin : begin + count]))
             pace.measured(perf_counter() - start, min(count, left))
@@ -143,12 +143,14 @@ class Chunked(Generic[Subject]):
         count = max(1, min(int(seconds / CHUNK), most, len(rows)))
         edges = np.linspace(0, len(rows), count + 1).astype(int)
         chunks = [rows[a:b] for a, b in pairwise(edges.tolist())]
-        found = engine.map(partial(_timed, work, self.shared, asked), chunks, poll=self.poll)
+        found = engine.map(partial(_run_timed, work, self.shared, asked), chunks, poll=self.poll)
         pace.row = median(seconds / len(chunk) for chunk, (seconds, _) in zip(chunks, found, strict=True))
         return [part for _, part in found]
 
 
-def _timed(work: Work[Subject, Asked, Part], shared: Shared[Subject], asked: Asked, rows: Array) -> tuple[float, Part]:
+def _run_timed(
+    work: Work[Subject, Asked, Part], shared: Shared[Subject], asked: Asked, rows: Array
+) -> tuple[float, Part]:
     start = perf_counter()
     part = work(shared.value, asked, rows)
     return perf_counter() - start, part

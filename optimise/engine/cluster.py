@@ -77,7 +77,7 @@ class Cluster:
         self._refused = 0.0
         self._reached = 0.0  # when the scheduler was last heard of
 
-    def worth(self, seconds: float) -> bool:
+    def should_map(self, seconds: float) -> bool:
         """Whether so much work pays; see `Engine`."""
         if self._client is None:
             self._refused += seconds
@@ -101,9 +101,9 @@ class Cluster:
                 if time.monotonic() - self._reached >= self.patience:
                     raise EngineError(
                         f"the scheduler must answer within {self.patience:g} s; {self.address} did not "
-                        f"({_said(error)}); start it, or correct the address"
+                        f"({_error_text(error)}); start it, or correct the address"
                     ) from None
-                _log.warning("connection to scheduler %s lost (%s); reconnecting", self.address, _said(error))
+                _log.warning("connection to scheduler %s lost (%s); reconnecting", self.address, _error_text(error))
                 delay = _DELAYS[0] if lost else min(2.0 * delay, _DELAYS[1])
                 _pause(delay, poll)
         return [found[index] for index in range(len(items))]
@@ -132,7 +132,7 @@ class Cluster:
         def give(indices: list[int]) -> None:
             name = uuid.uuid4().hex
             keys = [f"slidercrank-{name}-{index}" for index in indices]
-            futures = client.map(_call, [(_versions(), function, items[index]) for index in indices], key=keys)
+            futures = client.map(_run_task, [(_versions(), function, items[index]) for index in indices], key=keys)
             pending.update(zip(futures, indices, strict=True))
 
         give([index for index in range(len(items)) if index not in found])
@@ -155,7 +155,7 @@ class Cluster:
                     if future.status == "error":
                         index, error = pending.pop(future), future.exception()
                         if not isinstance(error, dask.KilledWorker):
-                            raise _told(error)
+                            raise _explain_error(error)
                         killed[index] += 1
                         if killed[index] >= MOST_KILLED:
                             raise EngineError(
@@ -208,7 +208,7 @@ class Cluster:
         return self._client
 
 
-def _call(task: tuple[tuple[str, ...], Callable[[Any], Any], Any]) -> Any:
+def _run_task(task: tuple[tuple[str, ...], Callable[[Any], Any], Any]) -> Any:
     versions, function, item = task
     if versions != _versions():
         raise EngineError(
@@ -223,16 +223,16 @@ def _versions() -> tuple[str, ...]:
     return (f"python {'.'.join(python_version_tuple()[:2])}", *(f"{name} {version(name)}" for name in _SAME))
 
 
-def _told(error: BaseException) -> BaseException:
+def _explain_error(error: BaseException) -> BaseException:
     """Return the exception of a task, in words where the cluster is at fault."""
     if isinstance(error, SlidercrankError) or not isinstance(error, ImportError | AttributeError | RuntimeError):
         return error
     return EngineError(
-        f"scheduler and workers must have the same software as this machine; got {_said(error)}; install the same there"
+        f"scheduler and workers must have the same software as this machine; got {_error_text(error)}; install it there"
     )
 
 
-def _said(error: BaseException) -> str:
+def _error_text(error: BaseException) -> str:
     return f"{type(error).__name__}: {error}".splitlines()[0][:200].rstrip(": ")
 
 

@@ -21,7 +21,7 @@ class Engine(Protocol):
         """Number of items that are worked on at once, at least one."""
         ...
 
-    def worth(self, seconds: float) -> bool:
+    def should_map(self, seconds: float) -> bool:
         """Whether work that takes so long in this process, s, should rather be mapped.
 
         Asked of all that is heavy: an engine that takes time to start waits until that much of it was refused.
@@ -51,7 +51,7 @@ class Serial:
 
     workers = 1
 
-    def worth(self, seconds: float) -> bool:
+    def should_map(self, seconds: float) -> bool:
         """Return whether something is to be heard meanwhile; see `Engine`."""
         return seconds > LONGEST
 

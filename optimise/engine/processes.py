@@ -40,7 +40,7 @@ class Processes:
         self._pool: ProcessPoolExecutor | None = None
         self._refused = 0.0
 
-    def worth(self, seconds: float) -> bool:
+    def should_map(self, seconds: float) -> bool:
         """Whether so much work pays; see `Engine`."""
         if self._pool is None:
             self._refused += seconds
@@ -91,7 +91,7 @@ class Processes:
             while True:
                 for index in islice(waiting, self.workers - len(running)):
                     pool = self._started()
-                    with deaf_to_interrupts():
+                    with block_interrupts():
                         running[pool.submit(function, items[index])] = index
                 if not running:
                     return []
@@ -134,7 +134,7 @@ class Processes:
                 self.workers, mp_context=multiprocessing.get_context("spawn"), initializer=follow_parent
             )
             try:
-                with deaf_to_interrupts():
+                with block_interrupts():
                     ready = pool.submit(_ready)
                 ready.result()
                 self._pool = pool
@@ -147,7 +147,7 @@ class Processes:
 
 
 @contextlib.contextmanager
-def deaf_to_interrupts() -> Iterator[None]:
+def block_interrupts() -> Iterator[None]:
     """Keep Ctrl-C from processes that start meanwhile: it is for this one, which hears it afterwards."""
     if not hasattr(signal, "pthread_sigmask"):
         yield

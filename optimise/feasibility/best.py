@@ -8,15 +8,15 @@ from functools import partial
 from ...model.arrays import Array
 from ...model.cycle.stroke_times import massless_machine
 from ..engine.engine import Engine
-from ..methods.auto.auto import AUTO, searched_by
+from ..methods.auto.auto import AUTO, search_with
 from ..problem.problem import Problem, Settings, Variant
 from ..problem.requirements import Constraint, Objective, Sense
 from ..search.checkpoints import Checkpoints
-from ..search.elimination import sheets
+from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
-from ..search.mirror import once
+from ..search.mirror import drop_mirrored_branches
 from ..search.sampling import first_samples
-from ..search.search import BANDS, ENOUGH, Archive, Callback, Run, explore, out_of_reach, share
+from ..search.search import BANDS, ENOUGH, Archive, Callback, Run, explore, is_out_of_reach, samples_per_branch
 
 _SAMPLES = 2048
 """Designs of a round where only the dimensions count."""
@@ -36,16 +36,19 @@ def best_of(
     problem: Problem,
     checkpoints: Checkpoints | None = None,
     engine: Engine | None = None,
-    stand: Callback | None = None,
+    report: Callback | None = None,
 ) -> Best | None:
     """Return the best of a problem's only objective, None where nothing is feasible.
 
-    checkpoints, engine: of the search that wants to know it. stand: called with how far this one is.
+    checkpoints, engine: of the search that wants to know it. report: called with how far this one is.
     """
-    own = [Evaluator(problem, sheet, checkpoints, engine) for sheet in once(problem, sheets(problem))]
-    run = Run(problem, 1, stand, checkpoints or Checkpoints(), stages=stand)
+    own = [
+        Evaluator(problem, branch, checkpoints, engine)
+        for branch in drop_mirrored_branches(problem, elimination_branches(problem))
+    ]
+    run = Run(problem, 1, report, checkpoints or Checkpoints(), stages=report)
     light = replace(problem, settings=replace(problem.settings, samples=problem.settings.samples or _FEW))
-    front = searched_by(replace(AUTO, search=partial(_sampled, problem)), light, own, run)
+    front = search_with(replace(AUTO, search=partial(_sampled, problem)), light, own, run)
     if front is None:
         return None
     quantity = problem.quantity(problem.objectives[0].quantity)
@@ -60,13 +63,13 @@ def _sampled(full: Problem, light: Problem, evaluators: list[Evaluator], run: Ru
     """
     if not any(evaluator.loose for evaluator in evaluators):
         archive = run.archive = Archive.empty(1)
-        count = share(light.settings.samples or _FEW, evaluators)
+        count = samples_per_branch(light.settings.samples or _FEW, evaluators)
         found = archive.screen_all(
             (index, evaluator, first_samples(count, evaluator.dimension, light.settings.seed, index))
             for index, evaluator in enumerate(evaluators)
         )
-        if found >= ENOUGH or (not found and out_of_reach(light, evaluators, BANDS[-2])):
-            run.tell("sampling", evaluators, archive)
+        if found >= ENOUGH or (not found and is_out_of_reach(light, evaluators, BANDS[-2])):
+            run.report_round("sampling", evaluators, archive)
             return archive
     return explore(full, evaluators, run)
 

@@ -13,7 +13,7 @@ from ..engine.engine import Engine
 from ..problem.problem import Problem, Settings
 from ..problem.violation import FEASIBLE, constraints_of
 from ..search.checkpoints import Checkpoints
-from ..search.elimination import sheets
+from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
 from ..search.sampling import first_samples
 from ..search.violation import least_violation
@@ -102,21 +102,21 @@ def _least_violation(
     turning = False
     nearest, least = "", np.inf
     blank = ""
-    for index, sheet in enumerate(sheets(problem, eliminate=False)):
-        evaluator = Evaluator(problem, sheet, checkpoints, engine)
+    for index, branch in enumerate(elimination_branches(problem, eliminate=False)):
+        evaluator = Evaluator(problem, branch, checkpoints, engine)
         u = first_samples(_SAMPLES, evaluator.dimension, problem.settings.seed, 100 + index)
         found = least_violation(evaluator, u, ranked=_RANKED, starts=_STARTS)
         if not len(found):
             turned = u[evaluator.valid(u)][:_RANKED]
-            blank = blank or (valueless(evaluator.problem, sheet.dimensions(turned)) if len(turned) else "")
+            blank = blank or (valueless(evaluator.problem, branch.dimensions(turned)) if len(turned) else "")
             continue
         turning = True
-        dimensions = sheet.dimensions(found.u)
+        dimensions = branch.dimensions(found.u)
         feasible.append(dimensions[found.values[:, 0] <= FEASIBLE])
         row = int(np.argmin(found.values[:, 0]))
         if found.values[row, 0] < least:
             least = float(found.values[row, 0])
-            nearest = _together(problem, sheet.variant, dimensions[row])
+            nearest = _together(problem, branch.variant, dimensions[row])
     return np.concatenate(feasible) if feasible else np.zeros((0, 3)), turning, nearest if turning else blank
 
 

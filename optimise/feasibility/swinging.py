@@ -16,7 +16,7 @@ from ...model.swing.swing import Swing
 from ...model.swing.swing_batch import driven
 from ...objectives.tables.evaluate import moving
 from ..problem.problem import Problem
-from ..search.elimination import sheets
+from ..search.elimination import elimination_branches
 from ..search.sampling import first_samples
 
 _SAMPLES = 4096
@@ -36,10 +36,10 @@ def unswung(problem: Problem) -> str:
     assert motion is not None
     closing = passing = 0
     stuck: list[tuple[Mechanism, Array]] = []
-    for index, sheet in enumerate(sheets(problem)):
-        part = problem.part(sheet.variant)
+    for index, branch in enumerate(elimination_branches(problem)):
+        part = problem.part(branch.variant)
         machine = part.mechanism
-        designs = sheet.dimensions(first_samples(_SAMPLES, len(sheet.free), problem.settings.seed, index))
+        designs = branch.dimensions(first_samples(_SAMPLES, len(branch.free), problem.settings.seed, index))
         designs = designs[np.isfinite(designs).all(axis=1)]
         closing += int(closes(machine, motion, designs).sum())
         passing += int(passes(machine, motion, designs).sum())
@@ -49,7 +49,9 @@ def unswung(problem: Problem) -> str:
         stuck.append((machine, able))
     factor, unit = (180.0 / math.pi, "deg") if motion.of == "crank" else (1e3, "mm of the slider")
     asked = f"the swing from {factor * motion.start:.6g} to {factor * motion.end:.6g} {unit}"
-    if any(start_column(problem.part(sheet.variant).mechanism) is not None for sheet in sheets(problem)):
+    if any(
+        start_column(problem.part(branch.variant).mechanism) is not None for branch in elimination_branches(problem)
+    ):
         asked = f"the swing by {factor * (motion.end - motion.start):.6g} {unit}" if motion.follows else "the swing"
     if not closing and motion.of == "slider":
         return (

@@ -13,7 +13,7 @@ from ..problem.violation import constraints_of
 from ..search.evaluation import Evaluator
 from ..search.sampling import first_samples
 
-_TRIED = 256  # designs of each sheet that are asked whether an objective is infinite
+_TRIED = 256  # designs of each branch that are asked whether an objective is infinite
 
 
 def valueless(part: Problem, designs: Array) -> str:
@@ -47,7 +47,7 @@ def require_finite(problem: Problem, evaluators: list[Evaluator]) -> None:
         found = []
         for index, evaluator in enumerate(evaluators):
             u = first_samples(_TRIED, evaluator.dimension, problem.settings.seed, 200 + index)
-            designs = evaluator.sheet.dimensions(u[evaluator.valid(u)])
+            designs = evaluator.branch.dimensions(u[evaluator.valid(u)])
             found.append(evaluator.problem.quantity(name).evaluate(evaluator.problem.mechanism, designs).values)
         values = np.concatenate([np.zeros(0), *found])
         values = values[~np.isnan(values)]

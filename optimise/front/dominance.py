@@ -41,7 +41,7 @@ def nondominated(values: Array) -> Whole:
     ranked = np.argsort(ordered, axis=1)
     words = -(-count // _WORD)
     bits, upto = np.zeros((len(ordered) * words, words), np.int64), np.empty(ordered.shape, np.int64)
-    _mark(ordered, ranked, bits, upto)
+    _mark_prefixes(ordered, ranked, bits, upto)
     by_word = np.pad(ordered, ((0, 0), (0, words * _WORD - count))).reshape(-1, words, _WORD)
     kept = np.ones(count, np.bool_)
     in_chunks(count, lambda begin, end: _filter(by_word, bits, upto, begin, end, kept), size=_CHUNK)
@@ -49,7 +49,7 @@ def nondominated(values: Array) -> Whole:
 
 
 @kernel
-def _mark(ordered: Table, ranked: IntegerTable, bits: IntegerTable, upto: IntegerTable) -> None:
+def _mark_prefixes(ordered: Table, ranked: IntegerTable, bits: IntegerTable, upto: IntegerTable) -> None:
     """Set, for each word of the order by an objective, the bits of the designs up to its end.
 
     upto: the row of bits of the last design that is as good as this one in an objective.
@@ -98,7 +98,7 @@ def _filter(by_word: Cube, bits: IntegerTable, upto: IntegerTable, begin: int, e
 
 
 @kernel
-def _beat(points: Table, others: Table, clearly: float, slightly: float, found: Flags) -> None:
+def _mark_dominating(points: Table, others: Table, clearly: float, slightly: float, found: Flags) -> None:
     for i in range(points.shape[0]):
         for k in range(others.shape[0]):
             worst, best, known = -np.inf, np.inf, True
@@ -110,12 +110,14 @@ def _beat(points: Table, others: Table, clearly: float, slightly: float, found: 
                 break
 
 
-def beating(points: Array, others: Array, *, clearly: float, slightly: float = np.inf) -> Mask:
+def dominating(points: Array, others: Array, *, clearly: float, slightly: float = np.inf) -> Mask:
     """Return which points (n, m) dominate one of some others (k, m) and are better by more than `clearly` somewhere.
 
     slightly: where they are better by more than that, they may be worse by up to `clearly` elsewhere.
     """
     found = np.zeros(len(points), dtype=bool)
     points, others = np.ascontiguousarray(points), np.ascontiguousarray(others)
-    in_chunks(len(points), lambda begin, end: _beat(points[begin:end], others, clearly, slightly, found[begin:end]))
+    in_chunks(
+        len(points), lambda begin, end: _mark_dominating(points[begin:end], others, clearly, slightly, found[begin:end])
+    )
     return found

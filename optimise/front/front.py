@@ -27,8 +27,8 @@ from ..problem.problem import Problem
 from ..problem.questions import question_to, subject_of
 from ..problem.requirements import Objective
 from ..problem.table_columns import least_field
-from .answer import Answer
 from .constant import spread
+from .discrete_answer import DiscreteAnswer
 from .nonnegative import nonnegative_least_squares
 from .picking import Normalisation, Priority, by_range, knee, lexicographic, topsis
 from .picture import figure, svg
@@ -81,7 +81,7 @@ class ParetoFront:
     seed: int
     versions: dict[str, str] = field(default_factory=dict)
     variants: tuple[int, ...] = ()
-    discrete: Answer | None = None
+    discrete: DiscreteAnswer | None = None
 
     @cached_property
     def designs(self) -> pd.DataFrame:
@@ -104,18 +104,18 @@ class ParetoFront:
         columns = [quantity.field for quantity in self._quantities]
         sizes = [name for name in ("crank_mm", "rod_mm", "offset_mm") if name in self.columns]
         table = self.designs[list(dict.fromkeys([*columns, *sizes]))].to_html(max_rows=8, float_format="{:.5g}".format)
-        return f"<div><p>{escape(repr(self))}</p>{svg(self._shown(), self._labels())}{table}</div>"
+        return f"<div><p>{escape(repr(self))}</p>{svg(self._objective_columns(), self._labels())}{table}</div>"
 
     def plot(self) -> Figure:
         """Return a matplotlib figure of every objective against the first. Raises `InputError` for an empty front."""
         if not len(self):
             raise InputError(f"a figure needs designs; this front is empty: {self.message}")
-        return figure(self._shown(), self._labels(), self.problem.name)
+        return figure(self._objective_columns(), self._labels(), self.problem.name)
 
     def _labels(self) -> list[str]:
         return [f"{item.title}, {item.unit.symbol}".removesuffix(", ") for item in self._quantities]
 
-    def _shown(self) -> Array:
+    def _objective_columns(self) -> Array:
         return np.stack([self.columns[quantity.field] for quantity in self._quantities], axis=1)
 
     @property
@@ -232,7 +232,7 @@ class ParetoFront:
         """Return the row that is best in an objective among those within bounds.
 
         best: an objective's quantity name. bounds: column = (least, greatest) in the table's units, None for open:
-        `front.pick("peak_torque", least_transmission_angle_deg=(40, None))`. A quantity or formula may stand for a
+        `front.pick("peak_torque", least_transmission_angle_deg=(40, None))`. A quantity or formula may report for a
         column, its bounds in SI: `**{"2 * crank + rod": (None, 0.4)}`. Raises `InputError` when none qualifies.
         """
         objective = self.column_of(best)
@@ -241,7 +241,7 @@ class ParetoFront:
         keep, there = np.ones(len(self), dtype=bool), []
         for column, ends in bounds.items():
             least, greatest = pair(column, ends)
-            values = self.columns[column] if column in self.columns else self._of(column)
+            values = self.columns[column] if column in self.columns else self._evaluate(column)
             if values.dtype.kind not in "fiu":
                 raise InputError(f"bounds may only be on numbers; got {column}, a column of words; see front.designs")
             if least is not None:
@@ -254,7 +254,7 @@ class ParetoFront:
         rows = np.flatnonzero(keep)
         return int(rows[np.argmin(self.values[rows, objective])])
 
-    def _of(self, name: str) -> Array:
+    def _evaluate(self, name: str) -> Array:
         """Return a quantity or formula of every design, SI."""
         found = np.full(len(self), np.nan)
         variants = np.array(self.variants or [0] * len(self))

@@ -15,11 +15,11 @@ REFERENCE = 1.1
 _BOUNDED = 4096  # designs: of more it takes longer to bound all gains than to compute some again
 _ROUNDING = 1e-12  # of a scaled volume, whose computation it exceeds by far
 
-Stand = Callable[[int, int], None]
+ReportProgress = Callable[[int, int], None]
 """Called many times a second by long work: how much of it is done, and of how much."""
 
 
-def unheard(done: int, of: int) -> None:
+def ignore_progress(done: int, of: int) -> None:
     """Take no note of where work stands."""
 
 
@@ -49,7 +49,7 @@ def hypervolume(values: Array, ideal: Array, span: Array, *, within: bool = True
 
 
 @kernel
-def _shared(taken: Table, count: int, point: Row, corners: Table) -> int:
+def _shared_corners(taken: Table, count: int, point: Row, corners: Table) -> int:
     """Put the corners of what a point dominates with the first taken ones, without dominated ones; how many."""
     kept = 0
     for i in range(count):
@@ -94,7 +94,7 @@ class Bounds:
         n = len(scaled)
         self.most, self.more, self.both = np.zeros(n), np.zeros(n), np.zeros(n)
 
-    def after(self, index: int) -> Array:
+    def with_design(self, index: int) -> Array:
         """Return the bounds (n,) once another design is chosen, too."""
         shared = np.minimum(self.room, self.room[:, index : index + 1])
         size = shared.prod(axis=0)
@@ -113,13 +113,15 @@ class Bounds:
         return np.asarray(self.boxes - union + _ROUNDING)
 
 
-def choose(values: Array, count: int, *, always: tuple[int, ...] = (), stand: Stand = unheard) -> Whole:
+def choose(
+    values: Array, count: int, *, always: tuple[int, ...] = (), report: ReportProgress = ignore_progress
+) -> Whole:
     """Return `count` indices of non-dominated designs, greedily by hypervolume, `always` included; ascending.
 
     The hypervolume is submodular: the gain of a design only shrinks as others join, so a design whose old gain already
     lies below the best fresh one need not be computed again (lazy greedy; Minoux, 1978), nor one of which some of those
     chosen leave less. The gain is the box of the design less what it shares with those chosen, whose corners are few
-    (L. While et al., "A fast way of calculating exact hypervolumes", IEEE Trans. Evol. Comput. 16(1), 2012). stand:
+    (L. While et al., "A fast way of calculating exact hypervolumes", IEEE Trans. Evol. Comput. 16(1), 2012). report:
     called for every design and gain, with the designs chosen.
     """
     n = len(values)
@@ -140,20 +142,20 @@ def choose(values: Array, count: int, *, always: tuple[int, ...] = (), stand: St
         taken[len(picked)] = scaled[index]
         picked.append(index)
         if n <= _BOUNDED:
-            np.minimum(gains, bounds.after(index), out=gains)
+            np.minimum(gains, bounds.with_design(index), out=gains)
         gains[index] = -np.inf
 
     for index in list(dict.fromkeys(always))[:count]:
-        stand(len(picked), count)
+        report(len(picked), count)
         pick(index)
     volume = moocore.Hypervolume(ref=np.full(scaled.shape[1], REFERENCE))
     while len(picked) < count:
-        stand(len(picked), count)
+        report(len(picked), count)
         index = int(np.argmax(gains))
         if fresh[index] == len(picked):
             pick(index)
         else:
-            shared = corners[: _shared(taken, len(picked), scaled[index], corners)]
+            shared = corners[: _shared_corners(taken, len(picked), scaled[index], corners)]
             gains[index] = bounds.boxes[index] - (float(volume(shared)) if len(shared) else 0.0)
             fresh[index] = len(picked)
     return np.array(sorted(picked))

@@ -96,7 +96,7 @@ def topsis(
 ) -> int:
     """Return the row of the greatest `closeness`; ties go to the better in the other objectives."""
     found = closeness(values, weights, normalisation=normalisation, size=size)
-    return _first(values, np.flatnonzero(found >= found.max() - _TIE), size)
+    return _least_total(values, np.flatnonzero(found >= found.max() - _TIE), size)
 
 
 def lexicographic(values: Array, order: Sequence[tuple[int, float, float]], *, size: ArrayLike = 0.0) -> int:
@@ -119,10 +119,10 @@ def lexicographic(values: Array, order: Sequence[tuple[int, float, float]], *, s
         if span[column] > 0.0:
             own = scaled[rows, column]
             rows = rows[own <= own.min() + _TIE + (0.0 if last else absolute / span[column] + share)]
-    return _first(values, rows, size)
+    return _least_total(values, rows, size)
 
 
-def _first(values: Array, rows: np.ndarray, size: ArrayLike) -> int:
+def _least_total(values: Array, rows: np.ndarray, size: ArrayLike) -> int:
     worth = by_range(values, size=size)[rows].sum(axis=1)
     return int(rows[np.flatnonzero(worth <= worth.min() + _TIE)[0]])
 

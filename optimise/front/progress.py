@@ -42,7 +42,7 @@ class Progress:
         return self.stage in (LOADING, REPEATING)
 
 
-def standing(progress: Mapping[str, Any]) -> str:
+def stage_text(progress: Mapping[str, Any]) -> str:
     """Return the stage of a search and how far it is: "polishing 12/66", "selecting designs 1,200/3,000".
 
     progress: fields of `Progress`; those of early stores have no steps.
@@ -60,13 +60,13 @@ def progress_bar() -> Iterator[Callable[[Progress], None]]:
     """
     from tqdm.auto import tqdm
 
-    form, ended, (columns, rows) = "{desc} {bar:24} {unit} {elapsed}", Event(), _size()
+    form, ended, (columns, rows) = "{desc} {bar:24} {unit} {elapsed}", Event(), _terminal_size()
     with tqdm(desc="starting", unit="", bar_format=form, total=1, leave=False, ncols=columns, nrows=rows) as bar:
 
         def tell(at: Progress) -> None:
             bar.total, bar.n = at.steps or at.rounds, at.step if at.steps else at.round
             bar.unit = f"{at.feasible:,} feasible, hypervolume {at.hypervolume:.4f}"
-            bar.set_description_str(standing(vars(at)))
+            bar.set_description_str(stage_text(vars(at)))
 
         def tick() -> None:
             while not ended.wait(1.0):
@@ -81,7 +81,7 @@ def progress_bar() -> Iterator[Callable[[Progress], None]]:
             clock.join()
 
 
-def _size() -> tuple[int | None, int | None]:
+def _terminal_size() -> tuple[int | None, int | None]:
     """Return the columns and rows of a terminal where it says that it has none, as some remote ones; else None."""
     try:
         columns, rows = os.get_terminal_size(sys.stderr.fileno())

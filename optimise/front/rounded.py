@@ -99,15 +99,15 @@ class Rounded:
         if self.met:
             keep = "keeps" if self.kept == 1 else "keep"
             within = f" within {self._allowed_in_words(system)}" if self.allowed else ""
-            missing = sum(bool(self._beyond(row)) for row in range(len(self)))
+            missing = sum(bool(self._excessive_misses(row)) for row in range(len(self)))
             lose = "others lose clearly less but miss" if missing > 1 else "another one loses clearly less but misses"
             more = f"; {lose} little" if missing else ""
             return f"{self.kept} of {near} {keep} every requirement{within}{more}"
         none = f"none of {near}"
         if not len(self):
             return f"{none} has a value for every requirement; give smaller steps"
-        beyond = [self.problem.quantity(name).title for name in self._beyond(0)]
-        more = "a greater miss" if set(self._beyond(0)) & set(self.allowed) else "a miss"
+        beyond = [self.problem.quantity(name).title for name in self._excessive_misses(0)]
+        more = "a greater miss" if set(self._excessive_misses(0)) & set(self.allowed) else "a miss"
         return f"{none} meets every requirement; these are the nearest; allow {more} of {' and '.join(beyond)}"
 
     @cached_property
@@ -141,7 +141,7 @@ class Rounded:
                     amount=float(-slack * of.unit.factor),
                     unit=of.unit.symbol,
                     side="below" if constraint.lower is not None and value < constraint.lower else "above",
-                    allowed=written(self.allowed.get(constraint.quantity, 0.0) * of.unit.factor),
+                    allowed=drop_conversion_rounding(self.allowed.get(constraint.quantity, 0.0) * of.unit.factor),
                 )
             )
         return found
@@ -159,7 +159,7 @@ class Rounded:
             texts.append(f"{value * of.unit.factor * factor:.4g} {unit}".rstrip() + f" of {of.title}")
         return " and ".join(texts)
 
-    def _beyond(self, row: int) -> list[str]:
+    def _excessive_misses(self, row: int) -> list[str]:
         """Return the quantities whose requirement a design misses by more than is allowed."""
         return [miss.quantity for miss in self.misses(row) if miss.amount > miss.allowed * (1.0 + FEASIBLE)]
 
@@ -175,7 +175,9 @@ class Rounded:
         found: dict[str, Array] = {}
         for place, (name, (column, factor)) in enumerate(self.names.items()):
             shown = self.dimensions[:, place] * factor
-            found[column] = np.array([written(value) for value in shown.tolist()]) if name in self.steps else shown
+            found[column] = (
+                np.array([drop_conversion_rounding(value) for value in shown.tolist()]) if name in self.steps else shown
+            )
         for place, wanted in enumerate(self.problem.objectives):
             of = self.problem.quantity(wanted.quantity)
             now, before = self.values[:, place], self.before[place]
@@ -204,6 +206,6 @@ class Rounded:
         return pd.DataFrame(self.columns | {"tightest": [self.tightest(row) for row in range(len(self))]})
 
 
-def written(value: float) -> float:
+def drop_conversion_rounding(value: float) -> float:
     """Return a round number without the rounding of its conversion: 73.5, not 73.50000000000001."""
     return float(f"{value:.12g}")

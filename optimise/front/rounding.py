@@ -88,7 +88,7 @@ def rounding(
         before=search.values(given[None])[0],
         values=search.values(best),
         losses=search.losses(search.values(best)),
-        held=search.held(best, search.constraints),
+        held=search.constrained_values(best, search.constraints),
         constraints=search.constraints,
         reach=search.reach,
         judged=search.judged,

@@ -89,9 +89,13 @@ class RoundingSearch:
         """
         for reach in self._reaches():
             designs, self.reach = self._window(reach), reach
-            misses = yield from self._in_blocks("screening combinations", designs, self._missed(self.quick), _BLOCK)
+            misses = yield from self._in_blocks(
+                "screening combinations", designs, self._violation_function(self.quick), _BLOCK
+            )
             rows = np.flatnonzero(misses <= FEASIBLE)
-            judged = yield from self._in_blocks("judging combinations", designs[rows], self._missed(self.slow))
+            judged = yield from self._in_blocks(
+                "judging combinations", designs[rows], self._violation_function(self.slow)
+            )
             misses[rows] = np.maximum(misses[rows], judged)
             kept = rows[misses[rows] <= FEASIBLE]
             values = yield from self._in_blocks("ranking combinations", designs[kept], self.values)
@@ -123,13 +127,13 @@ class RoundingSearch:
             lost = np.where(now == self.before, 0.0, now - self.before) / self.span
         return np.asarray(np.where(np.isnan(lost), np.inf, lost))
 
-    def held(self, designs: Array, constraints: Sequence[Constraint]) -> Array:
+    def constrained_values(self, designs: Array, constraints: Sequence[Constraint]) -> Array:
         """Return the values (n, c) of what is constrained."""
         if not (len(designs) and len(constraints)):
             return np.zeros((len(designs), len(constraints)))
         return self.part.evaluate(designs, [constraint.quantity for constraint in constraints])
 
-    def _missed(self, constraints: Sequence[Constraint]) -> Callable[[Array], Array]:
+    def _violation_function(self, constraints: Sequence[Constraint]) -> Callable[[Array], Array]:
         """Return what gives the greatest violations of some constraints, of quick or of slow ones."""
         return partial(greatest_violation, self.part, constraints=constraints, allowed=self.allowed)
 
@@ -190,7 +194,7 @@ class RoundingSearch:
             return np.asarray(designs[running(self.part.mechanism, self.part.motion, designs)])
         return np.asarray(designs[clearly_turning(designs)])
 
-    def _way(self, designs: Array) -> Array:
+    def _steps_away(self, designs: Array) -> Array:
         """Return the greatest distance (n,) of designs from the given one in steps."""
         steps = np.array([self.steps.get(name, np.inf) for name in self.ranges])
         return np.asarray((np.abs(designs - self.given) / steps).max(axis=1))
@@ -199,7 +203,7 @@ class RoundingSearch:
         """Return designs in order of their greatest loss, then of the sum of losses, then of the way in steps."""
         losses = self.losses(values)
         total = np.clip(losses, 0.0, None).sum(axis=1)
-        order = np.lexsort((self._way(designs), np.round(total, _TIE), np.round(losses.max(axis=1), _TIE)))
+        order = np.lexsort((self._steps_away(designs), np.round(total, _TIE), np.round(losses.max(axis=1), _TIE)))
         if losses.shape[1] == 1:  # one dominates all others: the next best are worth to be known
             return designs[order]
         free = nondominated(all_minimised(self.part, values)[order])
@@ -222,7 +226,7 @@ class RoundingSearch:
             rows, ahead = ahead[:_SLOW_BLOCK], ahead[_SLOW_BLOCK:]
             judged = np.append(judged, rows)
             rows = rows[~known[rows]]
-            misses[rows] = np.maximum(misses[rows], self._missed(self.slow)(designs[rows]))
+            misses[rows] = np.maximum(misses[rows], self._violation_function(self.slow)(designs[rows]))
             bar = np.round(misses[ahead[0]], _TIE) if len(ahead) else np.inf
             placed = judged[np.isfinite(misses[judged]) & (np.round(misses[judged], _TIE) < bar)]
             fresh = placed[np.isnan(losses[placed])]
@@ -246,7 +250,7 @@ class RoundingSearch:
 
     def _staircase(self, designs: Array, rows: Whole, misses: Array, losses: Array) -> Whole:
         """Return of rows the one that misses least, then those that miss more but lose clearly less."""
-        order = np.lexsort((self._way(designs[rows]), np.round(losses, _TIE), np.round(misses, _TIE)))
+        order = np.lexsort((self._steps_away(designs[rows]), np.round(losses, _TIE), np.round(misses, _TIE)))
         found: list[int] = []
         least = np.inf
         for row, loss in zip(rows[order].tolist(), losses[order].tolist(), strict=True):

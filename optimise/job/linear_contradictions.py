@@ -19,7 +19,7 @@ from ...objectives.formula.linear import Linear, unknown
 from ...objectives.formula.quantity import FormulaQuantity, equation_of
 from ..problem.problem import Problem
 from ..search.elimination import signs
-from ..search.linear_rules import linear_equations, on_side
+from ..search.linear_rules import linear_equations, with_offset_size
 from .messages import key_of
 
 _UNIT = 1e3  # lengths in mm: rounding of the programme is 1e-7 of its unit
@@ -116,7 +116,7 @@ def _bounds(part: Problem, sign: float) -> Iterator[_Row]:
         for word, bound in item.sides:
             row = equation_of(of, bound)
             if row is not None:
-                row = on_side(row, sign)
+                row = with_offset_size(row, sign)
                 yield _Row(of.name, row if word == "max" else row.times(Fraction(-1)), False)
 
 

@@ -18,7 +18,7 @@ _APART = 100.0  # between the labels of two objectives' pieces, so that no peak 
 
 
 class Achievement:
-    """A form on one sheet, as `polish.Evaluates`. ideal, span: (m,), what objectives are scaled by."""
+    """A form on one branch, as `polish.Evaluates`. ideal, span: (m,), what objectives are scaled by."""
 
     def __init__(self, evaluator: Evaluator, form: Form, ideal: Array, span: Array) -> None:
         self.evaluator, self.form = evaluator, form

@@ -3,7 +3,7 @@
     N. Hansen, "The CMA evolution strategy: a tutorial", arXiv:1604.00772, 2016
     A. Auger, N. Hansen, "A restart CMA evolution strategy with increasing population size", IEEE CEC 2005
 
-Where it has converged it starts again elsewhere with twice the population. Each sheet has a climb of its own, in turn:
+Where it has converged it starts again elsewhere with twice the population. Each branch has a climb of its own, in turn:
 a normal distribution cannot span two. Only ranks matter to it, so constraints enter as ranks: what is feasible comes
 first, by its objective, then what violates less.
 
@@ -45,8 +45,8 @@ def cmaes(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 
     def breed(past: Sequence[Generation]) -> Brood:
         climb = climbs[len(past) % len(climbs)]
-        for generation in past[climb.index :: len(climbs)][climb.told :]:
-            climb.tell(generation)
+        for generation in past[climb.index :: len(climbs)][climb.generations :]:
+            climb.learn(generation)
         u = climb.ask(generation_seed(seed, len(past)))
         return Brood(np.full(len(u), climb.index), stacked(np.zeros((0, widest)), u))
 
@@ -54,11 +54,11 @@ def cmaes(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 
 
 class _Climb:
-    """The search of one sheet: a distribution that is told what its points were worth, and begun anew."""
+    """The search of one branch: a distribution that is told what its points were worth, and begun anew."""
 
     def __init__(self, index: int, dimension: int, size: int, seed: int) -> None:
         self.index, self.dimension, self.size, self.seed = index, dimension, size, seed
-        self.starts, self.told = 0, 0
+        self.starts, self.generations = 0, 0
         self.begin()
 
     def begin(self) -> None:
@@ -76,9 +76,9 @@ class _Climb:
         self.optimiser.reseed_rng(seed)
         return np.array([self.optimiser.ask() for _ in range(self.optimiser.population_size)])
 
-    def tell(self, generation: Generation) -> None:
+    def learn(self, generation: Generation) -> None:
         """Take in what a generation was worth."""
-        self.told += 1
+        self.generations += 1
         u, values = generation.u[:, : self.dimension], generation.values[:, 0]
         excess = np.where(generation.violation <= FEASIBLE, 0.0, generation.violation)
         if np.isinf(excess).all():  # nothing to rank by

@@ -14,7 +14,7 @@ from ..search.assemble import span_of
 from ..search.evaluation import Evaluator
 from ..search.sampling import generator
 from ..search.search import Archive, Run
-from .local import by_slsqp, keep
+from .local import archive_optimum, by_slsqp
 from .registry import Method, budget
 from .scalar import Form, Programme
 
@@ -30,22 +30,22 @@ _ROUGH = 5  # steps of SHGO's own descent, which knows no kinks; the epigraph fo
 _BASINS = 12
 
 
-class _Exact:
-    """Objective and violation of one sheet for a solver that asks for the one after the other.
+class _ExactEvaluation:
+    """Objective and violation of one branch for a solver that asks for the one after the other.
 
     Exact: a screened peak may be off by more than what is left to gain near the optimum.
     """
 
-    def __init__(self, index: int, evaluator: Evaluator, seen: Archive) -> None:
-        """Evaluate a sheet of this index; the archive takes in what is better than all before."""
-        self.index, self.evaluator, self.seen = index, evaluator, seen
+    def __init__(self, index: int, evaluator: Evaluator, improvements: Archive) -> None:
+        """Evaluate a branch of this index; the archive takes in what is better than all before."""
+        self.index, self.evaluator, self.improvements = index, evaluator, improvements
         self.known: dict[bytes, float] = {}
         self.best = np.inf
 
     def violation(self, u: Array) -> Array:
         """Return the greatest relative violation (n,) of points (n, k), zero where all constraints hold."""
         u = np.ascontiguousarray(u)
-        values, violation = self.evaluator.step("points", (u,), lambda: self._at(u))
+        values, violation = self.evaluator.step("points", (u,), lambda: self._evaluate(u))
         self.known = {
             point.tobytes(): value
             for point, value, met in zip(u, values.tolist(), violation <= FEASIBLE, strict=True)
@@ -54,10 +54,10 @@ class _Exact:
         best = min(self.known, key=self.known.__getitem__, default=b"")
         if best and self.known[best] < self.best:
             self.best = self.known[best]
-            self.seen.take(self.index, np.frombuffer(best)[None], np.array([[self.best]]))
+            self.improvements.add_points(self.index, np.frombuffer(best)[None], np.array([[self.best]]))
         return np.where(violation <= FEASIBLE, 0.0, violation)
 
-    def _at(self, u: Array) -> tuple[Array, Array]:
+    def _evaluate(self, u: Array) -> tuple[Array, Array]:
         """Return objective and violation (n,) of points, infinite and far where no linkage turns fully."""
         values, violation = np.full(len(u), np.inf), np.full(len(u), _FAR)
         valid = np.flatnonzero(self.evaluator.valid(u))
@@ -76,23 +76,23 @@ class _Exact:
 
 
 def differential_evolution(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the optimum of differential evolution, a share of the budget on every sheet.
+    """Return the optimum of differential evolution, a share of the budget on every branch.
 
     Constraints by the rule that a feasible design beats an infeasible one and a smaller violation a greater one (J.
     Lampinen, "A constraint handling approach for the differential evolution algorithm", CEC 2002), without penalties.
     """
-    archive, seen = Archive.empty(1), Archive.empty(1)
-    run.archive = seen
+    archive, improvements = Archive.empty(1), Archive.empty(1)
+    run.archive = improvements
     for index in range(len(evaluators)):
-        _evolve(problem, evaluators, index, archive, seen, run)
-    run.tell("evolving", evaluators, archive)
+        _evolve(problem, evaluators, index, archive, improvements, run)
+    run.report_round("evolving", evaluators, archive)
     return archive
 
 
 def _evolve(
-    problem: Problem, evaluators: list[Evaluator], index: int, archive: Archive, seen: Archive, run: Run
+    problem: Problem, evaluators: list[Evaluator], index: int, archive: Archive, improvements: Archive, run: Run
 ) -> None:
-    """Put the optimum of one sheet into the archive, what is better than all before into what was seen."""
+    """Put the optimum of one branch into the archive, what is better than all before into what was improvements."""
     from scipy.optimize import NonlinearConstraint
     from scipy.optimize import differential_evolution as evolve
 
@@ -100,8 +100,8 @@ def _evolve(
     k, count = evaluator.dimension, 0
     members = 1 << (_POPULATION * k - 1).bit_length()  # scipy takes a power of two of Sobol points
     generations = max(1, budget(problem) // (len(evaluators) * members) - 1)
-    run.rounds = len(run.told) + 1 + generations // _TOLD
-    exact = _Exact(index, evaluator, seen)
+    run.rounds = len(run.round_reports) + 1 + generations // _TOLD
+    exact = _ExactEvaluation(index, evaluator, improvements)
 
     def each(intermediate_result: Any) -> bool:
         nonlocal count
@@ -109,7 +109,7 @@ def _evolve(
         if count % _TOLD:
             return False
         archive.screen(index, evaluator, np.asarray(intermediate_result.x)[None])
-        run.tell("evolving", evaluators, archive)
+        run.report_round("evolving", evaluators, archive)
         return False
 
     minimised: Any = evolve  # its stubs know no function of many points
@@ -135,27 +135,29 @@ def _evolve(
 
 
 def shgo(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the optima of the basins that simplicial homology finds, a share of the budget on every sheet.
+    """Return the optima of the basins that simplicial homology finds, a share of the budget on every branch.
 
     S. C. Endres, C. Sandrock and W. W. Focke, "A simplicial homology algorithm for Lipschitz optimisation", J. Glob.
     Optim. 72, 2018. It tells basins from feasible Sobol points and descends into each; where a peak has a kink that
     ends short of the optimum, so that the epigraph form (`scalar`) goes on from there.
     """
-    archive, seen = Archive.empty(1), Archive.empty(1)
-    run.archive = seen
+    archive, improvements = Archive.empty(1), Archive.empty(1)
+    run.archive = improvements
     run.rounds = 1 + len(evaluators)
     for index in range(len(evaluators)):
-        _descend(problem, evaluators, index, archive, seen)
-        run.tell("descending", evaluators, archive)
+        _descend(problem, evaluators, index, archive, improvements)
+        run.report_round("descending", evaluators, archive)
     return archive
 
 
-def _descend(problem: Problem, evaluators: list[Evaluator], index: int, archive: Archive, seen: Archive) -> None:
-    """Put the optima of the basins of one sheet into the archive, and what comes on the way."""
+def _descend(
+    problem: Problem, evaluators: list[Evaluator], index: int, archive: Archive, improvements: Archive
+) -> None:
+    """Put the optima of the basins of one branch into the archive, and what comes on the way."""
     from scipy.optimize import shgo as homology
 
     evaluator = evaluators[index]
-    exact = _Exact(index, evaluator, seen)
+    exact = _ExactEvaluation(index, evaluator, improvements)
     points = max(16, min(_SAMPLED, budget(problem) // (4 * len(evaluators))))
     searched: Any = homology
     found = searched(
@@ -175,7 +177,7 @@ def _descend(problem: Problem, evaluators: list[Evaluator], index: int, archive:
     values = evaluator.screen(basins, band=np.inf)[1]
     ideal, span = np.nanmin(values, axis=0), span_of(problem, values)
     for start in basins:
-        keep(by_slsqp, Programme(evaluator, Form.single(1, 0), ideal, span), start, archive, index)
+        archive_optimum(by_slsqp, Programme(evaluator, Form.single(1, 0), ideal, span), start, archive, index)
 
 
 _global = partial(Method, family="global", objectives="one", budget=50_000, uses=("scipy",), equalities=False)

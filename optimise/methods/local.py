@@ -21,7 +21,7 @@ from .registry import Method, budget
 from .scalar import Form, Programme
 
 SAMPLES = 16384
-"""Samples over all sheets."""
+"""Samples over all branches."""
 _ENOUGH = 32
 _STREAM = 3000  # of the seed
 REACH = 1e-6
@@ -39,7 +39,7 @@ Local = Callable[[Programme, Array], Array | None]
 
 
 def samples(problem: Problem, evaluators: list[Evaluator]) -> Candidates:
-    """Return feasible samples of all sheets; where there are few, with such as violate constraints by up to 16 %.
+    """Return feasible samples of all branches; where there are few, with such as violate constraints by up to 16 %.
 
     Solvers remove the violation. Equalities that are left are met by no sample.
     """
@@ -59,34 +59,36 @@ def samples(problem: Problem, evaluators: list[Evaluator]) -> Candidates:
     return found
 
 
-def from_starts(problem: Problem, evaluators: list[Evaluator], run: Run, *, solve: Local, starts: int) -> Archive:
+def search_from_starts(
+    problem: Problem, evaluators: list[Evaluator], run: Run, *, solve: Local, starts: int
+) -> Archive:
     """Return the local optima that a solver finds from so many starts, the best ones that lie apart."""
-    begun = samples(problem, evaluators)
+    sampled = samples(problem, evaluators)
     archive = Archive.empty(1)
-    run.archive.put(begun[begun.met])
-    if not len(begun):
-        run.tell("sampling", evaluators, archive)
+    run.archive.add(sampled[sampled.is_feasible])
+    if not len(sampled):
+        run.report_round("sampling", evaluators, archive)
         return archive
-    ideal, span = begun.values.min(axis=0), span_of(problem, begun.values)
-    rows = begun.leading(0, starts)
+    ideal, span = sampled.values.min(axis=0), span_of(problem, sampled.values)
+    rows = sampled.leading(0, starts)
     run.rounds = 1 + len(rows)
-    run.tell("sampling", evaluators, archive)
+    run.report_round("sampling", evaluators, archive)
     for row in rows:
-        if len(archive) and spent(problem, evaluators):
+        if len(archive) and is_budget_spent(problem, evaluators):
             break
-        index = int(begun.sheet[row])
+        index = int(sampled.branch[row])
         programme = Programme(evaluators[index], Form.single(1, 0), ideal, span)
-        keep(solve, programme, begun.u[row], archive, index)
-        run.tell("descending", evaluators, archive)
+        archive_optimum(solve, programme, sampled.u[row], archive, index)
+        run.report_round("descending", evaluators, archive)
     return archive
 
 
-def spent(problem: Problem, evaluators: list[Evaluator]) -> bool:
+def is_budget_spent(problem: Problem, evaluators: list[Evaluator]) -> bool:
     """Whether the budget of evaluations is used up."""
     return bool(np.sum([evaluator.evaluations for evaluator in evaluators]) >= budget(problem))
 
 
-def keep(solve: Local, programme: Programme, u: Array, archive: Archive, index: int) -> Array | None:
+def archive_optimum(solve: Local, programme: Programme, u: Array, archive: Archive, index: int) -> Array | None:
     """Take the optimum near u (k,), a recorded step, into an archive; return its objectives (m,), SI, None without."""
     form, scaling, u = programme.form, (programme.ideal, programme.span), u[: programme.k]
     given = (u, form.weights, form.reference, form.ceilings, np.array([form.rho]), *scaling)
@@ -99,7 +101,7 @@ def keep(solve: Local, programme: Programme, u: Array, archive: Archive, index: 
     if not found:
         return None
     values = np.asarray(found[1] * programme.span + programme.ideal)
-    archive.take(index, found[0][None], values[None])
+    archive.add_points(index, found[0][None], values[None])
     archive.feasible += 1
     return values
 
@@ -113,7 +115,7 @@ def by_slsqp(programme: Programme, u: Array) -> Array | None:
     """
     best = None
     for _ in range(_AGAIN):
-        found = _feasible(programme, _slsqp(programme, u))
+        found = _feasible_point(programme, _slsqp(programme, u))
         if found is None:
             break
         moved = np.abs(found - u).max(initial=0.0)
@@ -154,7 +156,7 @@ def by_trust_constr(programme: Programme, u: Array) -> Array | None:
     """
     for attempt in range(_ATTEMPTS):
         found, settled = _barrier(programme, u, _MARGIN * _NEARER**attempt)
-        best = _feasible(programme, found)
+        best = _feasible_point(programme, found)
         if best is None or settled:
             break
         u = best
@@ -188,7 +190,7 @@ def _barrier(programme: Programme, u: Array, margin: float) -> tuple[Array, bool
     return np.asarray(found.x), found.status == 2
 
 
-def _feasible(programme: Programme, z: Array) -> Array | None:
+def _feasible_point(programme: Programme, z: Array) -> Array | None:
     u = np.clip(z[: programme.k], 0.0, 1.0)
     if not np.isfinite(u).all():
         return None
@@ -200,12 +202,12 @@ SLSQP = _gradient(
     name="slsqp",
     title="SLSQP",
     help="Sequential least squares programming of scipy from many starts; peaks are rows of the epigraph form.",
-    search=partial(from_starts, solve=by_slsqp, starts=24),
+    search=partial(search_from_starts, solve=by_slsqp, starts=24),
 )
 TRUST_CONSTR = _gradient(
     name="trust_constr",
     title="trust-constr",
     help="Interior-point method of scipy from a few starts; peaks are rows of the epigraph form.",
-    search=partial(from_starts, solve=by_trust_constr, starts=8),
+    search=partial(search_from_starts, solve=by_trust_constr, starts=8),
     equalities=False,
 )

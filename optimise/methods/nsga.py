@@ -5,9 +5,9 @@
     K. Deb, H. Jain, "An evolutionary many-objective optimization algorithm using reference-point-based nondominated
     sorting approach, part I", the same, 18(4), 2014
 
-Children come from simulated binary crossover and polynomial mutation. Constraints count by constrained domination: what
-is feasible comes first, then what violates less. Several sheets (signs of the offset) are one categorical parameter: a
-share of the budget for each would be wasted on a sheet without good designs, while selection follows the front.
+Children come from simulated binary crossover and polynomial mutation. Constraints count by constrained domination:
+feasible designs come first, then smaller violations. Several branches (signs of the offset) are one categorical
+parameter: selection follows the front, while a share of the budget for each would be wasted on poor branches.
 
 Selection and crossover need only the last generation and what that was bred from. So each generation is a new Optuna
 study in memory with these designs and a new sampler: the cost of a generation stays the same, and it depends on nothing
@@ -29,7 +29,7 @@ from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
 from .population import Brood, Generation, evolve, generation_seed, generation_size
 from .registry import Method
-from .trials import asked, new_study, quiet, space, stored
+from .trials import ask_points, completed_trials, new_study, search_space, silence_optuna
 
 POPULATION = 100
 """Designs of a generation where the job sets no number of samples."""
@@ -76,7 +76,7 @@ def _genetic(problem: Problem, evaluators: list[Evaluator], run: Run, sampler: A
     """Return the designs that one of Optuna's genetic samplers finds."""
     from optuna.samplers.nsgaii import PolynomialMutation, SBXCrossover
 
-    size, axes = population_size(problem), space(evaluators)
+    size, axes = population_size(problem), search_space(evaluators)
 
     def breed(past: Sequence[Generation]) -> Brood:
         seed = generation_seed(problem.settings.seed, len(past))
@@ -87,12 +87,12 @@ def _genetic(problem: Problem, evaluators: list[Evaluator], run: Run, sampler: A
             history = past[0].join(*past[1:])
             pool = np.concatenate([past[-1].parents, np.arange(len(history))[-len(past[-1]) :]])
             # To the sampler all of them are one generation: it selects from both parts alike.
-            study.add_trials(stored(axes, history[pool], {genetic._get_generation_key(): 0}))
-        sheet, u = asked(study, axes, size, run.checkpoints.poll)
+            study.add_trials(completed_trials(axes, history[pool], {genetic._get_generation_key(): 0}))
+        branch, u = ask_points(study, axes, size, run.checkpoints.poll)
         kept = [trial.number for trial in genetic.get_parent_population(study, 1)] if past else []
-        return Brood(sheet, u, pool[kept])
+        return Brood(branch, u, pool[kept])
 
-    with quiet():
+    with silence_optuna():
         crossover, mutation = SBXCrossover(), PolynomialMutation()
         return evolve(problem, evaluators, run, breed, size=size)
 

@@ -29,12 +29,12 @@ BAND = 0.01
 class Brood:
     """Points to be evaluated together.
 
-    sheet: (n,), index of each point's sheet. u: (n, k), points of the unit box; columns beyond a sheet's own dimension
-    do not count. parents: (p,), rows that the brood was bred from, counted over the points of all generations; empty
+    branch: (n,), index of each point's branch. u: (n, k), points of the unit box; columns beyond a branch's dimension
+    are ignored. parents: (p,), rows that the brood was bred from, counted over the points of all generations; empty
     where a method has none.
     """
 
-    sheet: Rows
+    branch: Rows
     u: Array
     parents: Rows = field(default_factory=lambda: np.zeros(0, np.int64))
 
@@ -46,12 +46,12 @@ class Brood:
 class Generation(Table):
     """The points of a brood and what they turned out to be.
 
-    sheet, u: see `Brood`. values: (n, m) objectives as they are minimised, SI; NaN where a constraint is violated.
+    branch, u: see `Brood`. values: (n, m) objectives as they are minimised, SI; NaN where a constraint is violated.
     violation: (n,), the greatest relative one beyond what is tolerated (see `BAND`), infinite where no
     linkage turns fully. parents: of the brood.
     """
 
-    sheet: Rows
+    branch: Rows
     u: Array
     values: Array
     violation: Array
@@ -79,53 +79,53 @@ def evolve(problem: Problem, evaluators: list[Evaluator], run: Run, breed: Breed
     """
     allowed = budget(problem)
     run.rounds = max(1, allowed // size)
-    archive, known = Archive.empty(len(problem.objectives)), _Known()
+    archive, known = Archive.empty(len(problem.objectives)), _Evaluations()
     past: list[Generation] = []
     count = 0
     while True:
-        brood = _bred(evaluators[0], breed, past)
+        brood = _breed_recorded(evaluators[0], breed, past)
         if count + len(brood) > allowed and past:
             break
-        past.append(_evaluated(evaluators, brood, archive, known))
+        past.append(_evaluate_brood(evaluators, brood, archive, known))
         count += len(brood)
-        run.tell("evolving", evaluators, archive)
+        run.report_round("evolving", evaluators, archive)
     return archive
 
 
-def _bred(evaluator: Evaluator, breed: Breed, past: list[Generation]) -> Brood:
+def _breed_recorded(evaluator: Evaluator, breed: Breed, past: list[Generation]) -> Brood:
     def compute() -> tuple[Rows, Array, Rows]:
         evaluator.checkpoints.poll()
         brood = breed(past)
-        return brood.sheet, brood.u, brood.parents
+        return brood.branch, brood.u, brood.parents
 
     return Brood(*evaluator.step("breeding", (np.array([len(past)]),), compute))
 
 
-_Known = dict[tuple[int, bytes], tuple[Array, float]]
-"""Objectives and violation of every point that was evaluated, by sheet and coordinates: none is evaluated twice."""
+_Evaluations = dict[tuple[int, bytes], tuple[Array, float]]
+"""Objectives and violation of every point that was evaluated, by branch and coordinates: none is evaluated twice."""
 
 
-def _evaluated(evaluators: list[Evaluator], brood: Brood, archive: Archive, known: _Known) -> Generation:
-    """Return the generation of a brood, the archive has what is feasible; a sheet's new points are one batch."""
-    points = zip(brood.sheet.tolist(), brood.u + 0.0, strict=True)  # no negative zeros
+def _evaluate_brood(evaluators: list[Evaluator], brood: Brood, archive: Archive, known: _Evaluations) -> Generation:
+    """Return the generation of a brood, the archive has what is feasible; a branch's new points are one batch."""
+    points = zip(brood.branch.tolist(), brood.u + 0.0, strict=True)  # no negative zeros
     keys = [(index, point[: evaluators[index].dimension].tobytes()) for index, point in points]
     fresh = {key: row for row, key in enumerate(keys) if key not in known}
     for index, evaluator in enumerate(evaluators):
         own = [(key, row) for key, row in fresh.items() if key[0] == index]
         if own:
             u = brood.u[[row for _, row in own], : evaluator.dimension]
-            values, violation = screened(evaluator, u, BAND if evaluator.loose else 0.0)
+            values, violation = screen_points(evaluator, u, BAND if evaluator.loose else 0.0)
             known.update({key: (values[i], violation[i]) for i, (key, _) in enumerate(own)})
             good = violation <= FEASIBLE
             met = np.full(int(good.sum()), not evaluator.loose)
             archive.feasible += int(met.sum())
             if good.any():
-                archive.take(index, u[good], values[good], met)
+                archive.add_points(index, u[good], values[good], met)
     values, violation = (np.array([known[key][part] for key in keys]) for part in (0, 1))
-    return Generation(brood.sheet, brood.u, values, violation, parents=brood.parents)
+    return Generation(brood.branch, brood.u, values, violation, parents=brood.parents)
 
 
-def screened(evaluator: Evaluator, u: Array, band: float = 0.0) -> tuple[Array, Array]:
+def screen_points(evaluator: Evaluator, u: Array, band: float = 0.0) -> tuple[Array, Array]:
     """Return objectives (n, m) and violation beyond a band (n,) of points.
 
     Whatever is not feasible has NaN objectives, and what has one that is not finite counts as infinitely violated.

@@ -31,7 +31,7 @@ class Search(Protocol):
     def __call__(self, problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
         """Return designs found: feasible ones, or ones so near that the delivery brings them onto the limits.
 
-        evaluators: of the sheets that leave something free, at least one. Costly steps are recorded, so that
+        evaluators: of the branches that leave something free, at least one. Costly steps are recorded, so that
         a search can be stopped within a moment and go on.
         """
         ...

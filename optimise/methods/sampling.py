@@ -21,16 +21,16 @@ BATCH = 1024
 
 
 def random(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the designs found by uniformly random points, spread over the sheets by chance."""
+    """Return the designs found by uniformly random points, spread over the branches by chance."""
 
     def draw(generation: int, size: int, dimension: int) -> Array:
         return np.random.default_rng(generation_seed(problem.settings.seed, generation)).random((size, dimension))
 
-    return _sampled(problem, evaluators, run, draw)
+    return _search_by_draws(problem, evaluators, run, draw)
 
 
 def sobol(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the designs found by one scrambled Sobol sequence; one coordinate chooses among several sheets."""
+    """Return the designs found by one scrambled Sobol sequence; one coordinate chooses among several branches."""
     from scipy.stats import qmc
 
     def draw(generation: int, size: int, dimension: int) -> Array:
@@ -40,10 +40,10 @@ def sobol(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
         sequence.fast_forward(generation * size)
         return np.asarray(sequence.random(size))
 
-    return _sampled(problem, evaluators, run, draw)
+    return _search_by_draws(problem, evaluators, run, draw)
 
 
-def _sampled(problem: Problem, evaluators: list[Evaluator], run: Run, draw: Draw) -> Archive:
+def _search_by_draws(problem: Problem, evaluators: list[Evaluator], run: Run, draw: Draw) -> Archive:
     size = generation_size(problem, BATCH)
     dimension, several = max(evaluator.dimension for evaluator in evaluators), len(evaluators) > 1
 

@@ -55,7 +55,7 @@ class Form:
 
 
 class Programme:
-    """A form on one sheet, by z = (u, s, t): (k + m + 1,). Remembers its last point, which solvers ask for in turns.
+    """A form on one branch, by z = (u, s, t): (k + m + 1,). Remembers its last point, which solvers ask for in turns.
 
     ideal, span: (m,), what objectives are scaled by.
     """
@@ -124,14 +124,14 @@ class Programme:
     def equalities(self, z: Array) -> Array:
         """Return the rows h(z) = 0 of equalities that are left."""
         self._go(z[: self.k])
-        return self._limits.values[self._held()] + (0.0 if self._valid else _OUT)
+        return self._limits.values[self._equality_rows()] + (0.0 if self._valid else _OUT)
 
     def equal_slopes(self, z: Array) -> Array:
         """Return the derivatives of the equalities."""
         self._go(z[: self.k])
-        return np.pad(self._limits.gradients[self._held()], ((0, 0), (0, self.m + 1)))
+        return np.pad(self._limits.gradients[self._equality_rows()], ((0, 0), (0, self.m + 1)))
 
-    def _held(self) -> Whole:
+    def _equality_rows(self) -> Whole:
         """Return the rows that must vanish; for a piece that this design lacks, the row of the highest."""
         own, instead = self._equal.T
         return np.asarray(np.where(np.isfinite(self._limits.values[own]), own, instead))
@@ -156,10 +156,10 @@ class Programme:
         if first:
             self._equal = _equal_rows(self.evaluator, limits)
             self._unequal = np.setdiff1d(np.arange(len(limits.owner)), self._equal)
-            self._groups = _groups(self.evaluator, goals, limits)
+            self._groups = _swappable_columns(self.evaluator, goals, limits)
         else:
-            goals = _placed(goals, self._goals, self._groups[0])
-            limits = _placed(limits, self._limits, self._groups[1])
+            goals = _align_pieces(goals, self._goals, self._groups[0])
+            limits = _align_pieces(limits, self._limits, self._groups[1])
         self._goals, self._limits = goals, limits
 
 
@@ -181,7 +181,7 @@ def _equal_rows(evaluator: Evaluator, limits: Rows) -> Whole:
     return np.array(found, dtype=np.int64).reshape(-1, 2)
 
 
-def _groups(evaluator: Evaluator, goals: Rows, limits: Rows) -> tuple[list[Whole], ...]:
+def _swappable_columns(evaluator: Evaluator, goals: Rows, limits: Rows) -> tuple[list[Whole], ...]:
     """Return the columns of goals and limits that are peaks of one curve and may swap; lower bounds may not."""
     found: tuple[list[Whole], ...] = ([], [])
     last = [objective.target is not None for objective in evaluator.problem.objectives]
@@ -195,18 +195,18 @@ def _groups(evaluator: Evaluator, goals: Rows, limits: Rows) -> tuple[list[Whole
     return found
 
 
-def _placed(rows: Rows, before: Rows, groups: list[Whole]) -> Rows:
+def _align_pieces(rows: Rows, before: Rows, groups: list[Whole]) -> Rows:
     """Return the rows in the former places of the same pieces; peaks come by height and swap in ties."""
     order = np.arange(len(rows.owner))
     for columns in groups:
         apart = np.abs(rows.labels[columns][:, None] - before.labels[columns])
         apart = np.minimum(apart, np.abs(apart - 2.0 * np.pi))
         gone = ~(np.isfinite(rows.values[columns])[:, None] & np.isfinite(before.values[columns]))
-        order[columns] = columns[_matched(np.where(gone | ~np.isfinite(apart), np.pi, apart))]
+        order[columns] = columns[_match_labels(np.where(gone | ~np.isfinite(apart), np.pi, apart))]
     return Rows(rows.values[order], rows.gradients[order], rows.labels[order], rows.owner)
 
 
-def _matched(apart: Array) -> Whole:
+def _match_labels(apart: Array) -> Whole:
     """Return for each place the row that goes there."""
     from scipy.optimize import linear_sum_assignment
 

@@ -23,7 +23,7 @@ from ..problem.problem import Problem
 from ..search.candidates import Candidates
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
-from .local import by_slsqp, keep, samples, spent
+from .local import archive_optimum, by_slsqp, is_budget_spent, samples
 from .registry import Method
 from .scalar import SUM, Form, Programme
 
@@ -32,7 +32,7 @@ _MORE = 3.0  # optima wanted a delivered design: the best are chosen
 _ROUNDS = 6  # of aiming at gaps
 _POOL = 2000  # samples that gaps are looked for with
 _STARTS = 4  # of each objective alone
-_WORSE = 0.1  # of the ranges: a sheet whose best start is worse by less is tried too
+_WORSE = 0.1  # of the ranges: a branch whose best start is worse by less is tried too
 _UTOPIAN = 1e-3  # of the ranges: how far below the ideal Chebyshev's reference lies
 _SLIVER = 1e-3  # least share of an objective in a direction, so that its weight stays finite
 _TOLD = 16  # problems of a round
@@ -53,10 +53,10 @@ def epsilon_constraint(front: _Front) -> Aims:
     the epsilon-constraint method in multi-objective mathematical programming problems", Appl. Math. Comput. 213(2),
     2009).
     """
-    m, scaled = len(front.payoff), front.scaled(np.concatenate([front.begun.values, front.archive.values]))
+    m, scaled = len(front.payoff), front.scaled(np.concatenate([front.samples.values, front.archive.values]))
     ceilings = np.zeros((0, m - 1))
     parts = 2
-    while len(ceilings) < _first(front.problem) and parts ** (m - 1) <= _CELLS:
+    while len(ceilings) < _aims_per_round(front.problem) and parts ** (m - 1) <= _CELLS:
         cells = grid(np.zeros(m - 1), np.ones(m - 1), parts)
         # Only what nothing dominates decides which ceilings can be kept.
         edge = scaled[nondominated(scaled[:, 1:]), 1:] if m > 2 else scaled[:, 1:].min(keepdims=True)
@@ -76,11 +76,11 @@ def chebyshev(front: _Front) -> Aims:
     m = len(front.payoff)
     none = np.full(m, np.inf)
 
-    def along(direction: Array) -> Form:
+    def form_towards(direction: Array) -> Form:
         direction = np.maximum(direction, _SLIVER)
         return Form(direction.min() / direction, np.full(m, -_UTOPIAN), none, SUM)
 
-    return [along(direction) for direction in simplex(m, _first(front.problem))], along
+    return [form_towards(direction) for direction in simplex(m, _aims_per_round(front.problem))], form_towards
 
 
 def nbi(front: _Front) -> Aims:
@@ -96,7 +96,7 @@ def nbi(front: _Front) -> Aims:
     m = len(front.payoff)
     payoff = front.scaled(front.payoff)
     normal = np.maximum(payoff.sum(axis=0), _SLIVER)
-    shares = simplex(m, _first(front.problem))
+    shares = simplex(m, _aims_per_round(front.problem))
     if m > 2:
         shares = 1.0 / m + (shares - 1.0 / m) * _WIDER
     none = np.full(m, np.inf)
@@ -118,7 +118,7 @@ class _Front:
     problem: Problem
     evaluators: list[Evaluator]
     run: Run
-    begun: Candidates
+    samples: Candidates
     archive: Archive
     ideal: Array
     span: Array
@@ -131,19 +131,19 @@ class _Front:
     def optimum(self, form: Form, index: int, u: Array) -> Array | None:
         """Keep the design that is the form's optimum near a point; return its objectives (m,), SI, None without one."""
         programme = Programme(self.evaluators[index], form, self.ideal, self.span)
-        return keep(by_slsqp, programme, u, self.archive, index)
+        return archive_optimum(by_slsqp, programme, u, self.archive, index)
 
     def solve(self, forms: list[Form], aimed: Callable[[Array], Form]) -> Archive:
         """Return the archive with the optima of the forms, and of those aimed at scaled objectives (m,) in gaps."""
         for _ in range(1 + _ROUNDS):
-            self.run.rounds = len(self.run.told) + -(-len(forms) // _TOLD)
+            self.run.rounds = len(self.run.round_reports) + -(-len(forms) // _TOLD)
             for begin in range(0, len(forms), _TOLD):
-                if spent(self.problem, self.evaluators):
+                if is_budget_spent(self.problem, self.evaluators):
                     return self.archive
                 for form in forms[begin : begin + _TOLD]:
                     for index, u in self._starts(form):
                         self.optimum(form, index, u)
-                self.run.tell("scalarising", self.evaluators, self.archive)
+                self.run.report_round("scalarising", self.evaluators, self.archive)
             forms = [aimed(aim) for aim in self._gaps()]
             if not forms:
                 break
@@ -162,7 +162,7 @@ class _Front:
         missing = int(_MORE * self.problem.settings.designs) - len(found)
         if missing <= 0:
             return found[:0]
-        sampled = self.scaled(self.begun.values)
+        sampled = self.scaled(self.samples.values)
         sampled = sampled[nondominated(sampled)]
         aims = np.concatenate([sampled[:: 1 + len(sampled) // _POOL], _middles(found)])
         away = distance_matrix(aims, np.concatenate([found, self.aimed])).min(axis=1)
@@ -174,14 +174,14 @@ class _Front:
         return np.asarray(aims[picked])
 
     def _starts(self, form: Form) -> list[tuple[int, Array]]:
-        """Return the best point of every sheet that is not plainly worse than that of another."""
-        known = self.archive.join(self.begun)
+        """Return the best point of every branch that is not plainly worse than that of another."""
+        known = self.archive.join(self.samples)
         scaled = self.scaled(known.values)
         excess = np.maximum(scaled - form.ceilings, 0.0).max(axis=1)
         worth = replace(form, ceilings=np.full(len(form.weights), np.inf)).value(scaled) + 10.0 * excess
         found: list[tuple[float, int, Array]] = []
-        for index in np.unique(known.sheet).tolist():
-            own = np.flatnonzero(known.sheet == index)
+        for index in np.unique(known.branch).tolist():
+            own = np.flatnonzero(known.branch == index)
             row = own[np.argmin(worth[own])]
             found.append((float(worth[row]), index, known.u[row]))
         least = min(value for value, _, _ in found)
@@ -220,42 +220,42 @@ def _middles(points: Array) -> Array:
     return np.asarray(middles[~within.any(axis=1)])
 
 
-def _first(problem: Problem) -> int:
+def _aims_per_round(problem: Problem) -> int:
     """Return how many problems take aim evenly. Of two objectives the front is a line: all of them find their own."""
     share = _MORE if len(problem.objectives) == 2 else _FIRST
     return max(1, int(share * problem.settings.designs))
 
 
-def _begin(problem: Problem, evaluators: list[Evaluator], run: Run) -> _Front | None:
+def _payoff_front(problem: Problem, evaluators: list[Evaluator], run: Run) -> _Front | None:
     """Return samples and payoff table; None where nothing was found to begin with."""
     m = len(problem.objectives)
-    begun = samples(problem, evaluators)
+    sampled = samples(problem, evaluators)
     front = Archive.empty(m)
-    run.archive.put(begun[begun.met])
-    if not len(begun):
-        run.tell("sampling", evaluators, front)
+    run.archive.add(sampled[sampled.is_feasible])
+    if not len(sampled):
+        run.report_round("sampling", evaluators, front)
         return None
-    ideal, span = scaling(begun.values[nondominated(begun.values)])
-    shared = _Front(problem, evaluators, run, begun, front, ideal, span, np.zeros((m, m)), np.zeros((0, m)))
+    ideal, span = scaling(sampled.values[nondominated(sampled.values)])
+    shared = _Front(problem, evaluators, run, sampled, front, ideal, span, np.zeros((m, m)), np.zeros((0, m)))
     run.rounds = 1 + m
-    run.tell("sampling", evaluators, front)
+    run.report_round("sampling", evaluators, front)
     for column in range(m):
         best = np.full(m, np.inf)
-        for row in begun.leading(column, _STARTS):
-            values = shared.optimum(Form.single(m, column, rho=SUM), int(begun.sheet[row]), begun.u[row])
+        for row in sampled.leading(column, _STARTS):
+            values = shared.optimum(Form.single(m, column, rho=SUM), int(sampled.branch[row]), sampled.u[row])
             if values is not None and values[column] < best[column]:
                 best = values
         if not np.isfinite(best).all():
             return None
         shared.payoff[column] = best
-        run.tell("finding the best design for each objective", evaluators, front)
+        run.report_round("finding the best design for each objective", evaluators, front)
     shared.ideal, shared.span = scaling(shared.payoff)
     return shared
 
 
 def scalarised(problem: Problem, evaluators: list[Evaluator], run: Run, *, aims: Callable[[_Front], Aims]) -> Archive:
     """Return the front by the forms of a method."""
-    front = _begin(problem, evaluators, run)
+    front = _payoff_front(problem, evaluators, run)
     return Archive.empty(len(problem.objectives)) if front is None else front.solve(*aims(front))
 
 

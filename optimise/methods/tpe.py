@@ -16,7 +16,7 @@ from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
 from .population import Brood, Generation, evolve, generation_seed, generation_size
 from .registry import Method
-from .trials import asked, new_study, quiet, space, stored
+from .trials import ask_points, completed_trials, new_study, search_space, silence_optuna
 
 BATCH = 20
 """Designs proposed before any of them is evaluated, where the job sets no number of samples; those under way count as
@@ -27,17 +27,17 @@ def tpe(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the designs that the tree-structured Parzen estimator finds; its densities are fitted anew every time."""
     from optuna.samplers import TPESampler
 
-    size, axes = generation_size(problem, BATCH), space(evaluators)
+    size, axes = generation_size(problem, BATCH), search_space(evaluators)
 
     def breed(past: Sequence[Generation]) -> Brood:
         seed = generation_seed(problem.settings.seed, len(past))
         study = new_study(problem, TPESampler(seed=seed, multivariate=True, constant_liar=True))
         if past:
-            study.add_trials(stored(axes, past[0].join(*past[1:]), {}))
-        sheet, u = asked(study, axes, size, run.checkpoints.poll)
-        return Brood(sheet, u)
+            study.add_trials(completed_trials(axes, past[0].join(*past[1:]), {}))
+        branch, u = ask_points(study, axes, size, run.checkpoints.poll)
+        return Brood(branch, u)
 
-    with quiet():
+    with silence_optuna():
         return evolve(problem, evaluators, run, breed, size=size)
 
 

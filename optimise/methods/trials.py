@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
     Space = dict[str, BaseDistribution]
 
-_SHEET = "sheet"
+_BRANCH = "sheet"  # of the categorical parameter; samplers draw in the order of such names
 
 
 @contextmanager
-def quiet() -> Iterator[None]:
+def silence_optuna() -> Iterator[None]:
     """While entered, Optuna neither tells of every study nor warns that an operator may change in a later version."""
     import optuna
 
@@ -41,14 +41,14 @@ def quiet() -> Iterator[None]:
         optuna.logging.set_verbosity(level)
 
 
-def space(evaluators: list[Evaluator]) -> Space:
-    """Return Optuna's parameters: the coordinates of the unit box, and the sheet where there are several."""
+def search_space(evaluators: list[Evaluator]) -> Space:
+    """Return Optuna's parameters: the coordinates of the unit box, and the branch where there are several."""
     from optuna.distributions import CategoricalDistribution, FloatDistribution
 
     dimension = max(evaluator.dimension for evaluator in evaluators)
     found: Space = {f"u{column:03d}": FloatDistribution(0.0, 1.0) for column in range(dimension)}
     if len(evaluators) > 1:
-        found[_SHEET] = CategoricalDistribution(list(range(len(evaluators))))
+        found[_BRANCH] = CategoricalDistribution(list(range(len(evaluators))))
     return found
 
 
@@ -59,7 +59,7 @@ def new_study(problem: Problem, sampler: BaseSampler) -> Study:
     return optuna.create_study(directions=["minimize"] * len(problem.objectives), sampler=sampler)
 
 
-def stored(space: Space, points: Generation, mark: dict[str, Any]) -> list[FrozenTrial]:
+def completed_trials(space: Space, points: Generation, mark: dict[str, Any]) -> list[FrozenTrial]:
     """Return evaluated points as completed trials, each with its constraint.
 
     A trial without a constraint would count as feasible, and one whose objectives are NaN or infinite would be taken
@@ -68,7 +68,7 @@ def stored(space: Space, points: Generation, mark: dict[str, Any]) -> list[Froze
     """
     from optuna.trial import create_trial
 
-    names = sorted(name for name in space if name != _SHEET)
+    names = sorted(name for name in space if name != _BRANCH)
     feasible = points.violation <= FEASIBLE
     absent = np.inf if feasible.any() else 0.0
     trials = []
@@ -77,8 +77,8 @@ def stored(space: Space, points: Generation, mark: dict[str, Any]) -> list[Froze
         if good and not np.isfinite(values).all():
             raise ArithmeticError(f"a feasible design has objectives {values}")
         params: dict[str, Any] = dict(zip(names, points.u[row].tolist(), strict=True))
-        if _SHEET in space:
-            params[_SHEET] = int(points.sheet[row])
+        if _BRANCH in space:
+            params[_BRANCH] = int(points.branch[row])
         violation = 0.0 if good else float(points.violation[row])
         trials.append(
             create_trial(
@@ -92,12 +92,12 @@ def stored(space: Space, points: Generation, mark: dict[str, Any]) -> list[Froze
     return trials
 
 
-def asked(study: Study, space: Space, count: int, poll: Callable[[], None]) -> tuple[Rows, Array]:
-    """Return sheets (n,) and points (n, k) of the trials that a study's sampler proposes. poll: called before each."""
-    names = sorted(name for name in space if name != _SHEET)
+def ask_points(study: Study, space: Space, count: int, poll: Callable[[], None]) -> tuple[Rows, Array]:
+    """Return branches (n,) and points (n, k) that a study's sampler proposes. poll: called before each trial."""
+    names = sorted(name for name in space if name != _BRANCH)
     trials = []
     for _ in range(count):
         poll()
         trials.append(study.ask(space).params)
     u = np.array([[trial[name] for name in names] for trial in trials])
-    return np.array([trial.get(_SHEET, 0) for trial in trials], dtype=np.int64), np.clip(u, 0.0, 1.0)
+    return np.array([trial.get(_BRANCH, 0) for trial in trials], dtype=np.int64), np.clip(u, 0.0, 1.0)

@@ -13,16 +13,16 @@ from ...objectives.amount import Amount
 from ...objectives.counted import counted
 from ...objectives.formula.quantity import FormulaQuantity
 from ..front.front import Columns, ParetoFront, Status
-from ..front.hypervolume import Stand, choose, hypervolume, scaling, unheard
+from ..front.hypervolume import ReportProgress, choose, hypervolume, ignore_progress, scaling
 from ..front.slack import slack_of
 from ..front.stationarity import STATIONARY, multipliers
 from ..problem.problem import Problem
 from ..problem.table_columns import RESIDUAL, STATUS, choice_field, note_field, slack_field
 from ..problem.violation import constraints_of
-from .candidates import Finished
+from .candidates import FrontCandidates
 from .evaluation import Evaluator
 from .fingerprint import versions
-from .least import least_options
+from .least_options import least_options
 from .pieces import ACTIVE
 from .search import Run
 
@@ -33,14 +33,14 @@ _GLIMPSE = 40  # designs of a round that count in the history of a search that w
 
 
 def assemble(
-    problem: Problem, evaluators: list[Evaluator], finished: Finished, run: Run, rows: Whole | None = None
+    problem: Problem, evaluators: list[Evaluator], finished: FrontCandidates, run: Run, rows: Whole | None = None
 ) -> ParetoFront:
     """Return the front of the best of finished designs, at least one.
 
     rows: those to deliver, of a search that was told to end.
     """
     status: Status = "done" if rows is None else "cancelled"
-    best = finished[_best(problem, finished, run.stage(SELECTING)) if rows is None else rows]
+    best = finished[_rows_to_deliver(problem, finished, run.stage_reporter(SELECTING)) if rows is None else rows]
     best = best[np.lexsort(best.values.T[::-1])]
     values, dimensions = best.values, best.dimensions(evaluators)
     dimensions[:, 2] = without_rounding(dimensions[:, 1], dimensions[:, 2])
@@ -56,11 +56,11 @@ def assemble(
         residual[:] = np.inf
         goals = [(owner, slopes[:, :0]) for owner, slopes in goals]
         active = [edges[:, :0] for edges in active]
-    variants = np.array([evaluators[index].sheet.variant for index in best.sheet], dtype=np.int64)
-    finishing = run.stage(FINISHING)
+    variants = np.array([evaluators[index].branch.variant for index in best.branch], dtype=np.int64)
+    finishing = run.stage_reporter(FINISHING)
     columns = columns_of(problem, variants, dimensions, finishing)
     columns[RESIDUAL] = residual
-    proven = (residual <= STATIONARY) & ~_torn(problem, variants, dimensions)
+    proven = (residual <= STATIONARY) & ~_on_unseen_kink(problem, variants, dimensions)
     columns[STATUS] = np.where(proven, "stationary", "best found")
     evaluated = sum(evaluator.evaluations for evaluator in evaluators)
     message = f"{counted(len(best), 'design')}, {evaluated} evaluated"
@@ -68,7 +68,7 @@ def assemble(
         message = f"cancelled: {message}, the front may be incomplete"
     ideal = values.min(axis=0)
     return replace(
-        empty(problem, evaluators, run, status, message),
+        empty_front(problem, evaluators, run, status, message),
         columns=columns,
         dimensions=dimensions,
         values=values,
@@ -82,7 +82,7 @@ def assemble(
     )
 
 
-def _torn(problem: Problem, variants: Whole, dimensions: Array) -> Mask:
+def _on_unseen_kink(problem: Problem, variants: Whole, dimensions: Array) -> Mask:
     """Return which designs (n,) lie on a kink that their slopes do not tell all of.
 
     Of a formula with kinks of both kinds, such as a difference of peaks, slopes tell those of one kind with the active
@@ -103,18 +103,20 @@ def _torn(problem: Problem, variants: Whole, dimensions: Array) -> Mask:
     return found
 
 
-def _best(problem: Problem, finished: Finished, stand: Stand) -> Whole:
-    rows = finished.best(stand)
+def _rows_to_deliver(problem: Problem, finished: FrontCandidates, report: ReportProgress) -> Whole:
+    rows = finished.best(report)
     if len(problem.objectives) == 1:
         return rows
     best = tuple(dict.fromkeys(np.argmin(finished.values[rows], axis=0).tolist()))
-    return rows[choose(finished.values[rows], problem.settings.designs, always=best, stand=stand)]
+    return rows[choose(finished.values[rows], problem.settings.designs, always=best, report=report)]
 
 
-def columns_of(problem: Problem, variants: Whole, dimensions: Array, stand: Stand = unheard) -> Columns:
+def columns_of(
+    problem: Problem, variants: Whole, dimensions: Array, report: ReportProgress = ignore_progress
+) -> Columns:
     """Return all quantities of designs and what was chosen for them, with the slacks of their constraints.
 
-    variants: (n,). dimensions: (n, 3 + v). stand: called every second or sooner, with the designs done.
+    variants: (n,). dimensions: (n, 3 + v). report: called every second or sooner, with the designs done.
     """
     from ...objectives.tables import analysis, swinging
 
@@ -124,22 +126,22 @@ def columns_of(problem: Problem, variants: Whole, dimensions: Array, stand: Stan
     for variant in distinct(variants).tolist():
         part = problem.part(variant)
         alike.setdefault((part.mechanism, part.constraints, part.own), []).append(variant)
-    chosen = _chosen(problem, variants, dimensions)
+    chosen = _choice_columns(problem, variants, dimensions)
     for same in alike.values():
         own = np.flatnonzero(np.isin(variants, same))
         part = problem.part(same[0])
         for rows in np.split(own, range(_AT_ONCE, len(own), _AT_ONCE)):
-            stand(done, len(dimensions))
+            report(done, len(dimensions))
             judged = analysis.columns_of if problem.motion is None else swinging.columns_of
             columns = judged(part.mechanism, dimensions[rows], own=part.own)
-            stand(done, len(dimensions))
+            report(done, len(dimensions))
             before = 3 + len(part.mechanism.varying)
             of_size = dict(itertools.islice(columns.items(), before))
             others = dict(itertools.islice(columns.items(), before, None))
             of_choice: Columns = {name: column[rows] for name, column in chosen.items()}
             fields = [of.field for of in part.own if isinstance(of, Amount)]
             of_choice |= {name: others.pop(name) for name in fields}
-            parts.append(of_size | of_choice | others | _slacks(part, dimensions[rows]))
+            parts.append(of_size | of_choice | others | _slack_columns(part, dimensions[rows]))
             done += len(rows)
             order.append(rows)
     if len(parts) == 1:
@@ -153,7 +155,7 @@ def columns_of(problem: Problem, variants: Whole, dimensions: Array, stand: Stan
     }
 
 
-def _chosen(problem: Problem, variants: Whole, dimensions: Array) -> Columns:
+def _choice_columns(problem: Problem, variants: Whole, dimensions: Array) -> Columns:
     """Return what was chosen for designs, its texts, and the least options that serve too with what is kept of them."""
     own = [problem.variants[variant] for variant in variants] if problem.variants else []
     columns: Columns = {
@@ -167,7 +169,7 @@ def _chosen(problem: Problem, variants: Whole, dimensions: Array) -> Columns:
     return columns
 
 
-def _slacks(problem: Problem, dimensions: Array) -> Columns:
+def _slack_columns(problem: Problem, dimensions: Array) -> Columns:
     slacks: Columns = {}
     for constraint in constraints_of(problem):
         quantity = problem.quantity(constraint.quantity)
@@ -176,7 +178,7 @@ def _slacks(problem: Problem, dimensions: Array) -> Columns:
     return slacks
 
 
-def empty(problem: Problem, evaluators: list[Evaluator], run: Run, status: Status, message: str) -> ParetoFront:
+def empty_front(problem: Problem, evaluators: list[Evaluator], run: Run, status: Status, message: str) -> ParetoFront:
     """Return a front without designs, which says why."""
     m = len(problem.objectives)
     return ParetoFront(
@@ -189,7 +191,7 @@ def empty(problem: Problem, evaluators: list[Evaluator], run: Run, status: Statu
         goals=(),
         active=(),
         hypervolume=0.0,
-        history=tuple(run.told),
+        history=tuple(run.round_reports),
         evaluations=sum(evaluator.evaluations for evaluator in evaluators),
         seconds=run.checkpoints.seconds,
         seed=problem.settings.seed,

@@ -1,4 +1,4 @@
-"""Designs with their values, row by row: screened ones, polished ones, and those that are worth delivering."""
+"""Designs with their values, row by row: screened ones, polished ones, and candidates for the front."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from ...model.arrays import Array, Mask, Whole, distinct
 from ..front.dominance import nondominated
-from ..front.hypervolume import Stand, unheard
+from ..front.hypervolume import ReportProgress, ignore_progress
 from ..front.stationarity import STATIONARY
 from ..problem.violation import FEASIBLE
 from .evaluation import Evaluator
-from .sampling import apart
+from .sampling import distant_rows
 
 EQUAL = 1e-9
 """Of the objectives' range: a design as good as another one to this everywhere, and better somewhere, displaces it."""
@@ -28,7 +28,7 @@ _ROUNDING = 1e-11  # of an objective's size: differences that its computation ma
 
 @dataclass
 class Table:
-    """Arrays of one length: fields of a dataclass. Keyword-only fields are no rows, and stay as they are."""
+    """Arrays of equal length as fields of a dataclass. Keyword-only fields are not split into rows."""
 
     @classmethod
     def _columns(cls) -> list[str]:
@@ -51,21 +51,21 @@ class Table:
 
 
 def stacked(*parts: NDArray[Any]) -> NDArray[Any]:
-    """Return arrays under each other; those of points with fewer columns are padded with zeros."""
+    """Return arrays stacked by rows; points with fewer columns are padded with zeros."""
     if parts[0].ndim == 2:
         width = max(part.shape[1] for part in parts)
-        parts = tuple(part if part.shape[1] == width else _widened(part, width) for part in parts)
+        parts = tuple(part if part.shape[1] == width else _pad_columns(part, width) for part in parts)
     return np.concatenate(parts)
 
 
-def _widened(part: NDArray[Any], width: int) -> NDArray[Any]:
+def _pad_columns(part: NDArray[Any], width: int) -> NDArray[Any]:
     found = np.zeros((len(part), width), part.dtype)
     found[:, : part.shape[1]] = part
     return found
 
 
 def ragged(parts: Iterable[object]) -> NDArray[np.object_]:
-    """Return one entry a design, (n,), of any shape."""
+    """Return an array (n,) with one entry of any shape per design."""
     return np.fromiter(parts, dtype=np.object_)
 
 
@@ -73,14 +73,14 @@ def ragged(parts: Iterable[object]) -> NDArray[np.object_]:
 class Candidates(Table):
     """Designs with their objectives.
 
-    sheet: (n,), index. u: (n, k), unit-box points, padded to as many columns as any sheet has. values: (n, m), SI, as
-    minimised. met: (n,), which of them meet every constraint; the others are near enough to be moved there.
+    branch: (n,), index. u: (n, k), unit-box points, padded to as many columns as any branch has. values: (n, m), SI, as
+    minimised. is_feasible: (n,), which of them meet every constraint; the others are near enough to be moved there.
     """
 
-    sheet: Whole
+    branch: Whole
     u: Array
     values: Array
-    met: Mask
+    is_feasible: Mask
 
     @classmethod
     def empty(cls, objectives: int) -> Self:
@@ -88,33 +88,33 @@ class Candidates(Table):
         return cls(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, objectives)), np.zeros(0, np.bool_))
 
     def groups(self) -> list[Self]:
-        """Return those that meet every constraint and those that are to be moved there: choose from each alone."""
-        return [group for group in (self[self.met], self[~self.met]) if len(group)]
+        """Return the feasible designs and those to be moved onto the constraints, as separate groups."""
+        return [group for group in (self[self.is_feasible], self[~self.is_feasible]) if len(group)]
 
     def leading(self, column: int, count: int) -> Whole:
         """Return at most `count` rows that meet every constraint, and as many others.
 
         The best in an objective come first, each `apart` from the better ones.
         """
-        groups = [np.flatnonzero(self.met), np.flatnonzero(~self.met)]
+        groups = [np.flatnonzero(self.is_feasible), np.flatnonzero(~self.is_feasible)]
         return np.concatenate(
-            [rows[apart(self.values[rows, column], self.u[rows], self.sheet[rows], count)] for rows in groups]
+            [rows[distant_rows(self.values[rows, column], self.u[rows], self.branch[rows], count)] for rows in groups]
         )
 
-    def by_sheet(self, evaluators: list[Evaluator]) -> list[tuple[int, Array]]:
-        """Return the points of each sheet that has some, with its index."""
+    def by_branch(self, evaluators: list[Evaluator]) -> list[tuple[int, Array]]:
+        """Return index and points of each branch that has points."""
         return [
-            (index, self.u[self.sheet == index][:, : evaluator.dimension])
+            (index, self.u[self.branch == index][:, : evaluator.dimension])
             for index, evaluator in enumerate(evaluators)
-            if (self.sheet == index).any()
+            if (self.branch == index).any()
         ]
 
     def dimensions(self, evaluators: list[Evaluator]) -> Array:
         """Return the designs (n, 3 + v), SI."""
-        found = np.zeros((len(self), max(len(evaluator.sheet.names) for evaluator in evaluators)))
-        for index in distinct(self.sheet).tolist():
-            own, sheet = self.sheet == index, evaluators[index].sheet
-            found[own, : len(sheet.names)] = sheet.dimensions(self.u[own][:, : len(sheet.free)])
+        found = np.zeros((len(self), max(len(evaluator.branch.names) for evaluator in evaluators)))
+        for index in distinct(self.branch).tolist():
+            own, branch = self.branch == index, evaluators[index].branch
+            found[own, : len(branch.names)] = branch.dimensions(self.u[own][:, : len(branch.free)])
         return found
 
 
@@ -136,8 +136,8 @@ class Polished(Table):
 
 
 @dataclass
-class Finished(Candidates):
-    """Candidates for the front: polished designs, all feasible, and those of sheets that leave nothing free.
+class FrontCandidates(Candidates):
+    """Candidates for the front: feasible polished designs, and those of branches without free unknowns.
 
     residual: (n,). goals, active: (n,), see `Polished`. span: (m,), what objectives are scaled by.
     """
@@ -148,29 +148,29 @@ class Finished(Candidates):
     span: Array = field(kw_only=True)
 
     @classmethod
-    def none(cls, span: Array) -> Self:
+    def without_designs(cls, span: Array) -> Self:
         """Return no designs."""
         bare, nothing = Candidates.empty(len(span)), np.zeros(0, np.object_)
-        return cls(bare.sheet, bare.u, bare.values, bare.met, np.zeros(0), nothing, nothing, span=span)
+        return cls(bare.branch, bare.u, bare.values, bare.is_feasible, np.zeros(0), nothing, nothing, span=span)
 
     def add(self, index: int, part: Polished) -> None:
-        """Take in those polished designs of a sheet that are feasible and have all objectives."""
+        """Add the polished designs of a branch that are feasible and have all objectives."""
         part = part[(part.violation <= FEASIBLE) & np.isfinite(part.values).all(axis=1)]
-        sheet, met = np.full(len(part), index), np.ones(len(part), np.bool_)
-        found = (sheet, part.u, part.values * self.span, met, part.residual, part.goals, part.active)
-        self.become(self.join(Finished(*found, span=self.span)))
+        branch, is_feasible = np.full(len(part), index), np.ones(len(part), np.bool_)
+        found = (branch, part.u, part.values * self.span, is_feasible, part.residual, part.goals, part.active)
+        self.become(self.join(FrontCandidates(*found, span=self.span)))
 
     @property
     def free(self) -> Mask:
-        """Whether the sheet leaves something free."""
+        """Whether the branch has free unknowns."""
         return np.array([slopes.shape[1] > 0 for _, slopes in self.goals], dtype=np.bool_)
 
-    def only_settled(self, span: Array) -> Self:
-        """Return the designs of sheets that leave nothing free, which no gradient is scaled for, with another span."""
+    def only_enumerated(self, span: Array) -> Self:
+        """Return the designs of enumerated branches, whose gradients need no scaling, with another span."""
         return replace(self[~self.free], span=span)
 
-    def best(self, stand: Stand = unheard) -> Whole:
-        """Return the rows that none dominates, fewer where they hardly differ; ascending. stand: called for each.
+    def best(self, report: ReportProgress = ignore_progress) -> Whole:
+        """Return the non-dominated rows, ascending, fewer where they hardly differ. report: called for each row.
 
         None of them is as good as another one to `EQUAL` everywhere and better somewhere.
         """
@@ -185,7 +185,7 @@ class Finished(Candidates):
         proven = np.ascontiguousarray(values[~doubtful].T)
         least = proven.min(axis=1, initial=np.inf) - same  # what is best in an objective is an end, proven or not
         for row in np.flatnonzero(doubtful).tolist():
-            stand(0, len(values))
+            report(0, len(values))
             worth[row] = (values[row] < least).any() or not _as_good(proven, values[row], covered).any()
         rows = np.flatnonzero(worth)
         rows = rows[nondominated(values[rows])]
@@ -196,14 +196,14 @@ class Finished(Candidates):
         leads = np.isin(np.arange(len(rows)), np.argmin(scaled, axis=0) if len(rows) else [])
         order = np.lexsort([scaled.sum(axis=1), ~leads, doubtful[rows]])
         for done, row in enumerate(rows[order].tolist()):
-            stand(done, len(rows))
+            report(done, len(rows))
             if not _as_good(theirs[:, : len(kept)], values[row], same if free[row] else equal).any():
                 theirs[:, len(kept)] = values[row]
                 kept.append(row)
         # Nobody kept is as good as one before it; one after it may be, where that one is best by rounding alone.
         theirs, alone = theirs[:, : len(kept)], []
         for row in kept:
-            stand(len(rows), len(rows))
+            report(len(rows), len(rows))
             if _as_good(theirs, values[row], equal).sum() == 1:
                 alone.append(row)
         return np.array(sorted(alone), dtype=np.int64)

@@ -53,12 +53,12 @@ class Record:
 
     identity: Identity
     number: int
-    told: int
+    rounds: int
     seconds: float
     words: Words
 
 
-class Counts(Protocol):
+class EvaluationCounter(Protocol):
     """Counter of evaluated designs in a step."""
 
     evaluations: int
@@ -90,15 +90,15 @@ class Checkpoints:
         self._cancelled = cancelled
         self._keep = keep
         self._identity = identity() if identity is not None and (keep is not None or past) else None
-        require_own(past, self._identity)
+        require_records_of(past, self._identity)
         self.repeated, self.resumed = 0, len(past)
         self.ended: float | None = None
-        self._past = _steps(self._gone_through(past))
+        self._past = _decode_steps(self._gone_through(past))
         self._next = next(self._past, None)
-        self.before = past[-1].told if past else 0
+        self.earlier_rounds = past[-1].rounds if past else 0
         self._number = len(past)
         self._pending: list[Words] = []
-        self.told = 0
+        self.rounds = 0
         now = time.perf_counter()
         self._start = now - (past[-1].seconds if past else 0.0)
         self._when = now
@@ -128,7 +128,9 @@ class Checkpoints:
         """Neither ask nor keep from now on: what follows belongs to no step."""
         self._cancelled = self._keep = self._next = None
 
-    def step(self, kind: str, given: Sequence[Numbers], compute: Callable[[], Arrays], counts: Counts) -> Arrays:
+    def step(
+        self, kind: str, given: Sequence[Numbers], compute: Callable[[], Arrays], counts: EvaluationCounter
+    ) -> Arrays:
         """Return the result of a step: that of the earlier run, else computed now.
 
         kind, given: what tells it from other steps, all that it depends on besides the problem. counts: takes the
@@ -136,7 +138,7 @@ class Checkpoints:
         """
         if self._next is None and self._keep is None:
             return compute()
-        key = _key(kind, given)
+        key = _step_key(kind, given)
         if self._next is not None:
             past, self._next = self._next, next(self._past, None)
             if past.key != key:
@@ -145,15 +147,15 @@ class Checkpoints:
             return cast(Arrays, past.found)
         before = counts.evaluations
         found = compute()
-        self._pending.append(_words(_Step(key, counts.evaluations - before, found)))
+        self._pending.append(_encode_step(_Step(key, counts.evaluations - before, found)))
         if time.perf_counter() - self._when >= PAUSE:
             self._flush()
         return found
 
-    def turn(self) -> bool:
+    def end_round(self) -> bool:
         """Keep the steps of a round that has ended; return whether the earlier run had not told it."""
-        self.told += 1
-        unreported = self.told > self.before
+        self.rounds += 1
+        unreported = self.rounds > self.earlier_rounds
         self._flush(ends=unreported)
         return unreported
 
@@ -168,7 +170,7 @@ class Checkpoints:
         if self._keep is not None and (self._pending or ends) and self._identity is not None:
             words, self._pending = np.concatenate([np.zeros(0, np.int64), *self._pending]), []
             self._number += 1
-            self._keep(Record(self._identity, self._number - 1, self.told, self.seconds, words))
+            self._keep(Record(self._identity, self._number - 1, self.rounds, self.seconds, words))
         self._when = time.perf_counter()
 
 
@@ -179,7 +181,7 @@ class _Step:
     found: tuple[Numbers, ...]
 
 
-def _key(kind: str, given: Sequence[Numbers]) -> tuple[int, int]:
+def _step_key(kind: str, given: Sequence[Numbers]) -> tuple[int, int]:
     digest = hashlib.blake2b(kind.encode(), digest_size=16)
     for array in given:
         digest.update(str(array.shape).encode())
@@ -188,7 +190,7 @@ def _key(kind: str, given: Sequence[Numbers]) -> tuple[int, int]:
     return first, second
 
 
-def _words(step: _Step) -> Words:
+def _encode_step(step: _Step) -> Words:
     parts = [np.array([*step.key, step.evaluations, len(step.found)], dtype=np.int64)]
     for array in step.found:
         integers = array.dtype == np.int64
@@ -197,7 +199,7 @@ def _words(step: _Step) -> Words:
     return np.concatenate(parts)
 
 
-def _steps(past: Iterable[Record]) -> Iterator[_Step]:
+def _decode_steps(past: Iterable[Record]) -> Iterator[_Step]:
     for record in past:
         words, at = record.words, 0
         try:
@@ -220,7 +222,7 @@ def _steps(past: Iterable[Record]) -> Iterator[_Step]:
             ) from error
 
 
-def require_own(past: Sequence[Record], identity: Identity | None) -> None:
+def require_records_of(past: Sequence[Record], identity: Identity | None) -> None:
     """Raise `ForeignRecords` unless these are all records of this search so far, in order."""
     for number, record in enumerate(past):
         if identity is None or record.identity.problem != identity.problem:

@@ -56,7 +56,7 @@ def net_work(problem: Problem, designs: Array, loads: Collection[int] | None = N
     """
     if loads is None:
         loads = [k for k, load in enumerate(problem.mechanism.loads) if not load.drives]
-    machine = _with_loads(problem.mechanism, loads)
+    machine = _with_counted_loads(problem.mechanism, loads)
     if problem.motion is not None:
         return work_of_loads(machine, problem.motion, designs)
     if not load_works_over_a_turn(machine):
@@ -66,7 +66,7 @@ def net_work(problem: Problem, designs: Array, loads: Collection[int] | None = N
     return -2.0 * math.pi * cycle_turns(machine) * machine.direction * mean
 
 
-def _with_loads(mechanism: Mechanism, counted: Collection[int]) -> Mechanism:
+def _with_counted_loads(mechanism: Mechanism, counted: Collection[int]) -> Mechanism:
     """Return the machine with nothing in the place of the loads that do not count."""
     others = set(range(len(mechanism.loads))).difference(counted)
     if not others:
@@ -103,7 +103,7 @@ def _warning(parts: Iterable[tuple[Problem, Array]], design: str) -> list[str]:
         count += int(np.isfinite(work).sum())
         works += work[drives].tolist()
         if not named and drives.any():
-            named = _named(part, designs[drives][:1])
+            named = _name_driving_loads(part, designs[drives][:1])
             what += " that are not declared as driving" if any(load.drives for load in part.mechanism.loads) else ""
     if not works:
         return []
@@ -117,7 +117,7 @@ def _warning(parts: Iterable[tuple[Problem, Array]], design: str) -> list[str]:
     ]
 
 
-def _named(part: Problem, design: Array) -> str:
+def _name_driving_loads(part: Problem, design: Array) -> str:
     """Return the loads that do positive net work on a design, numbered as in the job."""
     found = [
         f"load #{k + 1} ({text})"

@@ -42,7 +42,7 @@ class ClosedRule(Rule):
 
     def formula(self, *known: Any) -> Any:
         """Return the target for the sources."""
-        return _FORMULAS[self.origin, self.target][1](*self.wanted, *known)
+        return _FORMULAS[self.origin, self.target][1](*self.values, *known)
 
 
 class LinearRule(Rule):
@@ -50,11 +50,11 @@ class LinearRule(Rule):
 
     def formula(self, *known: Any) -> Any:
         """Return the target for the sources."""
-        return target_of(*self.wanted, *known)
+        return target_of(*self.values, *known)
 
 
 @dataclass(frozen=True)
-class Sheet:
+class EliminationBranch:
     """One sign of the offset with the free unknowns and the steps that give the others.
 
     sign: of the offset. free: names; crank, rod and offset come before other varying numbers. lower, upper:
@@ -118,8 +118,8 @@ class Sheet:
         return np.ascontiguousarray(slopes.reshape(n, k, len(self.names)).transpose(0, 2, 1))
 
 
-def sheets(problem: Problem, *, eliminate: bool = True) -> tuple[Sheet, ...]:
-    """Return the sheets of a problem: one for each possible sign of the offset, in every variant of its choices.
+def elimination_branches(problem: Problem, *, eliminate: bool = True) -> tuple[EliminationBranch, ...]:
+    """Return the branches of a problem: one for each possible sign of the offset, in every variant of its choices.
 
     Each solution of a rule has its own. Those that leave something free come first: the search moves on them; of each
     other one its only design is all.
@@ -129,13 +129,13 @@ def sheets(problem: Problem, *, eliminate: bool = True) -> tuple[Sheet, ...]:
     parts = problem.parts()
     require_slow_side(problem, parts)
     found = (
-        replace(sheet, steps=steps)
+        replace(branch, steps=steps)
         for variant, part in enumerate(parts)
         for sign, offset in signs(part)
-        for sheet in [_sheet(part, sign, offset, eliminate=eliminate, variant=variant)]
-        for steps in itertools.product(*(step.solutions for step in sheet.steps))
+        for branch in [_eliminate(part, sign, offset, eliminate=eliminate, variant=variant)]
+        for steps in itertools.product(*(step.solutions for step in branch.steps))
     )
-    return tuple(sorted(found, key=lambda sheet: not sheet.free))
+    return tuple(sorted(found, key=lambda branch: not branch.free))
 
 
 def require_slow_side(problem: Problem, parts: tuple[Problem, ...]) -> None:
@@ -167,14 +167,17 @@ def signs(problem: Problem) -> list[tuple[float, Range]]:
     return signed if side is None else [(sign, sizes) for sign, sizes in signed if sign == side and sizes.upper > 0.0]
 
 
-def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool, variant: int) -> Sheet:
+def _eliminate(problem: Problem, sign: float, offset: Range, *, eliminate: bool, variant: int) -> EliminationBranch:
     bounds = problem.ranges | {"offset": offset}
     wanted, meant = _requested_values(problem)
     equations: dict[str, Linear] = {}
     if eliminate:
         equations = linear_equations({problem.quantity(name): value for name, value in wanted.items()}, sign)
     others = {name: value for name, value in wanted.items() if name not in equations and eliminate}
-    rules = [*_rules(others, steady=problem.mechanism.speed_profile is None), *swing_rules(problem, others, sign)]
+    rules = [
+        *_closed_rules(others, steady=problem.mechanism.speed_profile is None),
+        *swing_rules(problem, others, sign),
+    ]
     fixed = tuple(name for name in DIMENSIONS if bounds[name].fixed)
     # Rod and offset first: a crank from the stroke is the best-conditioned direction of that relation.
     loose = [name for name in ("rod", "offset", "crank") if name not in fixed]
@@ -184,8 +187,8 @@ def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool, var
     for size in range(len(loose) + 1):
         for free in itertools.combinations(loose, size):
             for block in solved:
-                for steps in _ways({*free, *fixed, *more}, [*rules, *_linear(block)]):
-                    used = _fulfilled(steps, block)
+                for steps in _rule_orders({*free, *fixed, *more}, [*rules, *_linear_rules(block)]):
+                    used = _fulfilled_requirements(steps, block)
                     roots = math.prod(len(step.solutions) for step in steps)
                     score = (len(wanted) - len(used), size, not used.issuperset(block.origins), roots)
                     if best is None or score < best[0]:
@@ -193,7 +196,7 @@ def _sheet(problem: Problem, sign: float, offset: Range, *, eliminate: bool, var
     assert best is not None  # all unknowns free always works
     _, free, steps, used = best
     free = (*free, *(name for name in more if not bounds[name].fixed))
-    return Sheet(
+    return EliminationBranch(
         sign=sign,
         free=free,
         lower=np.array([bounds[name].lower for name in free]),
@@ -225,7 +228,7 @@ def _requested_values(problem: Problem) -> tuple[dict[str, float], dict[str, str
     return wanted, meant
 
 
-def _ways(known: set[str], rules: list[Rule], steps: tuple[Rule, ...] = ()) -> Iterator[tuple[Rule, ...]]:
+def _rule_orders(known: set[str], rules: list[Rule], steps: tuple[Rule, ...] = ()) -> Iterator[tuple[Rule, ...]]:
     """Yield every order of rules that gives the unknowns which are not known yet.
 
     Each requirement is one equation: a rule is spent once. A combination of two requirements may be followed by one of
@@ -236,16 +239,16 @@ def _ways(known: set[str], rules: list[Rule], steps: tuple[Rule, ...] = ()) -> I
     spent = {step.origin for step in steps}
     for rule in rules:
         if rule.origin not in spent and rule.target not in known and set(rule.sources) <= known:
-            yield from _ways(known | {rule.target}, rules, (*steps, rule))
+            yield from _rule_orders(known | {rule.target}, rules, (*steps, rule))
 
 
-def _linear(block: Block) -> Iterator[LinearRule]:
+def _linear_rules(block: Block) -> Iterator[LinearRule]:
     """Yield the rules that linear equalities give once they are solved, one for each target."""
     for target, row in zip(block.targets, block.rows, strict=True):
         yield LinearRule(f"{_LINEAR}{target}", target, *solution(row, target))
 
 
-def _fulfilled(steps: tuple[Rule, ...], block: Block) -> set[str]:
+def _fulfilled_requirements(steps: tuple[Rule, ...], block: Block) -> set[str]:
     """Return the requirements that hold exactly after these steps.
 
     One rule of a combination alone fulfils one relation between two requirements, hence neither of them. Linear
@@ -261,7 +264,7 @@ def _fulfilled(steps: tuple[Rule, ...], block: Block) -> set[str]:
     return single
 
 
-def _rules(wanted: dict[str, float], *, steady: bool) -> list[Rule]:
+def _closed_rules(wanted: dict[str, float], *, steady: bool) -> list[Rule]:
     """Return every rule for the required values. steady: whether the time ratio is that of the crank angles."""
     rules: list[Rule] = []
     for (origin, target), (sources, _) in _FORMULAS.items():

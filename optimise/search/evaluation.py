@@ -18,8 +18,8 @@ from ..problem.requirements import Constraint, Objective, Range
 from ..problem.restatement import restate
 from ..problem.violation import FEASIBLE, Side, constraints_of, costly, excess, minimised, sides, violated_by
 from .checkpoints import Arrays, Checkpoints, Numbers
-from .elimination import Sheet
-from .judging import exactly, joined, quickly
+from .elimination import EliminationBranch
+from .judging import evaluate_pieces, join_batches, screen_quantities
 from .pieces import Rows
 
 _HUGE = 1e100
@@ -28,42 +28,46 @@ _CLEARANCE = 1e-9
 
 
 class Evaluator:
-    """Evaluates one sheet of a problem.
+    """Evaluates one branch of a problem.
 
     engine: where heavy batches are evaluated; it does not show in the results.
     """
 
     def __init__(
-        self, problem: Problem, sheet: Sheet, checkpoints: Checkpoints | None = None, engine: Engine | None = None
+        self,
+        problem: Problem,
+        branch: EliminationBranch,
+        checkpoints: Checkpoints | None = None,
+        engine: Engine | None = None,
     ) -> None:
-        """Prepare the constraints that remain on the sheet, cheapest first.
+        """Prepare the constraints that remain on the branch, cheapest first.
 
         checkpoints: of the search that asks. Every evaluation raises `Cancelled` when that is to end.
         """
         self.checkpoints = checkpoints or Checkpoints()
         self.engine = engine or Serial()
-        problem = problem.part(sheet.variant)
+        problem = problem.part(branch.variant)
         self.problem = problem
         self._quantities: dict[str, Quantity] = {}
-        self.sheet = sheet
+        self.branch = branch
         self.mechanism = problem.mechanism
-        self.dimension = len(sheet.free)
+        self.dimension = len(branch.free)
         remaining = [
             self._off_excluded_end(restate(problem, c))
             for c in constraints_of(problem)
-            if c.quantity not in sheet.eliminated
+            if c.quantity not in branch.eliminated
         ]
-        self.eliminated = tuple(restate(problem, c) for c in problem.constraints if c.quantity in sheet.eliminated)
+        self.eliminated = tuple(restate(problem, c) for c in problem.constraints if c.quantity in branch.eliminated)
         self.constraints = tuple(sorted(remaining, key=lambda c: costly(problem.quantity(c.quantity))))
-        self.computed = tuple(name for name in DIMENSIONS if any(step.target == name for step in sheet.steps))
+        self.computed = tuple(name for name in DIMENSIONS if any(step.target == name for step in branch.steps))
         constant = [problem.quantity(objective.quantity).constant for objective in problem.objectives]
         self.constant = () if all(constant) else tuple(np.flatnonzero(constant).tolist())
         self.loose = any(c.equality for c in self.constraints)
         self.evaluations = 0
         self.chunked = Chunked(Shared(self), self.engine, self.checkpoints.poll)
 
-    def __reduce__(self) -> tuple[type[Evaluator], tuple[Problem, Sheet]]:
-        return Evaluator, (self.problem, self.sheet)
+    def __reduce__(self) -> tuple[type[Evaluator], tuple[Problem, EliminationBranch]]:
+        return Evaluator, (self.problem, self.branch)
 
     def quantity(self, name: str) -> Quantity:
         """Return the quantity of a name; the problem is asked once for each."""
@@ -92,7 +96,7 @@ class Evaluator:
         violate a constraint by more than `band` have NaN objectives. Peaks are screened
         (see `model.signals.screening`).
         """
-        dimensions = self.sheet.dimensions(u)
+        dimensions = self.branch.dimensions(u)
         rows, found, violation = self.step("screening", (u, np.array([band])), lambda: self._screened(dimensions, band))
         objectives = np.full((len(u), len(self.problem.objectives)), np.nan)
         objectives[rows] = found
@@ -122,7 +126,7 @@ class Evaluator:
         return rows[had], objectives[had], violation
 
     def _quick(self, names: list[str], dimensions: Array) -> list[Array]:
-        parts: list[list[Array]] = self.chunked(quickly, tuple(names), dimensions)
+        parts: list[list[Array]] = self.chunked(screen_quantities, tuple(names), dimensions)
         return [np.concatenate(each) for each in zip(*parts, strict=True)] if len(parts) > 1 else parts[0]
 
     def _geometry_violation(self, dimensions: Array) -> Array:
@@ -134,9 +138,9 @@ class Evaluator:
         turns = running(self.mechanism, self.problem.motion, dimensions)
         violation[~turns] = np.inf
         for name in self.computed:
-            # A linear rule may give an offset of the other sign, which is of the other sheet.
-            value = dimensions[:, DIMENSIONS.index(name)] * (self.sheet.sign if name == "offset" else 1.0)
-            for side in _range_sides(self.sheet.bounds[name]):
+            # A linear rule may give an offset of the other sign, which is of the other branch.
+            value = dimensions[:, DIMENSIONS.index(name)] * (self.branch.sign if name == "offset" else 1.0)
+            for side in _range_sides(self.branch.bounds[name]):
                 violation = np.fmax(violation, excess(value, *side))
         rows = np.flatnonzero(turns)
         for constraint in self.eliminated if len(rows) else ():
@@ -149,11 +153,11 @@ class Evaluator:
 
     def valid(self, u: Array) -> Mask:
         """Return which points give a linkage that turns fully, or makes the swing of the problem."""
-        return np.isfinite(self._geometry_violation(self.sheet.dimensions(u)))
+        return np.isfinite(self._geometry_violation(self.branch.dimensions(u)))
 
     def light_violation(self, u: Array) -> Array:
         """Return the greatest violation (n,) of what needs no cycle computed, of points where `valid` holds."""
-        dimensions = self.sheet.dimensions(u)
+        dimensions = self.branch.dimensions(u)
         violation = self._geometry_violation(dimensions)
         for constraint in self.constraints:
             quantity = self.quantity(constraint.quantity)
@@ -168,14 +172,14 @@ class Evaluator:
         Gradients are by the coordinates of the unit box.
         """
         self.checkpoints.poll()
-        dimensions = self.sheet.dimensions(u)
-        jacobian = self.sheet.jacobian(u)
+        dimensions = self.branch.dimensions(u)
+        jacobian = self.branch.jacobian(u)
         self.evaluations += len(u)
         objectives = self.problem.objectives if goals else ()
         wanted = [objective.quantity for objective in objectives]
         names = tuple(dict.fromkeys([*wanted, *(constraint.quantity for constraint in self.constraints)]))
-        found = joined(self.chunked(exactly, names, dimensions))
-        pieces = {name: _in_box(own, jacobian) for name, own in zip(names, found, strict=True)}
+        found = join_batches(self.chunked(evaluate_pieces, names, dimensions))
+        pieces = {name: _to_unit_box(own, jacobian) for name, own in zip(names, found, strict=True)}
         parts: list[tuple[int, Pieces]] = []
         for index, objective in enumerate(objectives):
             parts += [(index, part) for part in _objective_rows(objective, pieces[objective.quantity])]
@@ -183,19 +187,19 @@ class Evaluator:
         parts = []
         for index, constraint in enumerate(self.constraints):
             own = pieces[constraint.quantity]
-            parts += [(index, _beyond(_held(own, side[0]), *side)) for side in sides(constraint)]
+            parts += [(index, _excess_pieces(_binding_pieces(own, side[0]), *side)) for side in sides(constraint)]
         for index, name in enumerate(self.computed, len(self.constraints)):
             column = DIMENSIONS.index(name)
-            sign = self.sheet.sign if name == "offset" else 1.0
+            sign = self.branch.sign if name == "offset" else 1.0
             value = sign * dimensions[:, column : column + 1]
             own = Pieces(value, sign * jacobian[:, column : column + 1, :], np.zeros_like(value))
-            parts += [(index, _beyond(own, *side)) for side in _range_sides(self.sheet.bounds[name])]
+            parts += [(index, _excess_pieces(own, *side)) for side in _range_sides(self.branch.bounds[name])]
         return aims, _stack(parts, len(u), self.dimension)
 
 
-def _in_box(found: Pieces, jacobian: Array) -> Pieces:
+def _to_unit_box(found: Pieces, jacobian: Array) -> Pieces:
     """Return the pieces of designs with gradients by the unit-box coordinates; jacobian: (n, 3 + v, k), of these."""
-    other = None if found.other is None else _in_box(found.other, jacobian)
+    other = None if found.other is None else _to_unit_box(found.other, jacobian)
     heights, sizes = np.abs(found.values), np.abs(found.gradients)
     # Most are bounded. The products of a copy in another order would round otherwise.
     if heights.max(initial=0.0) < _HUGE and sizes.max(initial=0.0) < _HUGE and found.gradients.flags.c_contiguous:
@@ -215,24 +219,24 @@ def _range_sides(bounds: Range) -> list[Side]:
 
 
 def _objective_rows(objective: Objective, pieces: Pieces) -> list[Pieces]:
-    low = _held(pieces, 1.0)
+    low = _binding_pieces(pieces, 1.0)
     if objective.sense == "minimise":
         return [low]
-    top = _held(pieces, -1.0)
+    top = _binding_pieces(pieces, -1.0)
     if objective.target is None:
         # What is infinite is no optimum but out of reach; of the least of pieces infinite ones are absent.
         there = np.isfinite(top.values)
         absent = top.least & (top.values == np.inf) & there.any(axis=1, keepdims=True)
         return [Pieces(np.where(there | absent, -top.values, np.inf), -top.gradients, top.labels)]
-    return [_beyond(low, 1.0, objective.target), _beyond(top, -1.0, objective.target)]
+    return [_excess_pieces(low, 1.0, objective.target), _excess_pieces(top, -1.0, objective.target)]
 
 
-def _beyond(pieces: Pieces, side: float, bound: float, scale: float = 1.0) -> Pieces:
+def _excess_pieces(pieces: Pieces, side: float, bound: float, scale: float = 1.0) -> Pieces:
     """Return by how much pieces lie beyond a side of what is asked, relative."""
     return Pieces(excess(pieces.values, side, bound, scale), side * pieces.gradients / scale, pieces.labels)
 
 
-def _held(pieces: Pieces, side: float) -> Pieces:
+def _binding_pieces(pieces: Pieces, side: float) -> Pieces:
     """Return the pieces that must stay low (side 1) or high (-1) for the quantity to do so.
 
     To keep a least-of low it takes the lowest one, to keep a greatest-of high the highest: there the others do not tie
@@ -250,7 +254,7 @@ def _held(pieces: Pieces, side: float) -> Pieces:
 
 def _stack(parts: list[tuple[int, Pieces]], n: int, k: int) -> Rows:
     if not parts:
-        return Rows.none(n, k)
+        return Rows.absent(n, k)
     values = np.concatenate([part.values for _, part in parts], axis=1)
     return Rows(
         np.where(np.isnan(values), np.inf, values),

@@ -37,18 +37,18 @@ class Growth:
         self._most = most or _MOST.get(len(targets), _OF_MANY)
         self._volume = 0.0
 
-    def take(self, values: Array) -> float:
+    def add(self, values: Array) -> float:
         """Take in feasible designs, objectives (n, m), and return the volume that all together dominate, in boxes."""
-        values = np.concatenate([self.front, self._some(values[np.isfinite(values).all(axis=1)])])
+        values = np.concatenate([self.front, self._thin_out(values[np.isfinite(values).all(axis=1)])])
         if not len(values):
             return 0.0
         values = values[nondominated(values)]
         if self._box is None:
             ideal, span = scaling(values)
             self._box = ideal, np.maximum(span, np.maximum(_ROOM * np.abs(ideal), _OF_TARGET * np.abs(self._targets)))
-        self.front = self._some(values)
+        self.front = self._thin_out(values)
         self._volume = max(self._volume, hypervolume(self.front, *self._box, within=self._within))
         return self._volume
 
-    def _some(self, values: Array) -> Array:
+    def _thin_out(self, values: Array) -> Array:
         return values[distinct(np.linspace(0, len(values) - 1, self._most).astype(int))] if len(values) else values

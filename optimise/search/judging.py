@@ -28,14 +28,14 @@ class Judged(Protocol):
         ...
 
 
-def quickly(problem: Judged, names: tuple[str, ...], dimensions: Array) -> list[Array]:
+def screen_quantities(problem: Judged, names: tuple[str, ...], dimensions: Array) -> list[Array]:
     """Return quantities (n,) of designs, peaks by screening, robust ones estimated."""
     quantities = [problem.quantity(name) for name in names]
     leaves = leaves_of(quantities)
     peaks = [quantity for quantity in leaves if isinstance(quantity, CyclePeak)]
     screened = dict(zip((peak.name for peak in peaks), screen_peaks(peaks, problem.mechanism, dimensions), strict=True))
     found = {
-        quantity.name: Values(_robustly(quantity, problem.mechanism, dimensions), None)
+        quantity.name: Values(_estimate_robust(quantity, problem.mechanism, dimensions), None)
         if isinstance(quantity, RobustQuantity)
         else screened.get(quantity.name) or quantity.evaluate(problem.mechanism, dimensions)
         for quantity in leaves
@@ -43,7 +43,7 @@ def quickly(problem: Judged, names: tuple[str, ...], dimensions: Array) -> list[
     return [item.values for item in with_formulas(quantities, found, problem.mechanism, dimensions)]
 
 
-def _robustly(quantity: RobustQuantity, mechanism: Mechanism, dimensions: Array) -> Array:
+def _estimate_robust(quantity: RobustQuantity, mechanism: Mechanism, dimensions: Array) -> Array:
     """Return the first-order estimate of a robust quantity: one evaluation a design in place of a dozen."""
     inner = quantity.inner
     if isinstance(inner, CyclePeak):
@@ -53,17 +53,17 @@ def _robustly(quantity: RobustQuantity, mechanism: Mechanism, dimensions: Array)
     return quantity.estimate(mechanism, dimensions, found)
 
 
-def exactly(problem: Judged, names: tuple[str, ...], dimensions: Array) -> list[Pieces]:
+def evaluate_pieces(problem: Judged, names: tuple[str, ...], dimensions: Array) -> list[Pieces]:
     """Return the pieces of quantities of designs."""
     return [problem.quantity(name).pieces(problem.mechanism, dimensions) for name in names]
 
 
-def joined(parts: list[list[Pieces]]) -> list[Pieces]:
+def join_batches(parts: list[list[Pieces]]) -> list[Pieces]:
     """Return the pieces of consecutive designs as those of all, what some have fewer of filled up with absent ones."""
-    return [_joined(each) for each in zip(*parts, strict=True)] if len(parts) > 1 else parts[0]
+    return [_join_pieces(each) for each in zip(*parts, strict=True)] if len(parts) > 1 else parts[0]
 
 
-def _joined(parts: Sequence[Pieces]) -> Pieces:
+def _join_pieces(parts: Sequence[Pieces]) -> Pieces:
     most, least = max(part.values.shape[1] for part in parts), parts[0].least
 
     def rows(columns: list[Array], absent: float = 0.0) -> Array:
@@ -71,17 +71,17 @@ def _joined(parts: Sequence[Pieces]) -> Pieces:
         filled = [np.pad(each, more, constant_values=absent) for each, more in zip(columns, room, strict=True)]
         return np.concatenate(filled)
 
-    others = [_other_side(part) for part in parts] if any(part.other for part in parts) else []
+    others = [_opposite_pieces(part) for part in parts] if any(part.other for part in parts) else []
     return Pieces(
         rows([part.values for part in parts], np.inf if least else -np.inf),
         rows([part.gradients for part in parts]),
         rows([part.labels for part in parts]),
         least,
-        _joined(others) if others else None,
+        _join_pieces(others) if others else None,
     )
 
 
-def _other_side(part: Pieces) -> Pieces:
+def _opposite_pieces(part: Pieces) -> Pieces:
     """Return a quantity from its other side, where some designs have no kink on it: its active piece alone."""
     if part.other is not None:
         return part.other

@@ -41,17 +41,17 @@ def linear_equations(wanted: Mapping[Quantity, float], sign: float) -> dict[str,
     for of, value in wanted.items():
         equation = equation_of(of, value) if isinstance(of, FormulaQuantity) else None
         if equation is not None:
-            found[of.name] = on_side(equation, sign)
+            found[of.name] = with_offset_size(equation, sign)
     if not found:
         return {}
     for of, value in wanted.items():
-        more = _proportion(of, value)
+        more = _linear_proportion(of, value)
         if more is not None:
             found[of.name] = more
     return found
 
 
-def on_side(row: Linear, sign: float) -> Linear:
+def with_offset_size(row: Linear, sign: float) -> Linear:
     """Return an equality in |offset|, which the sign of the offset allows."""
     size = Linear((("offset", Fraction(1)),), Fraction(0))
     found = Linear((), row.constant)
@@ -72,9 +72,11 @@ def blocks(equations: Mapping[str, Linear], loose: Sequence[str]) -> Iterator[Bl
     for name, row in equations.items():
         left = row
         for own in reduced:
-            left = _without(left, own, next(n for n in own.names if n in loose))
+            left = _eliminate_name(left, own, next(n for n in own.names if n in loose))
         if any(n in loose for n in left.names):
-            reduced = [_without(own, left, next(n for n in left.names if n in loose)) for own in reduced] + [left]
+            reduced = [_eliminate_name(own, left, next(n for n in left.names if n in loose)) for own in reduced] + [
+                left
+            ]
             rows.append(row)
         elif left.factors or left.constant:
             continue  # of what is not loose, or a contradiction
@@ -83,7 +85,7 @@ def blocks(equations: Mapping[str, Linear], loose: Sequence[str]) -> Iterator[Bl
         yield NOTHING
         return
     for targets in itertools.combinations(loose, len(rows)):
-        solved = _solved(rows, targets)
+        solved = _solve_for(rows, targets)
         if solved is not None:
             yield Block(tuple(origins), targets, solved)
 
@@ -106,7 +108,7 @@ def target_of(*numbers: Any) -> Any:
     return (total + constant if constant or not factors else total) / divisor
 
 
-def _proportion(of: Quantity, value: float) -> Linear | None:
+def _linear_proportion(of: Quantity, value: float) -> Linear | None:
     """Return a rule of proportion as a linear equality; None for what is none."""
     rod, crank, offset = unknown("rod"), unknown("crank"), unknown("offset")
     if of.name == ROD_TO_OFFSET.name:
@@ -118,13 +120,13 @@ def _proportion(of: Quantity, value: float) -> Linear | None:
     return None
 
 
-def _without(row: Linear, other: Linear, name: str) -> Linear:
+def _eliminate_name(row: Linear, other: Linear, name: str) -> Linear:
     """Return an equality less as much of another one as rids it of a name."""
     own = dict(row.factors).get(name)
     return row if own is None else row.plus(other, -own / dict(other.factors)[name])
 
 
-def _solved(rows: Sequence[Linear], targets: Sequence[str]) -> tuple[Linear, ...] | None:
+def _solve_for(rows: Sequence[Linear], targets: Sequence[str]) -> tuple[Linear, ...] | None:
     """Return the equalities with one target in each; None where they do not determine these."""
     left, found = list(rows), list[Linear]()
     for target in targets:
@@ -132,6 +134,6 @@ def _solved(rows: Sequence[Linear], targets: Sequence[str]) -> tuple[Linear, ...
         if place is None:
             return None
         own = left.pop(place)
-        left = [_without(row, own, target) for row in left]
-        found = [_without(row, own, target) for row in found] + [own]
+        left = [_eliminate_name(row, own, target) for row in left]
+        found = [_eliminate_name(row, own, target) for row in found] + [own]
     return tuple(found)

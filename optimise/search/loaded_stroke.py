@@ -29,7 +29,7 @@ def expected_warnings(problem: Problem, *, certain: bool = False) -> list[str]:
     if problem.motion is not None:  # forth and back are told apart by their drive alone
         return []
     if problem.slow_stroke is not None or all(load.drives for load in problem.mechanism.loads):  # it spares the samples
-        return _left_out(problem)
+        return _offset_warnings(problem)
     fast, turning, sides = 0, 0, []
     for part, designs in samples(problem):
         if part.slow_stroke is not None or not len(designs):
@@ -37,13 +37,13 @@ def expected_warnings(problem: Problem, *, certain: bool = False) -> list[str]:
         linkage = Linkage(designs[:, 0], designs[:, 1], designs[:, 2], part.mechanism.branch)
         slow = np.atleast_1d(slow_stroke(part.mechanism, linkage))
         loaded = loaded_stroke(part.mechanism, designs)
-        found = _fast(slow, loaded)
+        found = _has_fast_load(slow, loaded)
         fast, turning = fast + int(found.sum()), turning + int((_is_one_stroke(slow) & _is_one_stroke(loaded)).sum())
         sides += [str(stroke) for stroke in loaded[found]]
     if not fast or (certain and fast < turning):
-        return _left_out(problem)
+        return _offset_warnings(problem)
     where = "in every sampled design" if fast == turning else "in some sampled designs"
-    return [*_left_out(problem), _sentence(problem, where, sides)]
+    return [*_offset_warnings(problem), _fast_stroke_warning(problem, where, sides)]
 
 
 def front_warnings(front: ParetoFront) -> list[str]:
@@ -54,15 +54,18 @@ def front_warnings(front: ParetoFront) -> list[str]:
     if front.problem.motion is not None:
         return []
     slow, loaded = (front.columns[name] for name in ("slow_stroke", "loaded_stroke"))
-    found = free & _fast(slow, loaded)
+    found = free & _has_fast_load(slow, loaded)
     if not found.any():
-        return _left_out(front.problem)
+        return _offset_warnings(front.problem)
     count = int(found.sum())
     where = f"in {count} of {len(front)} designs" if len(front) > 1 else "in this design"
-    return [*_left_out(front.problem), _sentence(front.problem, where, [str(stroke) for stroke in loaded[found]])]
+    return [
+        *_offset_warnings(front.problem),
+        _fast_stroke_warning(front.problem, where, [str(stroke) for stroke in loaded[found]]),
+    ]
 
 
-def _left_out(problem: Problem) -> list[str]:
+def _offset_warnings(problem: Problem) -> list[str]:
     """Return the warning of a slow stroke that leaves the lesser part of a range of offsets."""
     for part in problem.parts():
         side, lower, upper = part.slow_side(), part.offset.lower, part.offset.upper
@@ -81,7 +84,7 @@ def _left_out(problem: Problem) -> list[str]:
     return []
 
 
-def _fast(slow: NDArray[np.str_], loaded: NDArray[np.str_]) -> Mask:
+def _has_fast_load(slow: NDArray[np.str_], loaded: NDArray[np.str_]) -> Mask:
     return np.asarray(_is_one_stroke(slow) & _is_one_stroke(loaded) & (slow != loaded))
 
 
@@ -89,7 +92,7 @@ def _is_one_stroke(strokes: NDArray[np.str_]) -> Mask:
     return np.isin(strokes, ("outward", "inward"))
 
 
-def _sentence(problem: Problem, where: str, loaded: list[str]) -> str:
+def _fast_stroke_warning(problem: Problem, where: str, loaded: list[str]) -> str:
     stroke: SlowStroke = "outward" if 2 * loaded.count("outward") >= len(loaded) else "inward"
     has = any(signs(replace(part, slow_stroke=stroke)) for part in problem.parts())
     turn = "" if has else ", with the opposite sign of the offset or direction of rotation"

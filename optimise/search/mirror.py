@@ -1,4 +1,4 @@
-"""Sheets that are mirror images of each other: one of the two has all that there is to find.
+"""Branches that are mirror images of each other: one of the two has all that there is to find.
 
 Mirrored about the slider's direction and run backwards, a machine with offset e is one with offset -e that turns the
 same way. Accelerations and whatever depends on the position alone are the same in both, velocities change sign. So the
@@ -19,7 +19,7 @@ from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
 from ..problem.problem import Problem
 from ..problem.violation import constraints_of
-from .elimination import Sheet
+from .elimination import EliminationBranch
 from .sampling import generator
 
 _TRIED = 512  # random designs, of which those that turn fully count
@@ -28,28 +28,35 @@ _EQUAL = 1e-8  # relative: accuracy of a peak near locking
 _STREAM = 4000  # of the seed
 
 
-def once(problem: Problem, sheets: tuple[Sheet, ...]) -> tuple[Sheet, ...]:
-    """Return the sheets without those whose designs are mirror images of designs of another one.
+def drop_mirrored_branches(problem: Problem, branches: tuple[EliminationBranch, ...]) -> tuple[EliminationBranch, ...]:
+    """Return the branches without those whose designs are mirror images of designs of another one.
 
     Of two with the same range the one of positive offsets stays, otherwise the one with the wider range.
     """
     parts = problem.parts()
-    groups: dict[Hashable, list[Sheet]] = {}
-    for sheet in sheets:
-        part = parts[sheet.variant]
-        labels = problem.variants[sheet.variant].labels if problem.variants else ()
+    groups: dict[Hashable, list[EliminationBranch]] = {}
+    for branch in branches:
+        part = parts[branch.variant]
+        labels = problem.variants[branch.variant].labels if problem.variants else ()
         key = (labels, part.mechanism, part.crank, part.rod, part.constraints)
-        groups.setdefault(key, []).append(sheet)
+        groups.setdefault(key, []).append(branch)
     twins: set[int] = set()
     for group in groups.values():
-        pairs = [pair for one in group for other in group if (pair := _ordered(one, other)) and one.sign < other.sign]
-        if pairs and not _told_apart(parts[pairs[0][0].variant], [sheet for sheet, _ in pairs]):
+        pairs = [
+            pair
+            for one in group
+            for other in group
+            if (pair := _wider_and_narrower(one, other)) and one.sign < other.sign
+        ]
+        if pairs and not _tells_signs_apart(parts[pairs[0][0].variant], [branch for branch, _ in pairs]):
             twins |= {id(twin) for _, twin in pairs}
-    return tuple(sheet for sheet in sheets if id(sheet) not in twins)
+    return tuple(branch for branch in branches if id(branch) not in twins)
 
 
-def _ordered(one: Sheet, other: Sheet) -> tuple[Sheet, Sheet] | None:
-    """Return two sheets of opposite sign, first the one whose sizes of the offset include those of the second."""
+def _wider_and_narrower(
+    one: EliminationBranch, other: EliminationBranch
+) -> tuple[EliminationBranch, EliminationBranch] | None:
+    """Return two branches of opposite sign, first the one whose sizes of the offset include those of the second."""
     if one.sign == other.sign:
         return None
     first, second = (one, other) if one.sign > 0.0 else (other, one)
@@ -60,7 +67,7 @@ def _ordered(one: Sheet, other: Sheet) -> tuple[Sheet, Sheet] | None:
     return None
 
 
-def _told_apart(part: Problem, sheets: list[Sheet]) -> bool:
+def _tells_signs_apart(part: Problem, branches: list[EliminationBranch]) -> bool:
     """Whether gravity, a load, friction, or any value of random designs differs between the offsets e and -e."""
     machine = part.mechanism.fullest
     if any(map(_may_differ, part.own)) or machine.gravity[1] or machine.acceleration or machine.friction.acts:
@@ -69,7 +76,7 @@ def _told_apart(part: Problem, sheets: list[Sheet]) -> bool:
         return True
     if not all(load.by_position for load in machine.loads):
         return True  # what differs at some crank angles only would be seen in some designs only
-    designs = np.concatenate([_random(part, sheet) for sheet in sheets])
+    designs = np.concatenate([_random_designs(part, branch) for branch in branches])
     if not len(designs):
         return True
     mirrored = designs * np.where(np.arange(designs.shape[1]) == 2, -1.0, 1.0)
@@ -98,9 +105,9 @@ def _may_differ(of: Quantity) -> bool:
     return QUANTITIES.get(of.name) != of
 
 
-def _random(part: Problem, sheet: Sheet) -> Array:
-    """Return some random designs (n, 3 + v) within a sheet's ranges that turn fully, whatever is required."""
-    ends = [sheet.bounds[name] for name in sheet.names]
+def _random_designs(part: Problem, branch: EliminationBranch) -> Array:
+    """Return some random designs (n, 3 + v) within a branch's ranges that turn fully, whatever is required."""
+    ends = [branch.bounds[name] for name in branch.names]
     lower, upper = (np.array([getattr(item, end) for item in ends]) for end in ("lower", "upper"))
     designs = lower + (upper - lower) * generator(part.settings.seed, _STREAM).random((_TRIED, len(ends)))
     return np.asarray(designs[designs[:, 1] > designs[:, 0] + designs[:, 2]][:_COMPARED])

@@ -29,11 +29,11 @@ class Rows:
     constant: tuple[int, ...] = ()
 
     @classmethod
-    def none(cls, n: int, k: int) -> Rows:
+    def absent(cls, n: int, k: int) -> Rows:
         """Return no rows of n designs in k unknowns."""
         return cls(np.zeros((n, 0)), np.zeros((n, 0, k)), np.zeros((n, 0)), np.zeros(0, np.int64))
 
-    def put(self, row: int, other: Rows, source: int) -> None:
+    def overwrite(self, row: int, other: Rows, source: int) -> None:
         """Overwrite a design's rows with those of a design of `other`."""
         self.values[row] = other.values[source]
         self.gradients[row] = other.gradients[source]

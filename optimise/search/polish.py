@@ -82,7 +82,7 @@ def polish(
 
 
 class _Batch:
-    """Designs under polish: where they stand, their rows, and which still move."""
+    """Designs under polish: where they report, their rows, and which still move."""
 
     def __init__(
         self, evaluator: Evaluates, start: Array, scale: Array, chosen: tuple[int, ...] | None, hold: bool
@@ -146,7 +146,7 @@ class _Batch:
         if len(lost):
             goals, limits = self._evaluate(self.safe[lost])
             for source, row in enumerate(lost.tolist()):
-                self._put(row, self.safe[row], goals, limits, source)
+                self._overwrite(row, self.safe[row], goals, limits, source)
         residual = np.zeros(n)
         pieces, active = [], []
         moved = tuple(owner for owner in range(m) if owner not in self.goals.constant)
@@ -169,10 +169,10 @@ class _Batch:
         factor = 1.0 / self.scale[goals.owner]
         return replace(goals, values=goals.values * factor, gradients=goals.gradients * factor[:, None]), limits
 
-    def _put(self, row: int, u: Array, goals: Rows, limits: Rows, source: int) -> None:
+    def _overwrite(self, row: int, u: Array, goals: Rows, limits: Rows, source: int) -> None:
         self.u[row] = u
-        self.goals.put(row, goals, source)
-        self.limits.put(row, limits, source)
+        self.goals.overwrite(row, goals, source)
+        self.limits.overwrite(row, limits, source)
 
     def _residual(self, row: int) -> float:
         """Return the residual of Benson's problem; what is not quite active does not count, so that it becomes so."""
@@ -189,7 +189,9 @@ class _Batch:
         while chosen and step.limits.sum() >= 0.5 * self.weight[row] and self.weight[row] < _HEAVIEST:
             self.weight[row] *= 10.0
             step = self._solve(row, goals, limits, chosen)
-        if self.weight[row] > light and _left(limits, step.move) > max(0.5 * _left(limits, first.move), ROUNDING):
+        if self.weight[row] > light and _violation_after(limits, step.move) > max(
+            0.5 * _violation_after(limits, first.move), ROUNDING
+        ):
             # A violation that no step within the radius removes: weight would only stiffen what follows.
             self.weight[row] = light
             return first
@@ -230,7 +232,7 @@ class _Batch:
         """
         m, columns = len(self.scale), list(chosen)
         before, held = greatest(self.goals, m)[:, columns], self.held[:, columns]
-        violation = _beyond(self.limits.values.max(axis=1, initial=0.0))
+        violation = _clear_rounding(self.limits.values.max(axis=1, initial=0.0))
         self.moved[rows] = False
         pending = np.arange(len(rows))
         steps = steps.copy()
@@ -243,8 +245,8 @@ class _Batch:
             goals, limits = self._evaluate(trial)
             after = greatest(goals, m)[:, columns]
             with np.errstate(invalid="ignore"):  # infinite before and after (rod / offset at 0): no merit, not accepted
-                loss = _beyond(after - held[at]) - _beyond(before[at] - held[at])
-                worse = _beyond(limits.values.max(axis=1, initial=0.0)) - violation[at]
+                loss = _clear_rounding(after - held[at]) - _clear_rounding(before[at] - held[at])
+                worse = _clear_rounding(limits.values.max(axis=1, initial=0.0)) - violation[at]
                 penalty = self.loss[at][:, columns] * loss if self.hold else 0.0
                 merit = (after - before[at] + penalty).sum(axis=1) + self.weight[at] * worse
             distance = np.abs(trial - self.u[at]).max(axis=1)
@@ -252,7 +254,7 @@ class _Batch:
             accepted = valid & (merit < _NOISE * (1.0 + np.abs(before[at]).sum(axis=1)))
             for i in np.flatnonzero(accepted).tolist():
                 row = int(at[i])
-                self._put(row, trial[i], goals, limits, i)
+                self._overwrite(row, trial[i], goals, limits, i)
                 self.moved[row] = True
                 if distance[i] > 0.5 * self.radius[row]:
                     self.radius[row] = min(0.5, 2.0 * self.radius[row])
@@ -301,11 +303,11 @@ def convex(hessian: Array, normals: Array) -> Array:
     return np.asarray((vectors * np.clip(np.abs(values), _CURVATURE, 1e8)) @ vectors.T)
 
 
-def _left(limits: Rows, move: Array) -> float:
+def _violation_after(limits: Rows, move: Array) -> float:
     """Return the greatest violation after a step, as far as slopes tell."""
     near = np.isfinite(limits.values)
     return float(np.max(limits.values[near] + limits.gradients[near] @ move, initial=0.0))
 
 
-def _beyond(excess: Array) -> Array:
+def _clear_rounding(excess: Array) -> Array:
     return np.maximum(excess - ROUNDING, 0.0)

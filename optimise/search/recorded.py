@@ -35,12 +35,14 @@ def polished(
     def compute() -> Polished:
         return polish(shown or evaluator, start, scale, chosen=chosen, best_in=best_in)
 
-    return _step(evaluator, "polish", given, compute)
+    return _recorded_polish(evaluator, "polish", given, compute)
 
 
 def projected(evaluator: Evaluator, start: Array, scale: Array) -> Polished:
     """Return designs from `start` (n, k), those that violate constraints moved onto them the shortest way, no more."""
-    return _step(evaluator, "projection", (start, scale), lambda: polish(evaluator, start, scale, iterations=None))
+    return _recorded_polish(
+        evaluator, "projection", (start, scale), lambda: polish(evaluator, start, scale, iterations=None)
+    )
 
 
 def polish(
@@ -61,13 +63,13 @@ def polish(
     before = evaluator.evaluations
     asked = (tuple(scale.tolist()), chosen, iterations, best_in is not None)
     rows = start if best_in is None else np.column_stack([start, best_in])
-    parts = evaluator.chunked(_polish, asked, rows, kind="polish", together=True)
+    parts = evaluator.chunked(_polish_rows, asked, rows, kind="polish", together=True)
     evaluator.evaluations = before + sum(count for _, count in parts)
     (first, _), *others = parts
     return first.join(*(part for part, _ in others))
 
 
-def _polish(evaluator: Evaluator, asked: _Asked, start: Array) -> tuple[Polished, int]:
+def _polish_rows(evaluator: Evaluator, asked: _Asked, start: Array) -> tuple[Polished, int]:
     """Return polished designs and how many were evaluated for them."""
     before, (scale, chosen, iterations, ends) = evaluator.evaluations, asked
     best_in = start[:, -1].astype(np.int64) if ends else None
@@ -76,7 +78,9 @@ def _polish(evaluator: Evaluator, asked: _Asked, start: Array) -> tuple[Polished
     return found, evaluator.evaluations - before
 
 
-def _step(evaluator: Evaluator, kind: str, given: tuple[Numbers, ...], compute: Callable[[], Polished]) -> Polished:
+def _recorded_polish(
+    evaluator: Evaluator, kind: str, given: tuple[Numbers, ...], compute: Callable[[], Polished]
+) -> Polished:
     """Return the result of a step; a record has ragged rows end to end, with their lengths."""
 
     def arrays() -> tuple[Array, Array, Array, Array, Lengths, Array, Array, Lengths, Array]:

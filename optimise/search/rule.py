@@ -11,13 +11,13 @@ from typing import Any
 class Rule(ABC):
     """One way to compute an unknown: `target` from `sources`. origin: the requirements that it is of, joined by "+".
 
-    wanted: their values.
+    values: their values.
     """
 
     origin: str
     target: str
     sources: tuple[str, ...]
-    wanted: tuple[float, ...]
+    values: tuple[float, ...]
 
     @abstractmethod
     def formula(self, *known: Any) -> Any:
@@ -25,5 +25,5 @@ class Rule(ABC):
 
     @property
     def solutions(self) -> tuple[Rule, ...]:
-        """The rule for each solution that its equation has: a sheet each."""
+        """The rule for each solution that its equation has: a branch each."""
         return (self,)

@@ -12,16 +12,16 @@ from ...objectives.proportions import STROKE
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint
 from ..problem.violation import FEASIBLE
-from .elimination import Sheet, sheets
+from .elimination import EliminationBranch, elimination_branches
 from .evaluation import Evaluator
 from .sampling import first_samples
 
 _SAMPLES = 32
-"""Designs of a sheet, besides those of extreme numbers and stroke."""
+"""Designs of a branch, besides those of extreme numbers and stroke."""
 _TRIED = 4096
-"""Points of all sheets from which these are taken: what needs no cycle computed costs a microsecond a point."""
-_SHEETS = 20
-"""Sheets: of very many choices the first ones."""
+"""Points of all branches from which these are taken: what needs no cycle computed costs a microsecond a point."""
+_BRANCHES = 20
+"""Branches: of very many choices the first ones."""
 _NARROW = 0.1
 """Width of a range, relative to its greater end, that points rarely hit: its middle is required instead."""
 
@@ -32,33 +32,35 @@ def samples(problem: Problem) -> Iterator[tuple[Problem, Array]]:
     They meet what is required of lengths, stroke and whatever else needs no cycle computed. Where no point does, those
     are taken that miss it least.
     """
-    found = sheets(problem)[:_SHEETS]
+    found = elimination_branches(problem)[:_BRANCHES]
     count = max(_SAMPLES, _TRIED // len(found))
-    for sheet in found:
-        part = problem.part(sheet.variant)
-        tried = [_tried(part, sheet, count)]
-        if not _meets(tried[0]):
-            middle = replace(part, constraints=tuple(map(_middle, part.constraints)))
-            tried += [_tried(middle, other, count) for other in sheets(middle) if other.sign == sheet.sign]
-        designs, misses = next(filter(_meets, tried), tried[0])
+    for branch in found:
+        part = problem.part(branch.variant)
+        tried = [_try_points(part, branch, count)]
+        if not _has_feasible(tried[0]):
+            middle = replace(part, constraints=tuple(map(_middle_of_narrow_range, part.constraints)))
+            tried += [
+                _try_points(middle, other, count) for other in elimination_branches(middle) if other.sign == branch.sign
+            ]
+        designs, misses = next(filter(_has_feasible, tried), tried[0])
         order = np.argsort(np.maximum(misses, FEASIBLE), kind="stable")
         met = np.count_nonzero(misses <= FEASIBLE) or _SAMPLES
-        yield part, _spread(part, designs[order][:met])
+        yield part, _representatives(part, designs[order][:met])
 
 
-def _tried(part: Problem, sheet: Sheet, count: int) -> tuple[Array, Array]:
-    """Return designs (n, 3 + k) of a sheet that move as asked, and by how much (n,) they miss what is required."""
-    evaluator = Evaluator(part, sheet)
-    points = first_samples(count, len(sheet.free), 0, 0)
+def _try_points(part: Problem, branch: EliminationBranch, count: int) -> tuple[Array, Array]:
+    """Return designs (n, 3 + k) of a branch that move as asked, and by how much (n,) they miss what is required."""
+    evaluator = Evaluator(part, branch)
+    points = first_samples(count, len(branch.free), 0, 0)
     points = points[evaluator.valid(points)]
-    return sheet.dimensions(points), evaluator.light_violation(points)
+    return branch.dimensions(points), evaluator.light_violation(points)
 
 
-def _meets(tried: tuple[Array, Array]) -> bool:
+def _has_feasible(tried: tuple[Array, Array]) -> bool:
     return bool((tried[1] <= FEASIBLE).any())
 
 
-def _middle(constraint: Constraint) -> Constraint:
+def _middle_of_narrow_range(constraint: Constraint) -> Constraint:
     """Return the middle of a narrow range as what is required."""
     lower, upper = constraint.lower, constraint.upper
     if lower is None or upper is None or upper - lower > _NARROW * max(abs(lower), abs(upper)):
@@ -66,7 +68,7 @@ def _middle(constraint: Constraint) -> Constraint:
     return replace(constraint, lower=0.5 * (lower + upper), upper=0.5 * (lower + upper))
 
 
-def _spread(part: Problem, designs: Array) -> Array:
+def _representatives(part: Problem, designs: Array) -> Array:
     """Return the first designs and those of extreme numbers and stroke."""
     if not len(designs):
         return designs

@@ -16,10 +16,10 @@ APART = 0.1
 """Distance in the unit box of starts that are to lead to different optima."""
 
 
-def apart(worth: Array, points: Array, sheet: Whole, count: int) -> Whole:
+def distant_rows(worth: Array, points: Array, branch: Whole, count: int) -> Whole:
     """Return rows of at most `count` points (n, k): the least finite worth (n,) first, each `APART` from those before.
 
-    Points of different sheets are apart.
+    Points of different branches are apart.
     """
     rows = np.argsort(worth, kind="stable")
     rows = rows[np.isfinite(worth[rows])]
@@ -28,7 +28,7 @@ def apart(worth: Array, points: Array, sheet: Whole, count: int) -> Whole:
         best = int(rows[0])
         chosen.append(best)
         far = np.abs(points[rows] - points[best]).max(axis=1, initial=0.0) >= APART
-        rows = rows[far | (sheet[rows] != sheet[best])]
+        rows = rows[far | (branch[rows] != branch[best])]
     return np.array(chosen, dtype=np.int64)
 
 
@@ -48,7 +48,7 @@ def first_samples(count: int, dimension: int, seed: int, stream: int) -> Array:
     return np.asarray(np.where(snapped, np.round(points), points))
 
 
-def around(parents: Array, values: Array, count: int, width: float, random: np.random.Generator) -> Array:
+def sample_near(parents: Array, values: Array, count: int, width: float, random: np.random.Generator) -> Array:
     """Return `count` points near parents (n, k), more near those whose neighbours on the front are far.
 
     values: objectives of the parents (n, m). width: standard deviation in the unit box. A coordinate on a bound mostly
@@ -62,7 +62,7 @@ def around(parents: Array, values: Array, count: int, width: float, random: np.r
         sparse = distance[:, 1:].mean(axis=1) + 1e-9
     else:
         sparse = np.ones(len(parents))
-    chosen = drawn(sparse / sparse.sum(), count, random)
+    chosen = draw_rows(sparse / sparse.sum(), count, random)
     base = parents[chosen]
     # Heavy tails: most children stay near, some jump.
     step = width * random.standard_normal(base.shape) * random.standard_exponential((count, 1))
@@ -71,7 +71,7 @@ def around(parents: Array, values: Array, count: int, width: float, random: np.r
     return np.asarray(np.clip(np.where(stays, base, base + step), 0.0, 1.0))
 
 
-def drawn(chances: Array, count: int, random: np.random.Generator) -> Whole:
+def draw_rows(chances: Array, count: int, random: np.random.Generator) -> Whole:
     """Return `count` rows drawn with chances (n,), as `Generator.choice` draws them, in a third of its time."""
     upto = chances.cumsum()
     upto /= upto[-1]

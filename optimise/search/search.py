@@ -11,16 +11,16 @@ import numpy as np
 from ...model.arrays import Array, Mask, Whole
 from ...objectives.robust.quantity import RobustQuantity
 from ..front.dominance import nondominated
-from ..front.hypervolume import Stand
+from ..front.hypervolume import ReportProgress
 from ..front.progress import REPEATING, Progress
 from ..problem.problem import Problem
 from ..problem.violation import FEASIBLE
-from .candidates import Candidates, Finished
+from .candidates import Candidates, FrontCandidates
 from .checkpoints import Checkpoints
 from .evaluation import Evaluator
 from .growth import Growth
 from .recorded import polished
-from .sampling import around, first_samples, generator
+from .sampling import first_samples, generator, sample_near
 from .violation import least_violation
 
 FIRST = 16384
@@ -35,22 +35,22 @@ out where equalities remain: no sample meets them."""
 ENOUGH = 32
 """Samples that are enough to zoom on."""
 LEAST = 1024
-"""Designs of a round on each of many sheets."""
-_ROUND = 100  # of sheets that leave nothing free
+"""Designs of a round on each of many branches."""
+_ROUND = 100  # branches without free unknowns
 _CROWD = 2000  # parents of a round
-_RANKED, _LEAST_RANKED = 256, 64  # samples of which the best lead down, of all sheets and at least of each
+_RANKED, _LEAST_RANKED = 256, 64  # samples of which the best lead down, of all branches and at least of each
 _STARTS = 8  # the same of those that do
 _BEST = 1000  # designs kept of a single objective
-_SHOWN = 400  # designs of a front so far, and of that of a round in the history
-TELL = 0.5
-"""s between two words of a long stage: somebody watches."""
+_FRONT_SAMPLE = 400  # designs of a front so far, and of that of a round in the history
+REPORT_INTERVAL = 0.5
+"""Least time between two progress reports of a long stage, s."""
 
 Callback = Callable[[Progress], None]
 
 
 @dataclass
 class Archive(Candidates):
-    """Non-dominated designs found so far; those that meet every constraint only each other displaces.
+    """Non-dominated designs found so far; a feasible design is displaced only by another feasible one.
 
     band: by how much the others may violate constraints, relative. feasible: designs seen that meet every constraint.
     """
@@ -59,57 +59,61 @@ class Archive(Candidates):
     feasible: int = field(default=0, kw_only=True)
 
     def screen(self, index: int, evaluator: Evaluator, u: Array) -> int:
-        """Evaluate points (n, k) of a sheet, take in those that are feasible within the band, return how many."""
+        """Evaluate points (n, k) of a branch, add those that are feasible within the band, return their number."""
         return self.screen_all([(index, evaluator, u)])
 
     def screen_all(self, points: Iterable[tuple[int, Evaluator, Array]]) -> int:
-        """Screen points of several sheets, then compare them with the archive once: that is what takes time."""
+        """Screen points of several branches, then compare them with the archive once: that is what takes time."""
         fresh: list[Candidates] = []
         for index, evaluator, u in points:
             _, values, violation = evaluator.screen(u, band=self.band)
             good = violation <= self.band + FEASIBLE
-            met = violation <= FEASIBLE
-            self.feasible += int(met.sum())
-            fresh.append(Candidates(np.full(int(good.sum()), index), u[good], values[good], met[good]))
-        self.put(*fresh)
+            is_feasible = violation <= FEASIBLE
+            self.feasible += int(is_feasible.sum())
+            fresh.append(Candidates(np.full(int(good.sum()), index), u[good], values[good], is_feasible[good]))
+        self.add(*fresh)
         return sum(map(len, fresh))
 
-    def take(self, index: int, u: Array, values: Array, met: Mask | None = None) -> None:
-        """Take in points (n, k) of a sheet with their objectives (n, m) as minimised.
+    def add_points(self, index: int, u: Array, values: Array, is_feasible: Mask | None = None) -> None:
+        """Add points (n, k) of a branch with their objectives (n, m) as minimised.
 
-        met: (n,), which meet every constraint, all by default; the others are near enough to be moved there.
+        is_feasible: (n,), which meet every constraint, all by default; the others are near enough to be moved there.
         """
-        self.put(Candidates(np.full(len(u), index), u, values, np.ones(len(u), np.bool_) if met is None else met))
+        self.add(
+            Candidates(
+                np.full(len(u), index), u, values, np.ones(len(u), np.bool_) if is_feasible is None else is_feasible
+            )
+        )
 
-    def put(self, *others: Candidates) -> None:
-        """Take in designs of any sheets."""
+    def add(self, *others: Candidates) -> None:
+        """Add designs of any branches."""
         together = self.join(*others)
-        rows = _worth(together)
+        rows = _rows_to_keep(together)
         as_they_are = len(rows) == len(together) and bool((np.diff(rows) > 0).all())
         self.become(together if as_they_are else together[rows])
 
 
-def _some(values: Array) -> Array:
-    return values[:: 1 + len(values) // _SHOWN]
+def _thin_out(values: Array) -> Array:
+    return values[:: 1 + len(values) // _FRONT_SAMPLE]
 
 
-def _worth(candidates: Candidates) -> Whole:
-    """Return the rows of candidates worth keeping; others that meet every constraint displace these alone."""
-    rows = _best(candidates.values)
-    if candidates.met.all():
+def _rows_to_keep(candidates: Candidates) -> Whole:
+    """Return the rows of candidates to keep; feasible ones are displaced only by feasible ones."""
+    rows = _best_rows(candidates.values)
+    if candidates.is_feasible.all():
         return rows
-    own = np.flatnonzero(candidates.met)
-    return np.concatenate([own[_best(candidates.values[own])], rows[~candidates.met[rows]]])
+    own = np.flatnonzero(candidates.is_feasible)
+    return np.concatenate([own[_best_rows(candidates.values[own])], rows[~candidates.is_feasible[rows]]])
 
 
-def _best(values: Array) -> Whole:
-    """Return the rows worth keeping: the non-dominated ones, or many of a single objective, best first."""
+def _best_rows(values: Array) -> Whole:
+    """Return the rows to keep: the non-dominated ones, or many of a single objective, best first."""
     alone = values.shape[1] == 1
     return np.argsort(values[:, 0], kind="stable")[:_BEST] if alone else nondominated(values)
 
 
-def share(samples: int, evaluators: list[Evaluator]) -> int:
-    """Return how many samples each sheet gets of those of a round; many sheets get a sensible number each."""
+def samples_per_branch(samples: int, evaluators: list[Evaluator]) -> int:
+    """Return the number of samples per branch in a round; with many branches, a sensible minimum."""
     if len(evaluators) <= 2:
         return -(-samples // len(evaluators))
     return max(-(-samples // len(evaluators)), min(samples, LEAST))
@@ -119,87 +123,89 @@ def share(samples: int, evaluators: list[Evaluator]) -> int:
 class Run:
     """State of a running search: its rounds, the front at the end of each, and the result so far.
 
-    checkpoints: of its steps, which its evaluators have too. settled: evaluators of the sheets that leave nothing free.
-    archive: what the search has found on the others. finished: the designs of the settled ones, and what the polish
-    has made of the archive. fronts: objectives of feasible designs of each round, of many some hundreds. progress:
-    called after every round. stages: called in long stages between two. Where neither is given, a round's hypervolume
-    is not computed, and told as 0. after: an earlier run for the same answer, whose rounds and hypervolume go on.
+    checkpoints: of its steps, which its evaluators have too. enumerated: evaluators of the branches without free
+    unknowns. archive: designs found on the others. candidates: the designs of the enumerated branches, and the polished
+    ones of the archive. fronts: objectives of feasible designs of each round, of many some hundreds. progress:
+    called after every round. stages: called in long stages between two. Without either, a round's hypervolume is
+    not computed but reported as 0. previous: an earlier run for the same answer, whose rounds and hypervolume continue.
     """
 
     problem: Problem
     rounds: int
     progress: Callback | None = None
     checkpoints: Checkpoints = field(default_factory=Checkpoints)
-    told: list[Progress] = field(default_factory=list)
+    round_reports: list[Progress] = field(default_factory=list)
     fronts: list[Array] = field(default_factory=list)
-    settled: list[Evaluator] = field(default_factory=list)
+    enumerated: list[Evaluator] = field(default_factory=list)
     stages: Callback | None = None
-    after: Run | None = None
+    previous: Run | None = None
 
     def __post_init__(self) -> None:
         count = len(self.problem.objectives)
-        self.archive, self.finished = Archive.empty(count), Finished.none(np.ones(count))
+        self.archive, self.candidates = Archive.empty(count), FrontCandidates.without_designs(np.ones(count))
         self._targets = np.array([objective.target or 0.0 for objective in self.problem.objectives])
-        self._growth: Growth = Growth(self._targets) if self.after is None else self.after._growth
-        self._heard = time.monotonic()
-        self._passed: int = 0 if self.after is None else self.after._passed + len(self.after.told)
+        self._growth: Growth = Growth(self._targets) if self.previous is None else self.previous._growth
+        self._last_report = time.monotonic()
+        self._earlier_rounds: int = (
+            0 if self.previous is None else self.previous._earlier_rounds + len(self.previous.round_reports)
+        )
 
-    def tell(self, stage: str, evaluators: list[Evaluator], archive: Archive) -> None:
+    def report_round(self, stage: str, evaluators: list[Evaluator], archive: Archive) -> None:
         """Record the end of a round; evaluators: those that the archive's designs are from.
 
-        Of the last archive with designs the front is made if the search is told to end. A round that an earlier run has
-        told is not told again, only that it is repeated.
+        A cancelled search makes its front from the last archive with designs. Rounds reported before an interruption
+        are not reported again, only that they are repeated.
         """
         self.archive = archive if len(archive) else self.archive
-        own = archive.values if archive.met.all() else archive.values[archive.met]
-        feasible = np.concatenate([own, self.finished.values]) if len(self.finished) else own
+        own = archive.values if archive.is_feasible.all() else archive.values[archive.is_feasible]
+        feasible = np.concatenate([own, self.candidates.values]) if len(self.candidates) else own
         entry = Progress(
             stage,
-            self._passed + len(self.told) + 1,
-            self._passed + max(self.rounds, len(self.told) + 1),
-            sum(evaluator.evaluations for evaluator in (*evaluators, *self.settled)),
-            archive.feasible + int((~self.finished.free).sum()),
-            self._growth.take(feasible) if self.progress or self.stages else 0.0,
+            self._earlier_rounds + len(self.round_reports) + 1,
+            self._earlier_rounds + max(self.rounds, len(self.round_reports) + 1),
+            sum(evaluator.evaluations for evaluator in (*evaluators, *self.enumerated)),
+            archive.feasible + int((~self.candidates.free).sum()),
+            self._growth.add(feasible) if self.progress or self.stages else 0.0,
             self.checkpoints.seconds,
         )
-        self.told.append(entry)
-        self.fronts.append(_some(feasible).copy())  # not a view, which would keep all of them
-        if self.checkpoints.turn():
-            self._say(entry, self.progress)
+        self.round_reports.append(entry)
+        self.fronts.append(_thin_out(feasible).copy())  # not a view, which would keep all of them
+        if self.checkpoints.end_round():
+            self._report(entry, self.progress)
         else:
-            self.stand(stage, 0, 1)
+            self.report_stage(stage, 0, 1)
 
     def latest(self) -> Array:
         """Return the objectives (n, m) of the front after the last round, SI, as minimised; of many some hundreds."""
-        if self.archive.met.all() and not len(self.finished):
-            return _some(self.archive.values)
-        values = np.concatenate([self.archive.values, self.finished.values])
-        return _some(values[nondominated(values)])
+        if self.archive.is_feasible.all() and not len(self.candidates):
+            return _thin_out(self.archive.values)
+        values = np.concatenate([self.archive.values, self.candidates.values])
+        return _thin_out(values[nondominated(values)])
 
-    def stage(self, name: str) -> Stand:
-        """Return the callback of a long stage, many times a second: it ends a cancelled search and tells progress."""
+    def stage_reporter(self, name: str) -> ReportProgress:
+        """Return the callback of a long stage, which ends a cancelled search and reports progress."""
 
-        def stand(done: int, of: int) -> None:
+        def report(done: int, total: int) -> None:
             self.checkpoints.poll()
-            self.stand(name, done, of)
+            self.report_stage(name, done, total)
 
-        return stand
+        return report
 
-    def stand(self, stage: str, done: int, of: int, *, now: bool = False) -> None:
-        """Tell how far a stage between two rounds is, where `TELL` has passed since anything was told, or now."""
-        if self.stages is None or (time.monotonic() - self._heard < TELL and not now):
+    def report_stage(self, stage: str, done: int, total: int, *, now: bool = False) -> None:
+        """Report progress within a stage, at most once in `REPORT_INTERVAL`. now: report in any case."""
+        if self.stages is None or (time.monotonic() - self._last_report < REPORT_INTERVAL and not now):
             return
-        if self.checkpoints.told < self.checkpoints.before or self.checkpoints.replaying:
-            stage, done, of = REPEATING, self.checkpoints.repeated, self.checkpoints.resumed
-        last = self.told[-1] if self.told else Progress(stage, 0, self.rounds, 0, 0, 0.0, 0.0)
-        self._say(
-            replace(last, stage=stage, seconds=self.checkpoints.seconds, step=done, steps=max(done, of)), self.stages
+        if self.checkpoints.rounds < self.checkpoints.earlier_rounds or self.checkpoints.replaying:
+            stage, done, total = REPEATING, self.checkpoints.repeated, self.checkpoints.resumed
+        last = self.round_reports[-1] if self.round_reports else Progress(stage, 0, self.rounds, 0, 0, 0.0, 0.0)
+        self._report(
+            replace(last, stage=stage, seconds=self.checkpoints.seconds, step=done, steps=max(done, total)), self.stages
         )
 
-    def _say(self, entry: Progress, hearing: Callback | None) -> None:
-        if hearing is not None:
-            hearing(entry)
-        self._heard = time.monotonic()
+    def _report(self, entry: Progress, listener: Callback | None) -> None:
+        if listener is not None:
+            listener(entry)
+        self._last_report = time.monotonic()
 
     def history(
         self, ideal: Array, span: Array, most: int | None = None, poll: Callable[[], None] = lambda: None
@@ -210,32 +216,32 @@ class Run:
         """
         growth = Growth(self._targets, box=(ideal, span), most=most)
         rounds: list[Progress] = []
-        for entry, front in zip(self.told, self.fronts, strict=True):
+        for entry, front in zip(self.round_reports, self.fronts, strict=True):
             poll()
-            rounds.append(replace(entry, hypervolume=growth.take(front)))
+            rounds.append(replace(entry, hypervolume=growth.add(front)))
         return tuple(rounds)
 
 
-def searched(evaluators: list[Evaluator]) -> list[Evaluator]:
-    """Return the evaluators of sheets that leave something free; they come first, so that indices stay the same."""
+def searched_evaluators(evaluators: list[Evaluator]) -> list[Evaluator]:
+    """Return the evaluators of branches with free unknowns; they come first, so that indices stay valid."""
     return [evaluator for evaluator in evaluators if evaluator.dimension]
 
 
-def enumerate_settled(problem: Problem, evaluators: list[Evaluator], run: Run) -> Finished:
-    """Return the feasible designs of all sheets that leave nothing free, and give them to the run.
+def enumerate_branches(problem: Problem, evaluators: list[Evaluator], run: Run) -> FrontCandidates:
+    """Return the feasible designs of all branches without free unknowns, and give them to the run.
 
-    Each such sheet has one design, which is evaluated exactly: no sampling decides about these.
+    Each of these branches has one design, which is evaluated exactly, not sampled.
     """
-    free, finished = searched(evaluators), run.finished
-    run.settled = evaluators[len(free) :]
+    free, candidates = searched_evaluators(evaluators), run.candidates
+    run.enumerated = evaluators[len(free) :]
     point = np.zeros((1, 0))
-    for place, evaluator in enumerate(run.settled):
+    for place, evaluator in enumerate(run.enumerated):
         run.checkpoints.poll()
         if evaluator.valid(point)[0]:
-            finished.add(len(free) + place, polished(evaluator, point, finished.span))
-        if (place + 1) % _ROUND == 0 or place + 1 == len(run.settled):
-            run.tell("enumerating", free, Archive.empty(len(problem.objectives)))
-    return finished
+            candidates.add(len(free) + place, polished(evaluator, point, candidates.span))
+        if (place + 1) % _ROUND == 0 or place + 1 == len(run.enumerated):
+            run.report_round("enumerating", free, Archive.empty(len(problem.objectives)))
+    return candidates
 
 
 def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = None) -> Archive:
@@ -248,16 +254,16 @@ def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = Non
     for attempt, band in enumerate(bands):
         archive.band = band
         # A small feasible region wants more points before it is given up.
-        count = share(samples * 4**attempt, evaluators)
+        count = samples_per_branch(samples * 4**attempt, evaluators)
         found = archive.screen_all(
             (index, evaluator, first_samples(count, evaluator.dimension, problem.settings.seed, index))
             for index, evaluator in enumerate(evaluators)
         )
         if found >= min(ENOUGH, samples) or (
-            not attempt and not found and out_of_reach(problem, evaluators, bands[-1])
+            not attempt and not found and is_out_of_reach(problem, evaluators, bands[-1])
         ):
             break
-    run.tell("sampling", evaluators, archive)
+    run.report_round("sampling", evaluators, archive)
     if len(archive):
         zoom(problem, evaluators, archive, run)
     return archive
@@ -271,27 +277,27 @@ def zoom(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: R
         some = random.choice(len(archive), _CROWD, replace=False) if len(archive) > _CROWD else slice(None)
         parents = archive[some]
         archive.screen_all(
-            (index, evaluator, _near(parents, index, evaluator.dimension, samples, WIDTHS[step], random))
+            (index, evaluator, _samples_around(parents, index, evaluator.dimension, samples, WIDTHS[step], random))
             for index, evaluator in enumerate(evaluators)
-            if (parents.sheet == index).any()
+            if (parents.branch == index).any()
         )
-        run.tell("zooming", evaluators, archive)
+        run.report_round("zooming", evaluators, archive)
 
 
-def _near(
+def _samples_around(
     parents: Candidates, index: int, dimension: int, samples: int, width: float, random: np.random.Generator
 ) -> Array:
-    """Return points around the parents of a sheet, as many as is their share of the samples of all."""
-    own = parents.sheet == index
+    """Return points around the parents of a branch, in proportion to their number among all parents."""
+    own = parents.branch == index
     count = max(1, int(samples * own.mean()))
-    return around(parents.u[own][:, :dimension], parents.values[own], count, width, random)
+    return sample_near(parents.u[own][:, :dimension], parents.values[own], count, width, random)
 
 
-def out_of_reach(problem: Problem, evaluators: list[Evaluator], band: float) -> bool:
-    """Whether descent from the best samples stays farther from the requirements than the band of the last samples.
+def is_out_of_reach(problem: Problem, evaluators: list[Evaluator], band: float) -> bool:
+    """Whether descent from the best samples stays outside the band of the last samples.
 
-    Sixteen times as many samples in that band would cost more, and say less: their best are no local optima. Not told
-    of robust quantities, which are estimated for samples at a small part of what descent takes.
+    Sixteen times as many samples in that band would cost more and say less, as their best are not local optima. False
+    for robust quantities: samples estimate them at a fraction of the cost of a descent.
     """
     robust = any(isinstance(own, RobustQuantity) for own in problem.own)
     if robust or problem.without_gradient():

@@ -22,15 +22,15 @@ from .rule import Rule
 
 @dataclass(frozen=True)
 class SwingRule(Rule):
-    """A rule of a swing. of: its formula. root: which of `roots` solutions it gives."""
+    """A rule of a swing. solve: its formula. root: which of `roots` solutions it gives."""
 
-    of: Callable[..., Any]
+    solve: Callable[..., Any]
     roots: int
     root: int = 0
 
     def formula(self, *known: Any) -> Any:
         """Return the target for the sources."""
-        return self.of(self.root, *self.wanted, *known)
+        return self.solve(self.root, *self.values, *known)
 
     @property
     def solutions(self) -> tuple[Rule, ...]:

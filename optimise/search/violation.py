@@ -10,7 +10,7 @@ from .candidates import Polished
 from .evaluation import Evaluator
 from .pieces import Rows
 from .recorded import polished
-from .sampling import apart
+from .sampling import distant_rows
 
 _AT_ONCE = 256  # points looked at between two questions whether the best are among them
 
@@ -27,17 +27,17 @@ class _Violations:
     def exact(self, u: Array) -> tuple[Rows, Rows]:
         _, limits = self.inner.exact(u, goals=False)
         goals = Rows(limits.values, limits.gradients, limits.labels, np.zeros(len(limits.owner), np.int64))
-        return goals, Rows.none(*u.shape)
+        return goals, Rows.absent(*u.shape)
 
 
 def least_violation(evaluator: Evaluator, u: Array, *, ranked: int, starts: int) -> Polished:
-    """Return designs of locally least violation, their only value, from points (n, k) of a sheet; none if none turns.
+    """Return designs of locally least violation, their only value, from points (n, k) of a branch; none if none turns.
 
     ranked: how many of the points are looked at, evenly spread. starts: how many of them lead down, the best first.
     """
     u = u[evaluator.valid(u)]
     u = u[:: max(1, len(u) // ranked)]
-    best = u[apart(greatest_of_starts(evaluator, u, starts), u, _one_sheet(u), starts)] if len(u) else u
+    best = u[distant_rows(greatest_of_starts(evaluator, u, starts), u, _single_branch(u), starts)] if len(u) else u
     return polished(evaluator, best, np.ones(1), shown=_Violations(evaluator))
 
 
@@ -51,7 +51,7 @@ def greatest_of_starts(evaluator: Evaluator, u: Array, count: int) -> Array:
         worth, bound = np.full(len(u), np.inf), evaluator.light_violation(u)
         order = np.argsort(bound, kind="stable")
         for rows in np.split(order, range(_AT_ONCE, len(u), _AT_ONCE)):
-            best = apart(worth, u, _one_sheet(u), count)
+            best = distant_rows(worth, u, _single_branch(u), count)
             if len(best) == count and worth[best].max() < bound[rows[0]] - FEASIBLE:
                 break
             worth[rows] = evaluator.exact(u[rows], goals=False)[1].values.max(axis=1, initial=0.0)
@@ -60,5 +60,5 @@ def greatest_of_starts(evaluator: Evaluator, u: Array, count: int) -> Array:
     return evaluator.step("violation", (u, np.array([count])), greatest)[0]
 
 
-def _one_sheet(u: Array) -> Whole:
+def _single_branch(u: Array) -> Whole:
     return np.zeros(len(u), np.int64)

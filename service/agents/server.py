@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.errors import SlidercrankError
 from ...model.extras import NamingExtra
-from ...optimise.front.progress import Progress, standing
+from ...optimise.front.progress import Progress, stage_text
 from ...optimise.search.fingerprint import version_of
 from ..resources.disk import full_places, is_full
 from ..runs.result import json_ready
@@ -132,7 +132,7 @@ async def _answer(
 
 async def _relay(progress: MemoryObjectReceiveStream[Progress], session: ServerSession) -> None:
     async for at in progress:
-        message = f"{standing(vars(at))}: {at.evaluations:,} evaluated, {at.feasible:,} feasible"
+        message = f"{stage_text(vars(at))}: {at.evaluations:,} evaluated, {at.feasible:,} feasible"
         await session.report_progress(at.seconds, None, message)
 
 

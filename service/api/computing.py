@@ -20,7 +20,7 @@ from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.types import Message, Receive, Scope, Send
 
-from ...optimise.engine.processes import deaf_to_interrupts
+from ...optimise.engine.processes import block_interrupts
 from ..resources.memory import size_text
 from ..store import Limits
 from ..workers.heartbeat import EXHAUSTED
@@ -151,7 +151,7 @@ class _Process:
         self._connection, other = context.Pipe()
         # A daemon is ended with this process, which would wait for others.
         self._process = context.Process(target=answer_questions, args=(other, make, most), daemon=True)
-        with other, deaf_to_interrupts():
+        with other, block_interrupts():
             self._process.start()
 
     async def answer(self, question: Question, give: Callable[[Message], None]) -> Message:

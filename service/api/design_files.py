@@ -17,7 +17,7 @@ from ..drawings.shapes import Drawing
 from ..drawings.svg import svg_file
 from ..runs.run_folder import slug
 from ..store import Store
-from ..store.kept import kept_of
+from ..store.bookmarks import bookmarks_of
 from .computing import LongRoute
 from .exports import SEALED, download, of_type
 from .figures import require_figures
@@ -149,7 +149,7 @@ def _report(shown: ShownDesign, store: Store, units: System) -> Report:
 
 def _kept(shown: ShownDesign, store: Store) -> int:
     """Return a number of the state of a job's kept designs, which reports tell of: another one after each change."""
-    return hash(tuple(kept_of(store, shown.found.job.id)))
+    return hash(tuple(bookmarks_of(store, shown.found.job.id)))
 
 
 def _made(shown: ShownDesign, kind: str, make: Callable[[], bytes]) -> bytes:

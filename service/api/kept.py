@@ -17,7 +17,7 @@ from ..designs.shown_units import rows_in
 from ..designs.stored_designs import StoredDesign, design_of, stored_design
 from ..designs.variation import Variation, variation_of, with_numbers
 from ..runs.result import csv_text, json_ready
-from ..store.kept import Kept, change_kept, drop_kept, keep_design, kept_of
+from ..store.bookmarks import Bookmark, bookmarks_of, change_kept, drop_kept, keep_design
 from .computing import QuickRoute
 from .exports import download, of_type
 from .fronts import Cells, ColumnModel, column_models
@@ -98,7 +98,7 @@ class KeptModel(BaseModel):
 @router.get("/jobs/{number}/kept")
 def list_kept(found: FrontDep, store: StoreDep) -> KeptModel:
     """Give the kept designs of a job with all their numbers."""
-    designs = [_shown(found, one) for one in kept_of(store, found.job.id)]
+    designs = [_shown(found, one) for one in bookmarks_of(store, found.job.id)]
     columns = column_models(all_columns(designs[0].cells if designs else ()))
     return KeptModel(job=found.job.id, columns=columns, designs=designs)
 
@@ -129,7 +129,7 @@ def drop(found: FrontDep, kept: KeptNumber, store: StoreDep) -> None:
 def export_kept(found: FrontDep, store: StoreDep, units: UnitsAsked = "metric") -> Response:
     """Give the kept designs as a table: names, notes and reasons, then all their quantities at full precision."""
     rows: list[Any] = []
-    for one in kept_of(store, found.job.id):
+    for one in bookmarks_of(store, found.job.id):
         varied = _varied(found, _design(found, one))
         head = {"number": one.number, "name": one.name, "star": one.star, "decided": one.decided}
         head |= {"note": one.note, "reason": one.reason, "outside_the_job": ", ".join(varied.outside)}
@@ -142,7 +142,7 @@ def alternatives_of(found: StoredFront, store: Store) -> list[Alternative]:
     from ..report.subject import Alternative
 
     said = []
-    for one in kept_of(store, found.job.id):
+    for one in bookmarks_of(store, found.job.id):
         varied = _varied(found, _design(found, one))
         words: dict[str, Any] = {"name": one.name, "note": one.note, "decided": one.decided, "reason": one.reason}
         said.append(Alternative(**words, row=varied.row, broken=varied.broken, outside=varied.outside))
@@ -176,7 +176,7 @@ def _asked(found: StoredFront, asked: KeepAsked) -> StoredDesign:
     return with_numbers(design, design.values[:3], values)
 
 
-def _design(found: StoredFront, one: Kept) -> StoredDesign:
+def _design(found: StoredFront, one: Bookmark) -> StoredDesign:
     return StoredDesign(found.problem.part(one.variant), one.dimensions, one.variant)
 
 
@@ -184,7 +184,7 @@ def _varied(found: StoredFront, design: StoredDesign) -> Variation:
     return variation_of(design, found.result, found.minimised)
 
 
-def _shown(found: StoredFront, one: Kept) -> KeptDesign:
+def _shown(found: StoredFront, one: Bookmark) -> KeptDesign:
     design = _design(found, one)
     varied = _varied(found, design)
     same = one.design is not None and stored_design(found.problem, found.result, one.design).values == one.dimensions

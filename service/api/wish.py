@@ -8,7 +8,7 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from ..designs.columns import all_columns
-from ..jobs.made_wishes import told_wishes
+from ..jobs.wish_history import told_wishes
 from ..questions.discovery import WIDER
 from ..questions.wish.analysis import answered
 from ..store.wishes import note_wish, wishes_of

@@ -10,7 +10,7 @@ import typer
 from ...model.errors import InputError
 from ...objectives.counted import counted
 from ...objectives.keys import split_unit
-from ...optimise.front.progress import standing
+from ...optimise.front.progress import stage_text
 from ..jobs.stores import Address, Name, find_job, has_store, shown_store, store_that_is_there, tell_idle
 from ..render.terminal import table
 from ..runs.result import json_text
@@ -107,7 +107,7 @@ def _standing(job: Job) -> str:
             best.append(f"{name.replace('_', ' ')} {value:.4g} {unit}".rstrip())
         return f"{counted(job.summary['designs'], 'design')}; best {', '.join(best)}"
     if job.state == "running" and job.progress is not None:
-        return f"{standing(job.progress)}, {job.progress['feasible']:,} feasible"
+        return f"{stage_text(job.progress)}, {job.progress['feasible']:,} feasible"
     if job.state == "running":
         return f"with {job.worker}"
     return job.reason

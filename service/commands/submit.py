@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import StoreError
-from ...optimise.front.progress import Progress, standing
+from ...optimise.front.progress import Progress, stage_text
 from ..jobs.stores import Address, Name, find_job, open_store, store_that_is_there, tell_idle
 from ..resources.memory import size_of
 from ..runs.result import json_text
@@ -198,7 +198,7 @@ def in_words(event: Event) -> str:
     data: dict[str, Any] = event.data
     if event.kind == "progress":
         return (
-            f"{standing(data)}: {data['evaluations']:,} evaluated, "
+            f"{stage_text(data)}: {data['evaluations']:,} evaluated, "
             f"{data['feasible']:,} feasible, hypervolume {data['hypervolume'] or 0.0:.4f}"
         )
     text = data.get("text") or ": ".join(part for part in (data.get("state"), data.get("reason")) if part)

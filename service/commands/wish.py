@@ -12,7 +12,7 @@ import typer
 from ...model.errors import InputError, StoreError
 from ...model.file_names import path_text
 from ...objectives.kinds import System
-from ..jobs.made_wishes import keep_wish, made_wishes, told_wishes, words_of
+from ..jobs.wish_history import keep_wish, told_wishes, wishes_of_run, words_of
 from ..questions.discovery import WIDER
 from ..render.terminal import print_blocks
 from ..runs.result import json_text
@@ -79,7 +79,7 @@ def _list(folder: Path, front: ParetoFront, units: System, *, json: bool) -> Non
     from ...optimise.decisions.wish import Wishes
     from ..questions.wish.analysis import answered, told_wish
 
-    made = made_wishes(folder)
+    made = wishes_of_run(folder)
     with waiting("wishing"):
         solver = Wishes(front) if made else None
         found = []

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ...model.arrays import Array
     from ...objectives.kinds import System
     from ...optimise.front.front import ParetoFront
-    from ...optimise.search.elimination import Sheet
+    from ...optimise.search.elimination import EliminationBranch
     from .stored_designs import StoredDesign
 
 _NEAR = 1e-9  # relative: how well a point of the unit box must give the design back
@@ -28,7 +28,7 @@ def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: Sy
     objective, an objective without gradient, a design that does not meet its constraints.
     """
     from ...optimise.front.hypervolume import scaling
-    from ...optimise.search.elimination import sheets
+    from ...optimise.search.elimination import elimination_branches
     from ...optimise.search.evaluation import Evaluator
     from ...optimise.search.polish import polish
 
@@ -43,12 +43,12 @@ def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: Sy
     if front.goals[row][1].size and design.values == tuple(front.dimensions[row].tolist()):
         return front.trade_offs(row, system)
     values = np.array(design.values)
-    for sheet in sheets(design.part):
-        point = _point(sheet, values)
+    for branch in elimination_branches(design.part):
+        point = _point(branch, values)
         if point is None:
             continue
         span = scaling(front.values)[1]
-        found = polish(Evaluator(design.part, sheet), point[None], span, iterations=0)
+        found = polish(Evaluator(design.part, branch), point[None], span, iterations=0)
         owner, slopes = found.goals[0]
         nothing = (np.zeros(0), np.zeros((0, 0)))
         goals, active = [nothing] * len(front), [nothing[1]] * len(front)
@@ -59,14 +59,14 @@ def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: Sy
     )
 
 
-def _point(sheet: Sheet, values: Array) -> Array | None:
-    """Return the point of the unit box that gives a design, None if no point of the sheet does."""
-    if values[2] * sheet.sign < 0.0:
+def _point(branch: EliminationBranch, values: Array) -> Array | None:
+    """Return the point of the unit box that gives a design, None if no point of the branch does."""
+    if values[2] * branch.sign < 0.0:
         return None
     sizes = np.abs(values)
     unknowns = np.concatenate([sizes[:3], values[3:]])
-    free = np.array([unknowns[sheet.names.index(name)] for name in sheet.free])
-    point = np.clip((free - sheet.lower) / (sheet.upper - sheet.lower), 0.0, 1.0)
+    free = np.array([unknowns[branch.names.index(name)] for name in branch.free])
+    point = np.clip((free - branch.lower) / (branch.upper - branch.lower), 0.0, 1.0)
     scale = np.concatenate([np.full(3, sizes[:3].max()), sizes[3:]])
-    near = np.abs(sheet.dimensions(point)[0] - values) <= _NEAR * scale
+    near = np.abs(branch.dimensions(point)[0] - values) <= _NEAR * scale
     return np.asarray(point) if near.all() else None

@@ -25,7 +25,7 @@ from ...objectives.registry import QUANTITIES
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective
 from ...optimise.problem.violation import FEASIBLE, constraints_of
-from ...optimise.search.elimination import Sheet, sheets
+from ...optimise.search.elimination import EliminationBranch, elimination_branches
 from ...optimise.search.evaluation import Evaluator
 from ...optimise.search.polish import polish
 from ...optimise.search.sampling import first_samples, generator
@@ -120,8 +120,8 @@ def designs_of(problem: Problem, count: int) -> Array:
     Those of a swing whose start varies have it as a fourth number.
     """
     parts = []
-    for index, sheet in enumerate(sheets(problem)):
-        parts.append(sheet.dimensions(first_samples(count, len(sheet.free), 1, index))[:, _kept(problem)])
+    for index, branch in enumerate(elimination_branches(problem)):
+        parts.append(branch.dimensions(first_samples(count, len(branch.free), 1, index))[:, _kept(problem)])
     return np.concatenate(parts)
 
 
@@ -152,8 +152,8 @@ def screened(problem: Problem) -> tuple[Array, Array]:
     end = time.monotonic() + _MOMENT
     kept = _kept(problem)
     designs, violations = [np.zeros((0, len(kept)))], [np.zeros(0)]
-    for index, sheet in enumerate(sheets(problem)):
-        evaluator = Evaluator(problem, sheet)
+    for index, branch in enumerate(elimination_branches(problem)):
+        evaluator = Evaluator(problem, branch)
         points = first_samples(_SAMPLES, evaluator.dimension, 1, index)
         for begin in range(0, len(points), _BATCH):
             found, _, violation = evaluator.screen(points[begin : begin + _BATCH])
@@ -171,65 +171,65 @@ def _reach(problem: Problem, name: str) -> Ends | None:
     if name == "transmission_angle":
         others = (*others, Constraint(quantity=name, lower=_FLATTEST))
     alone = replace(problem, constraints=others)
-    ends = [_ends(alone, name, sheet, index) for index, sheet in enumerate(sheets(alone))]
+    ends = [_ends(alone, name, branch, index) for index, branch in enumerate(elimination_branches(alone))]
     found = [pair for pair in ends if pair is not None]
     return (min(low for low, _ in found), max(high for _, high in found)) if found else None
 
 
-def _ends(problem: Problem, name: str, sheet: Sheet, index: int) -> Ends | None:
-    """Return the least and the greatest value on a sheet, sampled, then nearer and nearer around the best."""
-    points = np.concatenate([first_samples(_SAMPLES, len(sheet.free), 1, index), *_on_edges(problem, sheet)])
-    values = _values(problem, name, sheet.dimensions(points)[:, :3])
+def _ends(problem: Problem, name: str, branch: EliminationBranch, index: int) -> Ends | None:
+    """Return the least and the greatest value on a branch, sampled, then nearer and nearer around the best."""
+    points = np.concatenate([first_samples(_SAMPLES, len(branch.free), 1, index), *_on_edges(problem, branch)])
+    values = _values(problem, name, branch.dimensions(points)[:, :3])
     if not np.isfinite(values).any():
         return None
     random = generator(1, 100 + index)
     found = []
     for sign in (-1.0, 1.0):
         best, worth = points, np.where(np.isfinite(values), sign * values, -np.inf)
-        for width in _WIDTHS if len(sheet.free) else ():
+        for width in _WIDTHS if len(branch.free) else ():
             rows = np.argsort(-worth, kind="stable")[:_PARENTS]
             rows = rows[np.isfinite(worth[rows])]
             children = np.repeat(best[rows], _CHILDREN, axis=0)
             step = width * random.standard_normal(children.shape)
             stays = random.random(children.shape) < _STAYS  # extremes lie on faces and edges, along which one moves
             children = np.clip(children + np.where(stays, 0.0, step), 0.0, 1.0)
-            more = _values(problem, name, sheet.dimensions(children)[:, :3])
+            more = _values(problem, name, branch.dimensions(children)[:, :3])
             best = np.concatenate([best[rows], children])
             worth = np.concatenate([worth[rows], np.where(np.isfinite(more), sign * more, -np.inf)])
         start = best[np.argsort(-worth, kind="stable")[:_POLISHED]]
-        found.append(sign * max(float(worth.max()), _polished(problem, name, sheet, sign, start)))
+        found.append(sign * max(float(worth.max()), _polished(problem, name, branch, sign, start)))
     return found[0], found[1]
 
 
-def _polished(problem: Problem, name: str, sheet: Sheet, sign: float, start: Array) -> float:
-    """Return the greatest of `sign` times a closed form near points (n, k) of a sheet; -inf if none.
+def _polished(problem: Problem, name: str, branch: EliminationBranch, sign: float, start: Array) -> float:
+    """Return the greatest of `sign` times a closed form near points (n, k) of a branch; -inf if none.
 
     Its own requirement apart, all others of the problem hold.
     """
     wanted = Objective(quantity=name, sense="maximise" if sign > 0.0 else "minimise")
-    evaluator = Evaluator(replace(problem, objectives=(wanted,)), sheet)
+    evaluator = Evaluator(replace(problem, objectives=(wanted,)), branch)
     start = start[evaluator.valid(start)]
-    if not sheet.free or not len(start):
+    if not branch.free or not len(start):
         return -np.inf
     found = polish(evaluator, start, np.ones(1))
     good = found.violation <= FEASIBLE
     return float(-found.values[good, 0].min()) if good.any() else -np.inf
 
 
-def _on_edges(problem: Problem, sheet: Sheet) -> Iterator[Array]:
-    """Yield points of a sheet (n, k) on the edge of a requirement. Extremes lie there, and bands are thin."""
+def _on_edges(problem: Problem, branch: EliminationBranch) -> Iterator[Array]:
+    """Yield points of a branch (n, k) on the edge of a requirement. Extremes lie there, and bands are thin."""
     for place, constraint in enumerate(problem.constraints):
         for end in (constraint.lower, constraint.upper):
-            if end is None or constraint.equality or not sheet.free:
+            if end is None or constraint.equality or not branch.free:
                 continue
             edge = replace(constraint, lower=end, upper=end)
             rest = (*problem.constraints[:place], edge, *problem.constraints[place + 1 :])
-            for other in sheets(replace(problem, constraints=rest)):
+            for other in elimination_branches(replace(problem, constraints=rest)):
                 designs = other.dimensions(first_samples(_ON_EDGE, len(other.free), 1, place))[:, :3]
                 designs = designs[_turns(designs) & _inside(problem, designs)]
-                if other.sign == sheet.sign and len(designs):
-                    columns = [np.abs(designs[:, DIMENSIONS.index(free)]) for free in sheet.free]
-                    points = (np.stack(columns, axis=1) - sheet.lower) / (sheet.upper - sheet.lower)
+                if other.sign == branch.sign and len(designs):
+                    columns = [np.abs(designs[:, DIMENSIONS.index(free)]) for free in branch.free]
+                    points = (np.stack(columns, axis=1) - branch.lower) / (branch.upper - branch.lower)
                     yield np.clip(points, 0.0, 1.0)
 
 

@@ -31,7 +31,7 @@ def packed(record: Record) -> bytes:
     return _saved(
         problem=np.array(record.identity.problem),
         versions=np.array(record.identity.versions),
-        counts=np.array([record.number, record.told], dtype=np.int64),
+        counts=np.array([record.number, record.rounds], dtype=np.int64),
         seconds=np.array(record.seconds),
         words=record.words,
     )
@@ -45,12 +45,12 @@ def unpacked(content: bytes) -> Record:
 
     try:
         with _loaded(content) as file:
-            number, told = file["counts"].tolist()
+            number, rounds = file["counts"].tolist()
             words = file["words"]
             if words.dtype != np.int64 or words.ndim != 1:
                 raise ValueError(f"its words are {words.dtype} of {words.ndim} dimensions")
             identity = Identity(str(file["problem"]), str(file["versions"]))
-            return Record(identity, number, told, float(file["seconds"]), words)
+            return Record(identity, number, rounds, float(file["seconds"]), words)
     except (OSError, ValueError, TypeError, KeyError, EOFError, zipfile.BadZipFile) as error:
         raise RunError(
             f"a stored record must be whole; got {type(error).__name__}: {error}; submit its job anew"

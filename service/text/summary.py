@@ -29,7 +29,7 @@ from ...optimise.problem.restatement import restate
 from ...optimise.problem.violation import constraints_of
 from ...optimise.problem.zero_objectives import idle_rules
 from ...optimise.search.driving_loads import driven_by_loads
-from ...optimise.search.elimination import Sheet, sheets
+from ...optimise.search.elimination import EliminationBranch, elimination_branches
 from ...optimise.search.loaded_stroke import expected_warnings
 
 _MOST_VALUES = 6  # of a variable that are all told
@@ -40,7 +40,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
 
     Each is a list of lines except name, search, the numbers of the freedom, and the floors, see `_floors`.
     """
-    sheet = sheets(problem)[0]
+    sheet = elimination_branches(problem)[0]
     settings = problem.settings
     samples = f", {counted(settings.samples, 'sample')} a round" if settings.samples else ""
     return {
@@ -85,7 +85,7 @@ def job_in_words(problem: Problem, tables: Mapping[str, Any]) -> dict[str, Any]:
 
 def freedom_in_words(problem: Problem) -> str:
     """Return the degrees of freedom left as a sentence."""
-    sheet = sheets(problem)[0]
+    sheet = elimination_branches(problem)[0]
     left, unknowns = _degrees_of_freedom(sheet), len(sheet.names)
     what = "dimensions" if unknowns == 3 else "dimensions and other numbers"
     if _is_fixed(sheet):
@@ -100,11 +100,11 @@ def freedom_in_words(problem: Problem) -> str:
     return text
 
 
-def _is_fixed(sheet: Sheet) -> bool:
+def _is_fixed(sheet: EliminationBranch) -> bool:
     return all(ends.fixed for ends in sheet.bounds.values())
 
 
-def _degrees_of_freedom(sheet: Sheet) -> int:
+def _degrees_of_freedom(sheet: EliminationBranch) -> int:
     equalities = 0 if _is_fixed(sheet) else sum(constraint.equality for constraint in sheet.remaining)
     return len(sheet.free) - equalities
 

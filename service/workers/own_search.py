@@ -49,12 +49,12 @@ def resumed_run(
     store: Store, place: Path, text: str, read: Callable[[Mapping[str, Any], Path], Problem]
 ) -> Iterator[Opened]:
     """Enter a run that was stopped. text: its name or number. read: gives the problem of a job and its run folder."""
-    from ...optimise.solve import require_own_records
+    from ...optimise.solve import require_records
 
     job = stopped_job(store, text, place)
     with folder_of(store, job, place) as folder:
         problem = read(store.tables(job.id), folder.path)
-        require_own_records(problem, store.records(job.id))
+        require_records(problem, store.records(job.id))
         claim = take_up(store, job)
         with told(claim):
             folder.go_on()

@@ -24,7 +24,7 @@ from slidercrank.optimise.search.fingerprint import identity_of
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import Bounds, degrees, problem, search_little, shipped
 
-# Both signs of the offset, so that there are two sheets; a peak among the objectives and one among the constraints.
+# Both signs of the offset, so that there are two branches; a peak among the objectives and one among the constraints.
 HELD: dict[str, Bounds] = {"stroke": (0.16, 0.22), "transmission_angle": (degrees(30.0), None)}
 LIMITED: dict[str, Bounds] = HELD | {"peak_slider_speed": (None, 4.0)}
 SETTINGS: dict[str, dict[str, int]] = {
@@ -115,7 +115,7 @@ def test_a_run_goes_on_from_any_record_bit_for_bit(method: str) -> None:
         assert content(front) == found
         assert steps(kept) == steps(list(records))
         # Rounds that were told are not told again.
-        assert [entry.round for entry in again] == [entry.round for entry in told[records[cut - 1].told :]]
+        assert [entry.round for entry in again] == [entry.round for entry in told[records[cut - 1].rounds :]]
 
 
 @pytest.mark.parametrize("method", [name for name in methods() if name not in SLOW])
@@ -236,7 +236,7 @@ def test_a_raised_budget_only_adds_generations() -> None:
     _, records, told, _ = whole("nsga3")
     given = asked("nsga3")
     more: list[Progress] = []
-    rounds = [record for record in records if record.told < len(told)]
+    rounds = [record for record in records if record.rounds < len(told)]
     solve(replace(given, settings=replace(given.settings, evaluations=112)), resume=rounds, progress=more.append)
     assert [entry.round for entry in more] == [5, 6, 7]
 
@@ -267,7 +267,7 @@ def test_steps_come_back_with_every_bit_and_their_evaluations() -> None:
 
     one = Checkpoints(keep=kept.append, identity=lambda: mine)
     one.step("x", (np.ones(2),), lambda: next(compute()), first)
-    one.turn()
+    one.end_round()
     two = Checkpoints(past=kept, identity=lambda: mine)
     assert two.replaying
     found = two.step("x", (np.ones(2),), lambda: (np.zeros(0),), again)
@@ -282,12 +282,12 @@ def test_a_round_whose_last_step_was_kept_before_it_ended_is_not_reported_again(
     one = Checkpoints(keep=kept.append, identity=lambda: Identity("a", "b"))
     for number in range(2):
         one.step("x", (np.array([float(number)]),), lambda: (np.ones(1),), Counter())  # longer than the pause
-        assert one.turn()
+        assert one.end_round()
     two = Checkpoints(past=kept, keep=kept.append, identity=lambda: Identity("a", "b"))
     for number in range(2):
         two.step("x", (np.array([float(number)]),), lambda: (np.zeros(1),), Counter())
-        assert not two.turn()
-    assert [record.told for record in kept] == [0, 1, 1, 2]
+        assert not two.end_round()
+    assert [record.rounds for record in kept] == [0, 1, 1, 2]
 
 
 def test_closed_checkpoints_neither_ask_nor_keep() -> None:
@@ -298,7 +298,7 @@ def test_closed_checkpoints_neither_ask_nor_keep() -> None:
     one.close()
     one.poll()
     one.step("x", (), lambda: (np.ones(1),), Counter())
-    one.turn()
+    one.end_round()
     assert kept == []
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from slidercrank.optimise.front.dominance import beating, nondominated
+from slidercrank.optimise.front.dominance import dominating, nondominated
 from slidercrank.optimise.front.hypervolume import REFERENCE, choose, scaling
 
 Array = NDArray[np.float64]
@@ -66,4 +66,4 @@ def test_beating_points_are_those_of_the_plain_comparison() -> None:
             for other in others:
                 worst, gain = (one - other).max(axis=1), (other - one).max(axis=1)
                 expected |= (worst <= 0.0) & (gain > clearly) | (worst <= clearly) & (gain > slightly)
-        np.testing.assert_array_equal(beating(one, others, clearly=clearly, slightly=slightly), expected)
+        np.testing.assert_array_equal(dominating(one, others, clearly=clearly, slightly=slightly), expected)

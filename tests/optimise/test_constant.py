@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from slidercrank.optimise.front.constant import SAME, is_constant, spread
-from slidercrank.optimise.front.hypervolume import hypervolume, scaling, unheard
+from slidercrank.optimise.front.hypervolume import hypervolume, ignore_progress, scaling
 from slidercrank.optimise.front.picking import by_range, knee, lexicographic, topsis
 from slidercrank.optimise.front.slack import slack_of
 from slidercrank.optimise.problem.requirements import Constraint
@@ -87,13 +87,13 @@ def test_a_slack_of_rounding_is_zero(bits: int) -> None:
     bound = stroke + bits * np.spacing(stroke)
     for held in ((bound, bound), (bound, None), (None, bound), (bound, 2.0 * bound)):
         asked = problem({"peak_torque": "minimise"}, {"stroke": held}, crank=0.1, rod=0.3, offset=0.05)
-        table = columns_of(asked, np.zeros(1, dtype=np.int64), design, unheard)
+        table = columns_of(asked, np.zeros(1, dtype=np.int64), design, ignore_progress)
         assert table["slack_stroke_mm"].tolist() == [0.0]
         assert len(constraints_of(asked)) == 2
     apart = replace(
         given, constraints=problem({"peak_torque": "minimise"}, {"stroke": (stroke - 1e-7, None)}).constraints
     )
-    table = columns_of(apart, np.zeros(1, dtype=np.int64), design, unheard)
+    table = columns_of(apart, np.zeros(1, dtype=np.int64), design, ignore_progress)
     assert table["slack_stroke_mm"][0] == pytest.approx(1e-4, rel=1e-6)
 
 
@@ -106,5 +106,5 @@ def test_the_slack_of_what_is_infinite_is_infinite_and_of_what_has_no_value_none
     np.testing.assert_array_equal(slack_of(equal, values), [-math.inf, math.nan, -2.0, 0.0])
     asked = problem({"peak_torque": "minimise"}, {"rod_to_offset": (3.0, None)}, crank=0.1, rod=0.3)
     designs = np.array([[0.1, 0.3, 0.0], [0.1, 0.3, 0.1]])
-    table = columns_of(asked, np.zeros(2, dtype=np.int64), designs, unheard)
+    table = columns_of(asked, np.zeros(2, dtype=np.int64), designs, ignore_progress)
     assert table["slack_rod_to_offset"].tolist() == [math.inf, 0.0]

@@ -16,7 +16,14 @@ from slidercrank.model.errors import InputError, JobError
 from slidercrank.optimise.adapters.standard_form import standard_form
 from slidercrank.optimise.discrete import combinations
 from slidercrank.optimise.discrete import front as discrete
-from slidercrank.optimise.discrete.combinations import Axes, every, judged, near, neighbours, surrounded
+from slidercrank.optimise.discrete.combinations import (
+    Axes,
+    has_judged_neighbours,
+    judge,
+    judge_all,
+    judge_near,
+    neighbours,
+)
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.grids import SERIES
@@ -65,9 +72,9 @@ def test_every_combination_is_judged_once_however_many_at_once(at_once: int, mon
     monkeypatch.setattr(combinations, "_AT_ONCE", at_once)
     values = {"crank": (40, 50, 60), "rod": (80, 90, 120, 150), "offset": (10, 20, 30)}
     given = {name: {"values": [f"{value} mm" for value in each]} for name, each in values.items()}
-    axes = Axes.of(parse_job(job(given, constraints={"stroke": {"min": "90 mm"}})))
+    axes = Axes.of_problem(parse_job(job(given, constraints={"stroke": {"min": "90 mm"}})))
     asked: list[tuple[int, int]] = []
-    found = combinations.every(axes, lambda begun, of: asked.append((begun, of)))
+    found = combinations.judge_all(axes, lambda begun, of: asked.append((begun, of)))
     expected = [
         (crank, rod, offset)
         for crank, rod, offset in itertools.product(*values.values())
@@ -171,24 +178,24 @@ def test_designs_whose_neighbours_were_not_judged_are_not_called_stationary(monk
 
 def test_a_search_around_the_best_combinations_ends_where_none_next_to_them_is_better() -> None:
     part = parse_job(job())
-    axes = Axes.of(part)
-    exact = every(axes)
-    found, seen = near(axes, exact.dimensions[:1], 30, 10_000)
+    axes = Axes.of_problem(part)
+    exact = judge_all(axes)
+    found, seen = judge_near(axes, exact.dimensions[:1], 30, 10_000)
     assert len(seen) == found.judged < axes.count
-    assert surrounded(axes, found.dimensions, seen).all()
-    around = judged(part, axes.numbered(np.unique(axes.next_to(found.dimensions))))
+    assert has_judged_neighbours(axes, found.dimensions, seen).all()
+    around = judge(part, axes.numbered(np.unique(axes.next_to(found.dimensions))))
     for values in around.values:
         assert not ((values <= found.values).all(axis=1) & (values < found.values).any(axis=1)).any()
 
 
 def test_all_combinations_are_judged_in_parts_of_which_the_best_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     """Parts of any size give what one part gives, and no more is held than the best."""
-    axes = Axes.of(parse_job(job()))
-    whole = judged(axes.part, axes.designs(0, axes.count)).best()
+    axes = Axes.of_problem(parse_job(job()))
+    whole = judge(axes.part, axes.designs(0, axes.count)).best()
     sizes: list[int] = []
     monkeypatch.setattr(combinations, "_AT_ONCE", 100)
     monkeypatch.setattr(combinations, "_HELD", 20)
-    found = every(axes, lambda done, of: sizes.append(done))
+    found = judge_all(axes, lambda done, of: sizes.append(done))
     assert sizes == list(range(0, axes.count, 100))
     assert found.judged == axes.count
     assert len(found.values) <= 120
@@ -208,7 +215,7 @@ def test_neighbours_are_those_on_either_side_the_nearest_first() -> None:
         "crank has discrete values in the job, multiples of 0.5 mm, and stays as it is"
         in solve(problem).rounded(0, 1e-3).notes
     )
-    found = neighbours(Axes.of(problem), np.array([[0.0503, 0.123, 0.012]]), 4)
+    found = neighbours(Axes.of_problem(problem), np.array([[0.0503, 0.123, 0.012]]), 4)
     assert found[:, :2].tolist() == [[0.0505, 0.125], [0.05, 0.125], [0.0505, 0.112], [0.05, 0.112]]
     assert np.isnan(found[:, 2]).all()
 

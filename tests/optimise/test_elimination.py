@@ -15,7 +15,7 @@ from slidercrank.model.linkage.dimensions import DIMENSIONS
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Sense
 from slidercrank.optimise.problem.violation import FEASIBLE
-from slidercrank.optimise.search.elimination import Sheet, sheets
+from slidercrank.optimise.search.elimination import EliminationBranch, elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
 from tests.optimise.independent import CLOSED, Array
@@ -49,10 +49,10 @@ def held(names: tuple[str, ...], offset: tuple[float, float]) -> Problem:
     )
 
 
-def own_point(sheet: Sheet) -> Array:
-    """Return the base design in the coordinates of a sheet."""
-    values = np.array([BASE[DIMENSIONS.index(name)] for name in sheet.free])
-    return np.asarray(((values - sheet.lower) / (sheet.upper - sheet.lower))[None])
+def own_point(branch: EliminationBranch) -> Array:
+    """Return the base design in the coordinates of a branch."""
+    values = np.array([BASE[DIMENSIONS.index(name)] for name in branch.free])
+    return np.asarray(((values - branch.lower) / (branch.upper - branch.lower))[None])
 
 
 @pytest.mark.parametrize("offset", OFFSETS)
@@ -62,21 +62,21 @@ def test_requirements_are_eliminated_exactly_or_listed(names: tuple[str, ...], o
     wanted = held(names, offset)
     asked = {constraint.quantity for constraint in wanted.constraints}
     fixed = sum(name.startswith("fixed ") for name in names)
-    found = sheets(wanted)
+    found = elimination_branches(wanted)
     signs = {1.0} if "fixed offset" in names and offset[1] > 0.0 else set(np.sign(offset))
-    assert {sheet.sign for sheet in found} == signs
-    for sheet in found:
-        left = {constraint.quantity for constraint in sheet.remaining}
-        assert left | set(sheet.eliminated) == asked
-        assert not left & set(sheet.eliminated)
-        assert len(sheet.free) == max(3 - fixed - len(sheet.steps), 0)
-        evaluator = Evaluator(wanted, sheet)
-        u = np.concatenate([own_point(sheet), np.random.default_rng(1).random((400, len(sheet.free)))])
-        designs = sheet.dimensions(u)
-        assert designs[0] == pytest.approx(BASE * (1.0, 1.0, sheet.sign), rel=1e-12)
+    assert {branch.sign for branch in found} == signs
+    for branch in found:
+        left = {constraint.quantity for constraint in branch.remaining}
+        assert left | set(branch.eliminated) == asked
+        assert not left & set(branch.eliminated)
+        assert len(branch.free) == max(3 - fixed - len(branch.steps), 0)
+        evaluator = Evaluator(wanted, branch)
+        u = np.concatenate([own_point(branch), np.random.default_rng(1).random((400, len(branch.free)))])
+        designs = branch.dimensions(u)
+        assert designs[0] == pytest.approx(BASE * (1.0, 1.0, branch.sign), rel=1e-12)
         good = evaluator.valid(u)
         assert good[0]
-        for name in sheet.eliminated:
+        for name in branch.eliminated:
             value = CLOSED[name](BASE[None])[0]
             assert CLOSED[name](designs[good]) == pytest.approx(np.full(good.sum(), value), rel=1e-9)
         for name in names:
@@ -91,14 +91,14 @@ def test_the_derivatives_of_eliminated_dimensions_match_differences(
     names: tuple[str, ...], offset: tuple[float, float]
 ) -> None:
     """Central differences with Richardson extrapolation at the base design: 1e-8 of the greatest derivative."""
-    for sheet in sheets(held(names, offset)):
-        u = own_point(sheet)
-        exact = sheet.jacobian(u)[0]
-        assert exact.shape == (3, len(sheet.free))
-        for column in range(len(sheet.free)):
+    for branch in elimination_branches(held(names, offset)):
+        u = own_point(branch)
+        exact = branch.jacobian(u)[0]
+        assert exact.shape == (3, len(branch.free))
+        for column in range(len(branch.free)):
             step = np.zeros_like(u)
             step[0, column] = 1e-4
-            near, far = ((sheet.dimensions(u + n * step) - sheet.dimensions(u - n * step))[0] for n in (1.0, 2.0))
+            near, far = ((branch.dimensions(u + n * step) - branch.dimensions(u - n * step))[0] for n in (1.0, 2.0))
             slope = (8.0 * near - far) / 12e-4
             assert exact[:, column] == pytest.approx(slope, abs=1e-8 * np.abs(slope).max())
 
@@ -106,7 +106,7 @@ def test_the_derivatives_of_eliminated_dimensions_match_differences(
 def test_as_many_requirements_as_possible_are_eliminated() -> None:
     """Those pairs and triples that formulas can give one after the other; of two that none covers, one remains."""
     left = {
-        names: {constraint.quantity for constraint in sheets(held(names, OFFSETS[0]))[0].remaining}
+        names: {constraint.quantity for constraint in elimination_branches(held(names, OFFSETS[0]))[0].remaining}
         for names in combinations()
         if not any(name.startswith("fixed ") for name in names)
     }
@@ -118,10 +118,10 @@ def test_as_many_requirements_as_possible_are_eliminated() -> None:
 
 
 def test_without_elimination_all_requirements_remain() -> None:
-    for sheet in sheets(held(("stroke", "time_ratio"), (-0.2, 0.2)), eliminate=False):
-        assert sheet.eliminated == ()
-        assert {constraint.quantity for constraint in sheet.remaining} == {"stroke", "time_ratio"}
-        assert set(sheet.free) == set(DIMENSIONS)
+    for branch in elimination_branches(held(("stroke", "time_ratio"), (-0.2, 0.2)), eliminate=False):
+        assert branch.eliminated == ()
+        assert {constraint.quantity for constraint in branch.remaining} == {"stroke", "time_ratio"}
+        assert set(branch.free) == set(DIMENSIONS)
 
 
 def test_a_crank_whose_dead_centres_lie_on_both_sides_is_refused() -> None:
@@ -131,23 +131,23 @@ def test_a_crank_whose_dead_centres_lie_on_both_sides_is_refused() -> None:
     """
     asked: dict[str, Bounds] = {"stroke": 0.4}
     wanted = problem({"peak_torque": "minimise"}, asked, crank=(0.001, 0.2), rod=(0.2, 0.3), offset=(0.0, 0.1))
-    sheet = sheets(wanted)[0]
-    u = np.random.default_rng(5).random((2000, len(sheet.free)))
-    designs = sheet.dimensions(u)
+    branch = elimination_branches(wanted)[0]
+    u = np.random.default_rng(5).random((2000, len(branch.free)))
+    designs = branch.dimensions(u)
     r, l, e = designs.T
     with np.errstate(invalid="ignore"):
         turns = l > r + np.abs(e)
     spurious = turns.copy()
     spurious[turns] = np.abs(CLOSED["stroke"](designs[turns]) - 0.4) > 1e-6
     assert spurious.any()
-    assert not Evaluator(wanted, sheet).valid(u)[spurious].any()
-    _, _, violation = Evaluator(wanted, sheet).screen(u)
+    assert not Evaluator(wanted, branch).valid(u)[spurious].any()
+    _, _, violation = Evaluator(wanted, branch).screen(u)
     assert np.isinf(violation[spurious]).all()
 
 
 def test_computed_dimensions_outside_their_range_are_violations_relative_to_it() -> None:
     wanted = problem({"peak_torque": "minimise"}, {"stroke": 0.2}, crank=(0.09, 0.098), offset=(0.0, 0.15))
-    evaluator = Evaluator(wanted, sheets(wanted)[0])
+    evaluator = Evaluator(wanted, elimination_branches(wanted)[0])
     u = np.random.default_rng(6).random((500, evaluator.dimension))
     designs, _, violation = evaluator.screen(u)
     for design, size in zip(designs, violation, strict=True):

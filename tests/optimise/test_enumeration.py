@@ -187,8 +187,8 @@ def test_an_enumeration_that_is_stopped_gives_what_it_has() -> None:
 
 def test_an_archive_keeps_what_is_feasible_whatever_nearly_is() -> None:
     archive = Archive.empty(2)
-    archive.take(0, np.zeros((3, 1)), np.array([[1.0, 1.0], [2.0, 0.5], [2.0, 2.0]]))
+    archive.add_points(0, np.zeros((3, 1)), np.array([[1.0, 1.0], [2.0, 0.5], [2.0, 2.0]]))
     near = np.array([[0.0, 0.0], [5.0, 5.0]])
-    archive.take(1, np.zeros((2, 1)), near, np.zeros(2, dtype=bool))
-    assert archive.values[archive.met].tolist() == [[1.0, 1.0], [2.0, 0.5]]
-    assert archive.values[~archive.met].tolist() == [[0.0, 0.0]]
+    archive.add_points(1, np.zeros((2, 1)), near, np.zeros(2, dtype=bool))
+    assert archive.values[archive.is_feasible].tolist() == [[1.0, 1.0], [2.0, 0.5]]
+    assert archive.values[~archive.is_feasible].tolist() == [[0.0, 0.0]]

@@ -16,7 +16,7 @@ from slidercrank.objectives.transmission_angle import TRANSMISSION_ANGLE
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Objective
 from slidercrank.optimise.problem.violation import FEASIBLE, constraints_of, minimised
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.search.pieces import Rows
 from tests.optimise.independent import Array, excess, objectives, value
@@ -55,8 +55,8 @@ def greatest(rows: Rows, owner: int) -> Array:
 
 @pytest.mark.parametrize("wanted", [WANTED, ELIMINATED], ids=["free", "eliminated"])
 def test_screened_designs_are_those_that_are_feasible(wanted: Problem) -> None:
-    for sheet in sheets(wanted):
-        evaluator = Evaluator(wanted, sheet)
+    for branch in elimination_branches(wanted):
+        evaluator = Evaluator(wanted, branch)
         u = np.random.default_rng(12).random((3000, evaluator.dimension))
         designs, values, violation = evaluator.screen(u)
         good = violation <= FEASIBLE
@@ -77,10 +77,10 @@ def test_screened_designs_are_those_that_are_feasible(wanted: Problem) -> None:
 
 @pytest.mark.parametrize("wanted", [WANTED, ELIMINATED], ids=["free", "eliminated"])
 def test_exact_rows_are_objectives_and_relative_violations(wanted: Problem) -> None:
-    for sheet in sheets(wanted):
-        evaluator = Evaluator(wanted, sheet)
+    for branch in elimination_branches(wanted):
+        evaluator = Evaluator(wanted, branch)
         u = points(evaluator, 300)
-        designs = sheet.dimensions(u)
+        designs = branch.dimensions(u)
         goals, limits = evaluator.exact(u)
         expected = objectives(wanted, designs)
         for column in range(len(wanted.objectives)):
@@ -93,8 +93,8 @@ def test_exact_rows_are_objectives_and_relative_violations(wanted: Problem) -> N
 @pytest.mark.parametrize("wanted", [WANTED, ELIMINATED], ids=["free", "eliminated"])
 def test_slopes_of_all_rows_match_differences(wanted: Problem) -> None:
     """Fourth-order differences; rows whose pieces swap places between the points are left out."""
-    for sheet in sheets(wanted):
-        evaluator = Evaluator(wanted, sheet)
+    for branch in elimination_branches(wanted):
+        evaluator = Evaluator(wanted, branch)
         u = points(evaluator, 150)
         u = u[((u > 0.01) & (u < 0.99)).all(axis=1)]
         step = 1e-4
@@ -120,9 +120,9 @@ def test_slopes_of_all_rows_match_differences(wanted: Problem) -> None:
 def test_a_footprint_is_maximised_and_bounded_below_through_its_greatest_form() -> None:
     """It is the greater of two forms: with an offset longer than the crank the second one."""
     wanted = problem({"footprint": "maximise"}, {"footprint": (0.05, None)}, crank=(0.02, 0.05), offset=(0.06, 0.15))
-    evaluator = Evaluator(wanted, sheets(wanted)[0])
+    evaluator = Evaluator(wanted, elimination_branches(wanted)[0])
     u = points(evaluator, 50)
-    area = value(wanted, "footprint", evaluator.sheet.dimensions(u))
+    area = value(wanted, "footprint", evaluator.branch.dimensions(u))
     goals, limits = evaluator.exact(u)
     assert greatest(goals, 0) == pytest.approx(-area, rel=1e-12)
     assert greatest(limits, [c.quantity for c in evaluator.constraints].index("footprint")) == pytest.approx(
@@ -134,7 +134,7 @@ def test_ties_of_a_peak_are_rows_of_their_own() -> None:
     """Two equal forces half a turn apart, without masses: the peaks of the two strokes tie without offset."""
     pushing = Mechanism(loads=(StrokeForce(outward=-100.0, inward=100.0),))
     wanted = problem({"peak_torque": "minimise"}, offset=0.0, mechanism=pushing)
-    goals, _ = Evaluator(wanted, sheets(wanted)[0]).exact(np.array([[0.5, 0.3]]))
+    goals, _ = Evaluator(wanted, elimination_branches(wanted)[0]).exact(np.array([[0.5, 0.3]]))
     values = np.sort(goals.values[0])[::-1]
     assert values[0] == pytest.approx(values[1], rel=1e-12)
 
@@ -144,9 +144,9 @@ def test_an_infinite_quantity_makes_rows_without_slope() -> None:
     for bounds, expected in (((3.2, None), -np.inf), ((None, 8.0), np.inf)):
         for offset in ((0.0, 0.1), (-0.1, 0.0)):
             wanted = problem({"peak_torque": "minimise"}, {"stroke": 0.2, "rod_to_offset": bounds}, offset=offset)
-            evaluator = Evaluator(wanted, sheets(wanted)[0])
+            evaluator = Evaluator(wanted, elimination_branches(wanted)[0])
             u = np.full((1, 2), 0.5)
-            u[0, evaluator.sheet.free.index("offset")] = 0.0
+            u[0, evaluator.branch.free.index("offset")] = 0.0
             _, limits = evaluator.exact(u)
             owner = [c.quantity for c in evaluator.constraints].index("rod_to_offset")
             assert greatest(limits, owner)[0] == expected
@@ -160,7 +160,7 @@ def test_what_is_not_a_number_meets_no_limit_and_is_no_optimum(bounds: Bounds, s
     wanted = problem({"mean_power": "minimise"}, {"mean_torque": bounds})
     machine = replace(wanted.mechanism, speed=speed, friction=Friction(guide=20.0))
     wanted = replace(wanted, mechanism=machine)
-    (evaluator, *_) = (Evaluator(wanted, sheet) for sheet in sheets(wanted))
+    (evaluator, *_) = (Evaluator(wanted, branch) for branch in elimination_branches(wanted))
     u = points(evaluator, 20)
     goals, limits = evaluator.exact(u)
     for rows, owner in ((goals, 0), (limits, [c.quantity for c in evaluator.constraints].index("mean_torque"))):
@@ -168,10 +168,10 @@ def test_what_is_not_a_number_meets_no_limit_and_is_no_optimum(bounds: Bounds, s
 
 
 def test_near_zero_offset_slopes_are_those_of_its_sheet() -> None:
-    """The transmission angle has a kink at zero offset: along either sheet it falls with |offset|."""
+    """The transmission angle has a kink at zero offset: along either branch it falls with |offset|."""
     for offset in ((0.0, 0.1), (-0.1, 0.0)):
         wanted = problem({"transmission_angle": "maximise"}, crank=0.1, rod=0.3, offset=offset)
-        goals, _ = Evaluator(wanted, sheets(wanted)[0]).exact(np.zeros((1, 1)))
+        goals, _ = Evaluator(wanted, elimination_branches(wanted)[0]).exact(np.zeros((1, 1)))
         # d mu / d a = -1 / sqrt(l^2 - r^2) for a range of 0.1 m; the objective is -mu.
         assert goals.gradients[0, 0, 0] == pytest.approx(0.1 / math.sqrt(0.3**2 - 0.1**2), rel=1e-12)
 
@@ -200,7 +200,7 @@ def test_objectives_are_minimised_as_they_are_negated_or_as_distances() -> None:
 
 def test_a_band_lets_in_what_violates_by_less() -> None:
     wanted = problem({"peak_torque": "minimise"}, {"stroke": (0.2, 0.201), "peak_slider_speed": 4.0})
-    evaluator = Evaluator(wanted, sheets(wanted)[0])
+    evaluator = Evaluator(wanted, elimination_branches(wanted)[0])
     assert evaluator.loose
     u = points(evaluator, 4000)
     designs, values, violation = evaluator.screen(u, band=0.1)
@@ -215,18 +215,18 @@ def test_a_band_lets_in_what_violates_by_less() -> None:
 def test_a_bound_of_zero_is_absolute() -> None:
     """A relative violation has no meaning there: 1 N m of mean torque counts as one."""
     wanted = problem({"peak_torque": "minimise"}, {"mean_torque": (None, 0.0)})
-    evaluator = Evaluator(wanted, sheets(wanted)[0])
+    evaluator = Evaluator(wanted, elimination_branches(wanted)[0])
     u = points(evaluator, 20)
     _, limits = evaluator.exact(u)
     owner = [c.quantity for c in evaluator.constraints].index("mean_torque")
-    mean = value(wanted, "mean_torque", evaluator.sheet.dimensions(u))
+    mean = value(wanted, "mean_torque", evaluator.branch.dimensions(u))
     assert greatest(limits, owner) == pytest.approx(mean, rel=1e-12)
 
 
 def test_loads_that_cannot_be_screened_are_evaluated_exactly() -> None:
     table = AngleTable(angles=(0.0, 1.0, 3.0, 5.0), forces=(0.0, -50.0, -200.0, 0.0))
     wanted = problem({"peak_torque": "minimise"}, {"stroke": 0.2}, mechanism=Mechanism(speed=3.0, loads=(table,)))
-    evaluator = Evaluator(wanted, sheets(wanted)[0])
+    evaluator = Evaluator(wanted, elimination_branches(wanted)[0])
     u = points(evaluator, 100)
     designs, values, violation = evaluator.screen(u)
     good = violation <= FEASIBLE
@@ -235,7 +235,7 @@ def test_loads_that_cannot_be_screened_are_evaluated_exactly() -> None:
 
 def test_evaluations_are_counted() -> None:
     wanted = problem({"peak_torque": "minimise"}, {"stroke": 0.2})
-    evaluator = Evaluator(wanted, sheets(wanted)[0])
+    evaluator = Evaluator(wanted, elimination_branches(wanted)[0])
     u = points(evaluator, 30)
     evaluator.screen(u)
     evaluator.exact(u)
@@ -243,7 +243,10 @@ def test_evaluations_are_counted() -> None:
 
 
 def test_the_cheapest_constraints_come_first() -> None:
-    names = [constraint.quantity for constraint in Evaluator(WANTED, sheets(WANTED)[0]).constraints]
+    names = [constraint.quantity for constraint in Evaluator(WANTED, elimination_branches(WANTED)[0]).constraints]
     costly = [name in ("peak_torque", "rms_torque") for name in names]
     assert costly == sorted(costly)
-    assert all(isinstance(constraint, Constraint) for constraint in Evaluator(WANTED, sheets(WANTED)[0]).constraints)
+    assert all(
+        isinstance(constraint, Constraint)
+        for constraint in Evaluator(WANTED, elimination_branches(WANTED)[0]).constraints
+    )

@@ -31,7 +31,7 @@ MIXED: dict[str, Bounds] = {
 
 def volumes(rounds: list[np.ndarray], **more: object) -> list[float]:
     growth = Growth(np.zeros(rounds[0].shape[1]), **more)  # type: ignore[arg-type]
-    return [growth.take(values) for values in rounds]
+    return [growth.add(values) for values in rounds]
 
 
 def counted(designs: np.ndarray, ideal: np.ndarray, span: np.ndarray) -> float:
@@ -70,18 +70,18 @@ def test_nothing_one_design_ties_and_what_is_not_defined() -> None:
     assert volumes([NONE, ONE + 2.0, NONE, ONE + 2.0]) == pytest.approx([0.0, 1.0, 1.0, 1.0])
     assert volumes([np.array([[np.nan, 1.0], [np.inf, 0.0]]), ONE + 2.0]) == pytest.approx([0.0, 1.0])
     met = Growth(np.array([0.2, 0.0]))
-    assert met.take(np.array([[1e-17, 4.0]])) == pytest.approx(1.0)
-    assert met.take(np.array([[1e-16, 2.0]])) > 1.4, "designs that meet a target differ by rounding"
+    assert met.add(np.array([[1e-17, 4.0]])) == pytest.approx(1.0)
+    assert met.add(np.array([[1e-16, 2.0]])) > 1.4, "designs that meet a target differ by rounding"
 
 
 def test_designs_that_violate_a_requirement_a_little_do_not_count() -> None:
     given = problem({"peak_torque": "minimise", "time_ratio": "maximise"})
     run, archive = Run(given, 2, lambda entry: None), Archive.empty(2)
-    archive.take(0, np.zeros((2, 3)), np.array([[1.0, 2.0], [2.0, 1.0]]), met=np.zeros(2, dtype=bool))
-    run.tell("sampling", [], archive)
-    archive.take(0, np.zeros((1, 3)), np.array([[3.0, 3.0]]))
-    run.tell("sampling", [], archive)
-    assert [entry.hypervolume for entry in run.told] == pytest.approx([0.0, 1.0])
+    archive.add_points(0, np.zeros((2, 3)), np.array([[1.0, 2.0], [2.0, 1.0]]), is_feasible=np.zeros(2, dtype=bool))
+    run.report_round("sampling", [], archive)
+    archive.add_points(0, np.zeros((1, 3)), np.array([[3.0, 3.0]]))
+    run.report_round("sampling", [], archive)
+    assert [entry.hypervolume for entry in run.round_reports] == pytest.approx([0.0, 1.0])
 
 
 def small(given: Problem, **settings: object) -> Problem:
@@ -113,5 +113,5 @@ def test_no_search_tells_a_volume_that_falls_nor_when_it_goes_on(name: str) -> N
     half = len(kept) // 2
     again: list[Progress] = []
     solve(CASES[name], progress=again.append, resume=kept[:half])
-    before = told[: kept[half - 1].told]
+    before = told[: kept[half - 1].rounds]
     assert [entry.hypervolume for entry in [*before, *again]] == [entry.hypervolume for entry in told]

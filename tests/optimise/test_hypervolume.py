@@ -51,7 +51,7 @@ def test_no_design_gains_more_than_its_bound(objectives: int) -> None:
     chosen: list[int] = []
     for index in random.permutation(len(values))[:12].tolist():
         chosen.append(index)
-        found = bounds.after(index)
+        found = bounds.with_design(index)
         before = moocore.hypervolume(scaled[chosen], ref=REFERENCE)
         gains = [moocore.hypervolume(scaled[[*chosen, row]], ref=REFERENCE) - before for row in range(len(values))]
         assert (found >= gains).all()

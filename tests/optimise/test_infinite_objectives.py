@@ -11,7 +11,7 @@ import pytest
 from slidercrank.model.errors import InputError
 from slidercrank.optimise.feasibility.valueless import require_finite
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
 
@@ -61,7 +61,7 @@ def test_it_is_one_where_any_design_is_compressed() -> None:
     for speed in (1.0, *random.uniform(500.0, 9000.0, 8)):
         for direction in ("inward", "outward"):
             problem = parse_job(job(direction, speed))
-            evaluators = [Evaluator(problem, sheet) for sheet in sheets(problem)]
+            evaluators = [Evaluator(problem, branch) for branch in elimination_branches(problem)]
             designs = np.column_stack([np.full(41, 0.03), np.linspace(0.12, 0.2, 41), np.zeros(41)])
             safety = problem.quantity("buckling_safety").evaluate(problem.mechanism, designs).values
             infinite = bool(np.isinf(safety).all())

@@ -22,7 +22,7 @@ from slidercrank.optimise.job.stated import problem_of
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Objective
 from slidercrank.optimise.problem.violation import constraints_of
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
 from slidercrank.service.text.summary import summarise
@@ -140,7 +140,7 @@ def test_designs_that_lock_are_infeasible_even_without_the_floor() -> None:
     """A margin's bound as low as can be. Designs that lock have no finite torque, and count as out of reach."""
     problem = job({"guide": 0.9}, constraints={"self_locking_margin": {"min": "1e-9 deg"}})
     wanted = tuple(Objective(quantity=name, sense="minimise") for name in ("peak_torque", "rms_torque", "mean_torque"))
-    evaluator = Evaluator(replace(problem, objectives=wanted, constraints=()), sheets(problem)[0])
+    evaluator = Evaluator(replace(problem, objectives=wanted, constraints=()), elimination_branches(problem)[0])
     evaluator.constraints = ()
     u = np.random.default_rng(3).random((400, evaluator.dimension))
     dimensions, objectives, violation = evaluator.screen(u)

@@ -8,10 +8,10 @@ import pytest
 from slidercrank.optimise.feasibility.best import best_of, wanting
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search import evaluation
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
-from slidercrank.optimise.search.judging import quickly
-from slidercrank.optimise.search.sampling import apart
+from slidercrank.optimise.search.judging import screen_quantities
+from slidercrank.optimise.search.sampling import distant_rows
 from slidercrank.optimise.search.violation import greatest_of_starts
 from tests.optimise.independent import Array
 from tests.optimise.problems import Bounds, degrees, problem
@@ -27,8 +27,10 @@ COUNT = 8
 
 @pytest.mark.parametrize("held", [HELD, {**HELD, "rms_torque": (None, 8.0)}, {"peak_torque": (None, 1.0)}])
 def test_the_best_starts_are_those_of_all_points(held: dict[str, Bounds]) -> None:
-    for sheet in sheets(problem({"peak_torque": "minimise"}, held, offset=(-0.15, 0.15)), eliminate=False):
-        evaluator = Evaluator(problem({"peak_torque": "minimise"}, held, offset=(-0.15, 0.15)), sheet)
+    for branch in elimination_branches(
+        problem({"peak_torque": "minimise"}, held, offset=(-0.15, 0.15)), eliminate=False
+    ):
+        evaluator = Evaluator(problem({"peak_torque": "minimise"}, held, offset=(-0.15, 0.15)), branch)
         u = np.random.default_rng(3).random((4000, evaluator.dimension))
         u = u[evaluator.valid(u)]
         whole = evaluator.exact(u, goals=False)[1].values.max(axis=1, initial=0.0)
@@ -37,7 +39,7 @@ def test_the_best_starts_are_those_of_all_points(held: dict[str, Bounds]) -> Non
         found = greatest_of_starts(evaluator, u, COUNT)
         judged = evaluator.evaluations - judged
         one = np.zeros(len(u), np.int64)
-        np.testing.assert_array_equal(apart(found, u, one, COUNT), apart(whole, u, one, COUNT))
+        np.testing.assert_array_equal(distant_rows(found, u, one, COUNT), distant_rows(whole, u, one, COUNT))
         np.testing.assert_array_equal(found[np.isfinite(found)], whole[np.isfinite(found)])
         if len(held) > 1:
             assert judged < len(u) / 2, judged
@@ -50,9 +52,9 @@ def test_the_best_of_one_objective_takes_few_cycles(monkeypatch: pytest.MonkeyPa
     def counted(problem: Problem, names: tuple[str, ...], dimensions: Array) -> list[Array]:
         if any(not problem.quantity(name).of_dimensions for name in names):
             judged.append(len(dimensions))
-        return quickly(problem, names, dimensions)
+        return screen_quantities(problem, names, dimensions)
 
-    monkeypatch.setattr(evaluation, "quickly", counted)
+    monkeypatch.setattr(evaluation, "screen_quantities", counted)
     held: dict[str, Bounds] = {"transmission_angle": (degrees(40.0), None), "peak_torque": (None, 20.0)}
     found = best_of(wanting(problem({"peak_torque": "minimise"}, held), "stroke", "maximise"))
     assert found is not None

@@ -14,7 +14,7 @@ from slidercrank.model.errors import JobError
 from slidercrank.model.kinematics import geometry
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.solve import solve
 
 pytestmark = pytest.mark.usefixtures("little")
@@ -65,10 +65,10 @@ def test_a_rule_of_proportion_as_a_formula_gives_the_same_designs_bit_for_bit() 
 def test_linear_rules_leave_one_unknown_fewer_each_and_hold_to_rounding(rules: dict[str, Any], free: int) -> None:
     problem = feeder(rules)
     equalities = [item for item in problem.constraints if item.equality]
-    for sheet in sheets(problem):
-        assert len(sheet.free) == free
-        assert set(sheet.eliminated) == {item.quantity for item in equalities}
-        found = sheet.dimensions(np.random.default_rng(1).random((50, free)))
+    for branch in elimination_branches(problem):
+        assert len(branch.free) == free
+        assert set(branch.eliminated) == {item.quantity for item in equalities}
+        found = branch.dimensions(np.random.default_rng(1).random((50, free)))
         found = found[(found[:, 1] > found[:, 0] + np.abs(found[:, 2])) & (found[:, 0] > 0.0)]
         for item in equalities if len(found) else ():
             values = problem.quantity(item.quantity).evaluate(problem.mechanism, found).values
@@ -81,9 +81,9 @@ def test_a_varying_number_may_stand_in_a_linear_rule() -> None:
     job["load"].append({"stiffness": "1 N/mm", "free_position": "100 mm"})
     job["variables"]["load"] = {"3": {"free_position": ["50 mm", "300 mm"]}}
     job["constraints"]["crank + rod"] = {"equals": "load.3.free_position"}
-    sheet = sheets(parse_job(job))[0]
-    assert len(sheet.free) == 3
-    found = sheet.dimensions(np.random.default_rng(1).random((50, 3)))
+    branch = elimination_branches(parse_job(job))[0]
+    assert len(branch.free) == 3
+    found = branch.dimensions(np.random.default_rng(1).random((50, 3)))
     np.testing.assert_allclose(found[:, 0] + found[:, 1], found[:, 3], rtol=1e-14)
 
 

@@ -19,7 +19,7 @@ from slidercrank.model.swing.swing_batch import driven
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.violation import FEASIBLE
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
 
@@ -51,8 +51,8 @@ def support(random: np.random.Generator, driver: str) -> dict[str, Any]:
 def sampled(given: Problem, count: int) -> tuple[Array, Mask]:
     """Return random designs that can swing as asked, and whether the search takes them for feasible."""
     found = []
-    for sheet in sheets(given):
-        evaluator = Evaluator(given, sheet)
+    for branch in elimination_branches(given):
+        evaluator = Evaluator(given, branch)
         dimensions, _, violation = evaluator.screen(np.random.default_rng(5).random((count, evaluator.dimension)))
         found.append(np.column_stack([dimensions, violation <= FEASIBLE]))
     every = np.concatenate(found)

@@ -16,9 +16,9 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.problem.problem import Problem, Variant
-from slidercrank.optimise.search.candidates import Finished, Polished, ragged
-from slidercrank.optimise.search.elimination import sheets
-from slidercrank.optimise.search.mirror import once
+from slidercrank.optimise.search.candidates import FrontCandidates, Polished, ragged
+from slidercrank.optimise.search.elimination import elimination_branches
+from slidercrank.optimise.search.mirror import drop_mirrored_branches
 from slidercrank.optimise.solve import solve
 from tests.optimise.methods.asking import asking
 from tests.optimise.problems import MACHINE, problem
@@ -70,12 +70,12 @@ def test_designs_that_are_equal_in_everything_are_delivered_once(name: str) -> N
 @pytest.mark.parametrize("name", APART)
 def test_both_sides_are_searched_where_something_tells_them_apart(name: str) -> None:
     given = either(APART[name])
-    assert {sheet.sign for sheet in once(given, sheets(given))} == {-1.0, 1.0}
+    assert {branch.sign for branch in drop_mirrored_branches(given, elimination_branches(given))} == {-1.0, 1.0}
 
 
 def test_the_side_with_the_wider_range_has_all() -> None:
     given = either(BARE, (-0.1, 0.05))
-    (only,) = once(given, sheets(given))
+    (only,) = drop_mirrored_branches(given, elimination_branches(given))
     assert only.sign == -1.0
     assert only.bounds["offset"].upper == 0.1
 
@@ -87,14 +87,14 @@ def test_ranges_that_do_not_include_each_other_are_both_searched() -> None:
         Variant(labels=(), mechanism=BARE, crank=given.crank, rod=given.rod, offset=offset) for offset in (near, far)
     )
     both = replace(given, variants=variants)
-    assert len(once(both, sheets(both))) == 2
+    assert len(drop_mirrored_branches(both, elimination_branches(both))) == 2
     twin = replace(variants[0], offset=problem(WANTED, offset=(-0.06, -0.02)).offset)
     twins = replace(given, variants=(twin, variants[0]))
-    assert [sheet.sign for sheet in once(twins, sheets(twins))] == [1.0]
+    assert [branch.sign for branch in drop_mirrored_branches(twins, elimination_branches(twins))] == [1.0]
     labelled = replace(
         twins, choices=("side",), variants=tuple(replace(v, labels=(str(v.offset),)) for v in (twin, variants[0]))
     )
-    assert len(once(labelled, sheets(labelled))) == 2
+    assert len(drop_mirrored_branches(labelled, elimination_branches(labelled))) == 2
 
 
 @pytest.mark.parametrize("method", ["sobol", "nsga2"])
@@ -103,11 +103,11 @@ def test_other_methods_deliver_no_twins_either(method: str) -> None:
     assert (front.dimensions[:, 2] >= 0.0).all()
 
 
-def finished(values: list[list[float]], *, residual: list[float] | None = None) -> Finished:
+def finished(values: list[list[float]], *, residual: list[float] | None = None) -> FrontCandidates:
     """Return finished designs with these objectives, range one."""
     given = np.array(values)
     n, m = given.shape
-    found = Finished.none(np.ones(m))
+    found = FrontCandidates.without_designs(np.ones(m))
     nothing = ragged((np.zeros(0), np.zeros((0, 3))) for _ in range(n))
     still = np.zeros(n) if residual is None else np.array(residual)
     part = Polished(

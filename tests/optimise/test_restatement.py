@@ -12,7 +12,7 @@ from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.restatement import restate
 from slidercrank.optimise.problem.violation import constraints_of
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
 
@@ -61,8 +61,12 @@ def test_a_formula_that_is_a_quantity_in_other_words_is_searched_as_the_quantity
     formula: dict[str, Any], plain: dict[str, Any]
 ) -> None:
     one, other = job(formula), job(plain)
-    assert [sheet.free for sheet in sheets(one)] == [sheet.free for sheet in sheets(other)]
-    ours, theirs = ({c.quantity: c for c in Evaluator(of, sheets(of)[0]).constraints} for of in (one, other))
+    assert [branch.free for branch in elimination_branches(one)] == [
+        branch.free for branch in elimination_branches(other)
+    ]
+    ours, theirs = (
+        {c.quantity: c for c in Evaluator(of, elimination_branches(of)[0]).constraints} for of in (one, other)
+    )
     assert ours.keys() == theirs.keys()
     for name, found in ours.items():
         ends = [[c.lower or 0.0, c.upper or 0.0] for c in (found, theirs[name])]

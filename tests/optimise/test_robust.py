@@ -16,7 +16,7 @@ from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import job_schema, parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.robust import Robust, nominal, robust, robust_quantities
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
 from tests.optimise.fresh_machines import realised, sampling_error
@@ -105,7 +105,7 @@ def test_without_tolerances_the_robust_front_is_the_nominal_one(kind: str) -> No
     exact = replace(plain(), mechanism=replace(TOLERANT, tolerances=Tolerances()))
     exact = replace(exact, constraints=exact.constraints[:1])  # two sides of one quantity change the order of sums
     within = robust(exact, Robust(kind=kind))  # type: ignore[arg-type]
-    one, other = (Evaluator(problem, sheets(problem)[0]) for problem in (exact, within))
+    one, other = (Evaluator(problem, elimination_branches(problem)[0]) for problem in (exact, within))
     points = np.random.default_rng(0).random((2000, one.dimension))
     points = points[one.valid(points)]
     (plainly, _), (robustly, _) = one.exact(points), other.exact(points)

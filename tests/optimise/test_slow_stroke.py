@@ -15,7 +15,7 @@ from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Variant
 from slidercrank.optimise.problem.violation import constraints_of
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.loaded_stroke import expected_warnings, front_warnings
 from slidercrank.optimise.search.sampling import first_samples
 from slidercrank.optimise.solve import solve
@@ -66,7 +66,7 @@ def test_every_design_of_the_sheets_that_are_left_has_the_slow_stroke(wanted: st
             mechanism={"speed": speed, "branch": branch}, constraints={"slow_stroke": wanted, "stroke": {"min": "1 mm"}}
         )
     )
-    (sheet,) = sheets(problem)
+    (sheet,) = elimination_branches(problem)
     designs = sheet.dimensions(first_samples(128, len(sheet.free), 1, 0))
     designs = designs[(designs[:, 1] > designs[:, 0] + np.abs(designs[:, 2])) & (np.abs(designs[:, 2]) > 1e-3)]
     assert len(designs) > 30
@@ -89,7 +89,7 @@ def test_a_front_has_no_design_with_the_other_stroke_slow_or_with_none(wanted: s
 def test_speeds_of_either_sign_are_chosen_with_the_offset_that_each_needs() -> None:
     choices = {"mechanism": {"speed": {"choices": ["60 rpm", "-60 rpm"]}}}
     problem = parse_job(job(constraints={"slow_stroke": "outward"}, variables=choices))
-    assert [(sheet.variant, sheet.sign) for sheet in sheets(problem)] == [(0, -1.0), (1, 1.0)]
+    assert [(sheet.variant, sheet.sign) for sheet in elimination_branches(problem)] == [(0, -1.0), (1, 1.0)]
     # An offset of one sign leaves one of the two speeds.
     problem = parse_job(
         job(constraints={"slow_stroke": "outward"}, variables={**choices, "offset": ["0 mm", "200 mm"]})
@@ -113,7 +113,7 @@ def test_an_option_of_a_choice_may_ask_for_its_slow_stroke() -> None:
     ]
     choice = [{"name": "tool", "option": options}]
     problem = parse_job(job(choice=choice))
-    assert [(sheet.variant, sheet.sign) for sheet in sheets(problem)] == [(0, -1.0), (1, 1.0)]
+    assert [(sheet.variant, sheet.sign) for sheet in elimination_branches(problem)] == [(0, -1.0), (1, 1.0)]
     with pytest.raises(JobError, match="slow stroke must be either the outward or the inward one"):
         parse_job(job(choice=choice, constraints={"slow_stroke": "inward"}))
     with pytest.raises(JobError, match="choice: options that are chosen together must have the same slow stroke"):

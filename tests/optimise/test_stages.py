@@ -17,9 +17,9 @@ from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.front.front import Columns, ParetoFront
-from slidercrank.optimise.front.hypervolume import Stand, choose
+from slidercrank.optimise.front.hypervolume import ReportProgress, choose
 from slidercrank.optimise.front.progress import REPEATING, Progress
-from slidercrank.optimise.methods.auto import so_far
+from slidercrank.optimise.methods.auto import partial_front
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search import assemble, checkpoints, search
 from slidercrank.optimise.search.assemble import columns_of
@@ -35,7 +35,7 @@ GIVEN = problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD, des
 @pytest.fixture(autouse=True)
 def always(monkeypatch: pytest.MonkeyPatch) -> None:
     """Tell at every occasion, and keep every step at once; polish few designs."""
-    monkeypatch.setattr(search, "TELL", 0.0)
+    monkeypatch.setattr(search, "REPORT_INTERVAL", 0.0)
     monkeypatch.setattr(checkpoints, "PAUSE", 0.0)
     polish_few(monkeypatch)
 
@@ -69,7 +69,7 @@ def test_choosing_and_finishing_are_told_after_the_last_round_with_how_far_they_
 def test_a_search_that_goes_on_tells_what_it_repeats() -> None:
     _, _, kept = whole()
     past = kept[: len(kept) // 2 + 1]
-    rounds = past[-1].told
+    rounds = past[-1].rounds
     assert rounds > 2
     _, told, _ = searched(resume=past)
     repeated = [entry for entry in told if entry.stage == REPEATING]
@@ -84,7 +84,7 @@ def test_a_search_that_goes_on_tells_what_it_repeats() -> None:
 
 def test_a_search_that_goes_on_tells_so_before_it_computes_anything(monkeypatch: pytest.MonkeyPatch) -> None:
     _, _, kept = whole()
-    monkeypatch.setattr(search, "TELL", 3600.0)
+    monkeypatch.setattr(search, "REPORT_INTERVAL", 3600.0)
     _, told, _ = searched(resume=kept)
     assert (told[0].stage, told[0].step, told[0].steps) == (REPEATING, 0, len(kept))
 
@@ -141,13 +141,13 @@ def test_designs_with_thousands_of_steps_are_analysed_few_at_a_time_and_come_out
 def test_a_cancelled_front_has_as_many_designs_as_are_analysed_in_a_moment(monkeypatch: pytest.MonkeyPatch) -> None:
     analysed: list[int] = []
 
-    def slowly(given: Problem, variants: Whole, dimensions: Array, *rest: Stand) -> Columns:
+    def slowly(given: Problem, variants: Whole, dimensions: Array, *rest: ReportProgress) -> Columns:
         if "polishing" in heard:
             analysed.append(len(dimensions))
             time.sleep(0.1 * len(dimensions))
         return columns_of(given, variants, dimensions, *rest)
 
-    for module in (so_far, assemble):
+    for module in (partial_front, assemble):
         monkeypatch.setattr(module, "columns_of", slowly)
     heard: list[str] = []
     given = replace(GIVEN, settings=replace(GIVEN.settings, designs=40))
@@ -165,7 +165,7 @@ def saying(heard: list[str], stage: str) -> Callable[[], bool]:
 def test_the_choice_tells_of_every_gain_that_it_weighs() -> None:
     values = np.random.default_rng(1).random((200, 3))
     heard: list[tuple[int, int]] = []
-    chosen = choose(values, 30, stand=lambda done, of: heard.append((done, of)))
+    chosen = choose(values, 30, report=lambda done, of: heard.append((done, of)))
     assert np.array_equal(chosen, choose(values, 30))
     assert len(heard) >= 30
     assert heard == sorted(heard)
@@ -173,5 +173,5 @@ def test_the_choice_tells_of_every_gain_that_it_weighs() -> None:
 
 
 def test_a_short_stage_is_not_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(search, "TELL", 3600.0)
+    monkeypatch.setattr(search, "REPORT_INTERVAL", 3600.0)
     assert not [entry for entry in searched()[1] if entry.steps]

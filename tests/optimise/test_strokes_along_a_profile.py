@@ -13,7 +13,7 @@ from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.violation import constraints_of
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.loaded_stroke import expected_warnings, front_warnings
 from slidercrank.optimise.solve import solve
 from tests.optimise.test_slow_stroke import job as steady_job
@@ -65,7 +65,7 @@ def test_every_design_of_a_job_along_a_profile_keeps_the_slow_stroke_that_is_ask
 def test_offsets_of_both_signs_are_searched_and_may_both_have_the_slow_stroke() -> None:
     """At constant speed an outward slow stroke needs an offset below 0; along this profile the best has one above."""
     problem = parse_job(job(constraints={"slow_stroke": "outward"}))
-    assert [sheet.sign for sheet in sheets(problem)] == [1.0, -1.0]
+    assert [branch.sign for branch in elimination_branches(problem)] == [1.0, -1.0]
     assert problem.slow_side() is None
     above = {"variables": {"offset": ["5 mm", "200 mm"]}, "constraints": {"slow_stroke": "outward"}}
     front = solve(parse_job(job(**above)))
@@ -107,7 +107,7 @@ def test_the_greatest_time_ratio_is_no_less_than_that_of_random_designs(stroke: 
 def test_a_time_ratio_that_is_held_is_one_of_time() -> None:
     held = {"time_ratio": {"equals": 1.3}}
     problem = parse_job(job(constraints=held, objectives={"time_ratio": None, "peak_torque": "minimise"}))
-    assert all("time_ratio" not in sheet.eliminated for sheet in sheets(problem))
+    assert all("time_ratio" not in branch.eliminated for branch in elimination_branches(problem))
     front = solve(problem)
     ratios = np.array(outward_to_inward(problem, front.dimensions))
     np.testing.assert_allclose(np.maximum(ratios, 1.0 / ratios), 1.3, rtol=1e-4)
@@ -117,7 +117,7 @@ def test_a_time_ratio_that_is_held_is_one_of_time() -> None:
 def test_the_ratio_of_crank_angles_is_met_exactly_whatever_the_speed_does() -> None:
     held = {"crank_angle_ratio": {"equals": 1.2}}
     problem = parse_job(job(constraints=held, objectives={"peak_torque": "minimise"}))
-    assert all(set(sheet.eliminated) == {"stroke", "crank_angle_ratio"} for sheet in sheets(problem))
+    assert all(set(branch.eliminated) == {"stroke", "crank_angle_ratio"} for branch in elimination_branches(problem))
     front = solve(problem)
     r, l, e = front.dimensions.T
     excess = np.abs(np.arcsin(e / (l - r)) - np.arcsin(e / (l + r)))

@@ -15,7 +15,7 @@ from slidercrank.model.swing.swing import Swing
 from slidercrank.model.swing.swing_types import Side
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 
 WANTED = (Objective(quantity="swing_transmission_angle", sense="maximise"),)
 
@@ -68,7 +68,7 @@ def test_equalities_of_a_swing_hold_to_rounding_and_miss_no_design(of: str, free
             value = float(probe.evaluate(design, [name])[0])
             own = problem_of(of, branch, value, free=free, rod=rod, swing=swing)
             hits = 0
-            for sheet in sheets(own):
+            for sheet in elimination_branches(own):
                 assert sheet.eliminated == (name,)
                 targets.add(sheet.steps[0].target)
                 again = sheet.dimensions(sheet.coordinates(design[None]))

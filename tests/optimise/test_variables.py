@@ -20,7 +20,7 @@ from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.hypervolume import hypervolume
 from slidercrank.optimise.problem.problem import Problem, Variant
 from slidercrank.optimise.problem.requirements import Constraint, Range
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import MACHINE, degrees, problem
@@ -187,8 +187,8 @@ def test_limits_that_come_with_an_option_hold_for_it_alone() -> None:
 def test_sheets_count_signs_times_variants() -> None:
     whole = problem({"peak_torque": "minimise"}, offset=(-0.1, 0.1), mechanism=vary(MACHINE, slider_mass=(1.0, 2.0)))
     asked = chosen((0.25, 0.3), (1.0,), replace(whole, mechanism=vary(MACHINE, slider_mass=(1.0, 2.0))))
-    found = sheets(asked)
-    assert [(sheet.variant, sheet.sign) for sheet in found] == [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)]
+    found = elimination_branches(asked)
+    assert [(branch.variant, branch.sign) for branch in found] == [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)]
     evaluator = Evaluator(asked, found[2])
     assert evaluator.dimension == 3  # crank, size of the offset, mass
     u = np.random.default_rng(4).random((50, 3))

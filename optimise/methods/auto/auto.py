@@ -11,18 +11,28 @@ from dataclasses import replace
 import numpy as np
 
 from ....model.arrays import Array, Mask, Whole, distinct
-from ...front.dominance import beating, nondominated
+from ...front.dominance import dominating, nondominated
 from ...front.front import ParetoFront
-from ...front.hypervolume import Stand, choose
+from ...front.hypervolume import ReportProgress, choose
 from ...front.neighbours import neighbours
 from ...problem.problem import Problem
 from ...problem.violation import FEASIBLE
 from ...search.assemble import SELECTING, assemble, span_of
-from ...search.candidates import SAME, Candidates, Finished, Polished, stacked
+from ...search.candidates import SAME, Candidates, FrontCandidates, Polished, stacked
 from ...search.evaluation import Evaluator
 from ...search.recorded import polished, projected
-from ...search.sampling import around, first_samples, generator
-from ...search.search import FIRST, SAMPLES, WIDTHS, Archive, Run, enumerate_settled, explore, searched, share
+from ...search.sampling import first_samples, generator, sample_near
+from ...search.search import (
+    FIRST,
+    SAMPLES,
+    WIDTHS,
+    Archive,
+    Run,
+    enumerate_branches,
+    explore,
+    samples_per_branch,
+    searched_evaluators,
+)
 from ..registry import Method
 
 ROUNDS = 4
@@ -41,93 +51,93 @@ _GAIN = 1e-3  # of the same: a gain that is worth a loss of `_CLEAR`, for exampl
 _NEIGHBOURS = 2  # an objective, between which gaps are looked for
 
 
-def searched_by(method: Method, problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront | None:
+def search_with(method: Method, problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront | None:
     """Return the front that a method finds, None where nothing is feasible.
 
     Combinations that leave nothing free are enumerated; the method searches the rest.
     """
-    enumerate_settled(problem, evaluators, run)
-    free = searched(evaluators)
+    enumerate_branches(problem, evaluators, run)
+    free = searched_evaluators(evaluators)
     archive = method.search(problem, free, run) if free else Archive.empty(len(problem.objectives))
-    return (deliver if method.polishes else as_found)(problem, evaluators, archive, run)
+    return (deliver if method.polishes else deliver_unpolished)(problem, evaluators, archive, run)
 
 
 def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> ParetoFront | None:
     """Return the front from the settled designs and those of an archive; None if none could be made feasible."""
-    finished, free = _begun(problem, archive, run), searched(evaluators)
+    finished, free = _start_candidates(problem, archive, run), searched_evaluators(evaluators)
     several = len(problem.objectives) > 1
     starts = []
     for group in archive.groups():
-        some = _choice(problem, group, evaluators[0], run) if several else group.leading(0, _STARTS)
-        starts += group[some].by_sheet(evaluators)
+        some = _rows_to_polish(problem, group, evaluators[0], run) if several else group.leading(0, _STARTS)
+        starts += group[some].by_branch(evaluators)
         if several:
-            for index, ends in _ends(evaluators, group, finished.span):
+            for index, ends in _polish_extremes(evaluators, group, finished.span):
                 if ends is not None:
                     finished.add(index, ends)
-                run.tell("polishing", free, archive)
+                run.report_round("polishing", free, archive)
     for attempt in range(ROUNDS):
         for index, u in starts:
             for begin in range(0, len(u), BATCH):
                 batch = u[begin : begin + BATCH]
                 finished.add(index, polished(evaluators[index], batch, finished.span))
-                run.tell("polishing", free, archive)
+                run.report_round("polishing", free, archive)
         if attempt == ROUNDS - 1 or not len(finished) or not free:
             break
-        starts = challengers(problem, free, archive, finished, attempt, run.stage(SELECTING))
+        starts = challengers(problem, free, archive, finished, attempt, run.stage_reporter(SELECTING))
         if not starts:
             break
     return assemble(problem, evaluators, finished, run) if len(finished) else None
 
 
-def as_found(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> ParetoFront | None:
+def deliver_unpolished(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> ParetoFront | None:
     """Return the front from the designs of an archive as they are, moved no more than onto the constraints.
 
     None if no design could be moved there. Designs that meet the constraints already are not touched.
     """
-    finished = _begun(problem, archive, run)
+    finished = _start_candidates(problem, archive, run)
     several = len(problem.objectives) > 1
     for group in archive.groups():
-        some = _choice(problem, group, evaluators[0], run) if several else slice(_STARTS)
-        move(finished, group[some], evaluators)
+        some = _rows_to_polish(problem, group, evaluators[0], run) if several else slice(_STARTS)
+        add_projected(finished, group[some], evaluators)
     return assemble(problem, evaluators, finished, run) if len(finished) else None
 
 
-def _begun(problem: Problem, archive: Archive, run: Run) -> Finished:
+def _start_candidates(problem: Problem, archive: Archive, run: Run) -> FrontCandidates:
     """Return the settled designs, which those of the archive are to join; the run has them too."""
-    values = np.concatenate([archive.values, run.finished.values])
+    values = np.concatenate([archive.values, run.candidates.values])
     if len(problem.objectives) > 1:
         values = values[nondominated(values)]
-    run.finished = run.finished.only_settled(span_of(problem, values) if len(values) else run.finished.span)
-    return run.finished
+    run.candidates = run.candidates.only_enumerated(span_of(problem, values) if len(values) else run.candidates.span)
+    return run.candidates
 
 
-def move(finished: Finished, candidates: Candidates, evaluators: list[Evaluator]) -> None:
+def add_projected(finished: FrontCandidates, candidates: Candidates, evaluators: list[Evaluator]) -> None:
     """Add candidates as they are, those that violate constraints moved onto them."""
-    for index, u in candidates.by_sheet(evaluators):
+    for index, u in candidates.by_branch(evaluators):
         valid = u[evaluators[index].valid(u)]
         finished.add(index, projected(evaluators[index], valid, finished.span))
 
 
-def _candidates(problem: Problem) -> int:
+def _candidate_count(problem: Problem) -> int:
     return max(_FEWEST, int(1.3 * problem.settings.designs))
 
 
-def _choice(problem: Problem, group: Archive, evaluator: Evaluator, run: Run) -> Whole:
+def _rows_to_polish(problem: Problem, group: Archive, evaluator: Evaluator, run: Run) -> Whole:
     """Return the rows of designs whose polish is to become the front; a recorded step."""
     best, rows = np.argmin(group.values, axis=0), np.arange(len(group))
     if len(rows) > _POOL:
         rows = distinct(np.concatenate([np.linspace(0, len(rows) - 1, _POOL).astype(int), best]))
     always = tuple(int(np.flatnonzero(rows == row)[0]) for row in dict.fromkeys(best.tolist()))
-    values, stand = group.values[rows], run.stage(SELECTING)
+    values, report = group.values[rows], run.stage_reporter(SELECTING)
 
     def compute() -> tuple[Whole]:
-        return (choose(values, _candidates(problem), always=always, stand=stand),)
+        return (choose(values, _candidate_count(problem), always=always, report=report),)
 
     return rows[evaluator.step("choice", (values,), compute)[0]]
 
 
-def _ends(evaluators: list[Evaluator], group: Archive, span: Array) -> Iterator[tuple[int, Polished | None]]:
-    """Yield the ends of the front by sheet: designs best in one objective, and in the others as far as that allows.
+def _polish_extremes(evaluators: list[Evaluator], group: Archive, span: Array) -> Iterator[tuple[int, Polished | None]]:
+    """Yield the ends of the front by branch: designs best in one objective, and in the others as far as that allows.
 
     Each begins from several designs that lead in the objective, and is improved in it alone, then in all with that one
     held firmly. Where even so it loses what shows, the best in the objective alone is an end too. Held less firmly, it
@@ -135,9 +145,9 @@ def _ends(evaluators: list[Evaluator], group: Archive, span: Array) -> Iterator[
     """
     parts: dict[int, list[tuple[int, Polished]]] = {}
     for column in range(len(span)):
-        for index, u in group[group.leading(column, _EXTREMES)].by_sheet(evaluators):
+        for index, u in group[group.leading(column, _EXTREMES)].by_branch(evaluators):
             found = polished(evaluators[index], u, span, chosen=(column,))
-            parts.setdefault(index, []).append((column, found[_differing(found.u)]))
+            parts.setdefault(index, []).append((column, found[_distinct_points(found.u)]))
             yield index, None
     for index, each in parts.items():
         first, *others = (found for _, found in each)
@@ -150,75 +160,82 @@ def _ends(evaluators: list[Evaluator], group: Archive, span: Array) -> Iterator[
         yield index, held.join(alone[lost | (held.violation > FEASIBLE)], beside)
 
 
-def _differing(u: Array) -> Whole:
+def _distinct_points(u: Array) -> Whole:
     """Return the rows of points (n, k) that differ from those before."""
     apart = np.abs(u[:, None] - u).max(axis=2, initial=0.0) > _ONE
     return np.flatnonzero((apart | np.triu(np.ones_like(apart))).all(axis=1))
 
 
 def challengers(
-    problem: Problem, evaluators: list[Evaluator], archive: Archive, finished: Finished, attempt: int, stand: Stand
+    problem: Problem,
+    evaluators: list[Evaluator],
+    archive: Archive,
+    finished: FrontCandidates,
+    attempt: int,
+    report: ReportProgress,
 ) -> list[tuple[int, Array]]:
-    """Return points by sheet for further polish; none if the front is as good and full as asked.
+    """Return points by branch for further polish; none if the front is as good and full as asked.
 
     First those that dominate a polished design. Then, where candidates are wanting, those that no polished design
-    dominates, and points half-way between neighbours. stand: called many times a second.
+    dominates, and points half-way between neighbours. report: called many times a second.
     """
-    best = finished[finished.best(stand)]
+    best = finished[finished.best(report)]
     front = best.values / best.span
-    _sample(problem, evaluators, archive, best, attempt)
-    stand(0, 1)
+    _screen_fresh_points(problem, evaluators, archive, best, attempt)
+    report(0, 1)
     screened = archive.values / best.span
-    better, uncovered = _against(screened, front)
-    stand(0, 1)
+    better, uncovered = _compare_with_front(screened, front)
+    report(0, 1)
     # Samples within a band around the constraints prove nothing.
-    rows = np.flatnonzero(better & archive.met)[:_FILLING]
-    wanting = _candidates(problem) - len(front) if front.shape[1] > 1 else 0
-    starts = archive[_few(screened, rows, front, max(wanting, 32), stand)].by_sheet(evaluators)
+    rows = np.flatnonzero(better & archive.is_feasible)[:_FILLING]
+    wanting = _candidate_count(problem) - len(front) if front.shape[1] > 1 else 0
+    starts = archive[_best_contributors(screened, rows, front, max(wanting, 32), report)].by_branch(evaluators)
     if wanting > 0:
         rows = np.flatnonzero(uncovered & ~better)
-        rows = _few(screened, rows[:: 1 + len(rows) // _FILLING], front, wanting, stand)
-        starts += archive[rows].by_sheet(evaluators)
-        starts += _half_way(evaluators, best, wanting)
+        rows = _best_contributors(screened, rows[:: 1 + len(rows) // _FILLING], front, wanting, report)
+        starts += archive[rows].by_branch(evaluators)
+        starts += _gap_middles(evaluators, best, wanting)
     return starts
 
 
-def _sample(problem: Problem, evaluators: list[Evaluator], archive: Archive, best: Finished, attempt: int) -> None:
-    """Screen points everywhere, and the polished designs, what is around them, and all that on other sheets."""
+def _screen_fresh_points(
+    problem: Problem, evaluators: list[Evaluator], archive: Archive, best: FrontCandidates, attempt: int
+) -> None:
+    """Screen points everywhere, and the polished designs, what is around them, and all that on other branches."""
     seed, k = problem.settings.seed, len(evaluators)
     random = generator(seed, 2000, attempt)
-    everywhere = share(problem.settings.samples or FIRST, evaluators)
+    everywhere = samples_per_branch(problem.settings.samples or FIRST, evaluators)
     nearby = -(-(problem.settings.samples or SAMPLES) // k)
 
     def points() -> Iterator[tuple[int, Evaluator, Array]]:
         for index, evaluator in enumerate(evaluators):
             yield index, evaluator, first_samples(everywhere, evaluator.dimension, seed, 200 + k * attempt + index)
             parents = stacked(np.zeros((0, evaluator.dimension)), best.u)[:, : evaluator.dimension]
-            near = around(parents, best.values, nearby, _WIDTH, random)
-            yield index, evaluator, np.concatenate([near, parents[best.sheet != index]])
+            near = sample_near(parents, best.values, nearby, _WIDTH, random)
+            yield index, evaluator, np.concatenate([near, parents[best.branch != index]])
 
     archive.screen_all(points())
 
 
-def _against(screened: Array, front: Array) -> tuple[Mask, Mask]:
+def _compare_with_front(screened: Array, front: Array) -> tuple[Mask, Mask]:
     """Return which screened designs dominate one of the front, and which none of the front dominates."""
     kept = np.zeros(len(front) + len(screened), dtype=bool)
     kept[nondominated(np.concatenate([front, screened]))] = True
-    return beating(screened, front, clearly=_CLEAR, slightly=_GAIN), kept[len(front) :]
+    return dominating(screened, front, clearly=_CLEAR, slightly=_GAIN), kept[len(front) :]
 
 
-def _few(screened: Array, rows: Whole, front: Array, count: int, stand: Stand) -> Whole:
+def _best_contributors(screened: Array, rows: Whole, front: Array, count: int, report: ReportProgress) -> Whole:
     """Return at most `count` of some rows: those that add most to the hypervolume of the front."""
     if len(rows) <= count:
         return rows
     if front.shape[1] == 1:
         return rows[np.argsort(screened[rows, 0], kind="stable")[:count]]
     union = np.concatenate([front, screened[rows]])
-    picked = choose(union, len(front) + count, always=tuple(range(len(front))), stand=stand)
+    picked = choose(union, len(front) + count, always=tuple(range(len(front))), report=report)
     return rows[picked[picked >= len(front)] - len(front)]
 
 
-def _half_way(evaluators: list[Evaluator], best: Finished, count: int) -> list[tuple[int, Array]]:
+def _gap_middles(evaluators: list[Evaluator], best: FrontCandidates, count: int) -> list[tuple[int, Array]]:
     """Return the middles between neighbours on the front, the farthest apart first."""
     scaled = best.values / best.span
     n, m = scaled.shape
@@ -228,16 +245,18 @@ def _half_way(evaluators: list[Evaluator], best: Finished, count: int) -> list[t
     both = np.stack(np.broadcast_arrays(np.arange(n)[:, None], nearest), axis=-1).reshape(-1, 2)
     pairs = distinct(np.sort(both), axis=0)
     pairs = pairs[pairs[:, 0] != pairs[:, 1]]
-    pairs = pairs[best.sheet[pairs[:, 0]] == best.sheet[pairs[:, 1]]]
+    pairs = pairs[best.branch[pairs[:, 0]] == best.branch[pairs[:, 1]]]
     gap = np.linalg.norm((best.values[pairs[:, 0]] - best.values[pairs[:, 1]]) / best.span, axis=1)
     pairs = pairs[np.argsort(-gap, kind="stable")[:count]]
     middle = 0.5 * (best.u[pairs[:, 0]] + best.u[pairs[:, 1]])
-    return replace(best[pairs[:, 0]], u=middle).by_sheet(evaluators)
+    return replace(best[pairs[:, 0]], u=middle).by_branch(evaluators)
 
 
 def auto(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the archive of what sampling and zooming find, which the polish starts from."""
-    run.rounds = len(run.told) + 1 + len(WIDTHS) + -(-_candidates(problem) // BATCH)  # if nothing needs filling
+    run.rounds = (
+        len(run.round_reports) + 1 + len(WIDTHS) + -(-_candidate_count(problem) // BATCH)
+    )  # if nothing needs filling
     return explore(problem, evaluators, run)
 
 

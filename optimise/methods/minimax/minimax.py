@@ -31,9 +31,9 @@ from ....model.arrays import Array
 from ...problem.problem import Problem
 from ...problem.violation import FEASIBLE
 from ...search.evaluation import Evaluator
-from ...search.sampling import apart, first_samples
+from ...search.sampling import distant_rows, first_samples
 from ...search.search import SAMPLES, Archive, Run, explore
-from ..local import spent
+from ..local import is_budget_spent
 from ..registry import Method
 from .scp import Descent
 
@@ -44,22 +44,22 @@ _LAST = 4096  # samples for the starts where none is feasible
 
 def minimax(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the optima that the descents ended in, each a local one."""
-    screened = explore(_within_budget(problem), evaluators, run)
+    screened = explore(_limit_samples(problem), evaluators, run)
     scale, begin = starts(problem, evaluators, screened)
-    run.rounds = len(run.told) + len(begin)
+    run.rounds = len(run.round_reports) + len(begin)
     descents = [Descent(evaluator, scale) for evaluator in evaluators]
     archive = Archive.empty(1)
     for index, u in begin:
-        if spent(problem, evaluators):
+        if is_budget_spent(problem, evaluators):
             break
-        end, top, violation = _end(evaluators[index], descents[index], u)
+        end, top, violation = _descend(evaluators[index], descents[index], u)
         if violation <= FEASIBLE:
-            archive.take(index, end[None], np.array([[top * scale]]))
-        run.tell("descending", evaluators, archive)
+            archive.add_points(index, end[None], np.array([[top * scale]]))
+        run.report_round("descending", evaluators, archive)
     return archive
 
 
-def _end(evaluator: Evaluator, descent: Descent, u: Array) -> tuple[Array, float, float]:
+def _descend(evaluator: Evaluator, descent: Descent, u: Array) -> tuple[Array, float, float]:
     """Return where the descent from a point ends, with its greatest piece and its violation; a recorded step."""
 
     def compute() -> tuple[Array, Array]:
@@ -71,7 +71,7 @@ def _end(evaluator: Evaluator, descent: Descent, u: Array) -> tuple[Array, float
     return end, top, violation
 
 
-def _within_budget(problem: Problem) -> Problem:
+def _limit_samples(problem: Problem) -> Problem:
     """Return the problem with samples that leave evaluations to the descents: exploring takes 5 to 25 times them."""
     allowed = problem.settings.evaluations
     if allowed is None:
@@ -81,21 +81,21 @@ def _within_budget(problem: Problem) -> Problem:
 
 
 def starts(problem: Problem, evaluators: list[Evaluator], archive: Archive) -> tuple[float, list[tuple[int, Array]]]:
-    """Return the objective's scale, and sheet and point of the designs to start from.
+    """Return the objective's scale, and branch and point of the designs to start from.
 
     They are the best designs of an archive that are apart, or where it is empty what violates least.
     """
-    rows = apart(archive.values[:, 0], archive.u, archive.sheet, STARTS)
-    begin = [(int(archive.sheet[row]), archive.u[row]) for row in rows]
-    begin = begin or _nearest(evaluators)
+    rows = distant_rows(archive.values[:, 0], archive.u, archive.branch, STARTS)
+    begin = [(int(archive.branch[row]), archive.u[row]) for row in rows]
+    begin = begin or _least_violating_points(evaluators)
     begin = [(index, u[: evaluators[index].dimension]) for index, u in begin]
     values = archive.values[:, 0]
     if not len(values):
-        values = np.array([_top(evaluators[index], u) for index, u in begin])
+        values = np.array([_highest_piece(evaluators[index], u) for index, u in begin])
     return _scale(problem, values), begin
 
 
-def _top(evaluator: Evaluator, u: Array) -> float:
+def _highest_piece(evaluator: Evaluator, u: Array) -> float:
     """Return the greatest piece at a point; a recorded step."""
     found = evaluator.step("top", (u,), lambda: (evaluator.exact(u[None])[0].values.max(axis=1),))
     return float(found[0][0])
@@ -109,8 +109,8 @@ def _scale(problem: Problem, values: Array) -> float:
     return float(max(abs(values.min()), target) or np.ptp(values) or 1.0)
 
 
-def _nearest(evaluators: list[Evaluator]) -> list[tuple[int, Array]]:
-    """Return sheets and points that violate the constraints least, where no sample comes near to meeting them."""
+def _least_violating_points(evaluators: list[Evaluator]) -> list[tuple[int, Array]]:
+    """Return branches and points that violate the constraints least, where no sample comes near to meeting them."""
     found: list[tuple[float, int, Array]] = []
     for index, evaluator in enumerate(evaluators):
         u = first_samples(_LAST, evaluator.dimension, evaluator.problem.settings.seed, 400 + index)

@@ -61,7 +61,7 @@ class Descent:
 
     def run(self, start: Array) -> Point:
         """Return where the descent from a point (k,) of the unit box, valid, ends."""
-        point = self._at(np.clip(start, 0.0, 1.0))
+        point = self._point_at(np.clip(start, 0.0, 1.0))
         radius, weight = _RADIUS, _WEIGHT
         root = np.zeros((len(start), len(start)))
         for iteration in range(_ITERATIONS):
@@ -91,7 +91,7 @@ class Descent:
                 radius = 0.25 * min(radius, size)
         return point
 
-    def _at(self, u: Array) -> Point:
+    def _point_at(self, u: Array) -> Point:
         goals, limits = self.evaluator.exact(u[None])
         scaled = replace(goals, values=goals.values / self.scale, gradients=goals.gradients / self.scale)
         return Point(u, alone(scaled, 0), alone(limits, 0))
@@ -129,7 +129,7 @@ class Descent:
         u = np.clip(point.u + step.move, 0.0, 1.0)
         if not self.evaluator.valid(u[None])[0]:
             return -1.0, None
-        trial = self._at(u)
+        trial = self._point_at(u)
         actual = point.merit(weight) - trial.merit(weight)
         noise = _NOISE * (1.0 + abs(point.top) + weight)
         if predicted <= noise:
@@ -170,15 +170,15 @@ def residual_of(point: Point, step: Step) -> float:
     left = (
         step.goals @ np.where(step.goals[:, None] > 0.0, point.goals.gradients, 0.0)
         + step.limits @ np.where(step.limits[:, None] > 0.0, point.limits.gradients, 0.0)
-        - step.below
-        + step.above
+        - step.lower_multipliers
+        + step.upper_multipliers
     )
     here, edge = np.isfinite(point.goals.values), np.isfinite(point.limits.values)
     gap = (
         step.goals[here] @ (point.top - point.goals.values[here])
         + step.limits[edge] @ np.abs(point.limits.values[edge])
-        + step.below @ point.u
-        + step.above @ (1.0 - point.u)
+        + step.lower_multipliers @ point.u
+        + step.upper_multipliers @ (1.0 - point.u)
     )
     return float(np.linalg.norm(left)) + float(gap) + point.violation
 
@@ -188,7 +188,11 @@ def _normals(point: Point, step: Step, least: float = 1e-6) -> Array:
     tied = point.goals.gradients[step.goals > least]
     edge = np.eye(len(point.u))
     return np.concatenate(
-        [tied[1:] - tied[:1], point.limits.gradients[step.limits > least], edge[(step.below + step.above) > least]]
+        [
+            tied[1:] - tied[:1],
+            point.limits.gradients[step.limits > least],
+            edge[(step.lower_multipliers + step.upper_multipliers) > least],
+        ]
     )
 
 

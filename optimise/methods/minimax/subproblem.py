@@ -32,8 +32,8 @@ _NEAR = 1e-6  # of the unit box: how far holding rows exactly may move what the 
 class Step:
     """A step.
 
-    move: (k,). top: t, the greatest piece after it as slopes tell. slack: s. goals: (p,), limits: (q,), below, above:
-    (k,), multipliers of pieces, constraints and bounds, zero or more.
+    move: (k,). top: t, the greatest piece after it as slopes tell. slack: s. goals: (p,), limits: (q,),
+    lower_multipliers, upper_multipliers: (k,), multipliers of pieces, constraints and bounds, zero or more.
     """
 
     move: Array
@@ -41,8 +41,8 @@ class Step:
     slack: float
     goals: Array
     limits: Array
-    below: Array
-    above: Array
+    lower_multipliers: Array
+    upper_multipliers: Array
 
 
 class Subproblem:
@@ -78,7 +78,7 @@ class Subproblem:
         """Return the step for values and gradients of pieces and constraints; None where the solver gives up."""
         cp = required("cvxpy", "minimax searches need")
 
-        (pieces, slopes), (rows, normals) = _present(*goals), _present(*limits)
+        (pieces, slopes), (rows, normals) = _neutralise_absent(*goals), _neutralise_absent(*limits)
         self.pieces.value, self.slopes.value = pieces, slopes
         if len(rows):
             self.rows.value, self.normals.value = rows, normals
@@ -110,16 +110,16 @@ class Subproblem:
             duals[1],
             duals[2],
         )
-        return _exact(step, (pieces, slopes), (rows, normals), low, high)
+        return _refine_step(step, (pieces, slopes), (rows, normals), low, high)
 
 
-def _present(values: Array, slopes: Array) -> tuple[Array, Array]:
+def _neutralise_absent(values: Array, slopes: Array) -> tuple[Array, Array]:
     """Return rows with those that are absent, or too far below to count, made harmless."""
     there = values > _ABSENT
     return np.where(there, values, _ABSENT), np.where(there[:, None], slopes, 0.0)
 
 
-def _exact(step: Step, goals: tuple[Array, Array], limits: tuple[Array, Array], low: Array, high: Array) -> Step:
+def _refine_step(step: Step, goals: tuple[Array, Array], limits: tuple[Array, Array], low: Array, high: Array) -> Step:
     """Return the step moved the shortest way to where the rows that hold it hold exactly.
 
     An interior-point method stops short of them by its tolerance, which a violation would keep for ever.
@@ -128,8 +128,8 @@ def _exact(step: Step, goals: tuple[Array, Array], limits: tuple[Array, Array], 
     k = len(step.move)
     own, edge = step.goals > _HELD, step.limits > _HELD
     slack = step.slack if step.slack > _NEAR else 0.0
-    move = np.where(step.below > _HELD, low, np.where(step.above > _HELD, high, step.move))
-    free = (step.below <= _HELD) & (step.above <= _HELD)
+    move = np.where(step.lower_multipliers > _HELD, low, np.where(step.upper_multipliers > _HELD, high, step.move))
+    free = (step.lower_multipliers <= _HELD) & (step.upper_multipliers <= _HELD)
     matrix = np.zeros((int(own.sum() + edge.sum()), k + 1))
     matrix[:, :k] = np.concatenate([slopes[own], normals[edge]])
     matrix[: own.sum(), k] = -1.0

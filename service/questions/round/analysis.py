@@ -12,8 +12,8 @@ from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.keys import key_in, metric_key, split_unit
 from ....objectives.kinds import LENGTH, SMALL_LENGTH, Kind, System, shown_in
 from ....objectives.units import shown
-from ....optimise.front.progress import standing
-from ....optimise.front.rounded import Rounded, written
+from ....optimise.front.progress import stage_text
+from ....optimise.front.rounded import Rounded, drop_conversion_rounding
 from ...designs.columns import find_column
 from ...designs.selection import value_of
 from ...designs.shown_units import record_in
@@ -36,7 +36,7 @@ def answer(front: ParetoFront, *, row: int, watch: Watch, words: Mapping[str, st
     for at in search(front, row, words, **inputs):
         if isinstance(at, Answer):
             return at
-        watch.tell(standing(vars(at)))
+        watch.tell(stage_text(vars(at)))
     raise AssertionError("the search ends with its answer")
 
 
@@ -134,7 +134,7 @@ def _record(found: Rounded) -> dict[str, Any]:
         "met": found.met,
         "message": found.message,
         "steps": {found.names[name][0]: found.names[name][1] * step for name, step in found.steps.items()},
-        "allowed": {of.field: written(value * of.unit.factor) for of, value in allowed.items()},
+        "allowed": {of.field: drop_conversion_rounding(value * of.unit.factor) for of, value in allowed.items()},
         "within_steps": found.reach,
         "judged": found.judged,
         "kept": found.kept,
@@ -149,11 +149,11 @@ def _record_in(units: System, record: dict[str, Any], found: Rounded) -> dict[st
     told: dict[str, Any] = record_in(deepcopy(record), units) | {"message": found.message_in(units)}
     keys = [key_in(found.names[name][0], units)[0] for name in found.steps]
     for row in (told["steps"], *told["designs"]):
-        row.update({key: written(row[key]) for key in keys})
-    told["allowed"] = {key: written(value) for key, value in told["allowed"].items()}
+        row.update({key: drop_conversion_rounding(row[key]) for key in keys})
+    told["allowed"] = {key: drop_conversion_rounding(value) for key, value in told["allowed"].items()}
     for miss in (miss for row in told["designs"] for miss in row["misses"]):
         miss["unit"], factor = shown_in(miss["unit"], units)
-        miss.update(amount=factor * miss["amount"], allowed=written(factor * miss["allowed"]))
+        miss.update(amount=factor * miss["amount"], allowed=drop_conversion_rounding(factor * miss["allowed"]))
     return told
 
 

@@ -26,11 +26,11 @@ from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.model.signals.shaft_statistics import SUMS
 from slidercrank.objectives.cycle_peak import CyclePeak
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.certificate.boxes import Boxes, covered
+from slidercrank.optimise.certificate.boxes import Boxes, unbounded_reason
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Objective
 from slidercrank.optimise.problem.violation import FEASIBLE, minimised
-from slidercrank.optimise.search.elimination import Sheet, sheets
+from slidercrank.optimise.search.elimination import EliminationBranch, elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from tests.optimise import problems
 from tests.optimise.problems import JOBS, Bounds, degrees, problem, shipped
@@ -110,27 +110,27 @@ def bounded(machine: Mechanism) -> dict[str, Any]:
     """Return the wish for less of every quantity that a machine has and that can be bounded over boxes."""
     some = problem({"stroke": "minimise"}, mechanism=machine)
     wishes = [Objective(quantity=name, sense="minimise") for name in QUANTITIES]
-    found = [wish.quantity for wish in wishes if not covered(some, wish)]
+    found = [wish.quantity for wish in wishes if not unbounded_reason(some, wish)]
     return {name: "minimise" for name in found if not QUANTITIES[name].undefined_because([machine])}
 
 
-def judged(given: Problem, sheet: Sheet, u: Array) -> tuple[Array, Array]:
-    """Return the dimensions of points of a sheet and how far they violate what is asked, one objective computed."""
-    dimensions, _, violation = Evaluator(replace(given, objectives=given.objectives[:1]), sheet).screen(u)
+def judged(given: Problem, branch: EliminationBranch, u: Array) -> tuple[Array, Array]:
+    """Return the dimensions of points of a branch and how far they violate what is asked, one objective computed."""
+    dimensions, _, violation = Evaluator(replace(given, objectives=given.objectives[:1]), branch).screen(u)
     return dimensions, violation
 
 
 def sampled(given: Problem, width: float, *, count: int = 60, inside: int = 40, seed: int = 5) -> Any:
     """Return bounds of random boxes, and samples in them: objectives and violation (boxes, samples, ...)."""
     random = np.random.default_rng(seed)
-    for sheet in sheets(given):
-        evaluator = Evaluator(given, sheet)
+    for branch in elimination_branches(given):
+        evaluator = Evaluator(given, branch)
         boxes = Boxes(evaluator, np.ones(len(given.objectives)))
         k = evaluator.dimension
         low = random.random((count, k)) * (1.0 - width)
         found = boxes.bound(low, low + width)
         u = low[:, None] + width * random.random((count, inside, k))
-        dimensions, violation = judged(given, sheet, u.reshape(-1, k))
+        dimensions, violation = judged(given, branch, u.reshape(-1, k))
         rows = np.flatnonzero(violation <= FEASIBLE)
         values = np.full((len(violation), len(given.objectives)), np.nan)
         for column, objective in enumerate(given.objectives):
@@ -188,11 +188,11 @@ def test_a_box_of_one_design_is_bounded_by_the_design_itself(machine: str) -> No
     """To a millionth: the ends of a part of the stroke are met by angles a little inside."""
     wishes = bounded(MACHINES[machine])
     given = problem(wishes, FREE, offset=(0.01, 0.15), mechanism=MACHINES[machine])
-    sheet = sheets(given)[0]
+    branch = elimination_branches(given)[0]
     u = np.random.default_rng(6).random((300, 3))
-    dimensions, violation = judged(given, sheet, u)
+    dimensions, violation = judged(given, branch, u)
     rows = np.flatnonzero(violation <= FEASIBLE)
-    found = Boxes(Evaluator(given, sheet), np.ones(len(wishes))).bound(u[rows], u[rows])
+    found = Boxes(Evaluator(given, branch), np.ones(len(wishes))).bound(u[rows], u[rows])
     assert found.alive.all()
     for column, name in enumerate(wishes):
         exact = QUANTITIES[name].evaluate(given.mechanism, dimensions[rows]).values
@@ -231,13 +231,15 @@ def test_sums_of_cylinders_and_an_uneven_speed_are_refused_and_rule_nothing_out(
     ):
         given = problem(wishes, {"stroke": 0.2}, mechanism=machine)  # type: ignore[arg-type]
         with pytest.raises(InputError, match=reason):
-            Boxes(Evaluator(given, sheets(given)[0]), np.ones(1))
+            Boxes(Evaluator(given, elimination_branches(given)[0]), np.ones(1))
     for machine, ratio in ((two, "time_ratio"), (uneven, "crank_angle_ratio")):
         closed: Any = {ratio: "maximise", "position_error": "minimise"}
         held: dict[str, Bounds] = {"stroke": 0.2, "peak_torque": (None, 1e-3)}
         given = problem(closed, held, mechanism=machine)
         assert (
-            Boxes(Evaluator(given, sheets(given)[0]), np.ones(2)).bound(np.zeros((1, 2)), np.ones((1, 2))).alive.all()
+            Boxes(Evaluator(given, elimination_branches(given)[0]), np.ones(2))
+            .bound(np.zeros((1, 2)), np.ones((1, 2)))
+            .alive.all()
         )
         assert check(problem(closed, {"stroke": 0.2}, mechanism=machine), 0.05, count=200) > 100
 
@@ -252,7 +254,7 @@ def test_what_cannot_be_bounded_is_refused_by_name() -> None:
     ):
         given = problem(wishes, {"stroke": 0.2}, mechanism=machine)  # type: ignore[arg-type]
         with pytest.raises(InputError, match=reason):
-            Boxes(Evaluator(given, sheets(given)[0]), np.ones(1))
+            Boxes(Evaluator(given, elimination_branches(given)[0]), np.ones(1))
 
 
 def test_friction_does_not_matter_to_what_has_no_forces() -> None:

@@ -13,12 +13,12 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.certificate.certificate import Certificate, Step
 from slidercrank.optimise.certificate.certify import certify_designs
-from slidercrank.optimise.certificate.cover import choose_covering, excess, thinned, volume_gap
+from slidercrank.optimise.certificate.cover import choose_covering, excess, greedy_cover, volume_gap
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.hypervolume import hypervolume
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.violation import FEASIBLE
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
 from tests.optimise.certificate.test_boxes import MACHINES, V
@@ -44,7 +44,7 @@ def certificate(epsilon: float = 0.02) -> Certificate:
 def feasible(given: Problem, count: int, seed: int = 9) -> Array:
     """Return the objectives of random feasible designs (count, m)."""
     random, found, total = np.random.default_rng(seed), [], 0
-    evaluators = [Evaluator(given, sheet) for sheet in sheets(given)]
+    evaluators = [Evaluator(given, branch) for branch in elimination_branches(given)]
     while total < count:
         for evaluator in evaluators:
             for part in np.array_split(random.random((60_000, evaluator.dimension)), 20):
@@ -131,7 +131,7 @@ def test_a_hole_at_the_end_of_the_front_is_found_too() -> None:
 
 def test_a_design_that_is_dominated_does_not_pass_for_the_front() -> None:
     given = two().problem
-    evaluator = Evaluator(given, sheets(given)[0])
+    evaluator = Evaluator(given, elimination_branches(given)[0])
     u = np.random.default_rng(2).random((20_000, 2))
     dimensions, values, violation = evaluator.screen(u)
     good = np.flatnonzero(violation <= FEASIBLE)
@@ -224,7 +224,7 @@ def test_thinned_designs_cover_what_all_of_them_cover() -> None:
     values = points + 0.05 * random.random((400, 2))
     chosen = choose_covering(points, values, 0.1)
     assert excess(points, values[chosen]).max() <= 0.1
-    few = thinned(points, values[chosen], 0.1)
+    few = greedy_cover(points, values[chosen], 0.1)
     assert excess(points, values[chosen][few]).max() <= 0.1
     assert 0 < len(few) <= len(chosen) < 400
 

@@ -123,7 +123,7 @@ def test_the_torque_of_a_table_that_steps_at_its_seam_is_enclosed_for_every_desi
     high = low * 1.02
     angles = 0.4 + random.uniform(-0.4, 0.4, 40)
     sides = [coordinate(low[:, k], high[:, k], k, 3) for k in range(3)]
-    found = curve.over(sides, angles, 0.5 * (low + high))
+    found = curve.enclose(sides, angles, 0.5 * (low + high))
     least, most = (end.reshape(40, -1) for end in found.ends())
     for design, angle, lower, upper in zip(low, angles, least, most, strict=True):
         for share in random.random((20, 3)):
@@ -143,6 +143,6 @@ def test_a_peak_on_a_step_is_bounded_the_better_the_smaller_the_box() -> None:
     for width in (1e-3, 1e-4, 1e-5):
         low, high = middle * (1.0 - width), middle * (1.0 + width)
         sides = [coordinate(low[:, k], high[:, k], k, 3) for k in range(3)]
-        least = Curve(machine, PEAK_TORQUE).over(sides, peak.angles[:, 0], middle).ends()[0]
+        least = Curve(machine, PEAK_TORQUE).enclose(sides, peak.angles[:, 0], middle).ends()[0]
         assert least.max() <= peak.values[0, 0]
         assert least.max() >= peak.values[0, 0] * (1.0 - 100.0 * width)

@@ -12,7 +12,7 @@ from slidercrank.optimise.methods.minimax.minimax import starts
 from slidercrank.optimise.methods.minimax.scp import Descent, Point, residual_of
 from slidercrank.optimise.problem.problem import Problem, Settings
 from slidercrank.optimise.problem.violation import FEASIBLE
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.search.search import explore
 from slidercrank.optimise.solve import solve
@@ -26,7 +26,7 @@ STROKE: dict[str, Bounds] = {"stroke": (0.08, 0.09), "transmission_angle": (degr
 
 def best_end(wanted: Problem) -> tuple[Evaluator, Point, float]:
     """Return the best feasible end of the descents, its evaluator, and the scale of the objective."""
-    evaluators = [Evaluator(wanted, sheet) for sheet in sheets(wanted)]
+    evaluators = [Evaluator(wanted, branch) for branch in elimination_branches(wanted)]
     scale, begin = starts(wanted, evaluators, explore(wanted, evaluators))
     descents = [Descent(evaluator, scale) for evaluator in evaluators]
     ends = [(evaluators[index], descents[index].run(u)) for index, u in begin]
@@ -47,7 +47,7 @@ def test_it_agrees_with_the_default_search_on_the_least_peak_torque(seed: int) -
     evaluator, end, scale = best_end(wanted)
     assert end.top * scale == pytest.approx(solve(wanted).values[0, 0], rel=1e-6)
     assert end.residual <= 1e-6
-    dimensions = evaluator.sheet.dimensions(end.u)
+    dimensions = evaluator.branch.dimensions(end.u)
     again = QUANTITIES[wanted.objectives[0].quantity].evaluate(wanted.mechanism, dimensions).values[0]
     assert again == pytest.approx(end.top * scale, rel=1e-12)
     assert feasible(wanted, dimensions, slack=1e-8).all()
@@ -60,7 +60,7 @@ def test_two_peaks_tie_where_the_torque_is_least() -> None:
     tied = end.step.goals > 1e-7
     assert tied.sum() == 2
     assert end.step.goals.sum() == pytest.approx(1.0, abs=1e-9)
-    peaks = QUANTITIES["peak_torque"].pieces(wanted.mechanism, evaluator.sheet.dimensions(end.u))
+    peaks = QUANTITIES["peak_torque"].pieces(wanted.mechanism, evaluator.branch.dimensions(end.u))
     assert peaks.values[0, 1] == pytest.approx(peaks.values[0, 0], rel=1e-9)
     assert sorted(end.goals.labels[tied]) == pytest.approx(sorted(peaks.labels[0, :2]), abs=1e-9)
 
@@ -98,8 +98,8 @@ def test_multipliers_predict_what_a_bound_costs(name: str, held: dict[str, Bound
     evaluator, end, scale = best_end(problem({"peak_torque": "minimise"}, held, rod=rod))
     assert end.step is not None
     if name == "rod":
-        column = evaluator.sheet.free.index("rod")
-        price = -end.step.above[column] / (evaluator.sheet.upper[column] - evaluator.sheet.lower[column])
+        column = evaluator.branch.free.index("rod")
+        price = -end.step.upper_multipliers[column] / (evaluator.branch.upper[column] - evaluator.branch.lower[column])
     else:  # constraints are relative to their bound; a least value that rises costs, a greatest one saves
         owner = [constraint.quantity for constraint in evaluator.constraints].index(name)
         sign = 1.0 if bounds[1] is None else -1.0
@@ -145,7 +145,7 @@ def test_curved_constraints_hold_from_infeasible_starts() -> None:
 def test_a_start_that_is_no_optimum_has_a_residual() -> None:
     """The residual is no formality: one step away from the optimum the multipliers leave what the gradient is."""
     descent = Descent(Analytic([[squared(0.5, 0.5)]]), 1.0)
-    point = descent._at(np.array([0.6, 0.5]))
+    point = descent._point_at(np.array([0.6, 0.5]))
     step, _ = descent._programme(point, np.zeros((2, 2)), 0.01, 10.0)
     assert step is not None
     assert residual_of(point, step) >= 0.1

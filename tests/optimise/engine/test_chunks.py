@@ -27,7 +27,7 @@ class Noted:
     def __init__(self, *, worth: bool = True) -> None:
         self.wanted, self.items, self.asked = worth, list[int](), list[float]()
 
-    def worth(self, seconds: float) -> bool:
+    def should_map(self, seconds: float) -> bool:
         self.asked.append(seconds)
         return self.wanted
 
@@ -70,7 +70,7 @@ def test_nothing_is_cut_where_nothing_is_gained() -> None:
 
 def test_processes_start_only_when_so_much_was_heavy_that_they_pay() -> None:
     engine = Processes(2)
-    assert [engine.worth(seconds) for seconds in (1.0, 1.0, 1.5)] == [False, False, True]
+    assert [engine.should_map(seconds) for seconds in (1.0, 1.0, 1.5)] == [False, False, True]
 
 
 def test_a_light_job_starts_no_process(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -19,9 +19,9 @@ from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.robust import Robust, robust
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
-from slidercrank.optimise.search.judging import exactly, joined, quickly
+from slidercrank.optimise.search.judging import evaluate_pieces, join_batches, screen_quantities
 from slidercrank.optimise.search.polish import polish
 from slidercrank.optimise.solve import solve
 from tests.optimise.engine import work
@@ -55,7 +55,7 @@ def test_a_robust_job_gives_the_same_bits_on_every_engine(engine: Engine, serial
 
     class Counting:
         workers = engine.workers
-        worth = engine.worth
+        should_map = engine.should_map
         close = engine.close
 
         def map(self, function: Callable[[Any], Any], items: list[Any], *, poll: object = None) -> list[Any]:
@@ -116,22 +116,22 @@ def designs(count: int) -> Array:
 def test_no_quantity_of_a_design_depends_on_the_designs_beside_it() -> None:
     judged, dimensions = all_quantities(), designs(40)
     names = (*QUANTITIES, *(quantity.name for quantity in judged.own))
-    whole, quick = exactly(judged, names, dimensions), quickly(judged, names, dimensions)
+    whole, quick = evaluate_pieces(judged, names, dimensions), screen_quantities(judged, names, dimensions)
     for cuts in CUTS:
         parts = [dimensions[begin:end] for begin, end in pairwise(cuts)]
         for name, one, other in zip(
-            names, whole, joined([exactly(judged, names, part) for part in parts]), strict=True
+            names, whole, join_batches([evaluate_pieces(judged, names, part) for part in parts]), strict=True
         ):
             for field in ("values", "gradients", "labels"):
                 assert np.array_equal(getattr(one, field), getattr(other, field), equal_nan=True), (name, field)
         for column, name in enumerate(names):
-            found = np.concatenate([quickly(judged, (name,), part)[0] for part in parts])
+            found = np.concatenate([screen_quantities(judged, (name,), part)[0] for part in parts])
             assert np.array_equal(found, quick[column], equal_nan=True), name
 
 
 @pytest.mark.parametrize("name", ["feeder", "sieve"])
 def test_the_polish_of_a_design_does_not_depend_on_the_designs_beside_it(name: str) -> None:
-    evaluator = Evaluator(shipped(name), sheets(shipped(name))[0])
+    evaluator = Evaluator(shipped(name), elimination_branches(shipped(name))[0])
     start = np.random.default_rng(1).random((200, evaluator.dimension))
     start = start[evaluator.valid(start)][:12]
     scale = np.ones(len(shipped(name).objectives))

@@ -18,14 +18,14 @@ from slidercrank.optimise.methods.population import Brood, Generation, generatio
 from slidercrank.optimise.methods.registry import methods
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.violation import FEASIBLE
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.search.search import Archive, Run
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import MACHINE, Bounds, degrees, problem
 
 ABLE = ("nsga2", "nsga3", "tpe", "cmaes", "random", "sobol")
-# Both signs of the offset, so that there are two sheets; a peak among the objectives and one among the constraints.
+# Both signs of the offset, so that there are two branches; a peak among the objectives and one among the constraints.
 HELD: dict[str, Bounds] = {"stroke": (0.16, 0.22), "transmission_angle": (degrees(30.0), None)}
 LIMITED: dict[str, Bounds] = HELD | {"peak_slider_speed": (None, 4.0)}
 SIZES = {"tpe": (8, 40), "cmaes": (6, 60)}
@@ -51,14 +51,16 @@ def asked(method: str) -> Problem:
 def bred(given: Problem) -> tuple[ParetoFront, tuple[Generation, ...]]:
     """Return the front of a problem and all generations that led to it."""
     found: list[Generation] = []
-    inner = population._evaluated
+    inner = population._evaluate_brood
 
-    def evaluated(evaluators: list[Evaluator], brood: Brood, archive: Archive, known: population._Known) -> Generation:
+    def evaluated(
+        evaluators: list[Evaluator], brood: Brood, archive: Archive, known: population._Evaluations
+    ) -> Generation:
         found.append(inner(evaluators, brood, archive, known))
         return found[-1]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(population, "_evaluated", evaluated)
+        patch.setattr(population, "_evaluate_brood", evaluated)
         return solve(given), tuple(found)
 
 
@@ -70,7 +72,7 @@ def whole(method: str) -> tuple[ParetoFront, tuple[Generation, ...]]:
 
 def same(one: Generation, two: Generation) -> bool:
     """Return whether two generations are the same bit for bit."""
-    names = ("sheet", "u", "parents", "values", "violation")
+    names = ("branch", "u", "parents", "values", "violation")
     return all(getattr(one, name).tobytes() == getattr(two, name).tobytes() for name in names)
 
 
@@ -78,8 +80,8 @@ def same(one: Generation, two: Generation) -> bool:
 def test_every_delivered_design_honours_every_constraint(method: str) -> None:
     front, generations = whole(method)
     given = asked(method)
-    for index, sheet in enumerate(sheets(given)):
-        own = front.dimensions[np.sign(front.dimensions[:, 2]) == sheet.sign]
+    for index, branch in enumerate(elimination_branches(given)):
+        own = front.dimensions[np.sign(front.dimensions[:, 2]) == branch.sign]
         ranges = np.array([[r.lower, r.upper] for r in (given.crank, given.rod, given.offset)])
         assert (own >= ranges[:, 0] - 1e-12).all(), index
         assert (own <= ranges[:, 1] + 1e-12).all(), index
@@ -103,7 +105,7 @@ def test_each_generation_has_its_own_random_numbers_and_the_seed_changes_all(met
 
 def test_a_point_is_evaluated_once_however_often_it_comes() -> None:
     given = asked("nsga2")
-    evaluators = [Evaluator(given, sheet) for sheet in sheets(given)]
+    evaluators = [Evaluator(given, branch) for branch in elimination_branches(given)]
     point = np.array([[0.3, 0.4, 0.2], [0.3, 0.4, 0.2], [0.7, 0.8, 0.1]])
     screened: list[int] = []
 
@@ -120,17 +122,17 @@ def test_a_point_is_evaluated_once_however_often_it_comes() -> None:
         evaluator.screen = counted  # type: ignore[method-assign]
     run = Run(given, 1)
     population.evolve(given, evaluators, run, breed, size=3)
-    # As many generations as fit into the budget; the same coordinates on two sheets are two designs.
-    assert len(run.told) == 80 // 3
+    # As many generations as fit into the budget; the same coordinates on two branches are two designs.
+    assert len(run.round_reports) == 80 // 3
     assert sum(screened) == 3
 
 
 def test_genetic_search_meets_duplicates_and_does_not_count_them() -> None:
     front, generations = whole("nsga2")
     keys = {
-        (int(sheet), point.tobytes())
+        (int(branch), point.tobytes())
         for generation in generations
-        for sheet, point in zip(generation.sheet, generation.u, strict=True)
+        for branch, point in zip(generation.branch, generation.u, strict=True)
     }
     assert len(keys) < sum(len(generation) for generation in generations)
     assert front.evaluations - len(keys) <= 2 * len(front) + 32  # what the delivery evaluates
@@ -138,12 +140,12 @@ def test_genetic_search_meets_duplicates_and_does_not_count_them() -> None:
 
 def test_what_is_not_finite_is_never_told_as_feasible(monkeypatch: pytest.MonkeyPatch) -> None:
     given = asked("nsga2")
-    evaluator = Evaluator(given, sheets(given)[0])
+    evaluator = Evaluator(given, elimination_branches(given)[0])
     u = np.array([[0.5, 0.5, 0.5]] * 4)
     wrong = np.array([[np.nan, 1.0], [np.inf, 1.0], [1.0, 1.0], [1.0, 1.0]])
     met = np.array([0.0, 0.0, np.nan, 0.0])
     monkeypatch.setattr(evaluator, "screen", lambda u, *, band: (u, wrong.copy(), met.copy()))
-    values, violation = population.screened(evaluator, u)
+    values, violation = population.screen_points(evaluator, u)
     assert violation.tolist() == [np.inf, np.inf, np.inf, 0.0]
     assert np.isnan(values[:3]).all()
     assert values[3].tolist() == [1.0, 1.0]
@@ -185,7 +187,7 @@ def test_the_archive_has_what_no_other_design_dominates() -> None:
     from slidercrank.optimise.methods.sampling import random
 
     given = asked("random")
-    archive = random(given, [Evaluator(given, sheet) for sheet in sheets(given)], Run(given, 1))
+    archive = random(given, [Evaluator(given, branch) for branch in elimination_branches(given)], Run(given, 1))
     values = np.concatenate([generation.values for generation in whole("random")[1]])
     values = values[np.isfinite(values).all(axis=1)]
     best = {row.tobytes() for row in values if not ((values <= row).all(axis=1) & (values < row).any(axis=1)).any()}

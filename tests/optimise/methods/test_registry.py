@@ -18,7 +18,7 @@ from slidercrank.optimise.job.model import Job
 from slidercrank.optimise.job.schema import schema_of
 from slidercrank.optimise.methods.registry import FAMILIES, Method, budget, methods
 from slidercrank.optimise.problem.problem import Problem, Settings
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.search.search import Archive, Run
 from slidercrank.optimise.solve import solve
@@ -37,7 +37,7 @@ def scatter(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     run.rounds = 2
     for _ in range(run.rounds):
         archive.screen(0, evaluators[0], random.random((POINTS, evaluators[0].dimension)))
-        run.tell("sampling", evaluators, archive)
+        run.report_round("sampling", evaluators, archive)
     return archive
 
 
@@ -107,8 +107,8 @@ def test_an_equality_that_stays_is_refused_by_methods_that_cannot_hold_it(method
 def test_designs_are_delivered_as_they_were_found() -> None:
     front = solve(asking(BOTH, "sobol"))
     random = np.random.default_rng(1)
-    evaluator = Evaluator(BOTH, sheets(BOTH)[0])
-    sampled = evaluator.sheet.dimensions(random.random((2 * POINTS, 2)))
+    evaluator = Evaluator(BOTH, elimination_branches(BOTH)[0])
+    sampled = evaluator.branch.dimensions(random.random((2 * POINTS, 2)))
     assert front.status == "done"
     assert 5 <= len(front) <= 20
     assert all((np.abs(sampled - design).max(axis=1) == 0.0).any() for design in front.dimensions)

@@ -14,7 +14,7 @@ from slidercrank.optimise.methods import scalarised
 from slidercrank.optimise.methods.scalar import Form, Programme
 from slidercrank.optimise.methods.scalarised import grid, simplex
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
 from tests.optimise.independent import dominated, excess, value
@@ -116,7 +116,7 @@ def test_a_form_is_the_greatest_weighted_distance_plus_a_little_of_the_sum() -> 
 def test_slopes_of_a_programme_are_the_differences_of_its_rows(seed: int) -> None:
     """Central differences of 1e-6 against exact slopes of size one: 1e-6 covers curvature and rounding."""
     given = problem({"peak_torque": "minimise", "time_ratio": 1.3}, HELD | {"peak_pivot_force": (None, 2e3)})
-    evaluator = Evaluator(given, sheets(given)[0])
+    evaluator = Evaluator(given, elimination_branches(given)[0])
     random = np.random.default_rng(seed)
     u = random.random((50, evaluator.dimension))
     u = u[evaluator.valid(u)][0]
@@ -131,7 +131,7 @@ def test_slopes_of_a_programme_are_the_differences_of_its_rows(seed: int) -> Non
 
 def test_a_programme_begins_where_its_rows_hold_but_for_the_problem_s_own_constraints() -> None:
     given = problem({"peak_torque": "minimise", "footprint": "minimise"}, designs=10)
-    evaluator = Evaluator(given, sheets(given)[0])
+    evaluator = Evaluator(given, elimination_branches(given)[0])
     u = np.full((1, evaluator.dimension), 0.4)
     assert evaluator.valid(u).all()
     programme = Programme(evaluator, Form.single(2, 1), np.zeros(2), np.array([100.0, 0.1]))

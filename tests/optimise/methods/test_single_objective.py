@@ -13,7 +13,7 @@ from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.methods.local import by_slsqp, samples
 from slidercrank.optimise.methods.scalar import Form, Programme
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.search.elimination import sheets
+from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
 from tests.optimise.independent import excess, value
@@ -99,7 +99,7 @@ def test_an_equality_that_no_rule_eliminates_is_met(seed: int) -> None:
 def test_any_start_descends_to_the_optimum_on_an_equality() -> None:
     """Not the best of many starts by luck: every one of a dozen ends where the default does."""
     given = EQUALITY
-    evaluators = [Evaluator(given, sheet) for sheet in sheets(given)]
+    evaluators = [Evaluator(given, branch) for branch in elimination_branches(given)]
     begun = samples(given, evaluators)
     best = best_on_the_equality()
     for row in begun.leading(0, 12):

@@ -29,7 +29,7 @@ def least_options(problem: Problem, variants: Whole, dimensions: Array) -> Colum
             labels = problem.variants[variant].labels
             rows = np.flatnonzero(variants == variant)
             serving, left = _Serving(problem, dimensions[rows]), np.ones(len(rows), np.bool_)
-            for option in sorted(_others(problem, labels, place), key=lambda of: of.ranks[place]):
+            for option in sorted(_single_swaps(problem, labels, place), key=lambda of: of.ranks[place]):
                 served = left if option.labels == labels else left & serving(option)
                 for row in rows[served].tolist():
                     found[row] = option
@@ -45,7 +45,7 @@ def least_options(problem: Problem, variants: Whole, dimensions: Array) -> Colum
     return columns
 
 
-def _others(problem: Problem, labels: tuple[str, ...], place: int) -> list[Variant]:
+def _single_swaps(problem: Problem, labels: tuple[str, ...], place: int) -> list[Variant]:
     """Return the combinations that differ from one in a single choice at most."""
 
     def rest(of: tuple[str, ...]) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer:
+class DiscreteAnswer:
     """How the front of a problem with discrete numbers was found.
 
     exact: whether every combination was judged; else those next to the designs of the continuous front were.

@@ -12,12 +12,12 @@ from ....model.kernel.interruption import interrupted_by
 from ....objectives.own.quantity import runs_own
 from ...front.front import ParetoFront
 from ...problem.problem import Problem
-from ...search.assemble import assemble, columns_of, empty, span_of
-from ...search.candidates import Finished
+from ...search.assemble import assemble, columns_of, empty_front, span_of
+from ...search.candidates import FrontCandidates
 from ...search.checkpoints import Cancelled
 from ...search.evaluation import Evaluator
 from ...search.search import Archive, Run
-from .auto import move
+from .auto import add_projected
 
 _PROJECTING = 0.3  # s, for moving designs onto the constraints
 _ANALYSING = 0.7  # s, for the quantities of all designs
@@ -27,7 +27,7 @@ _TRIED = 50  # designs that tell how long all take, of functions of its own in o
 _MOST = 1000  # designs: to choose among more would take longer
 
 
-def so_far(problem: Problem, evaluators: list[Evaluator], run: Run, *, silent: bool = False) -> ParetoFront:
+def partial_front(problem: Problem, evaluators: list[Evaluator], run: Run, *, silent: bool = False) -> ParetoFront:
     """Return the front of what a search has polished, else of what it has found, moved onto the constraints.
 
     Where that or the quantities of all designs would take longer than a moment, it has fewer of them, evenly spread;
@@ -45,7 +45,7 @@ def so_far(problem: Problem, evaluators: list[Evaluator], run: Run, *, silent: b
         with interrupted_by(give_up, farewell=0.0) if any(map(runs_own, problem.own)) else contextlib.nullcontext():
             return _front(problem, evaluators, run)
     except Cancelled:
-        return empty(problem, evaluators, run, "cancelled", _SLOW)
+        return empty_front(problem, evaluators, run, "cancelled", _SLOW)
 
 
 _SLOW = (
@@ -55,19 +55,19 @@ _SLOW = (
 
 
 def _front(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
-    finished, archive = run.finished, run.archive
+    finished, archive = run.candidates, run.archive
     if len(archive) and not finished.free.any():
-        finished = finished.only_settled(span_of(problem, np.concatenate([archive.values, finished.values])))
-        _take(problem, evaluators, archive, finished)
+        finished = finished.only_enumerated(span_of(problem, np.concatenate([archive.values, finished.values])))
+        _add_archive(problem, evaluators, archive, finished)
     if not len(finished):
-        return empty(problem, evaluators, run, "cancelled", "cancelled before any feasible design was found")
+        return empty_front(problem, evaluators, run, "cancelled", "cancelled before any feasible design was found")
     finished = finished[_spread(finished.values, _MOST)]
     best = finished.best()
     rows = best[_spread(finished.values[best], problem.settings.designs)]
-    return assemble(problem, evaluators, finished, run, _soon(problem, evaluators, finished, rows))
+    return assemble(problem, evaluators, finished, run, _rows_in_time(problem, evaluators, finished, rows))
 
 
-def _take(problem: Problem, evaluators: list[Evaluator], archive: Archive, finished: Finished) -> None:
+def _add_archive(problem: Problem, evaluators: list[Evaluator], archive: Archive, finished: FrontCandidates) -> None:
     """Add designs of an archive, moved onto the constraints."""
     # What needs no move comes first.
     first, *others = (some[_spread(some.values, problem.settings.designs)] for some in archive.groups())
@@ -76,18 +76,18 @@ def _take(problem: Problem, evaluators: list[Evaluator], archive: Archive, finis
     # Each batch is spread over the whole front.
     batches = -(-len(chosen) // _BATCH)
     for begin in range(batches):
-        move(finished, chosen[begin::batches], evaluators)
+        add_projected(finished, chosen[begin::batches], evaluators)
         if len(finished) and time.perf_counter() > end:
             break
 
 
-def _soon(problem: Problem, evaluators: list[Evaluator], finished: Finished, rows: Whole) -> Whole:
+def _rows_in_time(problem: Problem, evaluators: list[Evaluator], finished: FrontCandidates, rows: Whole) -> Whole:
     """Return those rows whose quantities are had within a moment, all of them as a rule."""
     count = _TRIED if any(map(runs_own, problem.own)) else 1
     each, end = 1e-9, time.perf_counter() + 0.5 * _ANALYSING
     while count <= _TRIED and count < len(rows) and (begin := time.perf_counter()) < end:
         some = finished[rows[:: -(-len(rows) // count)]]
-        variants = np.array([evaluators[index].sheet.variant for index in some.sheet], dtype=np.int64)
+        variants = np.array([evaluators[index].branch.variant for index in some.branch], dtype=np.int64)
         columns_of(problem, variants, some.dimensions(evaluators))
         count, each = 2 * count, (time.perf_counter() - begin) / len(some)
     return rows[_spread(finished.values[rows], max(1, int(_ANALYSING / each)))]

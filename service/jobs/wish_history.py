@@ -36,7 +36,7 @@ def words_of(front: ParetoFront, told: Wished) -> dict[str, str]:
     return words
 
 
-def made_wishes(folder: Path) -> list[MadeWish]:
+def wishes_of_run(folder: Path) -> list[MadeWish]:
     """Return the wishes that were made of the run of a folder, the latest first; none of a run without a job."""
     from ..store.wishes import wishes_of
 

@@ -20,7 +20,7 @@ MOST_KEPT = 500
 
 
 @dataclass(frozen=True, kw_only=True)
-class Kept:
+class Bookmark:
     """A kept design. number: among those of its job, from 1. at: when it was kept, s since 1970.
 
     design: of the front, by its number, that it is or began as; None for neither. variant: of the job's choices.
@@ -41,7 +41,7 @@ class Kept:
     at: float
 
 
-def kept_of(store: Database, job: int) -> list[Kept]:
+def bookmarks_of(store: Database, job: int) -> list[Bookmark]:
     """Return the kept designs of a job, in the order in which they were kept. Raises `NotFound` without the job."""
     with store.reading() as connection:
         the_job(connection, job)
@@ -59,7 +59,7 @@ def keep_design(
     name: str = "",
     note: str = "",
     star: bool = False,
-) -> Kept:
+) -> Bookmark:
     """Keep a design of a job and return it. Raises `NotFound` without the job, `InputError` for one too many.
 
     name: "Kept 3" and so on if it is empty.
@@ -76,7 +76,7 @@ def keep_design(
         return _the_kept(connection, job, number)
 
 
-def change_kept(store: Database, job: int, number: int, **changes: Any) -> Kept:
+def change_kept(store: Database, job: int, number: int, **changes: Any) -> Bookmark:
     """Change name, note, star, decided or reason of a kept design and return it; deciding takes it from the others."""
     with store.writing() as connection:
         the_job(connection, job, lock=True)
@@ -101,12 +101,12 @@ def _own(job: int, number: int) -> Any:
     return and_(kept.c.job == job, kept.c.number == number)
 
 
-def _the_kept(connection: Connection, job: int, number: int) -> Kept:
+def _the_kept(connection: Connection, job: int, number: int) -> Bookmark:
     row = connection.execute(select(kept).where(_own(job, number))).first()
     if row is None:
         raise NotFound(f"job {job} has no kept design {number}; see the kept designs of the job")
     return _kept(row)
 
 
-def _kept(row: Any) -> Kept:
-    return Kept(**{**row._mapping, "dimensions": tuple(json.loads(row.dimensions))})
+def _kept(row: Any) -> Bookmark:
+    return Bookmark(**{**row._mapping, "dimensions": tuple(json.loads(row.dimensions))})
