@@ -31,6 +31,12 @@ def build(
             f"got an acceleration of {mechanism.acceleration:g} rad/s^2; set it to zero"
         )
     require_no_crank_load(mechanism, "a simulation of clearance")
+    for load in mechanism.loads:
+        if load.inertial:
+            raise InputError(
+                f"a simulation of clearance takes forces on the slider; got {load.size}; "
+                "add that mass to the slider's, or leave that load out"
+            )
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     room = l - r - abs(e)
     if clearance.radius >= 0.5 * room:

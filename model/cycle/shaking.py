@@ -11,9 +11,10 @@ from ..arrays import Array
 from ..dynamics.inertia import reflected_inertia, shaking
 from ..linkage.linkage import Linkage
 from ..linkage.single import single
-from ..machine.design import DESIGN, derive, design_at
+from ..machine.design import DESIGN, LOAD_ROWS, derive, design_at
 from ..machine.mechanism import Mechanism
-from ..machine.raw import load_structure, raw_vector
+from ..machine.raw import inertial_inputs, raw_vector
+from ..machine.two_turns import one_turn
 from ..signals.signals import design_motion
 from .crank_speed import crank_speed
 
@@ -47,10 +48,11 @@ def shaking_curves(
     """
     linkage = single(mechanism, linkage)
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
-    structure = load_structure(Mechanism())
-    raw = raw_vector(mechanism)[: len(raw_vector(Mechanism())), None]
+    raw_vector(mechanism)  # refuses varying numbers
+    numbers, structure = inertial_inputs(one_turn(mechanism))
+    raw = numbers[:, None].copy()
     raw[:3, 0] = float(linkage.crank), float(linkage.rod), float(linkage.offset)
-    block = np.empty((DESIGN, 1))
+    block = np.empty((DESIGN + LOAD_ROWS * len(structure.kind), 1))
     derive(raw, structure.kind, structure.datum, block)
     d = design_at(block, 0)
     if mechanism.speed_profile is not None:

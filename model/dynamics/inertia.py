@@ -2,13 +2,14 @@
 
 With A the crank pin, S the rod's first moment about it, C that of the crank (counterweight included) about the pivot:
 
-    J = I_O + m_rod r^2 + 2 phi' (A . S) + phi'^2 I_A + m_s x'^2
+    J = I_O + m_rod r^2 + 2 phi' (A . S) + phi'^2 I_A + (m_s + m_a) x'^2
 
-so that J w^2 / 2 is the kinetic energy. The shaking force is minus the rate of change of the linkage's momentum, the
-resultant of all inertia forces; the shaking moment is minus the rate of change of its angular momentum about the crank
-pivot. They are what the machine does to its frame through pivot, guide and motor (the reaction of the drive torque
-counts: the motor stands on the frame) beyond gravity and load, which are left out: the one is constant or balanced by
-the foundation at rest, the other is usually closed within the machine. Friction is internal and changes neither.
+so that J w^2 / 2 is the kinetic energy; m_s is the slider, m_a what moves with it, such as fluid in a pipe. The shaking
+force is minus the rate of change of the linkage's momentum, the resultant of all inertia forces; the shaking moment is
+minus the rate of change of its angular momentum about the crank pivot. They are what the machine does to its frame
+through pivot, guide and motor (the reaction of the drive torque counts: the motor stands on the frame) beyond gravity
+and load, added masses included, which are left out: the one is constant or balanced by the foundation at rest, the
+other is usually closed within the machine. Friction is internal and changes neither.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ def reflected_inertia(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
     sx = d.rod_along * m.along - d.rod_across * m.across
     sy = d.rod_along * m.across + d.rod_across * m.along
     rod = d.rod_mass * d.r * d.r + 2.0 * m.rod_1 * d.r * (cosine * sx + sine * sy) + m.rod_1 * m.rod_1 * d.rod_inertia
-    return d.crank_inertia + rod + d.slider_mass * m.x_1 * m.x_1
+    return d.crank_inertia + rod + d.moving_mass * m.x_1 * m.x_1
 
 
 @analytic

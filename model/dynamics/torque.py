@@ -73,7 +73,7 @@ def balance(sine: Any, cosine: Any, m: Motion, d: Design, load: Any) -> Balance:
     cx = d.crank_along * cosine - d.crank_across * sine
     cy = d.crank_along * sine + d.crank_across * cosine
     return Balance(
-        d.slider_mass * (m.x_2 * w2 + m.x_1 * d.acceleration - gx) - d.branch * load,
+        d.moving_mass * (m.x_2 * w2 + m.x_1 * d.acceleration) - d.slider_mass * gx - d.branch * load,
         d.rod_inertia * rod_a + sx * pin_y - sy * pin_x,
         d.rod_mass * pin_x - sx * rod_w2 - sy * rod_a,
         d.rod_mass * pin_y - sy * rod_w2 + sx * rod_a,

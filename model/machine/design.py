@@ -18,9 +18,9 @@ from .raw import LOAD_SLOTS, Raw
 _CRANK, _ROD, _OFFSET, _BRANCH = int(Raw.CRANK), int(Raw.ROD), int(Raw.OFFSET), int(Raw.BRANCH)
 _CRANK_LINK, _ROD_LINK = int(Raw.CRANK_WIDTH), int(Raw.ROD_WIDTH)
 _COUNTERWEIGHT, _TOLERANCES = int(Raw.COUNTERWEIGHT_MASS), int(Raw.CRANK_TOLERANCE)
-_END, _GUIDE_DISTANCE = int(Raw.END), int(Raw.GUIDE_DISTANCE)
+_END, _GUIDE_DISTANCE, _SLIDER_MASS = int(Raw.END), int(Raw.GUIDE_DISTANCE), int(Raw.SLIDER_MASS)
 _STROKE_FORCE, _SPRING, _VISCOUS = int(Enters.STROKE_FORCE), int(Enters.SPRING), int(Enters.VISCOUS)
-_ANGLE_TABLE = int(Enters.ANGLE_TABLE)
+_ADDED_MASS, _ANGLE_TABLE = int(Enters.ADDED_MASS), int(Enters.ANGLE_TABLE)
 _CYLINDER, _BURNING_CYLINDER = int(Enters.CYLINDER), int(Enters.BURNING_CYLINDER)
 _CRANK_TORQUE, _FORMULA = int(Enters.CRANK_TORQUE), int(Enters.FORMULA)
 
@@ -31,7 +31,8 @@ class Design(NamedTuple):
     Mass moments are about the crank pivot (crank) or the crank pin (rod), in the link's own axes; rod_along and
     rod_across are per rod length, kg.
     outward_force, inward_force: sums of the stroke forces. stiffness, spring_force: sums of k and of k x_rest.
-    viscous: sum of the coefficients. *_error: tolerance of crank, rod, offset, crank angle; that of the rod with the
+    viscous: sum of the coefficients. moving_mass: slider with all added masses, which resist its acceleration but have
+    no weight, kg. *_error: tolerance of crank, rod, offset, crank angle; that of the rod with the
     clearances of the pins added to it, that of the offset with the clearance of the guide (see `position_error`).
     rod_error_rss, offset_error_rss: the same added up as squares.
     guide_friction: coefficient. *_circle: radius of a pin's friction circle, radius times coefficient, m.
@@ -66,6 +67,7 @@ class Design(NamedTuple):
     stiffness: Any
     spring_force: Any
     viscous: Any
+    moving_mass: Any
     rod_error_rss: Any
     offset_error_rss: Any
     guide_friction: Any
@@ -82,6 +84,7 @@ LOAD_ROWS, AREA = 10, 2
 of a cylinder, from AREA on: piston area, height of the clearance, low and high pressure, exponents of compression and
 expansion, back pressure, where burning ends, from the top; of a torque on the crank the numbers of its slots."""
 _OUTWARD = Design._fields.index("outward_force")
+_MOVING_MASS = Design._fields.index("moving_mass")
 _RUBBING = Design._fields.index("guide_friction")
 _ROD_RSS, _OFFSET_RSS = Design._fields.index("rod_error_rss"), Design._fields.index("offset_error_rss")
 
@@ -214,6 +217,8 @@ def derive(raw: Any, kind: Any, datum: Any, out: Any, moved: Any = -1) -> None:
     for i in range(_OUTWARD, _OUTWARD + 5):
         for j in range(raw.shape[1]):
             out[i, j] = 0.0
+    for j in range(raw.shape[1]):
+        out[_MOVING_MASS, j] = raw[_SLIDER_MASS, j]
     for k in range(kind.shape[0]):
         p = _END + LOAD_SLOTS * k
         q = DESIGN + LOAD_ROWS * k
@@ -239,6 +244,8 @@ def derive(raw: Any, kind: Any, datum: Any, out: Any, moved: Any = -1) -> None:
                 out[_OUTWARD + 3, j] += raw[p + 2, j] * (origin + sign * raw[p + 3, j])
             elif kind[k] == _VISCOUS:
                 out[_OUTWARD + 4, j] += raw[p + 2, j]
+            elif kind[k] == _ADDED_MASS:
+                out[_MOVING_MASS, j] += raw[p + 2, j]
             elif kind[k] == _CYLINDER or kind[k] == _BURNING_CYLINDER:
                 bore, rod = raw[p + 2, j], raw[p + 3, j]
                 area = (math.pi / 4.0) * (bore * bore - rod * rod)

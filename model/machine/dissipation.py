@@ -86,7 +86,12 @@ def drive_loaded(machine: Mechanism) -> bool:
 
 def _acting_loads(machine: Mechanism) -> list[Load]:
     """Return the loads that are not zero throughout; if the crank is at rest, those that need no speed."""
-    return [load for load in machine.loads if load.acts and (machine.speed != 0.0 or not load.speed_power)]
+    driven = machine.speed != 0.0 or machine.acceleration != 0.0
+    return [
+        load
+        for load in machine.loads
+        if load.acts and (driven if load.inertial else machine.speed != 0.0 or not load.speed_power)
+    ]
 
 
 def pivot_loaded(machine: Mechanism) -> bool:

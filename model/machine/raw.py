@@ -18,6 +18,7 @@ from ..kernel.kernel import Integers, Row, Table
 from .links import Bar, Link
 from .loads.load import Load
 from .loads.registry import code_of
+from .loads.stroke_force import StrokeForce
 from .mechanism import Mechanism
 from .memoise import memoise_by_machine
 from .two_turns import require_one_turn
@@ -153,3 +154,13 @@ def load_structure(mechanism: Mechanism) -> Loads:
         np.array(at, dtype=np.float64),
         np.array(force, dtype=np.float64),
     )
+
+
+@memoise_by_machine
+def inertial_inputs(mechanism: Mechanism) -> tuple[Array, Loads]:
+    """Return raw numbers and loads of which only added masses act: loads without effect make no breakpoints."""
+    raw, _ = fullest_inputs(mechanism)
+    if not any(load.inertial for load in mechanism.loads):
+        return raw[: int(Raw.END)], load_structure(Mechanism())
+    nothing = StrokeForce(outward=0.0, inward=0.0)
+    return raw, load_structure(Mechanism(loads=tuple(own if own.inertial else nothing for own in mechanism.loads)))

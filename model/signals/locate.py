@@ -52,7 +52,7 @@ def prepare(block: Any, kappa: Any, direction: Any, b: Any) -> None:
         along, across = d.crank_along + d.rod_mass * d.r, d.crank_across
         inertia = pace * d.rod_inertia
         rod_along, rod_across = pace * d.r * l * d.rod_along, pace * d.r * l * d.rod_across
-        mass, damping = d.slider_mass * w2 * l * l, (d.slider_mass * d.acceleration + d.viscous * d.speed) * l * l
+        mass, damping = d.moving_mass * w2 * l * l, (d.moving_mass * d.acceleration + d.viscous * d.speed) * l * l
         stiffness = d.stiffness * l * l
         steady = d.slider_mass * d.gravity_x + d.branch * d.spring_force
         outward = -(steady + d.branch * d.outward_force) * l

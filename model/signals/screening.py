@@ -73,7 +73,7 @@ def screens(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> boo
             whole
             and not shaft
             and not mechanism.friction.acts
-            and all(load.enters <= Enters.VISCOUS for load in mechanism.loads)
+            and all(load.enters <= Enters.ADDED_MASS for load in mechanism.loads)
         )
     return whole
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 from ..arrays import Array
 from ..dynamics.segments import CycleWindow
 from ..machine.crank_loads import require_no_winding
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_machine
-from ..machine.raw import LOAD_SLOTS, Loads, fullest_inputs, load_structure
+from ..machine.raw import Loads, fullest_inputs, inertial_inputs
 from ..machine.two_turns import one_turn
 from .signals import Signal
 
@@ -31,13 +29,7 @@ def signal_inputs(mechanism: Mechanism, kind: Signal) -> tuple[Array, Loads]:
     if kind.needs_forces:
         require_no_winding(mechanism)
         return fullest_inputs(mechanism)
-    raw, _ = fullest_inputs(one_turn(mechanism))
-    return raw[: len(raw) - LOAD_SLOTS * len(mechanism.loads)], _no_loads()
-
-
-@cache
-def _no_loads() -> Loads:
-    return load_structure(Mechanism())
+    return inertial_inputs(one_turn(mechanism))
 
 
 @memoise_by_machine

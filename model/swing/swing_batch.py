@@ -92,7 +92,8 @@ class SwingBatch:
         self.stepped_ends = self.ends.stepped(self.columns, column) if slopes else self.plain_ends
         self.table = self.swing.table
         # Alike on both ways is what depends on the position alone: laws are the same backwards, but for tables.
-        self.both = self.rubs or self.swing.law == "table" or not all(load.by_position for load in mechanism.loads)
+        alike = all(load.by_position or load.inertial for load in mechanism.loads)
+        self.both = self.rubs or self.swing.law == "table" or not alike
 
     def states(self, which: Any, share: Any, inside: Any, back: Any, slip: Any = 0.0, step: int | None = None) -> Any:
         """Return states (..., 8) at shares of any shape. which: designs. step: of which raw number the slope is."""

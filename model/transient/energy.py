@@ -18,7 +18,7 @@ def moving_inertia(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
     """Return J of the kinetic energy J w^2 / 2, kg m^2.
 
     Crank about its pivot; rod by the speed of the crank pin, its turning phi', and its first moment S about the pin:
-    m_rod r^2 + 2 phi' r (sin S_y + cos S_x) + I_A phi'^2; slider m_s x'^2.
+    m_rod r^2 + 2 phi' r (sin S_y + cos S_x) + I_A phi'^2; slider with added masses (m_s + m_a) x'^2.
     """
     sx = d.rod_along * m.along - d.rod_across * m.across
     sy = d.rod_along * m.across + d.rod_across * m.along
@@ -26,7 +26,7 @@ def moving_inertia(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
         d.crank_inertia
         + d.r * (d.rod_mass * d.r + 2.0 * m.rod_1 * (sine * sy + cosine * sx))
         + d.rod_inertia * m.rod_1 * m.rod_1
-        + d.slider_mass * m.x_1 * m.x_1
+        + d.moving_mass * m.x_1 * m.x_1
     )
 
 

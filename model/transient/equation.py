@@ -261,7 +261,7 @@ class CrankEquation(Equation):
         raw[[Raw.GRAVITY_X, Raw.GRAVITY_Y], _SPIN:] = 0.0
         for index, load in enumerate(mechanism.loads):
             for column, power in _KEPT.items():
-                if load.speed_power != power:
+                if not load.inertial and load.speed_power != power:
                     raw[Raw.END + LOAD_SLOTS * index :, column][:LOAD_SLOTS] = 0.0
         self.block = np.hstack([derived(np.ascontiguousarray(column), self.loads)[0][0] for column in raw.T])
         self.dead_centres = np.asarray(linkage.dead_centre_angles)

@@ -8,6 +8,7 @@ import numpy as np
 
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import Bar, Counterweight, RigidLink
+from slidercrank.model.machine.loads.added_mass import AddedMass
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.spring import Spring
@@ -35,6 +36,7 @@ _BARS = Mechanism(
         Spring(stiffness=700.0, free_position=0.04, datum="inner dead centre"),
         PositionTable(positions=(0.0, 0.02, 0.05), forces=(0.0, -90.0, -30.0), datum="outer dead centre"),
         Viscous(coefficient=20.0),
+        AddedMass(mass=0.8),
     ),
     tolerances=replace(TOLERANCES, clearances=Clearances(crank_pin=2e-5, guide=3e-5)),
     strength=STRENGTH,
@@ -61,6 +63,7 @@ BARS = replace(
         vary("strength.crank_pin", 0.01, 0.016),
         vary("strength.crank_pivot", 0.01, 0.016),
         vary("strength.slider_pin", 0.008, 0.014),
+        vary("loads.4.mass", 0.3, 2.0),
     ),
 )
 """Bars, loads of several kinds, tolerances and clearances."""

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slidercrank.model.machine.links import Bar, Link
+from slidercrank.model.machine.loads.added_mass import AddedMass
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.crank_table import CrankTable
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
@@ -116,6 +117,8 @@ def load_force(load: Load, position: Any, velocity: Any, outward: Any, theta: An
         return -load.drag * velocity * np.abs(velocity)
     if isinstance(load, Viscous):
         return -load.coefficient * velocity
+    if isinstance(load, AddedMass):
+        return np.zeros_like(position)  # inertia, below
     assert isinstance(load, Spring | PositionTable)
     counted = {
         "crank pivot": position,
@@ -179,12 +182,10 @@ def drive_torque(mechanism: Mechanism, designs: Any, theta: Any) -> Any:
         + weight.mass * weight.radius**2
         + rod.mass * r**2
     )
-    inertia = constant + 2.0 * coupling * at.rod_1 + about_pin * at.rod_1**2 + mechanism.slider_mass * at.x_1**2
+    moving = mechanism.slider_mass + sum(load.mass for load in mechanism.loads if isinstance(load, AddedMass))
+    inertia = constant + 2.0 * coupling * at.rod_1 + about_pin * at.rod_1**2 + moving * at.x_1**2
     half_slope = (
-        coupling * at.rod_2
-        + coupling_1 * at.rod_1
-        + about_pin * at.rod_1 * at.rod_2
-        + mechanism.slider_mass * at.x_1 * at.x_2
+        coupling * at.rod_2 + coupling_1 * at.rod_1 + about_pin * at.rod_1 * at.rod_2 + moving * at.x_1 * at.x_2
     )
     along = crank.mass * crank.along + weight.mass * weight.radius * math.cos(weight.angle)
     across = crank.mass * crank.across + weight.mass * weight.radius * math.sin(weight.angle)

@@ -30,7 +30,7 @@ Formula = Callable[[Any, Any, Any, Any, Any], Any]
 class Enters(IntEnum):
     """The way by which a kind of load enters the kernels; the order in which lists name kinds.
 
-    Stroke forces, springs and viscous loads are summed for each design before a sweep, so that any number of them
+    Stroke forces, springs, viscous loads and added masses are summed for each design before a sweep: any number of them
     costs what one does. Tables and cylinders make breakpoints. All others are evaluated one by one: torques on the
     crank, which the drive torque alone has, and forces with a formula.
     """
@@ -38,12 +38,13 @@ class Enters(IntEnum):
     STROKE_FORCE = 0
     SPRING = 1
     VISCOUS = 2
-    POSITION_TABLE = 3
-    ANGLE_TABLE = 4
-    CYLINDER = 5
-    BURNING_CYLINDER = 6
-    CRANK_TORQUE = 7
-    FORMULA = 8
+    ADDED_MASS = 3
+    POSITION_TABLE = 4
+    ANGLE_TABLE = 5
+    CYLINDER = 6
+    BURNING_CYLINDER = 7
+    CRANK_TORQUE = 8
+    FORMULA = 9
 
 
 class Passage(NamedTuple):
@@ -129,7 +130,8 @@ class Load:
     enters: see `Enters`. formula: force of position (m outward of the crank pivot), velocity (m/s outward), way (1
     while the slider moves outward, -1 inward) and the two numbers of the load's own, zero where both are zero;
     `analytic`, without branches on its arguments. speed_power: the power of the crank speed that the formula is
-    proportional to. on_crank: whether it is a torque on the crank. every_corner: whether its numbers that vary must
+    proportional to. inertial: whether it is a mass that moves with the slider. on_crank: whether it is a torque on the
+    crank. every_corner: whether its numbers that vary must
     be possible at every combination of their ends, not only all at the lower and all at the upper. sizes: fields that
     are all zero if the load is zero throughout; none of a load that never is. slots: place in the numbers of a load and
     SI unit of each field that designs can vary. tables: of job files.
@@ -138,6 +140,7 @@ class Load:
     enters: ClassVar[Enters]
     formula: ClassVar[Formula | None] = None
     speed_power: ClassVar[Literal[0, 1, 2]] = 0
+    inertial: ClassVar[bool] = False
     on_crank: ClassVar[bool] = False
     every_corner: ClassVar[bool] = False
     sizes: ClassVar[tuple[str, ...]] = ()

@@ -85,8 +85,8 @@ def massless(mechanism: Mechanism, load: float | None = None) -> Mechanism:
 
 
 def _own(mechanism: Mechanism) -> tuple[Load, ...]:
-    """Return the loads on the slider, of which the polygons are."""
-    return tuple(load for load in mechanism.loads if not load.on_crank)
+    """Return the loads on the slider that act on it at rest."""
+    return tuple(load for load in mechanism.loads if not load.on_crank and not load.inertial)
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None) -> StaticForces:

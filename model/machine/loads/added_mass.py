@@ -1,0 +1,67 @@
+"""A mass that moves with the slider besides it: fluid in a pipe, rollers or a flywheel that the slider turns."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+from ...checks import require_numbers
+from .load import Enters, Entry, Load, Table, built
+
+
+@dataclass(frozen=True, kw_only=True)
+class AddedMass(Load):
+    """A force = -mass times the slider's acceleration. mass: kg.
+
+    A column of fluid of density rho, length L and area A before a piston of area A_p: rho L A_p^2 / A. A roller of
+    inertia I that the slider turns without slip at radius r: I / r^2. It has no weight here and its reaction is
+    closed within the machine, so it does not shake the frame. It is part of the kinetic energy and of the inertia
+    reflected to the crank, hence of start-up and flywheel too, and not of the curve of the loads.
+    """
+
+    mass: float
+
+    enters: ClassVar = Enters.ADDED_MASS
+    inertial: ClassVar = True
+    sizes: ClassVar = ("mass",)
+    slots: ClassVar = {"mass": (2, "kg")}
+
+    def __post_init__(self) -> None:
+        require_numbers(self, "mass", least=0.0, unit="kg")
+
+    def numbers(self) -> tuple[float, float, float, float]:
+        """Return the mass after factors of one."""
+        return (1.0, 1.0, self.mass, 0.0)
+
+    def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
+        """Return nothing: the kinetic energy repeats."""
+        return {}
+
+    @property
+    def resists(self) -> bool:
+        """True: it gives back what it takes."""
+        return True
+
+    @property
+    def size(self) -> str:
+        """The mass."""
+        return f"added mass, {self.mass:.6g} kg"
+
+    @property
+    def effect(self) -> str:
+        """It opposes acceleration."""
+        return "resists acceleration of the slider, no net work over a cycle"
+
+
+AddedMass.tables = (
+    Table(
+        "added_mass",
+        "AddedMassLoad",
+        "mass that moves with the slider",
+        "Fluid or rollers that the slider accelerates: inertia without weight.",
+        (Entry("added_mass", "Mass", "mass moved with the slider's speed", "2 kg"),),
+        {"added_mass": "1 kg"},
+        built(AddedMass, added_mass="mass"),
+    ),
+)
