@@ -21,7 +21,7 @@ from slidercrank.model.signals.signals import Signal
 from tests.model.bodies import bodies
 from tests.model.cases import Array, linkage_of, random_designs, random_machine
 from tests.model.contour import distance_to_locking, motion_in_time
-from tests.model.virtual_work import drive_torque, path, slider_load
+from tests.model.virtual_work import added_mass, drive_torque, path, slider_load
 
 MACHINES = 60
 # The balances below differentiate positions by a contour or a Fourier series, which lose 1e-16 / reach^2.
@@ -51,6 +51,7 @@ def test_torque_balances_power_over_the_cycle() -> None:
             v2 = (x.imag / step * speed) ** 2 + (y.imag / step * speed) ** 2
             kinetic += 0.5 * part.mass * v2 + 0.5 * part.inertia * (turn.imag / step * speed) ** 2
             potential -= part.mass * (machine.gravity[0] * x.real + machine.gravity[1] * y.real)
+        kinetic += 0.5 * added_mass(machine) * (x.imag / step * speed) ** 2  # of the slider, the last
         # Both energies are periodic in the crank angle: a Fourier series differentiates them.
         slope = np.fft.ifft(wave * np.fft.fft(kinetic + potential)).real
         rate = slope * speed + 2.0 * kinetic / speed * acceleration
@@ -83,6 +84,7 @@ def test_reactions_satisfy_the_equations_of_motion_of_every_body() -> None:
             )
             weightless = part.mass * (x[2] - machine.gravity[0]), part.mass * (y[2] - machine.gravity[1])
             moved[name] = (x[0], y[0], *weightless, part.inertia * turn[2])
+        accelerated = added_mass(machine) * x[2]  # by the slider, the last
         pin_x, pin_y = r * np.cos(theta), r * np.sin(theta)
         slider_x = moved["slider"][0]
         crank_x, crank_y, crank_fx, crank_fy, crank_spin = moved["crank"]
@@ -105,7 +107,7 @@ def test_reactions_satisfy_the_equations_of_motion_of_every_body() -> None:
                 -(slider_x - rod_x) * f.slider_pin_y + (e - rod_y) * f.slider_pin_x,
                 -rod_spin,
             ),
-            "slider x": (f.slider_pin_x, load, -moved["slider"][2]),
+            "slider x": (f.slider_pin_x, load, -moved["slider"][2], -accelerated),
             "slider y": (f.slider_pin_y, f.guide, machine.slider_mass * machine.gravity[1] + 0.0 * theta),
         }
         for name, terms in equations.items():

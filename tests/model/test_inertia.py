@@ -12,6 +12,7 @@ from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.cycle.shaking import ShakingCurves, shaking_curves
 from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.links import Counterweight, RigidLink
+from slidercrank.model.machine.loads.added_mass import AddedMass
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import average
@@ -20,6 +21,7 @@ from slidercrank.model.signals.signals import Signal
 from tests.model.bodies import bodies
 from tests.model.cases import Array, linkage_of, random_designs, random_machine
 from tests.model.contour import distance_to_locking, motion_in_time
+from tests.model.virtual_work import added_mass
 
 DESIGNS = random_designs(30, seed=101, least_margin=0.05)
 THETA = 2.0 * math.pi * np.arange(120) / 120 + 0.004
@@ -72,7 +74,10 @@ def test_shaking_force_is_what_pivot_and_guide_give_back_without_gravity_and_loa
 def test_gravity_loads_and_friction_do_not_shake_the_frame() -> None:
     machine, design = machines()[0], DESIGNS[:1]
     other = dataclasses.replace(
-        machine, gravity=(1.0, 2.0), loads=(StrokeForce(outward=5.0, inward=1.0),), friction=Friction(guide=0.1)
+        machine,
+        gravity=(1.0, 2.0),
+        loads=(StrokeForce(outward=5.0, inward=1.0), AddedMass(mass=added_mass(machine))),
+        friction=Friction(guide=0.1),
     )
     for kind in (Signal.SHAKING_FORCE, Signal.SHAKING_MOMENT, Signal.REFLECTED_INERTIA):
         one, two = (find_peaks(each, kind, design, kept=1).values[0, 0] for each in (machine, other))
@@ -122,6 +127,7 @@ def test_reflected_inertia_is_twice_the_kinetic_energy_at_unit_speed() -> None:
         for part in bodies(machine, design).values():
             x, y, turn = (f(THETA + 1j * step).imag / step for f in (part.x, part.y, part.turn))
             expected += part.mass * (x**2 + y**2) + part.inertia * turn**2
+        expected += added_mass(machine) * x**2  # of the slider, the last
         linkage = linkage_of(design, machine.branch)
         got = shaking_curves(machine, linkage, THETA).reflected_inertia
         np.testing.assert_allclose(got, expected, rtol=1e-12)

@@ -162,6 +162,11 @@ def crank_torque(mechanism: Mechanism, theta: Any) -> Any:
     return total
 
 
+def added_mass(mechanism: Mechanism) -> float:
+    """Return the mass that moves with the slider, kg."""
+    return sum(load.mass for load in mechanism.loads if isinstance(load, AddedMass))
+
+
 def drive_torque(mechanism: Mechanism, designs: Any, theta: Any) -> Any:
     """Return the drive torque, N m, for designs (..., 3) at crank angles that broadcast with (...)."""
     sign = 1.0 if mechanism.branch == "open" else -1.0
@@ -182,7 +187,7 @@ def drive_torque(mechanism: Mechanism, designs: Any, theta: Any) -> Any:
         + weight.mass * weight.radius**2
         + rod.mass * r**2
     )
-    moving = mechanism.slider_mass + sum(load.mass for load in mechanism.loads if isinstance(load, AddedMass))
+    moving = mechanism.slider_mass + added_mass(mechanism)
     inertia = constant + 2.0 * coupling * at.rod_1 + about_pin * at.rod_1**2 + moving * at.x_1**2
     half_slope = (
         coupling * at.rod_2 + coupling_1 * at.rod_1 + about_pin * at.rod_1 * at.rod_2 + moving * at.x_1 * at.x_2
