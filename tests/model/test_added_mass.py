@@ -17,9 +17,9 @@ from slidercrank.model.signals.averages import average
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.model.swing.peaks import swing_peaks
-from slidercrank.model.swing.points import DRIVE, POWER
+from slidercrank.model.swing.swing_states import DRIVE, POWER
 from slidercrank.model.transient.equation import CrankEquation
-from tests.model.cases import linkage_of, random_designs, random_friction, random_machine
+from tests.model.cases import Array, linkage_of, random_designs, random_friction, random_machine
 from tests.model.swing.swings import random_swings
 from tests.model.varying_machines import vary
 
@@ -45,6 +45,14 @@ def pairs(count: int, *, friction: bool = True) -> list[tuple[Mechanism, Mechani
     return found
 
 
+def agree(one: Array | None, other: Array | None, *, rtol: float, atol: float = 0.0) -> Array:
+    """Assert that two arrays are equal; return the first."""
+    assert one is not None
+    assert other is not None
+    np.testing.assert_allclose(one, other, rtol=rtol, atol=atol)
+    return one
+
+
 @pytest.mark.parametrize("signal", [each for each in Signal if each is not Signal.ROCKING_COUPLE])
 def test_peaks_and_means_are_those_of_a_heavier_slider_but_for_the_frame(signal: Signal) -> None:
     designs, differing = random_designs(20, seed=3), 0
@@ -52,12 +60,11 @@ def test_peaks_and_means_are_those_of_a_heavier_slider_but_for_the_frame(signal:
         if signal in OF_THE_FRAME:
             heavier = replace(heavier, slider_mass=added.slider_mass)
         one, other = (find_peaks(machine, signal, designs, gradients=True) for machine in (added, heavier))
-        np.testing.assert_allclose(one.values, other.values, rtol=1e-10, atol=1e-12)
-        assert one.gradients is not None
+        agree(one.values, other.values, rtol=1e-10, atol=1e-12)
         highest = np.abs(one.values[np.isfinite(one.values)]).max()
-        np.testing.assert_allclose(one.gradients, other.gradients, rtol=1e-7, atol=1e-7 * highest)
+        agree(one.gradients, other.gradients, rtol=1e-7, atol=1e-7 * highest)
         means = [average(machine, signal, designs).mean for machine in (added, heavier)]
-        np.testing.assert_allclose(*means, rtol=1e-9, atol=1e-10)
+        agree(means[0], means[1], rtol=1e-9, atol=1e-10)
         without = find_peaks(replace(added, loads=added.loads[:-1]), signal, designs)
         differing += int(not np.allclose(one.values, without.values, rtol=1e-6))
     kinematic = {Signal.SLIDER_SPEED, Signal.SLIDER_ACCELERATION, Signal.SLIDER_JERK}
@@ -73,7 +80,7 @@ def test_an_added_mass_of_two_cylinders_counts_in_each(signal: Signal) -> None:
             replace(each, arrangement=Arrangement(phases=(0.0, 2.0), places=(-0.05, 0.06))) for each in (added, heavier)
         ]
         one, other = (find_peaks(machine, signal, designs).values for machine in machines)
-        np.testing.assert_allclose(one, other, rtol=1e-9)
+        agree(one, other, rtol=1e-9)
 
 
 def test_a_varying_added_mass_has_the_derivative_of_a_varying_slider_mass() -> None:
@@ -87,9 +94,8 @@ def test_a_varying_added_mass_has_the_derivative_of_a_varying_slider_mass() -> N
             find_peaks(machine, signal, np.column_stack([designs, np.full(10, value)]), gradients=True)
             for machine, value in ((one, mass), (other, heavier.slider_mass))
         ]
-        assert rows[0].gradients is not None
-        np.testing.assert_allclose(rows[0].gradients, rows[1].gradients, rtol=1e-8, atol=1e-9)
-        assert np.abs(rows[0].gradients[:, 0, 3]).min() > 0.0
+        slopes = agree(rows[0].gradients, rows[1].gradients, rtol=1e-8, atol=1e-9)
+        assert np.abs(slopes[:, 0, 3]).min() > 0.0
 
 
 def test_the_equation_of_motion_has_the_added_mass_in_its_inertia_and_in_no_load() -> None:
@@ -101,8 +107,8 @@ def test_the_equation_of_motion_has_the_added_mass_in_its_inertia_and_in_no_load
         for way in (1.0, -1.0):
             one, other = (equation.stretch(0, way).at(angles) for equation in equations)
             for name in ("inertia", "spin", "static", "drag", "square", "load"):
-                np.testing.assert_allclose(getattr(one, name), getattr(other, name), rtol=1e-11, atol=1e-12)
-        np.testing.assert_allclose(*(equation.inertia(angles) for equation in equations), rtol=1e-13)
+                agree(getattr(one, name), getattr(other, name), rtol=1e-11, atol=1e-12)
+        agree(equations[0].inertia(angles), equations[1].inertia(angles), rtol=1e-13)
 
 
 @pytest.mark.parametrize("signal", [DRIVE, POWER])
@@ -118,8 +124,8 @@ def test_in_a_swing_it_is_a_heavier_slider(signal: int) -> None:
                 light,
             )
         )
-        np.testing.assert_allclose(added.values, heavier.values, rtol=1e-9, atol=1e-12)
-        np.testing.assert_allclose(added.gradients, heavier.gradients, rtol=1e-6, atol=1e-6)
+        agree(added.values, heavier.values, rtol=1e-9, atol=1e-12)
+        agree(added.gradients, heavier.gradients, rtol=1e-6, atol=1e-6)
         steady = swing.duration is None or (swing.driver == "slider" and swing.law == "constant")
         assert np.allclose(added.values, without.values, rtol=1e-6) == steady
 
