@@ -37,12 +37,12 @@ class Amount(Quantity):
         return Values(np.full(len(dimensions), self.value), np.zeros(np.shape(dimensions)) if gradients else None)
 
 
-def with_amounts(of: Quantity, values: dict[str, float]) -> Quantity:
+def with_amounts(quantity: Quantity, values: dict[str, float]) -> Quantity:
     """Return a quantity with the amounts in it, itself or its parts, replaced by those of a choice. values: SI."""
-    if isinstance(of, Amount):
-        return replace(of, value=values.get(of.name, _NONE))
-    parts = tuple(with_amounts(part, values) for part in of.made_of)
-    return of if parts == of.made_of else of.with_parts(parts)
+    if isinstance(quantity, Amount):
+        return replace(quantity, value=values.get(quantity.name, _NONE))
+    parts = tuple(with_amounts(part, values) for part in quantity.made_of)
+    return quantity if parts == quantity.made_of else quantity.with_parts(parts)
 
 
 def kind_of_amount(unit: str) -> Kind:

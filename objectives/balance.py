@@ -13,7 +13,7 @@ from .needs import COUPLES, MASSES, MOTION, SHAKES, SWINGING_MASSES
 from .quantity import Group
 
 _peak = partial(CyclePeak, group=Group.FORCES, section="10. Motor and balance")
-_rms = partial(CycleAverage, which="rms", group=Group.FORCES)
+_rms = partial(CycleAverage, statistic="rms", group=Group.FORCES)
 
 PEAK_SHAKING_FORCE = _peak(
     name="peak_shaking_force",

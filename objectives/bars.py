@@ -32,7 +32,7 @@ class Link(NamedTuple):
     width: int
     depth: int
     far: str
-    held: float
+    end_condition: float
     """End condition C of buckling in the plane of motion."""
 
 
@@ -59,22 +59,22 @@ class Part(NamedTuple):
     def times(self, factor: tuple[Array, Array | None]) -> Part:
         """Return the pieces times a positive closed form (n,) with its gradients."""
         values, slopes = factor
-        return self._with(values[:, None] * self.values, values[:, None], slopes, self.values)
+        return self._with_slopes(values[:, None] * self.values, values[:, None], slopes, self.values)
 
-    def into(self, factor: tuple[Array, Array | None]) -> Part:
+    def dividing(self, factor: tuple[Array, Array | None]) -> Part:
         """Return a closed form (n,) over the pieces, highest first; +inf where they are absent, or not positive.
 
         Of one that is negative the highest piece alone counts.
         """
         values, slopes = factor
-        there = self.values > 0.0
-        there[:, 1:] &= values[:, None] > 0.0
-        inverse = np.where(there, 1.0 / np.where(there, self.values, 1.0), 0.0)
-        found = np.where(there, values[:, None] * inverse, np.inf)
-        part = self._with(found, -values[:, None] * inverse**2, slopes, inverse)
+        counts = self.values > 0.0
+        counts[:, 1:] &= values[:, None] > 0.0
+        inverse = np.where(counts, 1.0 / np.where(counts, self.values, 1.0), 0.0)
+        quotients = np.where(counts, values[:, None] * inverse, np.inf)
+        part = self._with_slopes(quotients, -values[:, None] * inverse**2, slopes, inverse)
         return part
 
-    def _with(self, values: Array, outer: Array, slopes: Array | None, inner: Array) -> Part:
+    def _with_slopes(self, values: Array, outer: Array, slopes: Array | None, inner: Array) -> Part:
         """Return values whose derivatives are `outer` by the pieces and `inner` by the factor."""
         if self.gradients is None or slopes is None:
             return Part(values, None, self.labels)
@@ -98,8 +98,8 @@ class OfBars(Quantity):
         return 1.0
 
     @abstractmethod
-    def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
-        """Return the parts that count for designs (n, 3 + k). kept: pieces wanted of each."""
+    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
+        """Return the parts that count for designs (n, 3 + k). piece_count: pieces wanted of each."""
 
     def bars(self, mechanism: Mechanism) -> list[str]:
         """Return which of its links are bars."""
@@ -109,23 +109,25 @@ class OfBars(Quantity):
         """Return the quantity for designs (n, 3 + k); NaN without what it is of; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return undefined(dimensions, gradients)
-        found = self.joined(mechanism, dimensions, 1, gradients)
-        first = (np.argmin if self.least else np.argmax)(found.values, axis=1)
+        all_parts = self.joined(mechanism, dimensions, 1, gradients)
+        first = (np.argmin if self.least else np.argmax)(all_parts.values, axis=1)
         rows = np.arange(len(first))
-        return Values(found.values[rows, first], None if found.gradients is None else found.gradients[rows, first])
+        return Values(
+            all_parts.values[rows, first], None if all_parts.gradients is None else all_parts.gradients[rows, first]
+        )
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the local peaks of every part; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return super().pieces(mechanism, dimensions)
-        found = self.joined(mechanism, dimensions, KEPT, True)
-        assert found.gradients is not None
-        order = np.argsort(found.values if self.least else -found.values, axis=1, kind="stable")
-        return Pieces(found.values, found.gradients, found.labels, self.least).at(order)
+        all_parts = self.joined(mechanism, dimensions, KEPT, True)
+        assert all_parts.gradients is not None
+        order = np.argsort(all_parts.values if self.least else -all_parts.values, axis=1, kind="stable")
+        return Pieces(all_parts.values, all_parts.gradients, all_parts.labels, self.least).take(order)
 
-    def joined(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Part:
+    def joined(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Part:
         """Return all parts side by side, with labels that tell them apart; see `parts`."""
-        parts = self.parts(mechanism, designs, kept, gradients)
+        parts = self.parts(mechanism, designs, piece_count, gradients)
         return Part(
             np.concatenate([part.values for part in parts], axis=1),
             np.concatenate([part.gradients for part in parts if part.gradients is not None], axis=1)
@@ -147,19 +149,19 @@ def stresses(
     designs: Array,
     places: tuple[Place, ...],
     criteria: tuple[tuple[float, float], ...],
-    kept: int,
+    piece_count: int,
     gradients: bool,
 ) -> list[Part]:
     """Return the greatest p sigma - q sigma of each place, for (p, q) of the criteria; see `stress_peaks`."""
-    found = stress_peaks(mechanism, places, designs, np.array(criteria), gradients=gradients, kept=kept)
-    return [Part(each.values, each.gradients, each.labels) for each in found]
+    peaks = stress_peaks(mechanism, places, designs, np.array(criteria), gradients=gradients, kept=piece_count)
+    return [Part(each.values, each.gradients, each.labels) for each in peaks]
 
 
 @memoise_by_batch
-def pin_force(mechanism: Mechanism, designs: Array, pin: str, kept: int, gradients: bool) -> Part:
+def pin_force(mechanism: Mechanism, designs: Array, pin: str, piece_count: int, gradients: bool) -> Part:
     """Return the greatest force of a pin over the cycle, N."""
-    found = find_peaks(mechanism, FORCE[pin], designs, gradients=gradients, kept=kept)
-    return Part(found.values, found.gradients, np.nan_to_num(found.angles))
+    peaks = find_peaks(mechanism, FORCE[pin], designs, gradients=gradients, kept=piece_count)
+    return Part(peaks.values, peaks.gradients, np.nan_to_num(peaks.angles))
 
 
 def eyes_of(link: str, pin: str) -> list[Eye]:
@@ -167,13 +169,13 @@ def eyes_of(link: str, pin: str) -> list[Eye]:
 
     That is the crank's pivot. What the friction of a pin bends its eye is left out.
     """
-    own = LINKS[link]
-    bent = own.part == CRANK and pin == own.far
+    sizes = LINKS[link]
+    bent = sizes.part == CRANK and pin == sizes.far
     edges = (False, True) if bent else (False,)
-    return [Eye(own.part, pin != NEAR, own.width, PINS[pin], bent, outer) for outer in edges]
+    return [Eye(sizes.part, pin != NEAR, sizes.width, PINS[pin], bent, outer) for outer in edges]
 
 
-def beside_pin(mechanism: Mechanism, designs: Array, place: Place, gradients: bool) -> tuple[Array, Array | None]:
+def stress_divisor(mechanism: Mechanism, designs: Array, place: Place, gradients: bool) -> tuple[Array, Array | None]:
     """Return the factor that the stress of a place still has (`places`): w - D of an eye, m, and 1 along a link."""
     if not isinstance(place, Eye):
         return constant(1.0, designs, gradients)
@@ -182,8 +184,8 @@ def beside_pin(mechanism: Mechanism, designs: Array, place: Place, gradients: bo
 
 def net_section(link: str, pin: str) -> Formula:
     """Return the formula of the net section of a link's eye, (w - D) t, m^2."""
-    own = LINKS[link]
-    return lambda number: (number(own.width) - number(PINS[pin])) * number(own.depth)
+    sizes = LINKS[link]
+    return lambda number: (number(sizes.width) - number(PINS[pin])) * number(sizes.depth)
 
 
 def constant(value: float, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
@@ -191,13 +193,13 @@ def constant(value: float, designs: Array, gradients: bool) -> tuple[Array, Arra
     return np.full(len(designs), value), np.zeros(designs.shape) if gradients else None
 
 
-def over(force: Part, area: tuple[Array, Array | None], by: float = 1.0) -> Part:
+def force_over_area(force: Part, area: tuple[Array, Array | None], factor: float = 1.0) -> Part:
     """Return a force over an area times a number; infinite where there is no area."""
     values, slopes = area
-    there = values > 0.0
-    safe = np.where(there, values, 1.0)
-    inverse = by / safe
-    found = force.times((inverse, None if slopes is None else -(inverse / safe)[:, None] * slopes))
-    filled = np.where(there[:, None] | ~np.isfinite(found.values), found.values, np.inf)
-    blank = None if found.gradients is None else np.where(there[:, None, None], found.gradients, 0.0)
-    return Part(filled, blank, found.labels)
+    has_area = values > 0.0
+    safe = np.where(has_area, values, 1.0)
+    inverse = factor / safe
+    stress = force.times((inverse, None if slopes is None else -(inverse / safe)[:, None] * slopes))
+    filled = np.where(has_area[:, None] | ~np.isfinite(stress.values), stress.values, np.inf)
+    gradients = None if stress.gradients is None else np.where(has_area[:, None, None], stress.gradients, 0.0)
+    return Part(filled, gradients, stress.labels)

@@ -13,8 +13,8 @@ from ..model.kinematics.closed_forms import ClosedForm, closed_form, evaluate_cl
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import require_width
 from ..model.machine.raw import Raw
+from .bounds import QuantityBounds
 from .quantity import Array, Formula, Number, Pieces, Quantity, Values, fact
-from .reach import Reach
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,18 +42,18 @@ class ClosedFormQuantity(Quantity):
         """Return its forms where they hold for a machine; see `Quantity`."""
         return [partial(_of_numbers, form) for form in self.forms] if self.is_closed(mechanism) else ()
 
-    def reach_for(self, mechanism: Mechanism) -> Reach | None:
+    def bounds_for(self, mechanism: Mechanism) -> QuantityBounds | None:
         """Return its reach if the closed form holds for the machine."""
-        return self.reach if self.is_closed(mechanism) else None
+        return self.bounds if self.is_closed(mechanism) else None
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         values, slopes = _evaluate(self.forms[0], mechanism, dimensions, gradients)
         for form in self.forms[1:]:
-            others, other_slopes = _evaluate(form, mechanism, dimensions, gradients)
+            other_values, other_slopes = _evaluate(form, mechanism, dimensions, gradients)
             if slopes is not None and other_slopes is not None:
-                slopes = np.where((others > values)[:, None], other_slopes, slopes)
-            values = np.maximum(values, others)
+                slopes = np.where((other_values > values)[:, None], other_slopes, slopes)
+            values = np.maximum(values, other_values)
         return Values(values, slopes)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:

@@ -14,7 +14,7 @@ from ..model.signals.shaft_statistics import mean_speed_ratio
 from ..model.signals.signals import Signal
 from .quantity import Array, Quantity, Values, fact
 
-Which = Literal["mean", "rms"]
+Statistic = Literal["mean", "rms"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,18 +28,20 @@ class CycleAverage(Quantity):
 
     section: str = fact("10. Motor and balance")
     signal: Signal
-    which: Which
+    statistic: Statistic
     times_speed: bool = False
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_word("which", self.which, Which)
+        require_word("statistic", self.statistic, Statistic)
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        found = average(mechanism, self.signal, dimensions, gradients=gradients)
+        averages = average(mechanism, self.signal, dimensions, gradients=gradients)
         values, slopes = (
-            (found.mean, found.mean_gradients) if self.which == "mean" else (found.rms, found.rms_gradients)
+            (averages.mean, averages.mean_gradients)
+            if self.statistic == "mean"
+            else (averages.rms, averages.rms_gradients)
         )
         if self.times_speed:
             share = mean_speed_ratio(mechanism)

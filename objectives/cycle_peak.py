@@ -27,16 +27,16 @@ class CyclePeak(Quantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        found = find_peaks(mechanism, self.signal, dimensions, during=self.during, gradients=gradients, kept=1)
+        peaks = find_peaks(mechanism, self.signal, dimensions, during=self.during, gradients=gradients, kept=1)
         return Values(
-            found.values[:, 0] + 0.0, None if found.gradients is None else found.gradients[:, 0]
+            peaks.values[:, 0] + 0.0, None if peaks.gradients is None else peaks.gradients[:, 0]
         )  # no negative zero
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the highest local peaks; see `Quantity`."""
-        found = find_peaks(mechanism, self.signal, dimensions, during=self.during, gradients=True)
-        assert found.gradients is not None
-        return Pieces(found.values, found.gradients, found.angles)
+        peaks = find_peaks(mechanism, self.signal, dimensions, during=self.during, gradients=True)
+        assert peaks.gradients is not None
+        return Pieces(peaks.values, peaks.gradients, peaks.angles)
 
 
 _NEAR = 0.02
@@ -62,16 +62,20 @@ def screened(
     if not quick:
         return {}
     kinks = certain and Signal.TORQUE in quick.values() and stroke_dependent(mechanism)
-    found = screen(mechanism, tuple(quick.values()), dimensions, gradients=gradients, still=kinks, angles=angles)
-    for signal, item in zip(quick.values(), found, strict=True):
+    screened_signals = screen(
+        mechanism, tuple(quick.values()), dimensions, gradients=gradients, still=kinks, angles=angles
+    )
+    for signal, item in zip(quick.values(), screened_signals, strict=True):
         if kinks and signal is Signal.TORQUE:
             item.values[item.still >= item.values * (1.0 - _NEAR)] = np.nan
-    return {name: Values(item.values, item.gradients) for name, item in zip(quick, found, strict=True)}
+    return {name: Values(item.values, item.gradients) for name, item in zip(quick, screened_signals, strict=True)}
 
 
 def screen_peaks(
     quantities: Sequence[CyclePeak], mechanism: Mechanism, dimensions: Array, *, gradients: bool = False
 ) -> tuple[Values, ...]:
     """Return several quantities for designs (n, 3 + k) by vectorised screening: exact but for peaks on a kink."""
-    found = screened(quantities, mechanism, dimensions, gradients=gradients)
-    return tuple(found.get(q.name) or q.evaluate(mechanism, dimensions, gradients=gradients) for q in quantities)
+    screened_values = screened(quantities, mechanism, dimensions, gradients=gradients)
+    return tuple(
+        screened_values.get(q.name) or q.evaluate(mechanism, dimensions, gradients=gradients) for q in quantities
+    )

@@ -23,13 +23,13 @@ from .quantity import Array, Formula, Group, Number
 
 @dataclass(frozen=True, kw_only=True)
 class NearDeadCentre(GreatestFormula):
-    """A closed form at a distance from a dead centre; NaN where the stroke is not longer. of: gives it."""
+    """A closed form at a distance from a dead centre; NaN where the stroke is not longer. closed_form: gives it."""
 
-    of: Callable[[Mechanism, Number], Any] = field(repr=False)
+    closed_form: Callable[[Mechanism, Number], Any] = field(repr=False)
 
     def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
         """Return the formula if the machine has what it needs; see `Quantity`."""
-        return () if self.lacks(mechanism, "undefined") else (partial(self.of, mechanism),)
+        return () if self.lacks(mechanism, "undefined") else (partial(self.closed_form, mechanism),)
 
     @property
     def blank(self) -> str:
@@ -45,32 +45,32 @@ def _triangle(number: Number, distance: float, outer: bool) -> tuple[Any, ...]:
     lengths = number(Raw.CRANK), number(Raw.ROD), number(Raw.OFFSET)
     far, near = outer_dead_centre(*lengths), inner_dead_centre(*lengths)
     if outer:
-        x, above = far - distance, distance * (2.0 * far - distance)
-        below = (x - near) * (x + near)
+        x, outer_product = far - distance, distance * (2.0 * far - distance)
+        inner_product = (x - near) * (x + near)
     else:
-        x, below = near + distance, distance * (2.0 * near + distance)
-        above = (far - x) * (far + x)
-    return x, x * x + lengths[2] * lengths[2], above, below
+        x, inner_product = near + distance, distance * (2.0 * near + distance)
+        outer_product = (far - x) * (far + x)
+    return x, x * x + lengths[2] * lengths[2], outer_product, inner_product
 
 
 def _travel(machine: Mechanism, number: Number, distance: Any) -> Any:
     """Return |x'|, m, before the dead centre: the area of the parallelogram of crank and rod over l cos(phi)."""
     r, l, e = number(Raw.CRANK), number(Raw.ROD), number(Raw.OFFSET)
     outer = machine.slider.dead_centre == "outer"
-    x, square, above, below = _triangle(number, distance, outer)
-    area = 0.5 * root(above * below)
+    x, square, outer_product, inner_product = _triangle(number, distance, outer)
+    area = 0.5 * root(outer_product * inner_product)
     side = machine.sign * machine.direction * (1.0 if outer else -1.0)  # of the crank pin
-    along = (0.5 * x * (square + (l + r) * (l - r)) - side * area * e) / square
-    return area / along
+    lever = (0.5 * x * (square + (l + r) * (l - r)) - side * area * e) / square
+    return area / lever
 
 
 def _angle_from_line(machine: Mechanism, number: Number, distance: Any) -> Any:
     """Return the angle of the crank from the line of its pivot and the slider pin, rad: twice the half of it."""
     r, l = number(Raw.CRANK), number(Raw.ROD)
     outer = machine.slider.dead_centre == "outer"
-    _, square, above, below = _triangle(number, distance, outer)
+    _, square, outer_product, inner_product = _triangle(number, distance, outer)
     b = root(square)
-    share = above / (l + r + b) * (l + b - r) if outer else below / (b + l - r) * (b + l + r)
+    share = outer_product / (l + r + b) * (l + b - r) if outer else inner_product / (b + l - r) * (b + l + r)
     return 2.0 * arcsine(root(share / (4.0 * r * b)))
 
 
@@ -102,14 +102,14 @@ def _needs(name: str) -> Need:
         lambda machine: getattr(machine.slider, name) is not None,
         f"it comes from a {name} distance of the slider; got none; add for example "
         f'[mechanism] slider = {{ mass = "0.8 kg", {name}_distance = "5 mm" }}',
-        without="undefined",
+        consequence="undefined",
     )
 
 
 TOUCH_SPEED = NearDeadCentre(
     name="touch_speed",
     kind=SPEED,
-    of=_touch_speed,
+    closed_form=_touch_speed,
     place=235,
     group=Group.MOTION,
     sentence="The slider's speed where it meets its work, a given distance before a dead centre.",
@@ -123,7 +123,7 @@ TOUCH_SPEED = NearDeadCentre(
 DWELL_ANGLE = NearDeadCentre(
     name="dwell_angle",
     kind=ANGLE,
-    of=_dwell_angle,
+    closed_form=_dwell_angle,
     place=236,
     group=Group.MOTION,
     sentence="The crank angle over which the slider stays within a given distance of a dead centre.",

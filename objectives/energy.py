@@ -40,11 +40,11 @@ def _heat(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[Array, 
     heat = np.zeros(len(designs))
     slopes = None if work.gradients is None else np.zeros(designs.shape)
     for place, formula in _COEFFICIENTS.items():
-        factor, by = of_numbers(mechanism, designs, formula, gradients=slopes is not None)
+        factor, factor_slopes = of_numbers(mechanism, designs, formula, gradients=slopes is not None)
         mean = np.where(np.isinf(work.mean[:, place]), 0.0, work.mean[:, place])
         heat += _TURN * factor * mean
-        if slopes is not None and by is not None and work.gradients is not None:
-            slopes += _TURN * (factor[:, None] * work.gradients[:, place] + mean[:, None] * by)
+        if slopes is not None and factor_slopes is not None and work.gradients is not None:
+            slopes += _TURN * (factor[:, None] * work.gradients[:, place] + mean[:, None] * factor_slopes)
     return np.where(np.isinf(work.mean[:, 0]), np.inf, heat), slopes
 
 
@@ -56,15 +56,15 @@ def _useful(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[Array
     if not any(load.on_crank for load in mechanism.loads):
         return _TURN * work.mean[:, LOAD], None if work.gradients is None else _TURN * work.gradients[:, LOAD]
     alone, factor = with_loads_alone(mechanism), _TURN * mechanism.direction
-    found = average_torque(alone, designs, gradients=work.gradients is not None)
-    return factor * found.mean, None if found.mean_gradients is None else factor * found.mean_gradients
+    averages = average_torque(alone, designs, gradients=work.gradients is not None)
+    return factor * averages.mean, None if averages.mean_gradients is None else factor * averages.mean_gradients
 
 
 def _drive_work(mechanism: Mechanism, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
     """Return the work of the drive torque over a cycle, J (n,), and its derivatives; NaN where friction locks."""
-    found = average_torque(mechanism, designs, gradients=gradients)
+    averages = average_torque(mechanism, designs, gradients=gradients)
     factor = _TURN * cycle_turns(mechanism) * mechanism.direction
-    return factor * found.mean, None if found.mean_gradients is None else factor * found.mean_gradients
+    return factor * averages.mean, None if averages.mean_gradients is None else factor * averages.mean_gradients
 
 
 class EnergyPerCycle(Quantity):
@@ -116,19 +116,19 @@ class Efficiency(Quantity):
         locks = np.isinf(heat)
         useful, by_useful = _useful(mechanism, dimensions, work)
         heat = np.where(locks, 0.0, heat)
-        there = (np.abs(useful) > _ROUNDING * heat) & ~locks
-        useful = np.where(there, useful, 1.0)
-        driven, drives = there & (useful > 0.0), there & (useful < 0.0) & (useful + heat < 0.0)
-        given = useful + heat
-        given = np.where(given != 0.0, given, 1.0)
-        values = np.where(driven, useful / given, np.where(drives, given / useful, 0.0))
-        values = np.where(locks, -np.inf, np.where(there, values, np.nan))
+        has_work = (np.abs(useful) > _ROUNDING * heat) & ~locks
+        useful = np.where(has_work, useful, 1.0)
+        driven, drives = has_work & (useful > 0.0), has_work & (useful < 0.0) & (useful + heat < 0.0)
+        total = useful + heat
+        total = np.where(total != 0.0, total, 1.0)
+        values = np.where(driven, useful / total, np.where(drives, total / useful, 0.0))
+        values = np.where(locks, -np.inf, np.where(has_work, values, np.nan))
         if by_useful is None or by_heat is None:
             return Values(values, None)
-        slopes = ((heat / given)[:, None] * by_useful - (useful / given)[:, None] * by_heat) / given[:, None]
+        slopes = ((heat / total)[:, None] * by_useful - (useful / total)[:, None] * by_heat) / total[:, None]
         driving = (by_heat - (heat / useful)[:, None] * by_useful) / useful[:, None]
         slopes = np.where(driven[:, None], slopes, np.where(drives[:, None], driving, 0.0))
-        return Values(values, np.where((there | locks)[:, None], slopes, np.nan))
+        return Values(values, np.where((has_work | locks)[:, None], slopes, np.nan))
 
 
 _SECTION = "23. Energy of a cycle"

@@ -62,8 +62,8 @@ class FlowRipple(Quantity):
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return undefined(dimensions, gradients)
-        found = self._differences(mechanism, np.asarray(dimensions, dtype=np.float64), 1)
-        return Values(found.values[:, 0], found.gradients[:, 0] if gradients else None)
+        differences = self._differences(mechanism, np.asarray(dimensions, dtype=np.float64), 1)
+        return Values(differences.values[:, 0], differences.gradients[:, 0] if gradients else None)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the differences of local peaks and troughs; see `Quantity`."""
@@ -71,28 +71,28 @@ class FlowRipple(Quantity):
             return super().pieces(mechanism, dimensions)
         return self._differences(mechanism, np.asarray(dimensions, dtype=np.float64), _KEPT)
 
-    def _differences(self, mechanism: Mechanism, designs: Array, kept: int) -> Pieces:
+    def _differences(self, mechanism: Mechanism, designs: Array, peak_count: int) -> Pieces:
         n, pumps = len(designs), list(pumps_of(mechanism))
         areas = [of_numbers(mechanism, designs, partial(_area, k), gradients=True) for k in pumps]
         machine, count = _flow_as_torque(mechanism), cylinder_count(mechanism)
-        given = np.column_stack([designs[:, :3], *(area for area, _ in areas), np.zeros(n)])
-        peaks = find_peaks(machine, Signal.TORQUE, given, kept=kept, gradients=True)
-        given[:, -1] = peaks.values[:, 0] / count
-        troughs = find_peaks(machine, Signal.TORQUE, given, kept=kept, gradients=True)
-        shape, chain = (n, kept * kept), np.zeros((n, given.shape[1], designs.shape[1]))
+        flow_designs = np.column_stack([designs[:, :3], *(area for area, _ in areas), np.zeros(n)])
+        peaks = find_peaks(machine, Signal.TORQUE, flow_designs, kept=peak_count, gradients=True)
+        flow_designs[:, -1] = peaks.values[:, 0] / count
+        troughs = find_peaks(machine, Signal.TORQUE, flow_designs, kept=peak_count, gradients=True)
+        shape, chain = (n, peak_count * peak_count), np.zeros((n, flow_designs.shape[1], designs.shape[1]))
         chain[:, :3, :3] = np.eye(3)
         chain[:, 3:-1] = np.stack([slopes for _, slopes in areas if slopes is not None], axis=1)
-        found = (peaks.values - peaks.values[:, :1])[:, :, None] + troughs.values[:, None]
+        differences = (peaks.values - peaks.values[:, :1])[:, :, None] + troughs.values[:, None]
         assert peaks.gradients is not None
         assert troughs.gradients is not None
         slopes = (peaks.gradients[:, :, None] + troughs.gradients[:, None]).reshape(*shape, -1) @ chain
-        mean, by = of_numbers(mechanism, designs, lambda number: _mean(number, pumps, count), gradients=True)
-        assert by is not None
-        values = found.reshape(shape) / mean[:, None]
-        there = np.isfinite(values)
-        slopes = (slopes - np.where(there, values, 0.0)[:, :, None] * by[:, None]) / mean[:, None, None]
+        mean, mean_slopes = of_numbers(mechanism, designs, lambda number: _mean(number, pumps, count), gradients=True)
+        assert mean_slopes is not None
+        values = differences.reshape(shape) / mean[:, None]
+        finite = np.isfinite(values)
+        slopes = (slopes - np.where(finite, values, 0.0)[:, :, None] * mean_slopes[:, None]) / mean[:, None, None]
         labels = peaks.angles[:, :, None] + _APART * troughs.angles[:, None]
-        return Pieces(values, np.where(there[:, :, None], slopes, 0.0), labels.reshape(shape))
+        return Pieces(values, np.where(finite[:, :, None], slopes, 0.0), labels.reshape(shape))
 
 
 def pumps_of(mechanism: Mechanism) -> dict[int, Cylinder]:
@@ -170,7 +170,7 @@ FLOW_RIPPLE = FlowRipple(
             lambda machine: bool(pumps_of(machine.fullest)),
             "it comes from pumps of a liquid; got none; add for example "
             '[[load]] bore = "70 mm", suction = "1 bar", discharge = "8 bar", medium = "liquid"',
-            without="undefined",
+            consequence="undefined",
         ),
         EVEN_SPEED,
     ),

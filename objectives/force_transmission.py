@@ -24,30 +24,30 @@ class ForceTransmission(Quantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        found = [
+        peaks = [
             find_peaks(mechanism, signal, dimensions, gradients=gradients, kept=1)
             for signal in (Signal.LINE_FORCE, Signal.SLIDER_PIN_FORCE)
         ]
-        values, slopes = _ratios(*found)
+        values, slopes = _ratios(*peaks)
         return Values(values[:, 0], slopes[:, 0] if gradients else None)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the ratios to the highest local peaks of |B|, the least of which is the quantity; see `Quantity`."""
-        along = find_peaks(mechanism, Signal.LINE_FORCE, dimensions, gradients=True, kept=1)
-        found = find_peaks(mechanism, Signal.SLIDER_PIN_FORCE, dimensions, gradients=True)
-        return Pieces(*_ratios(along, found), found.angles, least=True)
+        line_peaks = find_peaks(mechanism, Signal.LINE_FORCE, dimensions, gradients=True, kept=1)
+        pin_peaks = find_peaks(mechanism, Signal.SLIDER_PIN_FORCE, dimensions, gradients=True)
+        return Pieces(*_ratios(line_peaks, pin_peaks), pin_peaks.angles, least=True)
 
 
-def _ratios(along: Peaks, whole: Peaks) -> tuple[Array, Array]:
+def _ratios(line_peaks: Peaks, pin_peaks: Peaks) -> tuple[Array, Array]:
     """Return ratios (n, k) and their gradients: +inf for absent peaks, -inf where friction locks."""
-    there = np.isfinite(whole.values)
-    below = np.where(there & (whole.values > 0.0), whole.values, np.nan)
-    ratios = along.values / below
-    values = np.where(there, ratios, -whole.values)
-    if along.gradients is None or whole.gradients is None:
+    present = np.isfinite(pin_peaks.values)
+    pin_forces = np.where(present & (pin_peaks.values > 0.0), pin_peaks.values, np.nan)
+    ratios = line_peaks.values / pin_forces
+    values = np.where(present, ratios, -pin_peaks.values)
+    if line_peaks.gradients is None or pin_peaks.gradients is None:
         return values, np.empty(0)
-    slopes = (along.gradients - ratios[:, :, None] * whole.gradients) / below[:, :, None]
-    return values, np.where(there[:, :, None], slopes, 0.0)
+    slopes = (line_peaks.gradients - ratios[:, :, None] * pin_peaks.gradients) / pin_forces[:, :, None]
+    return values, np.where(present[:, :, None], slopes, 0.0)
 
 
 def _pulled(machine: Mechanism) -> bool:
@@ -74,7 +74,7 @@ FORCE_TRANSMISSION = ForceTransmission(
             _pulled,
             "it comes from forces along the slider line; got none; add for example "
             '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]',
-            without="undefined",
+            consequence="undefined",
         ),
     ),
 )

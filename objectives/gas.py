@@ -17,22 +17,22 @@ from .quantity import Array, Domain, Group, Quantity, Values, undefined
 
 @dataclass(frozen=True, kw_only=True)
 class GasQuantity(Quantity):
-    """A number of the `GasCycle`, in closed form. of: gives it."""
+    """A number of the `GasCycle`, in closed form. closed_form: gives it."""
 
-    of: Callable[[GasCycle], Any] = field(repr=False)
+    closed_form: Callable[[GasCycle], Any] = field(repr=False)
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); NaN without a cylinder that it is of; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return undefined(dimensions, gradients)
-        return Values(*gas_cycle(mechanism, dimensions, self.of, gradients=gradients))
+        return Values(*gas_cycle(mechanism, dimensions, self.closed_form, gradients=gradients))
 
 
 _gas = partial(GasQuantity, group=Group.DRIVE, section="7. Loads", picture="cylinder", needs=(CYLINDER,))
 DISPLACEMENT_VOLUME = _gas(
     name="displacement_volume",
     kind=VOLUME,
-    of=lambda gas: gas.swept,
+    closed_form=lambda gas: gas.swept,
     place=410,
     sentence="The volume that the piston sweeps in a stroke; several cylinders add up.",
     advice="It sets how much a compressor or pump delivers. As a constraint it fixes the stroke for a given bore.",
@@ -43,7 +43,7 @@ DISPLACEMENT_VOLUME = _gas(
 CLEARANCE_RATIO = _gas(
     name="clearance_ratio",
     kind=RATIO,
-    of=lambda gas: gas.clearance / gas.swept,
+    closed_form=lambda gas: gas.clearance / gas.swept,
     place=420,
     sentence="The volume that is left with the piston at its top, over the volume that it sweeps.",
     advice="0.03 to 0.1 are usual for compressors: what is left expands again and takes the place of fresh gas.",
@@ -56,7 +56,7 @@ INDICATED_WORK = _gas(
     title="indicated work per cycle",
     short="indicated work",
     kind=ENERGY,
-    of=lambda gas: gas.work,
+    closed_form=lambda gas: gas.work,
     place=430,
     sentence=(
         "The work that the gas does on the pistons over a cycle of one turn or two: positive for an engine, negative "
@@ -72,7 +72,7 @@ INDICATED_WORK = _gas(
 MEAN_EFFECTIVE_PRESSURE = _gas(
     name="mean_effective_pressure",
     kind=PRESSURE,
-    of=lambda gas: gas.cycle_work / gas.swept,
+    closed_form=lambda gas: gas.cycle_work / gas.swept,
     place=441,
     sentence="The constant pressure that would do the work of a cycle in one stroke; negative where gas takes work.",
     advice="It compares cylinders of different size. With fixed pressures it follows from the clearance ratio alone.",
@@ -85,7 +85,7 @@ MEAN_EFFECTIVE_PRESSURE = _gas(
 VOLUMETRIC_EFFICIENCY = _gas(
     name="volumetric_efficiency",
     kind=RATIO,
-    of=lambda gas: gas.delivers,
+    closed_form=lambda gas: gas.delivers,
     place=450,
     sentence="The volume of gas that a compressor takes in during a stroke, over the volume that its piston sweeps.",
     advice="What is left in the clearance expands first. Zero or less: nothing is delivered. Valves are ideal here.",

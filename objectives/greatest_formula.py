@@ -22,7 +22,7 @@ class GreatestFormula(Quantity):
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return undefined(dimensions, gradients)
-        values, slopes = self._all(mechanism, dimensions, gradients)
+        values, slopes = self._evaluate_formulas(mechanism, dimensions, gradients)
         first, rows = np.argmax(values, axis=1), np.arange(len(values))
         return Values(values[rows, first], None if slopes is None else slopes[rows, first])
 
@@ -30,16 +30,20 @@ class GreatestFormula(Quantity):
         """Return all formulas; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return super().pieces(mechanism, dimensions)
-        values, slopes = self._all(mechanism, dimensions, True)
+        values, slopes = self._evaluate_formulas(mechanism, dimensions, True)
         assert slopes is not None
         return Pieces(values, slopes, np.tile(np.arange(values.shape[1], dtype=float), (len(values), 1)))
 
-    def _all(self, mechanism: Mechanism, dimensions: Array, gradients: bool) -> tuple[Array, Array | None]:
+    def _evaluate_formulas(
+        self, mechanism: Mechanism, dimensions: Array, gradients: bool
+    ) -> tuple[Array, Array | None]:
         designs = np.asarray(dimensions, dtype=np.float64)
         with np.errstate(invalid="ignore"):
-            found = [of_numbers(mechanism, designs, each, gradients=gradients) for each in self.formulas(mechanism)]
-        values = np.stack([value for value, _ in found], axis=1)
-        slopes = [by for _, by in found if by is not None]
+            evaluations = [
+                of_numbers(mechanism, designs, formula, gradients=gradients) for formula in self.formulas(mechanism)
+            ]
+        values = np.stack([value for value, _ in evaluations], axis=1)
+        slopes = [formula_slopes for _, formula_slopes in evaluations if formula_slopes is not None]
         if not gradients:
             return values, None
         return values, np.where(np.isnan(values)[:, :, None], np.nan, np.stack(slopes, axis=1))

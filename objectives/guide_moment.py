@@ -27,7 +27,7 @@ GUIDE_MOMENT = CyclePeak(
             lambda machine: machine.slider.guide is not None,
             "it comes from the place of the guide; got none; add for example "
             '[mechanism] slider = { mass = "0.8 kg", guide_distance = "150 mm" }',
-            without="undefined",
+            consequence="undefined",
         ),
     ),
 )

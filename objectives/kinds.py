@@ -1,7 +1,7 @@
 """Kinds of physical values and their display units: one table for files, tables, figures and the page.
 
-SI inside, always. A metric face is what columns and JSON have; an inch face what a reader of US customary units asks
-for: inch, pound-mass, pound-force, second, and what is made of these; horsepower and psi where the field has them.
+SI inside, always. Columns and JSON have metric units; inch units are the US customary ones that a reader may
+ask for: inch, pound-mass, pound-force, second, and what is made of these; horsepower and psi where the field has them.
 Factors are exact to rounding: inch and pound are defined (international, 1959), pound-force by the standard
 acceleration of gravity (3rd CGPM, 1901), horsepower as 550 foot-pounds-force a second.
 """
@@ -19,7 +19,7 @@ System = Literal["metric", "inch"]
 
 
 @dataclass(frozen=True)
-class Face:
+class DisplayUnit:
     """Unit of a kind in a system. symbol: of the unit. suffix: of columns in it. factor: what one SI unit is in it."""
 
     symbol: str
@@ -27,17 +27,17 @@ class Face:
     factor: float = 1.0
 
 
-def face(symbol: str, factor: float = 1.0) -> Face:
-    """Return the face of a unit whose columns end as its symbol says: rad/s^2 in _rad_s2."""
+def display_unit(symbol: str, factor: float = 1.0) -> DisplayUnit:
+    """Return a display unit whose columns end with its symbol: rad/s^2 gives _rad_s2."""
     plain = symbol.replace("N m", "Nm").replace("^", "").replace("*", "_")
     name = re.sub(r"[^A-Za-z0-9]+", "_", plain).strip("_")
-    return Face(symbol, f"_{name}" if name else "", factor)
+    return DisplayUnit(symbol, f"_{name}" if name else "", factor)
 
 
-def per(symbol: str, factor: float = 1.0) -> Face:
-    """Return the face of a quotient whose columns say so: N s/m in _Ns_per_m."""
-    above, _, below = symbol.replace("^", "").partition("/")
-    return Face(symbol, f"_{above.replace('N ', 'N').replace(' ', '_')}_per_{below}", factor)
+def quotient_unit(symbol: str, factor: float = 1.0) -> DisplayUnit:
+    """Return the display unit of a quotient, with "per" in its columns: N s/m gives _Ns_per_m."""
+    numerator, _, denominator = symbol.replace("^", "").partition("/")
+    return DisplayUnit(symbol, f"_{numerator.replace('N ', 'N').replace(' ', '_')}_per_{denominator}", factor)
 
 
 @dataclass(frozen=True)
@@ -58,8 +58,8 @@ class Kind:
     unit: str
     example: str
     limit: float
-    metric: Face
-    inch: Face | None = None
+    metric: DisplayUnit
+    inch: DisplayUnit | None = None
     typed: tuple[str, ...] = ()
     usual: str = ""
     believed: tuple[float, float] | None = None
@@ -67,11 +67,11 @@ class Kind:
     amount: bool = False
 
     @property
-    def si(self) -> Face:
-        """The face of the SI unit."""
-        return per(self.unit) if "_per_" in self.metric.suffix else face(self.unit)
+    def si(self) -> DisplayUnit:
+        """The SI unit as a display unit."""
+        return quotient_unit(self.unit) if "_per_" in self.metric.suffix else display_unit(self.unit)
 
-    def face(self, system: System) -> Face:
+    def display_unit(self, system: System) -> DisplayUnit:
         """Return how a system shows it."""
         return self.metric if system == "metric" or self.inch is None else self.inch
 
@@ -92,8 +92,8 @@ def _kind(
     typed: str,
     example: str,
     limit: float,
-    inch: Face | None = None,
-    metric: Face | None = None,
+    inch: DisplayUnit | None = None,
+    metric: DisplayUnit | None = None,
     usual: str = "",
     believed: tuple[float, float] | None = None,
     spoken: tuple[tuple[str, str], ...] = (),
@@ -101,15 +101,15 @@ def _kind(
     """Return a kind by the units of a form, separated by commas; shown in the first, SI, unless said."""
     units = tuple(typed.split(", ")) if typed else ()
     unit = units[0] if units else ""
-    return Kind(name, unit, example, limit, metric or face(unit), inch, units, usual, believed, spoken)
+    return Kind(name, unit, example, limit, metric or display_unit(unit), inch, units, usual, believed, spoken)
 
 
-_MM = face("in", _PER_INCH), face("mm", 1e3)
+_MM = display_unit("in", _PER_INCH), display_unit("mm", 1e3)
 LENGTH = _kind("a length", "m, mm, cm, µm, in, foot", "80 mm", 1e4, *_MM, believed=(1e-4, LONGEST))
-AREA = _kind("an area", "m^2, cm^2, mm^2, in^2", "0.25 m^2", 1e8, face("in^2", 1.0 / _INCH**2))
-_DEG = face("deg", 57.29577951308232)
+AREA = _kind("an area", "m^2, cm^2, mm^2, in^2", "0.25 m^2", 1e8, display_unit("in^2", 1.0 / _INCH**2))
+_DEG = display_unit("deg", 57.29577951308232)
 ANGLE = _kind("an angle", "rad, deg", "0.1 deg", 1e4, metric=_DEG, believed=(0.0, 12.6))  # two turns
-_RPM = face("rpm", 9.549296585513721)
+_RPM = display_unit("rpm", 9.549296585513721)
 _PER_MINUTE = (
     *("/min", "1/min", "min^-1", "min-1", "min**-1", "U/min", "u/min", "Upm", "UPM", "r/min", "r.p.m.", "Rpm"),
     *("spm", "SPM", "stroke/min", "strokes/min", "Strokes/min"),
@@ -119,54 +119,65 @@ _PLATES = (*((unit, "rpm") for unit in _PER_MINUTE), *((unit, "rev/s") for unit 
 _SPEEDS = "rad/s, rpm, rev/s"
 ANGULAR_SPEED = _kind("an angular speed", _SPEEDS, "300 rpm", 1e6, metric=_RPM, believed=(0.0, 0.0), spoken=_PLATES)
 ANGULAR_ACCELERATION = _kind("an angular acceleration", "rad/s^2, deg/s^2", "20 rad/s^2", 1e9)
-MASS = _kind("a mass", "kg, g, t, lb", "0.8 kg", 1e8, face("lb", 1.0 / _POUND))
-_INERTIA = face("lb in^2", 1.0 / (_POUND * _INCH**2))
+MASS = _kind("a mass", "kg, g, t, lb", "0.8 kg", 1e8, display_unit("lb", 1.0 / _POUND))
+_INERTIA = display_unit("lb in^2", 1.0 / (_POUND * _INCH**2))
 INERTIA = _kind("a moment of inertia", "kg m^2, kg mm^2, lb in^2", "0.015 kg m^2", 1e12, _INERTIA)
-DENSITY = _kind("a density", "kg/m^3, g/cm^3, lb/in^3", "7800 kg/m^3", 1e6, face("lb/in^3", _INCH**3 / _POUND))
-SPEED = _kind("a speed", "m/s, mm/s, in/s", "2.5 m/s", 1e6, face("in/s", _PER_INCH))
-ACCELERATION = _kind("an acceleration", "m/s^2, mm/s^2, in/s^2", "9.81 m/s^2", 1e9, face("in/s^2", _PER_INCH))
-FORCE = _kind("a force", "N, kN, lbf", "200 N", 1e12, face("lbf", 1.0 / _LBF))
-TORQUE = _kind("a torque", "N m, kN m, N mm, lbf in, lbf ft", "25 N m", 1e15, face("lbf in", 1.0 / (_LBF * _INCH)))
-POWER = _kind("a power", "W, kW, hp", "250 W", 1e15, face("hp", 1.0 / (6600.0 * _LBF * _INCH)))
-_STIFFNESS = per("lbf/in", _INCH / _LBF), per("N/m")
+DENSITY = _kind("a density", "kg/m^3, g/cm^3, lb/in^3", "7800 kg/m^3", 1e6, display_unit("lb/in^3", _INCH**3 / _POUND))
+SPEED = _kind("a speed", "m/s, mm/s, in/s", "2.5 m/s", 1e6, display_unit("in/s", _PER_INCH))
+ACCELERATION = _kind("an acceleration", "m/s^2, mm/s^2, in/s^2", "9.81 m/s^2", 1e9, display_unit("in/s^2", _PER_INCH))
+FORCE = _kind("a force", "N, kN, lbf", "200 N", 1e12, display_unit("lbf", 1.0 / _LBF))
+TORQUE = _kind(
+    "a torque", "N m, kN m, N mm, lbf in, lbf ft", "25 N m", 1e15, display_unit("lbf in", 1.0 / (_LBF * _INCH))
+)
+POWER = _kind("a power", "W, kW, hp", "250 W", 1e15, display_unit("hp", 1.0 / (6600.0 * _LBF * _INCH)))
+_STIFFNESS = quotient_unit("lbf/in", _INCH / _LBF), quotient_unit("N/m")
 STIFFNESS = _kind("a stiffness", "N/m, N/mm, lbf/in", "20 N/mm", 1e15, *_STIFFNESS, "N/mm")
-_ANGULAR = per("lbf in/rad", 1.0 / (_LBF * _INCH)), per("N m/rad")
+_ANGULAR = quotient_unit("lbf in/rad", 1.0 / (_LBF * _INCH)), quotient_unit("N m/rad")
 ANGULAR_STIFFNESS = _kind("an angular stiffness", "N m/rad, N m/deg, lbf in/rad", "40 N m/rad", 1e15, *_ANGULAR)
-_DAMPING = per("lbf s/in", _INCH / _LBF), per("N s/m")
+_DAMPING = quotient_unit("lbf s/in", _INCH / _LBF), quotient_unit("N s/m")
 DAMPING = _kind("a viscous coefficient", "N s/m, N s/mm, lbf s/in", "50 N s/m", 1e15, *_DAMPING)
-_DRAG = per("lbf s^2/in^2", _INCH**2 / _LBF), per("N s^2/m^2")
+_DRAG = quotient_unit("lbf s^2/in^2", _INCH**2 / _LBF), quotient_unit("N s^2/m^2")
 QUADRATIC_DAMPING = _kind("a coefficient of drag", "N s^2/m^2, N s^2/mm^2, lbf s^2/in^2", "20 N s^2/m^2", 1e15, *_DRAG)
-_PRESSURE = face("psi", _INCH**2 / _LBF), face("MPa", 1e-6)
+_PRESSURE = display_unit("psi", _INCH**2 / _LBF), display_unit("MPa", 1e-6)
 PRESSURE = _kind("a pressure", "Pa, kPa, bar, MPa, GPa, psi", "20 MPa", 1e15, *_PRESSURE)
-_HEAT = face("ft lbf/in^3", _INCH**2 / (12.0 * _LBF)), face("MJ/m^3", 1e-6)
+_HEAT = display_unit("ft lbf/in^3", _INCH**2 / (12.0 * _LBF)), display_unit("MJ/m^3", 1e-6)
 _HEATS = "J/m^3, MJ/m^3, J/cm^3, kJ/L, ft lbf/in^3"
 HEAT_PER_VOLUME = _kind("a heat per volume", _HEATS, "1.2 MJ/m^3", 1e15, *_HEAT)
-_RUBBED = face("psi ft/min", 60.0 * _INCH / (12.0 * _LBF)), face("MPa m/s", 1e-6)
+_RUBBED = display_unit("psi ft/min", 60.0 * _INCH / (12.0 * _LBF)), display_unit("MPa m/s", 1e-6)
 PRESSURE_SPEED = _kind(
     "a pressure times a speed", "Pa m/s, MPa m/s, psi ft/min", "1 MPa m/s", 1e15, *_RUBBED, "MPa m/s"
 )
-_WEAR = face("in^2/lbf", _LBF / _INCH**2), face("mm^2/N", 1e6)
+_WEAR = display_unit("in^2/lbf", _LBF / _INCH**2), display_unit("mm^2/N", 1e6)
 WEAR = _kind("a wear coefficient", "m^2/N, mm^2/N, in^2/lbf", "1e-9 mm^2/N", 1.0, *_WEAR, "mm^2/N")
 RATIO = _kind("a ratio", "", "3.2", 1e9)
-JERK = _kind("a jerk", "m/s^3, in/s^3", "2000 m/s^3", 1e12, face("in/s^3", _PER_INCH))
-_VOLUME = face("in^3", 1.0 / _INCH**3), face("cm^3", 1e6)
+JERK = _kind("a jerk", "m/s^3, in/s^3", "2000 m/s^3", 1e12, display_unit("in/s^3", _PER_INCH))
+_VOLUME = display_unit("in^3", 1.0 / _INCH**3), display_unit("cm^3", 1e6)
 VOLUME = _kind("a volume", "m^3, cm^3, mm^3, in^3", "250 cm^3", 1e12, *_VOLUME, believed=(1e-9, 1.0))
-_FLOW = face("gal/min", 60.0 / (231.0 * _INCH**3)), face("L/min", 6e4)
+_FLOW = display_unit("gal/min", 60.0 / (231.0 * _INCH**3)), display_unit("L/min", 6e4)
 VOLUME_FLOW = _kind("a volume flow", "m^3/s, L/min, L/s, gal/min, in^3/s", "20 L/min", 1e9, *_FLOW)
-ENERGY = _kind("an energy", "J, kJ, ft lbf", "60 J", 1e15, face("ft lbf", 1.0 / (12.0 * _LBF * _INCH)))
+ENERGY = _kind("an energy", "J, kJ, ft lbf", "60 J", 1e15, display_unit("ft lbf", 1.0 / (12.0 * _LBF * _INCH)))
 TIME = _kind("a time", "s, min", "30 s", 1e9)
 
 KINDS = tuple(kind for kind in list(globals().values()) if isinstance(kind, Kind))
 """The kinds above, in their order: those of numbers of a job and of quantities."""
 SMALL_LENGTH = replace(LENGTH, example="0.1 mm")
 """Steps and misses, which are shorter than links."""
-PERCENT = Kind("a percentage", "", "50 %", 1e4, face("%", 100.0))
+PERCENT = Kind("a percentage", "", "50 %", 1e4, display_unit("%", 100.0))
 STROKE_RATE = _kind("a number of strokes per minute", "", "30", 9e6)
 PER_ANGLE, PER_SQUARED_ANGLE, PER_CUBED_ANGLE = (
-    Kind(f"a length per {name}", f"m/{unit}", "", 0.0, per(f"mm/{unit}", 1e3), per(f"in/{unit}", _PER_INCH))
+    Kind(
+        f"a length per {name}",
+        f"m/{unit}",
+        "",
+        0.0,
+        quotient_unit(f"mm/{unit}", 1e3),
+        quotient_unit(f"in/{unit}", _PER_INCH),
+    )
     for name, unit in (("angle", "rad"), ("squared angle", "rad^2"), ("cubed angle", "rad^3"))
 )
-MASS_MOMENT = Kind("a mass times a length", "kg m", "", 0.0, face("kg m"), face("lb in", _PER_INCH / _POUND))
+MASS_MOMENT = Kind(
+    "a mass times a length", "kg m", "", 0.0, display_unit("kg m"), display_unit("lb in", _PER_INCH / _POUND)
+)
 
 SHOWN = (*(kind for kind in KINDS if kind.unit), PER_ANGLE, PER_SQUARED_ANGLE, PER_CUBED_ANGLE, MASS_MOMENT)
 """Kinds that columns are of: the one table of units for columns, figures, reports and the page."""
@@ -191,7 +202,7 @@ def unit_text(symbol: str) -> str:
 
 def amount_in(unit: str) -> Kind:
     """Return the kind of an amount in a unit that is none of physics, such as EUR."""
-    return Kind(f"an amount in {unit}", unit, f"100 {unit}", 1e15, face(unit), typed=(unit,), amount=True)
+    return Kind(f"an amount in {unit}", unit, f"100 {unit}", 1e15, display_unit(unit), typed=(unit,), amount=True)
 
 
 def kind_in(symbol: str, factor: float = 1.0, kind: Kind | None = None) -> Kind:
@@ -200,5 +211,5 @@ def kind_in(symbol: str, factor: float = 1.0, kind: Kind | None = None) -> Kind:
     factor: what one SI unit is in it. kind: that of the table, if it is known; else one named after the unit.
     """
     if kind is None:
-        return Kind(f"a value in {symbol or 'no unit'}", symbol, f"1 {symbol}", 1e30, face(symbol, factor))
-    return replace(kind, metric=face(symbol, factor), inch=None)
+        return Kind(f"a value in {symbol or 'no unit'}", symbol, f"1 {symbol}", 1e30, display_unit(symbol, factor))
+    return replace(kind, metric=display_unit(symbol, factor), inch=None)

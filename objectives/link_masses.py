@@ -20,13 +20,13 @@ from .quantity import Formula, Group, Number
 
 @dataclass(frozen=True, kw_only=True)
 class Mass(GreatestFormula):
-    """A mass in closed form. of: gives it from the raw numbers of a machine."""
+    """A mass in closed form. closed_form: gives it from the raw numbers of a machine."""
 
-    of: Formula = field(repr=False)
+    closed_form: Formula = field(repr=False)
 
     def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
         """Return the formula; see `Quantity`."""
-        return [self.of]
+        return [self.closed_form]
 
 
 def _crank(number: Number) -> Any:
@@ -46,7 +46,7 @@ _mass = partial(
 )
 CRANK_MASS = _mass(
     name="crank_mass",
-    of=_crank,
+    closed_form=_crank,
     place=430,
     sentence="The mass of the crank without its counterweight. That of a crank given by its section follows its size.",
     formula="rho d (w r + pi w^2 / 4) of a bar",
@@ -55,7 +55,7 @@ CRANK_MASS = _mass(
 )
 ROD_MASS = _mass(
     name="rod_mass",
-    of=_rod,
+    closed_form=_rod,
     place=432,
     sentence="The mass of the connecting rod. That of a rod given by its section follows its size.",
     formula="rho d (w l + pi w^2 / 4) of a bar",
@@ -64,7 +64,7 @@ ROD_MASS = _mass(
 )
 MOVING_MASS = _mass(
     name="moving_mass",
-    of=lambda number: _crank(number) + _rod(number) + number(Raw.COUNTERWEIGHT_MASS) + number(Raw.SLIDER_MASS),
+    closed_form=lambda number: _crank(number) + _rod(number) + number(Raw.COUNTERWEIGHT_MASS) + number(Raw.SLIDER_MASS),
     place=434,
     sentence="The mass of all that moves: crank, counterweight, rod and slider.",
     advice="With sections as variables it trades against their safety, and it drives forces and torque.",

@@ -11,7 +11,7 @@ import numpy as np
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import of_numbers
 from ..model.strength.places import Place, WholeBar
-from .bars import LINKS, NEAR, Formula, OfBars, Part, beside_pin, eyes_of, strength_of, stresses
+from .bars import LINKS, NEAR, Formula, OfBars, Part, eyes_of, strength_of, stress_divisor, stresses
 from .kinds import RATIO
 from .needs import A_BAR, EVEN_SPEED, LOADED, ONE_TURN, STRENGTH
 from .quantity import Array
@@ -22,7 +22,7 @@ _COMPRESSION = ((0.0, 1.0),)
 class FatigueSafety(OfBars):
     """1 / (amplitude / S_e + mean / S_m), least of all points of the bars and their eyes."""
 
-    def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
+    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
         """Return the safety of each bar and of each eye; see `OfBars`."""
         strength = strength_of(mechanism)
         worn, steady = 0.5 / strength.material.endurance, 0.5 / strength.steady
@@ -31,43 +31,45 @@ class FatigueSafety(OfBars):
         bars = self.bars(mechanism)
         eyes = [eye for name in bars for pin in (NEAR, LINKS[name].far) for eye in eyes_of(name, pin)]
         places: tuple[Place, ...] = (*(WholeBar(LINKS[name].part) for name in bars), *eyes)
-        found = stresses(mechanism, designs, places, criteria, kept, gradients)
+        peak_stresses = stresses(mechanism, designs, places, criteria, piece_count, gradients)
         return [
-            part.into(beside_pin(mechanism, designs, place, gradients))
-            for place, part in zip(places, found, strict=True)
+            part.dividing(stress_divisor(mechanism, designs, place, gradients))
+            for place, part in zip(places, peak_stresses, strict=True)
         ]
 
 
 class BucklingSafety(OfBars):
     """Critical stress over the greatest compression, least of bars and planes."""
 
-    def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
+    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
         """Return the safety of each bar in the plane of motion and out of it; see `OfBars`."""
         material = strength_of(mechanism).material
-        found = []
+        safeties = []
         bars = [LINKS[name] for name in self.bars(mechanism)]
         places = tuple(WholeBar(own.part, bent=False) for own in bars)
-        squeezed = stresses(mechanism, designs, places, _COMPRESSION, kept, gradients)
+        squeezed = stresses(mechanism, designs, places, _COMPRESSION, piece_count, gradients)
         for own, pressed in zip(bars, squeezed, strict=True):
             for side in (own.width, own.depth):
-                critical = critical_stress(own.length, side, own.held, material.elasticity, material.yield_strength)
-                found.append(pressed.into(of_numbers(mechanism, designs, critical, gradients=gradients)))
-        return found
+                critical = critical_stress(
+                    own.length, side, own.end_condition, material.elasticity, material.yield_strength
+                )
+                safeties.append(pressed.dividing(of_numbers(mechanism, designs, critical, gradients=gradients)))
+        return safeties
 
 
-def critical_stress(length: int, side: int, held: float, elasticity: float, strength: float) -> Formula:
+def critical_stress(length: int, side: int, end_condition: float, elasticity: float, strength: float) -> Formula:
     """Return the formula of the mean stress at which a bar of rectangular section buckles, Pa.
 
     With the slenderness s = L sqrt(12) / side: Euler's C pi^2 E / s^2 beyond s_1 = sqrt(2 pi^2 C E / S_y), Johnson's
     parabola S_y - (S_y s / 2 pi)^2 / (C E) up to it; value and slope agree there, at S_y / 2. length, side: slots of
-    the raw numbers. held: the end condition C.
+    the raw numbers. end_condition: the end condition C.
     """
-    limit = math.sqrt(2.0 * math.pi**2 * held * elasticity / strength)
+    limit = math.sqrt(2.0 * math.pi**2 * end_condition * elasticity / strength)
 
     def formula(number: Any) -> Any:
         slender = number(length) * math.sqrt(12.0) / number(side)
-        euler = held * math.pi**2 * elasticity / slender**2
-        johnson = strength - (strength * slender / (2.0 * math.pi)) ** 2 / (held * elasticity)
+        euler = end_condition * math.pi**2 * elasticity / slender**2
+        johnson = strength - (strength * slender / (2.0 * math.pi)) ** 2 / (end_condition * elasticity)
         return np.where(np.real(slender) > limit, euler, johnson)
 
     return formula

@@ -18,12 +18,12 @@ from .bars import (
     NEAR,
     OfBars,
     Part,
-    beside_pin,
     eyes_of,
+    force_over_area,
     net_section,
-    over,
     pin_force,
     strength_of,
+    stress_divisor,
     stresses,
 )
 from .kinds import PRESSURE, RATIO
@@ -38,32 +38,38 @@ CRANK = "crank"
 class LinkStress(OfBars):
     """The greatest stress along links and in the net sections of their eyes, or the yield strength over it."""
 
-    def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
+    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
         """Return the stresses along the bars and in their eyes; see `OfBars`."""
-        return [part for _, _, part in self.told_parts(mechanism, designs, kept, gradients)]
+        return [part for _, _, part in self.told_parts(mechanism, designs, piece_count, gradients)]
 
     def told_parts(
-        self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool
+        self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool
     ) -> Iterator[tuple[str, str, Part]]:
         """Give link, pin ("" for what is along the link) and part, in the order of `parts`; an eye may have several."""
         strength = strength_of(mechanism)
-        own = strength.material.yield_strength
+        yield_strength = strength.material.yield_strength
         bars = self.bars(mechanism)
         places = _places(mechanism)  # of both links at once, whichever is asked for
-        found = stresses(mechanism, designs, tuple(place for *_, place in places), STATIC, kept, gradients)
-        for (name, pin, place), part in zip(places, found, strict=True):
+        peak_stresses = stresses(
+            mechanism, designs, tuple(place for *_, place in places), STATIC, piece_count, gradients
+        )
+        for (name, pin, place), part in zip(places, peak_stresses, strict=True):
             if name not in bars:
                 continue
-            rest = beside_pin(mechanism, designs, place, gradients)
-            yield name, pin, part.into(_scaled(rest, own)) if self.least else over(part, rest)
+            divisor = stress_divisor(mechanism, designs, place, gradients)
+            yield (
+                name,
+                pin,
+                part.dividing(_scaled(divisor, yield_strength)) if self.least else force_over_area(part, divisor),
+            )
         for name in bars:
             for pin in (NEAR, LINKS[name].far):
-                force = pin_force(mechanism, designs, pin, kept, gradients)
+                force = pin_force(mechanism, designs, pin, piece_count, gradients)
                 area = of_numbers(mechanism, designs, net_section(name, pin), gradients=gradients)
                 if self.least:
-                    yield name, pin, force.into(_scaled(area, own / strength.eye_concentration))
+                    yield name, pin, force.dividing(_scaled(area, yield_strength / strength.eye_concentration))
                 else:
-                    yield name, pin, over(force, area, strength.eye_concentration)
+                    yield name, pin, force_over_area(force, area, strength.eye_concentration)
 
 
 def eye_stresses(mechanism: Mechanism, design: Array) -> dict[str, dict[str, tuple[float, float]]]:
@@ -71,36 +77,36 @@ def eye_stresses(mechanism: Mechanism, design: Array) -> dict[str, dict[str, tup
 
     The angle is NaN where the stress is not finite.
     """
-    found: dict[str, dict[str, tuple[float, float]]] = {}
+    stresses_by_link: dict[str, dict[str, tuple[float, float]]] = {}
     angles = iter([_angle_of(mechanism, place, design) for _, pin, place in _places(mechanism) if pin])
     for name, pin, part in replace(ROD_STRESS, links=tuple(LINKS)).told_parts(mechanism, design, 1, False):
         if pin:  # those that are bent come first; the label of a force is its angle
             value, angle = float(part.values[0, 0]), next(angles, float(part.labels[0, 0]))
-            told = (value, angle if math.isfinite(value) else math.nan)
-            eyes = found.setdefault(name, {})
-            eyes[pin] = max(eyes.get(pin, told), told, key=lambda one: one[0])
-    return found
+            stress = (value, angle if math.isfinite(value) else math.nan)
+            eyes = stresses_by_link.setdefault(name, {})
+            eyes[pin] = max(eyes.get(pin, stress), stress, key=lambda one: one[0])
+    return stresses_by_link
 
 
 def _angle_of(mechanism: Mechanism, place: Place, design: Array) -> float:
     """Return the crank angle of the greatest stress of a place, tension or compression."""
     ends = []
-    for which, criterion in enumerate(STATIC):
+    for column, criterion in enumerate(STATIC):
         (peak,) = stress_peaks(mechanism, (place,), design, np.array([criterion]), kept=1)
-        ends.append((float(peak.values[0, 0]), float(peak.places[0, 0, 2 + which])))
+        ends.append((float(peak.values[0, 0]), float(peak.places[0, 0, 2 + column])))
     return max(ends)[1]
 
 
 def _places(mechanism: Mechanism) -> list[tuple[str, str, Place]]:
     """Return where the stress is that of a section: all along the bars, and in the eye of the pivot, which is bent."""
     bars, pivot = STATIC_SAFETY.bars(mechanism), LINKS[CRANK].far
-    found: list[tuple[str, str, Place]] = [(name, "", WholeBar(LINKS[name].part)) for name in bars]
-    return found + [(CRANK, pivot, eye) for eye in (eyes_of(CRANK, pivot) if CRANK in bars else [])]
+    places: list[tuple[str, str, Place]] = [(name, "", WholeBar(LINKS[name].part)) for name in bars]
+    return places + [(CRANK, pivot, eye) for eye in (eyes_of(CRANK, pivot) if CRANK in bars else [])]
 
 
-def _scaled(factor: tuple[Array, Array | None], by: float) -> tuple[Array, Array | None]:
+def _scaled(factor: tuple[Array, Array | None], scale: float) -> tuple[Array, Array | None]:
     values, slopes = factor
-    return by * values, None if slopes is None else by * slopes
+    return scale * values, None if slopes is None else scale * slopes
 
 
 _SOURCE = "Shigley, Mechanical Engineering Design, 9th ed., sec. 3-10 and 3-13; section forces derived there"

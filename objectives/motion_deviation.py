@@ -35,32 +35,32 @@ class MotionDeviation(Quantity):
         require_word("measure", self.measure, Measure)
 
     @property
-    def _given(self) -> TargetMotion:
+    def _required_target(self) -> TargetMotion:
         assert self.target is not None
         return self.target
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3) or more columns; see `Quantity`."""
         if not gradients:
-            return Values(fit(self._given, mechanism.sign, self.measure, dimensions[:, :3]).values, None)
-        found = self.pieces(mechanism, dimensions)
-        return Values(found.values[:, 0], found.gradients[:, 0])
+            return Values(fit(self._required_target, mechanism.sign, self.measure, dimensions[:, :3]).values, None)
+        pieces = self.pieces(mechanism, dimensions)
+        return Values(pieces.values[:, 0], pieces.gradients[:, 0])
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the greatest of smooth pieces; see `Quantity`."""
-        found = fit_pieces(self._given, mechanism.sign, self.measure, dimensions[:, :3])
-        more = dimensions.shape[1] - 3  # what varies besides the dimensions does not move the slider
-        return Pieces(found.values, np.pad(found.gradients, ((0, 0), (0, 0), (0, more))), found.labels)
+        fitted = fit_pieces(self._required_target, mechanism.sign, self.measure, dimensions[:, :3])
+        further = dimensions.shape[1] - 3  # what varies besides the dimensions does not move the slider
+        return Pieces(fitted.values, np.pad(fitted.gradients, ((0, 0), (0, 0), (0, further))), fitted.labels)
 
     def settings(self, mechanism: Mechanism, dimensions: Array) -> dict[str, Array]:
         """Return the best fit's phase (deg) and shift (mm), each if free, for designs (n, 3), by column."""
-        found: Fit = fit(self._given, mechanism.sign, self.measure, dimensions[:, :3])
+        best_fit: Fit = fit(self._required_target, mechanism.sign, self.measure, dimensions[:, :3])
         columns = {}
         suffix = "_rms" if self.measure == "rms" else ""
-        if self._given.phase == "free":
-            columns[f"motion_phase{suffix}_deg"] = ANGLE.metric.factor * found.phase
-        if self._given.shift == "free":
-            columns[f"motion_shift{suffix}_mm"] = LENGTH.metric.factor * found.shift
+        if self._required_target.phase == "free":
+            columns[f"motion_phase{suffix}_deg"] = ANGLE.metric.factor * best_fit.phase
+        if self._required_target.shift == "free":
+            columns[f"motion_shift{suffix}_mm"] = LENGTH.metric.factor * best_fit.shift
         return columns
 
 

@@ -24,21 +24,21 @@ from ..model.machine.members import cylinder_count
 from ..model.machine.two_turns import cycle_turns
 from ..model.signals.shaking_balance import has_rocking_couple, has_shaking_force
 
-Without = Literal["undefined", "equal", "zero"]
+Consequence = Literal["undefined", "equal", "zero"]
 
 
 @dataclass(frozen=True)
 class Need:
     """A requirement of a quantity on the machine.
 
-    met: whether a machine has it; one with varying numbers, whether it may have it. missing: rule, value and remedy;
-    "{instead}" stands for the quantities that serve without. without: what becomes of the quantity: it is undefined,
-    equals another one, or is zero for every design.
+    is_met: whether a machine meets it; with varying numbers, whether it may meet it. missing: rule, value and remedy;
+    "{instead}" stands for the quantities to use otherwise. consequence: the quantity of a machine that does not meet it
+    is undefined, equals another one, or is zero for every design.
     """
 
-    met: Callable[[Mechanism], bool]
+    is_met: Callable[[Mechanism], bool]
     missing: str
-    without: Without = "zero"
+    consequence: Consequence = "zero"
 
     @property
     def rule(self) -> str:
@@ -50,7 +50,7 @@ def _friction(machine: Mechanism) -> bool:
     return machine.fullest.friction.acts
 
 
-_defining = partial(Need, without="undefined")
+_defining = partial(Need, consequence="undefined")
 _MASSES = 'it comes from masses; got none; add for example [mechanism] slider = { mass = "0.8 kg" }'
 _LOADS = (
     "it comes from masses that move or weigh, and from loads; got none that is not zero; add for example "
@@ -66,7 +66,7 @@ TOLERANCES = _defining(
 FRICTION = Need(
     _friction,
     "a self-locking margin comes from friction; got none; add for example [friction] guide = 0.1, or use {instead}",
-    without="equal",
+    consequence="equal",
 )
 SPEED = _defining(lambda machine: machine.fullest.speed != 0.0, _SPEED)
 REPEATS = _defining(
@@ -111,12 +111,12 @@ LOSSES = (
     Need(
         _friction,
         f"without friction nothing is lost, and the efficiency of every design is 1; {_RUBS}",
-        without="equal",
+        consequence="equal",
     ),
     Need(
         rubs_under_load,
         f"friction in joints without a force takes nothing, and the efficiency of every design is 1; {_UNLOADED}",
-        without="equal",
+        consequence="equal",
     ),
 )
 """Friction, and joints that carry a force: else an efficiency is 1."""

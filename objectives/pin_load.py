@@ -10,7 +10,7 @@ from typing import Any
 
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import PINS, of_numbers
-from .bars import LINKS, NEAR, Formula, OfBars, Part, over, pin_force, strength_of
+from .bars import LINKS, NEAR, Formula, OfBars, Part, force_over_area, pin_force, strength_of
 from .kinds import PRESSURE
 from .needs import A_BAR, CRANK_BAR, LOADED, PIVOT_LOADED, ROD_BAR, STRENGTH, Need
 from .quantity import Array
@@ -22,11 +22,11 @@ class PinPressure(OfBars):
 
     pin: str
 
-    def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
+    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
         """Return the pressure in each bar that the pin bears in; see `OfBars`."""
-        force = pin_force(mechanism, designs, self.pin, kept, gradients)
+        force = pin_force(mechanism, designs, self.pin, piece_count, gradients)
         areas = [projected(self.pin, name) for name in self.bars(mechanism)]
-        return [over(force, of_numbers(mechanism, designs, area, gradients=gradients)) for area in areas]
+        return [force_over_area(force, of_numbers(mechanism, designs, area, gradients=gradients)) for area in areas]
 
     def allowable(self, mechanism: Mechanism) -> float:
         """Return the bearing pressure of the material, Pa."""
@@ -39,12 +39,12 @@ class PinShear(OfBars):
 
     pin: str
 
-    def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
+    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
         """Return the stress; see `OfBars`."""
         slot = PINS[self.pin]
-        force = pin_force(mechanism, designs, self.pin, kept, gradients)
+        force = pin_force(mechanism, designs, self.pin, piece_count, gradients)
         area = of_numbers(mechanism, designs, lambda number: 0.25 * math.pi * number(slot) ** 2, gradients=gradients)
-        return [over(force, area)]
+        return [force_over_area(force, area)]
 
     def allowable(self, mechanism: Mechanism) -> float:
         """Return the shear yield strength by distortion energy, S_y / sqrt(3), Pa; pins are of the bars' material.
@@ -66,16 +66,18 @@ _OF_PINS = {
 }
 
 
-def of_pin(pin: str, before: tuple[Need, ...], after: tuple[Need, ...] = (), *, bears: bool = True) -> dict[str, Any]:
+def of_pin(
+    pin: str, needs_before: tuple[Need, ...], needs_after: tuple[Need, ...] = (), *, bears: bool = True
+) -> dict[str, Any]:
     """Return the facts that quantities of a pin share.
 
-    before, after: needs besides its own. bears: on the bars that it joins.
+    needs_before, needs_after: needs besides its own. bears: on the bars that it joins.
     """
     picture, bar, loaded = _OF_PINS[pin]
     if not bears:
-        return {"pin": pin, "picture": picture, "needs": (*before, loaded, *after)}
+        return {"pin": pin, "picture": picture, "needs": (*needs_before, loaded, *needs_after)}
     links = tuple(name for name, link in LINKS.items() if pin in (NEAR, link.far))
-    return {"pin": pin, "links": links, "picture": picture, "needs": (*before, bar, loaded, *after)}
+    return {"pin": pin, "links": links, "picture": picture, "needs": (*needs_before, bar, loaded, *needs_after)}
 
 
 _pressure = partial(

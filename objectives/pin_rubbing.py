@@ -37,7 +37,7 @@ class PinRubbing(OfBars):
     pin: str
     factor: Callable[[Mechanism], Formula]
 
-    def parts(self, mechanism: Mechanism, designs: Array, kept: int, gradients: bool) -> Sequence[Part]:
+    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
         """Return it for each bar that the pin bears in; see `OfBars`."""
         work, place = turn_work(single_cylinder(mechanism), designs, gradients=gradients), _RUBS[self.pin]
         slopes = None if work.gradients is None else work.gradients[:, place, None]

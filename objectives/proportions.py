@@ -6,10 +6,10 @@ import math
 
 from ..model.kinematics import geometry
 from ..model.kinematics.closed_forms import ClosedForm
+from .bounds import LengthRanges, QuantityBounds
 from .closed_form import ClosedFormQuantity
 from .kinds import AREA, LENGTH, RATIO
 from .quantity import Domain, Group
-from .reach import Ranges, Reach
 
 _ABOVE_ONE = Domain(
     lower=1.0,
@@ -19,7 +19,7 @@ _ABOVE_ONE = Domain(
 )
 
 
-def _strokes(box: Ranges) -> tuple[float, float]:
+def _stroke_bounds(box: LengthRanges) -> tuple[float, float]:
     r = box.crank
     greatest = geometry.stroke(box.r1, box.l0, box.a1) if box.turns else 2.0 * math.sqrt(r * min(box.l1, r + box.a1))
     return float(geometry.stroke(box.r0, box.l1, box.a0)), float(greatest)
@@ -38,10 +38,10 @@ STROKE = ClosedFormQuantity(
     picture="stroke",
     better="",
     example="280 mm",
-    reach=Reach(
-        bounds=_strokes,
-        more="a longer crank or a larger |offset|",
-        less="a shorter crank (a stroke is never shorter than 2 crank)",
+    bounds=QuantityBounds(
+        compute=_stroke_bounds,
+        to_raise="a longer crank or a larger |offset|",
+        to_lower="a shorter crank (a stroke is never shorter than 2 crank)",
     ),
     offered=("motion",),
 )
@@ -59,13 +59,13 @@ ROD_TO_OFFSET = ClosedFormQuantity(
     better="high",
     domain=_ABOVE_ONE,
     in_line=math.inf,
-    reach=Reach(
-        bounds=lambda box: (
+    bounds=QuantityBounds(
+        compute=lambda box: (
             max(box.l0 / box.a1, 1.0) if box.a1 else math.inf,
             box.l1 / box.a0 if box.a0 else math.inf,
         ),
-        more="a longer rod or a smaller |offset|",
-        less="a shorter rod or a larger |offset|",
+        to_raise="a longer rod or a smaller |offset|",
+        to_lower="a shorter rod or a larger |offset|",
     ),
     offered=("proportions",),
     plain=True,
@@ -84,10 +84,10 @@ ROD_TO_CRANK = ClosedFormQuantity(
     example=2.5,
     better="high",
     domain=_ABOVE_ONE,
-    reach=Reach(
-        bounds=lambda box: (max(box.l0 / box.r1, 1.0), box.l1 / box.r0),
-        more="a longer rod or a shorter crank",
-        less="a shorter rod or a longer crank",
+    bounds=QuantityBounds(
+        compute=lambda box: (max(box.l0 / box.r1, 1.0), box.l1 / box.r0),
+        to_raise="a longer rod or a shorter crank",
+        to_lower="a shorter rod or a longer crank",
     ),
     offered=("proportions",),
     plain=True,

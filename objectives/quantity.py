@@ -15,9 +15,9 @@ import numpy as np
 from ..model.arrays import Array as Array
 from ..model.arrays import Whole
 from ..model.machine.mechanism import Mechanism
-from .kinds import Face, Kind
-from .needs import Need, Without
-from .reach import Reach
+from .bounds import QuantityBounds
+from .kinds import DisplayUnit, Kind
+from .needs import Consequence, Need
 
 Better = Literal["low", "high", ""]
 Offer = Literal["motion", "proportions", "requirement", "objective"]
@@ -58,15 +58,17 @@ class Domain:
     remedy: str
 
     @classmethod
-    def share(cls, what: str, usual: str) -> Domain:
+    def share(cls, subject: str, usual: str) -> Domain:
         """Return the domain of a share, 0 to 1."""
-        return cls(upper=1.0, lower=0.0, open=False, rule=f"{what} lies between 0 and 1", remedy=f"{usual} are usual")
+        return cls(
+            upper=1.0, lower=0.0, open=False, rule=f"{subject} lies between 0 and 1", remedy=f"{usual} are usual"
+        )
 
     @classmethod
-    def acute(cls, within: str, usual: str) -> Domain:
+    def acute(cls, rule: str, usual: str) -> Domain:
         """Return the domain of an acute angle; within: what lies between 0 and 90 deg, in words."""
         remedy = f"{usual} are usual (a plain number is in rad)"
-        return cls(lower=0.0, upper=0.5 * math.pi, rule=f"{within}, ends excluded", remedy=remedy)
+        return cls(lower=0.0, upper=0.5 * math.pi, rule=f"{rule}, ends excluded", remedy=remedy)
 
     def refuses(self, value: float, *, least: bool) -> bool:
         """Return whether no linkage has a value. least: whether the value is a lower bound.
@@ -89,18 +91,18 @@ class Values:
     values: Array
     gradients: Array | None
 
-    def times(self, other: Values) -> Values:
+    def times(self, factor: Values) -> Values:
         """Return the product of two quantities of the same designs."""
         slopes = None
-        if self.gradients is not None and other.gradients is not None:
-            slopes = self.gradients * other.values[:, None] + self.values[:, None] * other.gradients
-        return Values(self.values * other.values, slopes)
+        if self.gradients is not None and factor.gradients is not None:
+            slopes = self.gradients * factor.values[:, None] + self.values[:, None] * factor.gradients
+        return Values(self.values * factor.values, slopes)
 
 
 def undefined(designs: Array, gradients: bool) -> Values:
     """Return no numbers for designs (n, 3 + k), NaN throughout."""
-    none = np.full(np.shape(designs), np.nan)
-    return Values(none[:, 0], none if gradients else None)
+    blank = np.full(np.shape(designs), np.nan)
+    return Values(blank[:, 0], blank if gradients else None)
 
 
 @dataclass(frozen=True)
@@ -110,7 +112,7 @@ class Pieces:
     values: (n, k), SI, -inf where a design has fewer than k pieces. gradients: (n, k, 3 + v) for v varying numbers.
     labels: (n, k), what tells the pieces of neighbouring designs apart: the crank angle of a peak, rad, or a number.
     A tie between two pieces is a kink of the quantity; a solver treats it as a minimax.
-    least: the quantity is the least of its pieces instead, lowest first, +inf for absent ones. other: of a quantity
+    least: the quantity is the least of its pieces instead, lowest first, +inf for absent ones. opposite: of a quantity
     with kinks of both kinds, the same from the other side; each side holds the kinks of the other one at the piece that
     is active.
     """
@@ -119,9 +121,9 @@ class Pieces:
     gradients: Array
     labels: Array
     least: bool = False
-    other: Pieces | None = None
+    opposite: Pieces | None = None
 
-    def at(self, places: Whole) -> Pieces:
+    def take(self, places: Whole) -> Pieces:
         """Return the pieces at some places (n, m) of each design."""
         return Pieces(
             np.take_along_axis(self.values, places, axis=1),
@@ -183,7 +185,7 @@ class Quantity(ABC):
     endless: str = fact("")
     needs: tuple[Need, ...] = fact(())
     instead: str = fact("")
-    reach: Reach | None = fact(None)
+    bounds: QuantityBounds | None = fact(None)
     allowed_by: str = fact("")
     about_tolerances: bool = fact(False)
     offered: tuple[Offer, ...] = fact(())
@@ -207,7 +209,7 @@ class Quantity(ABC):
         return self.stem + self.kind.metric.suffix
 
     @property
-    def unit(self) -> Face:
+    def unit(self) -> DisplayUnit:
         """Unit in tables, JSON and figures."""
         return self.kind.metric
 
@@ -242,14 +244,14 @@ class Quantity(ABC):
         """Return whether the crank speed, its sense, or that there is one, changes the quantity of a machine."""
         numbers = [item.fullest for item in mechanism.varying]
         designs = np.array([[0.05, 0.2, offset, *numbers] for offset in (0.02, -0.02)])
-        still, *others = (
+        still, *moving = (
             self.evaluate(replace(mechanism, speed=speed), designs).values for speed in (0.0, 1.0, -1.0, 1000.0)
         )
-        return not all(np.allclose(still, other, rtol=1e-9, atol=0.0, equal_nan=True) for other in others)
+        return not all(np.allclose(still, values, rtol=1e-9, atol=0.0, equal_nan=True) for values in moving)
 
-    def reach_for(self, mechanism: Mechanism) -> Reach | None:
+    def bounds_for(self, mechanism: Mechanism) -> QuantityBounds | None:
         """Return its reach if it holds for the machine."""
-        return self.reach
+        return self.bounds
 
     def allowable(self, mechanism: Mechanism) -> float:
         """Return the greatest value that a machine withstands, the least if high is better, SI; see `allowed_by`."""
@@ -268,20 +270,20 @@ class Quantity(ABC):
         """Return the same made of other parts, in the order of `made_of`."""
         return self
 
-    def lacks(self, mechanism: Mechanism, without: Without) -> str | None:
+    def lacks(self, mechanism: Mechanism, consequence: Consequence) -> str | None:
         """Return rule, value and remedy for the first unmet need of a machine; None if there is none.
 
-        without: what becomes of the quantity: "undefined", "equal" to another one, or "zero" for every design.
+        consequence: what becomes of the quantity: "undefined", "equal" to another one, or "zero" for every design.
         """
         for need in self.needs:
-            if need.without == without and not need.met(mechanism):
+            if need.consequence == consequence and not need.is_met(mechanism):
                 return need.missing.replace("{instead}", self.instead)
         return None
 
     @property
     def blank(self) -> str:
         """Why a design may have none though the machine defines it."""
-        needs = (need for need in self.needs if need.without == "undefined")
+        needs = (need for need in self.needs if need.consequence == "undefined")
         return next((need.missing for need in needs), "it has no value for this design")
 
     def undefined_because(self, machines: Iterable[Mechanism]) -> str | None:
@@ -306,6 +308,6 @@ class Quantity(ABC):
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the greatest of smooth pieces: as its only one, unless its class has several."""
-        found = self.evaluate(mechanism, dimensions, gradients=True)
-        assert found.gradients is not None
-        return Pieces(found.values[:, None], found.gradients[:, None], np.zeros((len(found.values), 1)))
+        evaluation = self.evaluate(mechanism, dimensions, gradients=True)
+        assert evaluation.gradients is not None
+        return Pieces(evaluation.values[:, None], evaluation.gradients[:, None], np.zeros((len(evaluation.values), 1)))

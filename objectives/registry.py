@@ -16,12 +16,12 @@ from .quantity import Quantity
 
 def declared(package: str) -> tuple[Quantity, ...]:
     """Return every quantity that the modules of a package declare, those of sub-packages left out, by their places."""
-    found: dict[str, Quantity] = {}
+    quantities: dict[str, Quantity] = {}
     for module in pkgutil.iter_modules(import_module(package).__path__):
         if not module.ispkg and f"{package}.{module.name}" != __name__:
             values = vars(import_module(f"{package}.{module.name}")).values()
-            found |= {value.name: value for value in values if isinstance(value, Quantity)}
-    return tuple(sorted(found.values(), key=lambda quantity: quantity.place))
+            quantities |= {value.name: value for value in values if isinstance(value, Quantity)}
+    return tuple(sorted(quantities.values(), key=lambda quantity: quantity.place))
 
 
 _MOST_NAMES = 12  # of a message
@@ -36,17 +36,17 @@ def _of_product(name: str, changes: dict[str, Any]) -> Quantity:
     return replace(FACTS[name], **changes) if changes else FACTS[name]
 
 
-def _reduced(of: Quantity) -> tuple[Any, ...] | str:
+def _reduced(quantity: Quantity) -> tuple[Any, ...] | str:
     """Return how a quantity is pickled: one of the product by its name and changes, since its formulas may be without.
 
     So may what its needs ask of a machine.
     """
-    fact = FACTS.get(of.name)
-    if type(fact) is not type(of):
-        return object.__reduce_ex__(of, 4)
-    facts = (field.name for field in fields(of) if field.init)
-    changes = {name: getattr(of, name) for name in facts if getattr(of, name) is not getattr(fact, name)}
-    return _of_product, (of.name, changes)
+    fact = FACTS.get(quantity.name)
+    if type(fact) is not type(quantity):
+        return object.__reduce_ex__(quantity, 4)
+    facts = (field.name for field in fields(quantity) if field.init)
+    changes = {name: getattr(quantity, name) for name in facts if getattr(quantity, name) is not getattr(fact, name)}
+    return _of_product, (quantity.name, changes)
 
 
 for _kind in {type(of) for of in FACTS.values()}:
@@ -56,20 +56,24 @@ for _kind in {type(of) for of in FACTS.values()}:
 def listed(names: Collection[str]) -> str:
     """Return the first of many names for a message, a job's own before all others, and where all are."""
     few = ", ".join(sorted(names, key=FACTS.__contains__)[:_MOST_NAMES])
-    more = len(names) - _MOST_NAMES
-    return f"{few} and {more} more, all in `slidercrank schema` and slidercrank.quantities()" if more > 0 else few
+    left_over = len(names) - _MOST_NAMES
+    return (
+        f"{few} and {left_over} more, all in `slidercrank schema` and slidercrank.quantities()"
+        if left_over > 0
+        else few
+    )
 
 
-def quantity(name: str, own: Collection[Quantity] = ()) -> Quantity:
+def quantity(name: str, custom: Collection[Quantity] = ()) -> Quantity:
     """Return the quantity of a name; raise `InputError` with the nearest names otherwise.
 
-    own: quantities of a problem besides those that every one has. Where there is a problem, ask it: it has its own
+    custom: quantities of a problem besides those that every one has. Where there is a problem, ask it: it has its own
     (`Problem.quantity`).
     """
-    found = next((of for of in own if of.name == name), None) or QUANTITIES.get(name)
-    if found is None:
-        known = list(dict.fromkeys([*QUANTITIES, *(of.name for of in own)]))
-        near = difflib.get_close_matches(str(name)[:60], known, n=1)
-        hint = f"did you mean {near[0]}?" if near else f"choose from {listed(known)}"
+    match = next((of for of in custom if of.name == name), None) or QUANTITIES.get(name)
+    if match is None:
+        names = list(dict.fromkeys([*QUANTITIES, *(of.name for of in custom)]))
+        near = difflib.get_close_matches(str(name)[:60], names, n=1)
+        hint = f"did you mean {near[0]}?" if near else f"choose from {listed(names)}"
         raise InputError(f"no quantity is called {name!r}; {hint}")
-    return found
+    return match

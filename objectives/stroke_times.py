@@ -57,8 +57,8 @@ class StrokeTime(Quantity):
         if self.undefined_because([mechanism]):
             return undefined(dimensions, gradients)
 
-        def angle(found: ScaledStrokeTimes) -> Any:
-            return found.outward if self.outward else found.inward
+        def angle(times: ScaledStrokeTimes) -> Any:
+            return times.outward if self.outward else times.inward
 
         def per_speed(number: Callable[[int], Any]) -> Any:
             return 1.0 / (mechanism.direction * number(Raw.SPEED))
@@ -98,12 +98,12 @@ class StrokeTimeRatio(Quantity):
     def _cylinder_ratios(self, mechanism: Mechanism, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
         """Return the ratios (c, n) of the cylinders that differ, and their derivatives (c, n, 3 + k)."""
 
-        def ratio(found: ScaledStrokeTimes) -> Any:
-            return found.outward / found.inward if self.outward else found.inward / found.outward
+        def ratio(times: ScaledStrokeTimes) -> Any:
+            return times.outward / times.inward if self.outward else times.inward / times.outward
 
         count = 1 if mechanism.speed_profile is None else cylinder_count(mechanism)
         parts = [evaluate_stroke_times(mechanism, designs, ratio, gradients, cylinder=k) for k in range(count)]
-        slopes = [by for _, by in parts if by is not None]
+        slopes = [ratio_slopes for _, ratio_slopes in parts if ratio_slopes is not None]
         return np.stack([values for values, _ in parts]), np.stack(slopes) if slopes else None
 
 

@@ -16,7 +16,7 @@ from ..model.swing.peaks import SwingPeaks, holding_peaks, least_drives, swing_p
 from ..model.swing.swing import Swing
 from ..model.swing.swing_types import Driver, Stated
 from ..model.swing.work import swing_efficiency, swing_work
-from .needs import Without
+from .needs import Consequence
 from .quantity import MECHANICS, Array, Pieces, Quantity, Values
 
 
@@ -40,7 +40,7 @@ class SwingQuantity(Quantity):
     table: ClassVar[str] = "motion"
 
     @property
-    def _given(self) -> Swing:
+    def _required_swing(self) -> Swing:
         assert self.swing is not None
         return self.swing
 
@@ -57,20 +57,20 @@ class SwingQuantity(Quantity):
             )
         return None
 
-    def lacks(self, mechanism: Mechanism, without: Without) -> str | None:
+    def lacks(self, mechanism: Mechanism, consequence: Consequence) -> str | None:
         """Return why a machine does not define it; see `Quantity`."""
-        if without == "undefined" and self.swing is not None:
+        if consequence == "undefined" and self.swing is not None:
             reason = self.unfit(self.swing)
             if reason is not None:
                 return reason
             if self.tolerated and not (mechanism.fullest.tolerances.given or self.swing.actuator_tolerance):
                 return 'a position error needs tolerances; got none; add for example [tolerances] crank = "0.05 mm"'
-        if without == "equal" and self.rubbing and not mechanism.fullest.friction.acts:
+        if consequence == "equal" and self.rubbing and not mechanism.fullest.friction.acts:
             return (
                 f"it is {self.rubbing} without friction; got none; add for example [friction] guide = 0.1, or leave it "
                 "out"
             )
-        return super().lacks(mechanism, without)
+        return super().lacks(mechanism, consequence)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,19 +85,21 @@ class SwingPeak(SwingQuantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        found = self._peaks(mechanism, dimensions, gradients, kept=1)
-        return Values(found.values[:, 0], None if found.gradients is None else found.gradients[:, 0])
+        peaks = self._peaks(mechanism, dimensions, gradients, peak_count=1)
+        return Values(peaks.values[:, 0], None if peaks.gradients is None else peaks.gradients[:, 0])
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the highest local peaks; see `Quantity`."""
-        found = self._peaks(mechanism, dimensions, True, kept=6)
-        assert found.gradients is not None
-        return Pieces(found.values, found.gradients, found.places)
+        peaks = self._peaks(mechanism, dimensions, True, peak_count=6)
+        assert peaks.gradients is not None
+        return Pieces(peaks.values, peaks.gradients, peaks.places)
 
-    def _peaks(self, mechanism: Mechanism, dimensions: Array, gradients: bool, *, kept: int) -> SwingPeaks:
+    def _peaks(self, mechanism: Mechanism, dimensions: Array, gradients: bool, *, peak_count: int) -> SwingPeaks:
         if self.state is None:
-            return holding_peaks(mechanism, self._given, dimensions, free=self.free, gradients=gradients)
-        return swing_peaks(mechanism, self._given, self.state, dimensions, gradients=gradients, kept=kept)
+            return holding_peaks(mechanism, self._required_swing, dimensions, free=self.free, gradients=gradients)
+        return swing_peaks(
+            mechanism, self._required_swing, self.state, dimensions, gradients=gradients, kept=peak_count
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,28 +110,30 @@ class SwingLeast(SwingQuantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        found = least_drives(mechanism, self._given, dimensions, back=self.back, gradients=gradients, kept=1)
-        values = np.where(found.values[:, 0] == np.inf, -np.inf, -found.values[:, 0] + 0.0)
-        return Values(values, None if found.gradients is None else -found.gradients[:, 0])
+        negated_peaks = least_drives(
+            mechanism, self._required_swing, dimensions, back=self.back, gradients=gradients, kept=1
+        )
+        values = np.where(negated_peaks.values[:, 0] == np.inf, -np.inf, -negated_peaks.values[:, 0] + 0.0)
+        return Values(values, None if negated_peaks.gradients is None else -negated_peaks.gradients[:, 0])
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the lowest local dips; see `Quantity`."""
-        found = least_drives(mechanism, self._given, dimensions, back=self.back, gradients=True)
-        assert found.gradients is not None
-        return Pieces(-found.values + 0.0, -found.gradients, found.places, least=True)
+        negated_peaks = least_drives(mechanism, self._required_swing, dimensions, back=self.back, gradients=True)
+        assert negated_peaks.gradients is not None
+        return Pieces(-negated_peaks.values + 0.0, -negated_peaks.gradients, negated_peaks.places, least=True)
 
 
 @dataclass(frozen=True, kw_only=True)
 class SwingIntegral(SwingQuantity):
     """A number from the work of the drive. of: the work on the forward stroke, or the share of it without friction."""
 
-    of: Literal["work", "share"]
+    integral: Literal["work", "share"]
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        take = swing_work if self.of == "work" else swing_efficiency
-        found = take(mechanism, self._given, dimensions, gradients=gradients)
-        return Values(found.values, found.gradients)
+        integrate = swing_work if self.integral == "work" else swing_efficiency
+        integral = integrate(mechanism, self._required_swing, dimensions, gradients=gradients)
+        return Values(integral.values, integral.gradients)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -139,7 +143,7 @@ class SwingForm(SwingQuantity):
     stated: whose ends must not be stated, as they say it already; None where it does not matter.
     """
 
-    of: Literal["angle", "travel", "swing"]
+    measure: Literal["angle", "travel", "swing"]
     stated: Stated | None = field(default=None, compare=False)
 
     @property
@@ -150,37 +154,37 @@ class SwingForm(SwingQuantity):
     def unfit(self, swing: Swing) -> str | None:
         """Return rule, value and remedy where every design has the same; see `SwingQuantity`."""
         if swing.of == self.stated:
-            own = self.unit.factor * abs(swing.end - swing.start)
+            stated_value = self.unit.factor * abs(swing.end - swing.start)
             keys = "from and to" if swing.of == "crank" else "slider_from and slider_to"
             return (
-                f"[motion] states it, by {keys}, the same for all designs; got {own:.6g} {self.unit.symbol} there; "
-                f"leave it out, or state {'the two places of the slider' if swing.of == 'crank' else 'crank angles'} "
+                f"[motion] fixes it by {keys} for all designs; got {stated_value:.6g} {self.unit.symbol} there; leave "
+                f"it out, or state {'the two places of the slider' if swing.of == 'crank' else 'crank angles'} "
                 "instead and let it follow"
             )
         return super().unfit(swing)
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        found = self.pieces(mechanism, dimensions)
-        return Values(found.values[:, 0], found.gradients[:, 0] if gradients else None)
+        pieces = self.pieces(mechanism, dimensions)
+        return Values(pieces.values[:, 0], pieces.gradients[:, 0] if gradients else None)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the angles at the places where the least may be, lowest first; see `Quantity`."""
         designs = np.ascontiguousarray(dimensions, dtype=np.float64)
-        rows = np.flatnonzero(passes(mechanism, self._given, designs))
-        if self.of == "angle":
-            angles = driven_angles(mechanism, self._given, designs[rows])
-            own, slopes = angles.values, angles.slopes
+        rows = np.flatnonzero(passes(mechanism, self._required_swing, designs))
+        if self.measure == "angle":
+            angles = driven_angles(mechanism, self._required_swing, designs[rows])
+            passing_values, slopes = angles.values, angles.slopes
         else:
-            take = travels if self.of == "travel" else swing_angles
-            one, slope = take(mechanism, self._given, designs[rows])
-            own, slopes = one[:, None], slope[:, None]
-        order = np.argsort(own, axis=1, kind="stable")
-        values = np.full((len(designs), own.shape[1]), np.inf)
+            closed_form = travels if self.measure == "travel" else swing_angles
+            value, slope = closed_form(mechanism, self._required_swing, designs[rows])
+            passing_values, slopes = value[:, None], slope[:, None]
+        order = np.argsort(passing_values, axis=1, kind="stable")
+        values = np.full((len(designs), passing_values.shape[1]), np.inf)
         values[:, 0] = np.nan
         gradients = np.zeros((*values.shape, designs.shape[1]))
         labels = np.zeros(values.shape)
-        values[rows] = np.take_along_axis(own, order, axis=1)
+        values[rows] = np.take_along_axis(passing_values, order, axis=1)
         gradients[rows] = np.take_along_axis(slopes, order[:, :, None], axis=1)
         labels[rows] = order
-        return Pieces(values, gradients, labels, least=self.of == "angle")
+        return Pieces(values, gradients, labels, least=self.measure == "angle")

@@ -10,11 +10,11 @@ import numpy as np
 from ..model.kinematics import geometry
 from ..model.kinematics.closed_forms import ClosedForm
 from ..model.machine.mechanism import Mechanism
+from .bounds import LengthRanges, QuantityBounds
 from .closed_form import ClosedFormQuantity
 from .kinds import RATIO
 from .needs import ONE_TIMING
 from .quantity import Array, Domain, Group, Pieces, Values
-from .reach import Ranges, Reach
 from .stroke_times import evaluate_stroke_times
 
 
@@ -23,7 +23,7 @@ def ratio_of(excess: float) -> float:
     return (math.pi + excess) / (math.pi - excess)
 
 
-def _within(box: Ranges) -> tuple[float, float]:
+def _time_ratio_bounds(box: LengthRanges) -> tuple[float, float]:
     if box.turns:
         greatest = geometry.time_ratio(box.r1, box.l0, box.a1)
     else:
@@ -45,20 +45,20 @@ class TimeRatio(ClosedFormQuantity):
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         if self.is_closed(mechanism):
             return super().evaluate(mechanism, dimensions, gradients=gradients)
-        found, slopes = evaluate_stroke_times(mechanism, dimensions, lambda of: of.ratio, gradients)
+        ratio, slopes = evaluate_stroke_times(mechanism, dimensions, lambda of: of.ratio, gradients)
         if slopes is not None:
-            slopes = np.where((found >= 1.0 / found)[:, None], slopes, _inverse_slopes(found, slopes))
-        return Values(np.maximum(found, 1.0 / found), slopes)
+            slopes = np.where((ratio >= 1.0 / ratio)[:, None], slopes, _inverse_slopes(ratio, slopes))
+        return Values(np.maximum(ratio, 1.0 / ratio), slopes)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the greater of its two ratios; see `Quantity`."""
         if self.is_closed(mechanism):
             return super().pieces(mechanism, dimensions)
-        found, slopes = evaluate_stroke_times(mechanism, dimensions, lambda of: of.ratio, True)
+        ratio, slopes = evaluate_stroke_times(mechanism, dimensions, lambda of: of.ratio, True)
         assert slopes is not None
-        values = np.stack([found, 1.0 / found], axis=1)
+        values = np.stack([ratio, 1.0 / ratio], axis=1)
         labels = np.broadcast_to(np.arange(2.0), values.shape)
-        return Pieces(values, np.stack([slopes, _inverse_slopes(found, slopes)], axis=1), labels)
+        return Pieces(values, np.stack([slopes, _inverse_slopes(ratio, slopes)], axis=1), labels)
 
 
 def _inverse_slopes(ratio: Array, slopes: Array) -> Array:
@@ -66,10 +66,10 @@ def _inverse_slopes(ratio: Array, slopes: Array) -> Array:
     return -slopes / np.square(ratio)[:, None]
 
 
-_REACH = Reach(
-    bounds=_within,
-    more="a longer crank or a larger |offset|",
-    less="a smaller |offset|",
+_REACH = QuantityBounds(
+    compute=_time_ratio_bounds,
+    to_raise="a longer crank or a larger |offset|",
+    to_lower="a smaller |offset|",
 )
 TIME_RATIO = TimeRatio(
     name="time_ratio",
@@ -103,7 +103,7 @@ TIME_RATIO = TimeRatio(
     floor=1.01,
     in_line=1.0,
     needs=(ONE_TIMING,),
-    reach=_REACH,
+    bounds=_REACH,
     offered=("motion", "objective"),
 )
 CRANK_ANGLE_RATIO = ClosedFormQuantity(
@@ -126,6 +126,6 @@ CRANK_ANGLE_RATIO = ClosedFormQuantity(
         remedy="give the inverse",
     ),
     in_line=1.0,
-    reach=_REACH,
+    bounds=_REACH,
     plain=True,
 )

@@ -18,17 +18,17 @@ class TorqueFluctuation(Quantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        found = average_torque(mechanism, dimensions, gradients=gradients)
-        locks = np.isinf(found.rms_over_angle)
-        mean, rms = np.where(locks, 0.0, found.mean), np.where(locks, 1.0, found.rms_over_angle)
-        apart = rms - np.abs(mean)
-        apart = np.where(apart > _ROUNDING * rms, apart, 0.0)  # of a constant torque
-        values = np.sqrt(apart * (rms + np.abs(mean)))
+        averages = average_torque(mechanism, dimensions, gradients=gradients)
+        locks = np.isinf(averages.rms_over_angle)
+        mean, rms = np.where(locks, 0.0, averages.mean), np.where(locks, 1.0, averages.rms_over_angle)
+        difference = rms - np.abs(mean)
+        difference = np.where(difference > _ROUNDING * rms, difference, 0.0)  # of a constant torque
+        values = np.sqrt(difference * (rms + np.abs(mean)))
         slopes = None
-        if found.mean_gradients is not None and found.rms_over_angle_gradients is not None:
+        if averages.mean_gradients is not None and averages.rms_over_angle_gradients is not None:
             per = np.where(values > 0.0, 1.0 / np.where(values > 0.0, values, 1.0), 0.0)
-            slopes = (rms * per)[:, None] * found.rms_over_angle_gradients
-            slopes = slopes - (mean * per)[:, None] * found.mean_gradients
+            slopes = (rms * per)[:, None] * averages.rms_over_angle_gradients
+            slopes = slopes - (mean * per)[:, None] * averages.mean_gradients
             slopes = np.where(locks[:, None], 0.0, slopes)
         return Values(np.where(locks, np.inf, values), slopes)
 

@@ -6,13 +6,13 @@ import numpy as np
 
 from ..model.kinematics import geometry
 from ..model.kinematics.closed_forms import ClosedForm
+from .bounds import LengthRanges, QuantityBounds
 from .closed_form import ClosedFormQuantity
 from .kinds import ANGLE
 from .quantity import Domain, Group
-from .reach import Ranges, Reach
 
 
-def _within(box: Ranges) -> tuple[float, float]:
+def _transmission_angle_bounds(box: LengthRanges) -> tuple[float, float]:
     flattest = geometry.least_transmission_angle(box.r1, box.l0, box.a1) if box.turns else 0.0
     return float(flattest), float(geometry.least_transmission_angle(box.r0, box.l1, box.a0))
 
@@ -38,10 +38,10 @@ TRANSMISSION_ANGLE = ClosedFormQuantity(
     domain=Domain.acute("the least transmission angle lies between 0 and 90 deg", "30 to 50 deg"),
     # Torque and error grow without bound towards locking.
     floor=float(np.radians(10.0)),
-    reach=Reach(
-        bounds=_within,
-        more="a longer rod, a shorter crank or a smaller |offset|",
-        less="a shorter rod, a longer crank or a larger |offset|",
+    bounds=QuantityBounds(
+        compute=_transmission_angle_bounds,
+        to_raise="a longer rod, a shorter crank or a smaller |offset|",
+        to_lower="a shorter rod, a longer crank or a larger |offset|",
     ),
     offered=("requirement", "objective"),
 )

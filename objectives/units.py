@@ -23,13 +23,13 @@ from typing import Any, Literal
 
 from ..model.errors import InputError
 from .counted import counted
-from .kinds import KINDS, Face, Kind, amount_in, kind_in
+from .kinds import KINDS, DisplayUnit, Kind, amount_in, kind_in
 
 Sign = Literal["any", "positive", "zero or more"]
 Dimension = frozenset[tuple[str, int]]
 """Base dimensions with their powers: {("[length]", 1), ("[time]", -1)} of a speed."""
 
-_OTHERS = (Kind("a frequency that may count turns or radians", "s^-1", "", 0.0, Face("1/s", "")),)
+_OTHERS = (Kind("a frequency that may count turns or radians", "s^-1", "", 0.0, DisplayUnit("1/s", "")),)
 
 # Exact by definition: inch, pound (international, 1959) and the standard acceleration of gravity (3rd CGPM, 1901)
 # within the two forces. Degrees carry pi to 36 digits.
@@ -149,7 +149,7 @@ def kind_of(symbol: str) -> Kind:
             return kind
     if (kind := kind_for(symbol)) in KINDS:
         return kind
-    raise InputError(f"no kind of value has the unit {shown(symbol)}; add one to the list of kinds")
+    raise InputError(f"no kind of value has the unit {quote(symbol)}; add one to the list of kinds")
 
 
 def kind_for(symbol: str) -> Kind:
@@ -176,9 +176,9 @@ def kind_with(dimension: Dimension, symbol: str = "") -> Kind:
 
     symbol: a unit, which tells kinds of one dimension apart, such as a torque and an energy.
     """
-    known = [kind for kind in KINDS if dimension_of(kind.unit) == dimension]
-    if known:
-        return next((kind for kind in known if symbol in kind.typed), known[0])
+    candidates = [kind for kind in KINDS if dimension_of(kind.unit) == dimension]
+    if candidates:
+        return next((kind for kind in candidates if symbol in kind.typed), candidates[0])
     powers = sorted(dimension, key=lambda item: (item[1] < 0, item[0]))
     unit = " ".join(base_unit(base) + (f"^{power}" if power != 1 else "") for base, power in powers)
     return kind_in(unit) if all(base in _BASES for base, _ in powers) else amount_in(unit)
@@ -217,20 +217,20 @@ def to_si(value: object, kind: Kind, *, sign: Sign = "any", plain: bool = True) 
         exact = _read(value, kind, rule, write)
     elif isinstance(value, int | float) and not isinstance(value, bool):
         if not math.isfinite(value if isinstance(value, float) else 0):
-            raise InputError(f"must be a finite number; got {shown(value)}; {write}")
+            raise InputError(f"must be a finite number; got {quote(value)}; {write}")
         exact = Fraction(value)
     else:
-        raise InputError(f"{rule}; got {shown(value)}; {write}")
+        raise InputError(f"{rule}; got {quote(value)}; {write}")
     if abs(exact) > kind.limit:
         raise InputError(
             f"{rule} of at most {kind.limit:g} {kind.unit}".rstrip()
-            + f"; got {shown(value)}, beyond any machine; check the unit"
+            + f"; got {quote(value)}, beyond any machine; check the unit"
         )
     number = float(exact)
     if (sign == "positive" and number <= 0.0) or (sign == "zero or more" and number < 0.0):
         if number < 0.0 and isinstance(value, str):
-            write = f"write {shown(value.translate(_TYPESET).strip().removeprefix('-'))}"
-        raise InputError(f"must be {sign}; got {shown(value)}; {write}")
+            write = f"write {quote(value.translate(_TYPESET).strip().removeprefix('-'))}"
+        raise InputError(f"must be {sign}; got {quote(value)}; {write}")
     return number
 
 
@@ -240,18 +240,18 @@ def spread(value: object) -> tuple[str, str] | None:
     Each is a text in the unit of the middle; a unit that is missing on one side is that of the other. None for what
     states no such range. Raises InputError for units of two kinds.
     """
-    found = _SPREAD.fullmatch(value.translate(_TYPESET).strip()) if isinstance(value, str) else None
-    if found is None:
+    parts = _SPREAD.fullmatch(value.translate(_TYPESET).strip()) if isinstance(value, str) else None
+    if parts is None:
         return None
-    middle, half = Fraction(found[1]), abs(Fraction(found[3]))
-    unit = found[2] or found[4].strip()
-    if (other := found[4].strip() or unit) != unit:
-        (one, dimension), (factor, another) = _unit(unit), _unit(other)
+    middle, half = Fraction(parts[1]), abs(Fraction(parts[3]))
+    unit = parts[2] or parts[4].strip()
+    if (second_unit := parts[4].strip() or unit) != unit:
+        (middle_factor, dimension), (factor, another) = _unit(unit), _unit(second_unit)
         if dimension != another:
             raise InputError(
-                f'both parts of a range have units of one kind; got {shown(value)}; write it like "180 mm +- 0.5 mm"'
+                f'both parts of a range have units of one kind; got {quote(value)}; write it like "180 mm +- 0.5 mm"'
             )
-        half *= factor / one
+        half *= factor / middle_factor
     return f"{float(middle - half)!r} {unit}".rstrip(), f"{float(middle + half)!r} {unit}".rstrip()
 
 
@@ -277,19 +277,19 @@ def _unit_in(match: re.Match[str]) -> str:
     return plain if plain in _SPOKEN else unit
 
 
-def shown(value: object) -> str:
+def quote(value: object) -> str:
     """Return a value for a message: as a job file writes it, printable, of moderate length."""
     if value is None or isinstance(value, bool):
         return json.dumps(value)
     if isinstance(value, str):
         text = value if len(value) <= _LONGEST else value[:_LONGEST] + "..."
         quoted = json.dumps(text, ensure_ascii=False)
-        return "".join(one if one.isprintable() else json.dumps(one)[1:-1] for one in quoted)
+        return "".join(sign if sign.isprintable() else json.dumps(sign)[1:-1] for sign in quoted)
     if isinstance(value, Mapping):
         return f"a table of {counted(len(value), 'key')}" if value else "an empty table"
     if isinstance(value, list | tuple):
         plain = len(value) <= 4 and not any(isinstance(x, list | tuple | Mapping) for x in value)
-        inner = ", ".join(map(shown, value)) if plain else ""
+        inner = ", ".join(map(quote, value)) if plain else ""
         return f"[{inner}]" if plain else f"a list of {len(value)}"
     if isinstance(value, bytes):
         return f"{len(value)} bytes"
@@ -303,7 +303,7 @@ def closest(word: str, words: Iterable[str]) -> str | None:
     """Return which of some words is meant by a misspelt one; None if none is near."""
     by_fold = {candidate.casefold(): candidate for candidate in words}
     near = difflib.get_close_matches(word.casefold()[:_LONGEST], by_fold, n=1, cutoff=0.6)
-    near = near or sorted((known for known in by_fold if word.casefold() in known.split("_")), key=len)
+    near = near or sorted((folded for folded in by_fold if word.casefold() in folded.split("_")), key=len)
     return by_fold[near[0]] if near else None
 
 
@@ -320,10 +320,10 @@ def without_in(text: str) -> str:
 
 def symbol_in(text: str, kind: Kind) -> str | None:
     """Return a unit of a kind, as the head of a column has it, in the spelling of jobs; None for what is none."""
-    faces = [each.symbol for each in (kind.metric, kind.inch) if each is not None]
-    known = next((symbol for symbol in (*kind.typed, *faces) if squeezed(symbol) == squeezed(text)), None)
+    shown_symbols = [unit.symbol for unit in (kind.metric, kind.inch) if unit is not None]
+    listed = next((symbol for symbol in (*kind.typed, *shown_symbols) if squeezed(symbol) == squeezed(text)), None)
     try:
-        return known or (text.strip() if to_si(f"1 {text}", kind) else None)
+        return listed or (text.strip() if to_si(f"1 {text}", kind) else None)
     except InputError:
         return None
 
@@ -333,62 +333,62 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
     if len(text) > _LONGEST:
         raise InputError(f"{rule}; got a string of {len(text)} characters; {write}")
     if text.strip().casefold().lstrip("+-").split(" ")[0] in ("nan", "inf", "infinity"):
-        raise InputError(f"must be a finite number; got {shown(text)}; {write}")
+        raise InputError(f"must be a finite number; got {quote(text)}; {write}")
     if re.search(r"\d,\d", text):
         point, parted = text.replace(",", "."), text.replace(",", "")
         if text.count(",") > 1:
-            raise InputError(f"must not contain commas; got {shown(text)}; write {shown(parted)}")
+            raise InputError(f"must not contain commas; got {quote(text)}; write {quote(parted)}")
         if re.fullmatch(r"\s*[-+]?[1-9]\d{0,2},\d{3}(?!\d).*", text):
             raise InputError(
-                f"must not contain a comma; got {shown(text)}; write {shown(parted)} if the comma separates thousands, "
-                f"or {shown(point)} if it is a decimal comma"
+                f"must not contain a comma; got {quote(text)}; write {quote(parted)} if the comma separates thousands, "
+                f"or {quote(point)} if it is a decimal comma"
             )
         parts = number_and_unit(point)
         if kind.unit and parts and not parts[1]:
             point = f"{parts[0]} {kind.metric.symbol}"
-        raise InputError(f"use a decimal point, not a comma; got {shown(text)}; write {shown(point)}")
+        raise InputError(f"use a decimal point, not a comma; got {quote(text)}; write {quote(point)}")
     match = _VALUE.fullmatch(text.translate(_TYPESET))
     if share := re.fullmatch(r"\s*([+-]?\d+)\s*/\s*([1-9]\d*)\s*(\D.*)", text, re.ASCII):
         point = f"{float(Fraction(f'{share[1]}/{share[2]}')):.10g} {share[3]}"
         try:
             _read(point, kind, rule, write)
         except InputError as error:  # of another kind
-            raise InputError(str(error).replace(shown(point), shown(text))) from None
-        raise InputError(f"write a decimal number, not a fraction; got {shown(text)}; write {shown(point)}")
+            raise InputError(str(error).replace(quote(point), quote(text))) from None
+        raise InputError(f"write a decimal number, not a fraction; got {quote(text)}; write {quote(point)}")
     if match is None:
-        raise InputError(f"{rule}: one number and one unit; got {shown(text)}; {write}")
+        raise InputError(f"{rule}: one number and one unit; got {quote(text)}; {write}")
     if _SPREAD.fullmatch(text.translate(_TYPESET).strip()):
-        raise InputError(f"{rule}, a single value; got {shown(text)}, which is a range; {write}")
+        raise InputError(f"{rule}, a single value; got {quote(text)}, which is a range; {write}")
     if kind.spoken and (two := re.fullmatch(r"\s*([+-]?\d+)1/\s*min\s*", text)):
         raise InputError(
-            f'{rule}; got {shown(text)}, which can be read in two ways; write "{two[1]} rpm" or "{two[1]}1 rpm"'
+            f'{rule}; got {quote(text)}, which can be read in two ways; write "{two[1]} rpm" or "{two[1]}1 rpm"'
         )
     number, unit = Fraction(match[1]), dict(kind.spoken).get(_unit_in(match), _unit_in(match))
     if not unit and kind.unit:
         bare = " (in a job file, without quotes)" if "plain number" in write else ""
-        raise InputError(f"{rule} with its unit; got {shown(text)}; {write}{bare}")
+        raise InputError(f"{rule} with its unit; got {quote(text)}; {write}{bare}")
     if kind.amount:
         if unit != kind.unit:
-            raise InputError(f"{rule}; got {shown(text)}; {write}")
+            raise InputError(f"{rule}; got {quote(text)}; {write}")
         return number
     try:
         factor, dimension = _unit(unit)
     except InputError as error:
-        raise InputError(f"{rule}; got {shown(text)}: {error}; {write}") from None
+        raise InputError(f"{rule}; got {quote(text)}: {error}; {write}") from None
     if dimension != _unit(kind.unit)[1]:
-        others = [other for other in (*KINDS, *_OTHERS) if _unit(other.unit)[1] == dimension]
-        energies = [other for other in others if ("J" in other.unit) == bool(re.search(r"J\b", unit))]
-        which = f", which is {(energies or others)[0].name}" if others else ""
+        kinds = [item for item in (*KINDS, *_OTHERS) if _unit(item.unit)[1] == dimension]
+        energies = [item for item in kinds if ("J" in item.unit) == bool(re.search(r"J\b", unit))]
+        note = f", which is {(energies or kinds)[0].name}" if kinds else ""
         force = _WEIGHT.sub(r"\1f", unit)
         if force != unit and _unit(force)[1] == _unit(kind.unit)[1]:
             newtons = f"{float(number * _unit(force)[0]):.4g} {kind.unit}"
             write = f'a weight is a force: write "{match[1]} {force}" or "{newtons}"'
-        elif others and kind.plain == "mass" and _unit("N")[1] == dimension:
+        elif kinds and kind.plain == "mass" and _unit("N")[1] == dimension:
             write = f"write the mass in {kind.unit}"
-        raise InputError(f"{rule}; got {shown(text)}{which}; {write}")
-    for unit_of_kind, symbols, other in _APART:
+        raise InputError(f"{rule}; got {quote(text)}{note}; {write}")
+    for unit_of_kind, symbols, item in _APART:
         if kind.unit == unit_of_kind and re.search(symbols, unit):
-            raise InputError(f"{rule}; got {shown(text)}, which is {other}; {write}")
+            raise InputError(f"{rule}; got {quote(text)}, which is {item}; {write}")
     return number * factor
 
 
@@ -405,7 +405,7 @@ def _unit(text: str) -> tuple[Fraction, Dimension]:
         match = _FACTOR.match(rest)
         if match is None or (first and match[1] not in ("", "/")):
             hint = _HINTS.get(rest.strip())
-            raise InputError(f"{shown(rest.strip())} is not a unit{f', {hint}' if hint else ''}")
+            raise InputError(f"{quote(rest.strip())} is not a unit{f', {hint}' if hint else ''}")
         sign, name = match[1], match[2]
         if divided:
             raise InputError("a unit ends with the name after its division sign")
@@ -428,8 +428,8 @@ def _lookup(name: str) -> tuple[Fraction, tuple[tuple[str, int], ...]]:
     if name == "Grad" or not registry.parse_unit_name(name):  # else a gigaradian
         hint = _HINTS.get(name)
         near = None if hint else closest(name, _COMMON)
-        meant = f", {hint}" if hint else f", did you mean {near}?" if near else ""
-        raise InputError(f"{shown(name)} is not a known unit{meant}")
+        hint_text = f", {hint}" if hint else f", did you mean {near}?" if near else ""
+        raise InputError(f"{quote(name)} is not a known unit{hint_text}")
     value = registry.Quantity(Fraction(1), name).to_root_units()
     powers = tuple((str(base), int(power)) for base, power in value.dimensionality.items())
     return Fraction(value.magnitude), powers

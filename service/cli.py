@@ -124,11 +124,11 @@ def _say_in_own_words(error: Exception) -> None:
     refused: Any = error.__cause__
     if not (isinstance(error, typer.BadParameter) and hasattr(refused, "errors")):
         return
-    from ..objectives.units import shown
+    from ..objectives.units import quote
     from ..optimise.job.messages import rule_of
 
     details = refused.errors(include_url=False)[0]
-    error.message = f"{rule_of(details)}; got {shown(details['input'])}"
+    error.message = f"{rule_of(details)}; got {quote(details['input'])}"
 
 
 def _short_of_memory(error: BaseException | None) -> bool:

@@ -85,7 +85,7 @@ def needs(quantity: Quantity) -> Iterator[str]:
     for need in quantity.needs:
         rule, *others = need.missing.replace("{instead}", f"`{quantity.instead}`").split("; ")
         remedies = [_JOB.sub(lambda found: f"`{found[0]}`", text) for text in others if not text.startswith("got ")]
-        without = _WITHOUT[need.without].replace("{instead}", quantity.instead)
+        without = _WITHOUT[need.consequence].replace("{instead}", quantity.instead)
         yield f"{'; '.join([rule, *remedies])}. *{without[0].upper()}{without[1:]}.*"
 
 

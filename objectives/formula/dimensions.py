@@ -51,8 +51,8 @@ def kind_of_formula(node: Node, kinds: Mapping[str, Kind]) -> Kind:
 class _Dimensions:
     """An algebra of dimensions. known: those of names."""
 
-    def __init__(self, known: Mapping[str, Powers]) -> None:
-        self.known, self.text = known, Text()
+    def __init__(self, name_powers: Mapping[str, Powers]) -> None:
+        self.known, self.text = name_powers, Text()
 
     def number(self, number: Number) -> _Part:
         value = None if number.unit else Fraction(number.digits)
@@ -62,41 +62,41 @@ class _Dimensions:
         return _Part(self.known[name], self.text.name(name))
 
     def call(self, function: str, arguments: list[_Part]) -> _Part:
-        one, other = arguments[0], arguments[-1]
+        first, last = arguments[0], arguments[-1]
         written = self.text.call(function, [item.written for item in arguments])
         text = _Part({}, written).text
         if function in _SAID:
             for item in arguments[1:]:
-                if not _alike(one.powers, item.powers):
+                if not _may_be_added(first.powers, item.powers):
                     raise InputError(
-                        f"{text} {_SAID[function]} {_unit(one.powers)} and {_unit(item.powers)}; only values of one "
+                        f"{text} {_SAID[function]} {_unit(first.powers)} and {_unit(item.powers)}; only values of one "
                         "kind go together; correct the names, or give numbers their units"
                     )
-            return _Part(one.powers, written, _value(function, arguments))
+            return _Part(first.powers, written, _value(function, arguments))
         if function in "*/":
             sign = 1 if function == "*" else -1
-            powers = {base: Fraction(0) for base in (*one.powers, *other.powers)}
-            powers |= one.powers
-            powers = {base: power + sign * other.powers.get(base, 0) for base, power in powers.items()}
+            powers = {base: Fraction(0) for base in (*first.powers, *last.powers)}
+            powers |= first.powers
+            powers = {base: power + sign * last.powers.get(base, 0) for base, power in powers.items()}
             return _Part({base: power for base, power in powers.items() if power}, written, _value(function, arguments))
         if function == "**":
-            return _Part(_raised(one, other, text), written)
+            return _Part(_raised(first, last, text), written)
         if function == "sqrt":
-            return _Part({base: power / 2 for base, power in one.powers.items()}, written)
+            return _Part({base: power / 2 for base, power in first.powers.items()}, written)
         if function in ANGLES:
-            if not _alike(one.powers, _powers(dimension_of(ANGLE.unit))):
+            if not _may_be_added(first.powers, _powers(dimension_of(ANGLE.unit))):
                 raise InputError(
-                    f"{function} takes an angle; got {text} of {_unit(one.powers)}; give a number its unit, 30 deg, or "
-                    "multiply a ratio by 1 rad"
+                    f"{function} takes an angle; got {text} of {_unit(first.powers)}; give a number its "
+                    "unit, 30 deg, or multiply a ratio by 1 rad"
                 )
             return _Part({}, written)
         if function in INVERSES:
-            if not one.plain:
+            if not first.plain:
                 raise InputError(
-                    f"{function} takes a ratio; got {text} of {_unit(one.powers)}; divide by a value of the same kind"
+                    f"{function} takes a ratio; got {text} of {_unit(first.powers)}; divide by a value of the same kind"
                 )
             return _Part(_powers(dimension_of(ANGLE.unit)), written)
-        return _Part(one.powers, written, _value(function, arguments))  # neg, abs
+        return _Part(first.powers, written, _value(function, arguments))  # neg, abs
 
 
 def _raised(base: _Part, exponent: _Part, text: str) -> Powers:
@@ -117,37 +117,37 @@ def _raised(base: _Part, exponent: _Part, text: str) -> Powers:
 def _value(function: str, arguments: list[_Part]) -> Fraction | None:
     """Return the value of an exponent such as 1 / 3; None for no number, and for one too great."""
     values = [item.value for item in arguments]
-    one, other = values[0], values[-1]
-    if one is None or other is None or max(map(abs, (one, other))) > 1000:
+    first, last = values[0], values[-1]
+    if first is None or last is None or max(map(abs, (first, last))) > 1000:
         return None
     if function == "neg":
-        return -one
+        return -first
     if function == "/":
-        return one / other if other else None
-    return {"+": one + other, "-": one - other, "*": one * other}.get(function)
+        return first / last if last else None
+    return {"+": first + last, "-": first - last, "*": first * last}.get(function)
 
 
 def _powers(dimension: Dimension) -> Powers:
     return {base: Fraction(power) for base, power in dimension}
 
 
-def _alike(one: Powers, other: Powers) -> bool:
+def _may_be_added(first: Powers, second: Powers) -> bool:
     """Return whether values may be added: an angle times a length is a length, as an arc is."""
-    return _kept(one) == _kept(other)
+    return _without_arc(first) == _without_arc(second)
 
 
-def _kept(powers: Powers) -> Powers:
+def _without_arc(powers: Powers) -> Powers:
     arc = bool(powers.get(_LENGTH))
     return {base: power for base, power in powers.items() if power and not (arc and base == _ANGLE)}
 
 
 def _kind(powers: Powers) -> Kind:
-    return kind_with(frozenset((base, int(power)) for base, power in _kept(powers).items()))
+    return kind_with(frozenset((base, int(power)) for base, power in _without_arc(powers).items()))
 
 
 def _unit(powers: Powers) -> str:
     """Return the unit in which values of a dimension are shown."""
-    kept = _kept(powers)
-    if all(power.denominator == 1 and abs(power) <= _LARGEST for power in kept.values()):
-        return _kind(kept).metric.symbol or "no unit"
-    return " ".join(f"{base_unit(base)}^{power}" for base, power in sorted(kept.items()))
+    significant = _without_arc(powers)
+    if all(power.denominator == 1 and abs(power) <= _LARGEST for power in significant.values()):
+        return _kind(significant).metric.symbol or "no unit"
+    return " ".join(f"{base_unit(base)}^{power}" for base, power in sorted(significant.items()))

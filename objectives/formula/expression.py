@@ -72,13 +72,13 @@ def fold(node: Node, algebra: Algebra[T]) -> T:
 def names_in(node: Node) -> tuple[str, ...]:
     """Return the names in a formula, each once, in their order."""
 
-    def found(node: Node) -> Iterator[str]:
+    def occurrences(node: Node) -> Iterator[str]:
         if isinstance(node, Name):
             yield node.name
         for item in node.arguments if isinstance(node, Call) else ():
-            yield from found(item)
+            yield from occurrences(item)
 
-    return tuple(dict.fromkeys(found(node)))
+    return tuple(dict.fromkeys(occurrences(node)))
 
 
 class Text:
@@ -97,13 +97,13 @@ class Text:
         """Return the text of a function."""
         if function not in SIGNS:
             return f"{function}({', '.join(text for text, _ in arguments)})", _ATOM
-        own = SIGNS[function]
+        strength = SIGNS[function]
         if function == "neg":
-            return f"-{_bound(arguments[0], own)}", own
+            return f"-{_bound(arguments[0], strength)}", strength
         left, right = arguments
         if function == "**":
-            return f"{_bound(left, own + 1)}**{_bound(right, own)}", own
-        return f"{_bound(left, own)} {function} {_bound(right, own + 1)}", own
+            return f"{_bound(left, strength + 1)}**{_bound(right, strength)}", strength
+        return f"{_bound(left, strength)} {function} {_bound(right, strength + 1)}", strength
 
 
 def _bound(part: tuple[str, int], least: int) -> str:

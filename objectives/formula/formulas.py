@@ -12,18 +12,18 @@ from ...model.errors import InputError, JobError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import unit_of
+from ..bounds import CLEAR, KnownBounds, QuantityBounds
+from ..bounds import LengthRanges as Box
 from ..kinds import LENGTH, Kind, kind_in
 from ..quantity import Quantity
-from ..reach import CLEAR, Reach, Within
-from ..reach import Ranges as Box
 from ..registry import FACTS, QUANTITIES, listed
-from ..units import closest, dimension_of, is_value, kind_for, kind_of, number_in_si, per_si, shown, to_si
+from ..units import closest, dimension_of, is_value, kind_for, kind_of, number_in_si, per_si, quote, to_si
 from .dimensions import kind_of_formula
 from .expression import ARGUMENTS, Name, Node, names_in, text_of
 from .linear import Linear, linear_of, unknown
 from .parser import parse
 from .quantity import FormulaQuantity, key_of, leaves_of
-from .ranges import Interval, Ranges
+from .ranges import FormulaBounds, Interval
 
 ROOTS = ("mechanism", "load", "friction", "tolerances", "sections", "motion")
 """Tables whose numbers may vary, and begin names of formulas then."""
@@ -71,8 +71,10 @@ def is_formula(text: str, names: Iterable[str] = ()) -> bool:
     """
     if is_value(text):
         return False
-    known = {*FACTS, *DIMENSIONS, *ARGUMENTS, *names}
-    return any(word in known or "." in word or (len(word) > 3 and closest(word, known)) for word in words_of(text))
+    known_names = {*FACTS, *DIMENSIONS, *ARGUMENTS, *names}
+    return any(
+        word in known_names or "." in word or (len(word) > 3 and closest(word, known_names)) for word in words_of(text)
+    )
 
 
 def words_of(text: object) -> list[str]:
@@ -80,13 +82,13 @@ def words_of(text: object) -> list[str]:
     return _WORD.findall(text) if isinstance(text, str) else []
 
 
-def unknown_name(name: str, known: Iterable[str], units: Units, formula: str) -> InputError:
+def unknown_name(name: str, names: Iterable[str], units: Units, formula: str) -> InputError:
     """Return the refusal of a name in a formula that no quantity, dimension or varying number has.
 
-    known: the names there are, of which one may be written with - for _.
+    names: the names there are, of which one may be written with - for _.
     """
-    every, written = list(known), re.sub(r"\s*-\s*", "_", formula.strip())
-    same = [other for other in every if other.casefold() in (name.casefold(), written.casefold())]
+    every, written = list(names), re.sub(r"\s*-\s*", "_", formula.strip())
+    same = [candidate for candidate in every if candidate.casefold() in (name.casefold(), written.casefold())]
     near = same or difflib.get_close_matches(name[:60], every, n=_NEAREST)
     hint = f"did you mean {' or '.join(near)}?" if near else f"the names are {listed(every)}"
     if "." in name and not near:
@@ -95,7 +97,7 @@ def unknown_name(name: str, known: Iterable[str], units: Units, formula: str) ->
         hint = f"write it with its arguments in brackets: {name}(...)"
     elif units.has(name):
         hint = f"a unit stands right after its number: 1 {name}"
-    return InputError(f"no quantity, dimension or varying number is called {shown(name)}; {hint}")
+    return InputError(f"no quantity, dimension or varying number is called {quote(name)}; {hint}")
 
 
 class Ends(Protocol):
@@ -118,7 +120,7 @@ class Formulas:
 
     def __init__(
         self,
-        own: Iterable[Quantity],
+        custom: Iterable[Quantity],
         machine: Mechanism,
         ranges: Mapping[str, Ends] | None,
         named: Mapping[str, Stated],
@@ -131,21 +133,21 @@ class Formulas:
         turning: whether the crank must turn through, which narrows the dimensions.
         Raises JobError for a named formula that is wrong.
         """
-        self.made: dict[str, FormulaQuantity] = {}
+        self.formula_quantities: dict[str, FormulaQuantity] = {}
         self._machine, self._stated = machine, named
         self._open: list[str] = []
         self._turning = turning
-        self._quantities: dict[str, Quantity] = QUANTITIES | {item.name: item for item in own}
+        self._quantities: dict[str, Quantity] = QUANTITIES | {item.name: item for item in custom}
         self._places = {name: place for place, name in enumerate((*DIMENSIONS, *(v.name for v in machine.varying)))}
         self._kinds = dict.fromkeys(DIMENSIONS, LENGTH)
         self._kinds |= {item.name: kind_of(unit_of(item.paths[0])) for item in machine.varying}
-        self._known = ranges is not None
-        self._intervals = {name: Interval(of.lower, of.upper) for name, of in (ranges or {}).items()}
+        self._has_ranges = ranges is not None
+        self._intervals = {name: Interval(ends.lower, ends.upper) for name, ends in (ranges or {}).items()}
         self._intervals |= {item.name: Interval(item.lower, item.upper) for item in machine.varying}
         self._linears: dict[str, Linear | None] = {name: unknown(name) for name in self._places}
         self._units = Units(frozenset((*self._quantities, *self._places, *named)))
         for name in named:
-            self._named(name)
+            self._resolve_named(name)
 
     def quantity(self, text: str, key: str) -> Quantity:
         """Return the quantity that a name or formula means. key: of the job, for messages.
@@ -153,43 +155,43 @@ class Formulas:
         Raises JobError, also for one that no design changes.
         """
         try:
-            found = self._of(text)
+            quantity = self._resolve_text(text)
         except InputError as error:
             raise JobError(f"{key}: {error}") from None
-        if isinstance(found, FormulaQuantity) and found.constant and not leaves_of([found]):
+        if isinstance(quantity, FormulaQuantity) and quantity.constant and not leaves_of([quantity]):
             raise JobError(
-                f"{key}: a formula names a quantity, a dimension or a varying number; got {found.formula}, which is "
+                f"{key}: a formula names a quantity, a dimension or a varying number; got {quantity.formula}, which is "
                 "the same for every design; leave it out"
             )
-        return found
+        return quantity
 
-    def bound(self, of: Quantity, value: object, key: str) -> tuple[Quantity, float]:
+    def bound(self, quantity: Quantity, value: object, key: str) -> tuple[Quantity, float]:
         """Return the quantity and its bound; for a formula as a bound their difference, and 0.
 
         Raises JobError.
         """
         try:
             if isinstance(value, str) and is_formula(value, self._units.names):
-                return self._of(f"({of.name}) - ({value})"), 0.0
-            return of, to_si(value, of.kind)
+                return self._resolve_text(f"({quantity.name}) - ({value})"), 0.0
+            return quantity, to_si(value, quantity.kind)
         except InputError as error:
             raise JobError(f"{key}: {error}") from None
 
     # ---- how a formula becomes a quantity -------------------------------------------------------------------------
 
-    def _of(self, text: str) -> Quantity:
+    def _resolve_text(self, text: str) -> Quantity:
         node = parse(text, self._units)
         if isinstance(node, Name) and node.name not in self._places:
-            return self._meant(node.name, node.name)
+            return self._resolve_name(node.name, node.name)
         name = text_of(node)
-        if name not in self.made:
-            self.made[name] = self._quantity(node, name, title=name, key=key_of(name))
-        return self.made[name]
+        if name not in self.formula_quantities:
+            self.formula_quantities[name] = self._quantity(node, name, title=name, key=key_of(name))
+        return self.formula_quantities[name]
 
-    def _named(self, name: str) -> FormulaQuantity:
+    def _resolve_named(self, name: str) -> FormulaQuantity:
         """Return the quantity of a named formula; those that it names come first. Raises JobError."""
-        if name in self.made:
-            return self.made[name]
+        if name in self.formula_quantities:
+            return self.formula_quantities[name]
         if name in self._open:
             through = " by ".join((*self._open[self._open.index(name) :], name))
             raise InputError(f"formulas do not define themselves; got {through}; write out one of them")
@@ -197,40 +199,40 @@ class Formulas:
         stated = self._stated[name]
         try:
             node = parse(stated.formula, self._units)
-            self.made[name] = self._quantity(node, name, title=stated.title or "", key=name)
+            self.formula_quantities[name] = self._quantity(node, name, title=stated.title or "", key=name)
             if stated.unit is not None:
-                self.made[name] = self._shown_in(self.made[name], node, stated)
+                self.formula_quantities[name] = self._with_unit(self.formula_quantities[name], node, stated)
         except JobError:
             raise
         except InputError as error:
             raise JobError(f"quantity.{name}.formula: {error}") from None
         self._open.pop()
-        self._quantities[name] = self.made[name]
-        return self.made[name]
+        self._quantities[name] = self.formula_quantities[name]
+        return self.formula_quantities[name]
 
-    def _shown_in(self, made: FormulaQuantity, node: Node, stated: Stated) -> FormulaQuantity:
+    def _with_unit(self, formula: FormulaQuantity, node: Node, stated: Stated) -> FormulaQuantity:
         unit = stated.unit or ""
-        if dimension_of(unit) != dimension_of(made.kind.unit):
-            name = made.name
+        if dimension_of(unit) != dimension_of(formula.kind.unit):
+            name = formula.name
             raise JobError(
-                f"quantity.{name}.unit: a formula is shown in a unit of its kind; got {shown(unit)} for "
-                f'{made.kind.name}; write it like "{made.kind.metric.symbol}", or leave it out'
+                f"quantity.{name}.unit: a formula is shown in a unit of its kind; got {quote(unit)} for "
+                f'{formula.kind.name}; write it like "{formula.kind.metric.symbol}", or leave it out'
             )
         kind = kind_in(unit, per_si(unit), kind_for(unit))
-        return self._quantity(node, made.name, title=made.title, key=made.key, kind=kind)
+        return self._quantity(node, formula.name, title=formula.title, key=formula.key, kind=kind)
 
     def _quantity(self, node: Node, name: str, *, title: str, key: str, kind: Kind | None = None) -> FormulaQuantity:
         names = names_in(node)
-        parts = tuple(self._meant(item, text_of(node)) for item in names if item not in self._places)
+        parts = tuple(self._resolve_name(item, text_of(node)) for item in names if item not in self._places)
         for part in parts:
             reason = part.undefined_because([self._machine])
             if reason:
                 raise InputError(f"{part.name} is not defined here: {reason}")
         kinds = {item: self._kinds[item] for item in names if item in self._places}
         kind = kind or kind_of_formula(node, kinds | {part.name: part.kind for part in parts})
-        within = self._within(node, parts)
+        interval = self._bounds_of_formula(node, parts)
         wider = f"a wider range of {' or of '.join(DIMENSIONS)}"
-        self._intervals[name] = within
+        self._intervals[name] = interval
         self._linears[name] = linear_of(node, self._linears)
         text = text_of(node)
         return FormulaQuantity(
@@ -242,8 +244,8 @@ class Formulas:
             formula=text,
             source="this job",
             section="11. Peaks, averages and derivatives",
-            signed=within.lower < 0.0,
-            reach=Reach(bounds=Within(within.lower, within.upper), more=wider, less=wider),
+            signed=interval.lower < 0.0,
+            bounds=QuantityBounds(compute=KnownBounds(interval.lower, interval.upper), to_raise=wider, to_lower=wider),
             about_tolerances=any(part.about_tolerances for part in parts),
             expression=node,
             parts=parts,
@@ -252,56 +254,56 @@ class Formulas:
             signs=tuple((item, sign) for item in names if item in self._places and (sign := self._sign(item))),
         )
 
-    def _within(self, node: Node, parts: tuple[Quantity, ...]) -> Interval:
-        if not self._known:
+    def _bounds_of_formula(self, node: Node, parts: tuple[Quantity, ...]) -> Interval:
+        if not self._has_ranges:
             return Interval(-float("inf"), float("inf"))
         for part in parts:
             if part.name not in self._intervals:
                 self._intervals[part.name] = self._interval(part)
                 self._linears.setdefault(part.name, None)
         linears = self._linears if self._turning else dict.fromkeys(self._linears)
-        off_zero = {name: self._keeping(name) for name in names_in(node)}
-        return Ranges(self._intervals, linears, off_zero).of(node)
+        off_zero = {name: self._zero_remedy(name) for name in names_in(node)}
+        return FormulaBounds(self._intervals, linears, off_zero).bounds(node)
 
     def _sign(self, name: str) -> int:
-        of = self._intervals.get(name, Interval(-1.0, 1.0))
-        return 1 if of.lower >= 0.0 else -1 if of.upper <= 0.0 else 0
+        interval = self._intervals.get(name, Interval(-1.0, 1.0))
+        return 1 if interval.lower >= 0.0 else -1 if interval.upper <= 0.0 else 0
 
-    def _meant(self, name: str, formula: str) -> Quantity:
+    def _resolve_name(self, name: str, formula: str) -> Quantity:
         if name in self._stated:
-            return self._named(name)
+            return self._resolve_named(name)
         if name in self._quantities:
             return self._quantities[name]
         if name in FACTS:
             raise InputError(f"{name} needs the table [{FACTS[name].table}]; got none; add it, or leave {name} out")
         raise unknown_name(name, [*self._quantities, *self._places, *self._stated], self._units, formula)
 
-    def _interval(self, of: Quantity) -> Interval:
+    def _interval(self, quantity: Quantity) -> Interval:
         """Return bounds of a quantity within the ranges; one that is never negative is taken for never zero."""
-        if of.zero_because([self._machine]):
+        if quantity.zero_because([self._machine]):
             return Interval(0.0, 0.0)
-        low = -float("inf") if of.signed else 0.0 if of.domain is None else max(of.domain.lower, 0.0)
-        found = Interval(low, float("inf"), not of.signed)
+        low = -float("inf") if quantity.signed else 0.0 if quantity.domain is None else max(quantity.domain.lower, 0.0)
+        sign_interval = Interval(low, float("inf"), not quantity.signed)
         crank, rod, offset = (self._intervals[name] for name in DIMENSIONS)
         sizes = sorted((abs(offset.lower), abs(offset.upper)))
         least = 0.0 if offset.spans_zero else sizes[0]
-        reach = of.reach_for(self._machine)
-        if reach is None or not self._turning or rod.upper <= (crank.lower + least) * CLEAR:
-            return found
-        lower, upper = reach.bounds(Box(crank.lower, crank.upper, rod.lower, rod.upper, least, sizes[1]))
-        return Interval(lower, upper, found.apart)
+        length_bounds = quantity.bounds_for(self._machine)
+        if length_bounds is None or not self._turning or rod.upper <= (crank.lower + least) * CLEAR:
+            return sign_interval
+        lower, upper = length_bounds.compute(Box(crank.lower, crank.upper, rod.lower, rod.upper, least, sizes[1]))
+        return Interval(lower, upper, sign_interval.excludes_zero)
 
-    def _keeping(self, name: str) -> str:
+    def _zero_remedy(self, name: str) -> str:
         """Return how a number is kept off zero."""
         if name in self._places:
-            of = self._intervals[name]
-            return f"keep variables.{name} off zero: it is from {_ends(of, self._kinds[name])}"
+            interval = self._intervals[name]
+            return f"keep variables.{name} off zero: it is from {_ends(interval, self._kinds[name])}"
         instead = self._quantities[name].instead_of_quotient if name in self._quantities else ""
         if instead:
             return f"use {instead} instead: work output divided by work input, also for machines that drive"
         return "divide by a quantity that is never zero, or ask for something of the product instead"
 
 
-def _ends(of: Interval, kind: Kind) -> str:
-    face = kind.metric
-    return f"{of.lower * face.factor:.6g} to {of.upper * face.factor:.6g} {face.symbol}".rstrip()
+def _ends(interval: Interval, kind: Kind) -> str:
+    unit = kind.metric
+    return f"{interval.lower * unit.factor:.6g} to {interval.upper * unit.factor:.6g} {unit.symbol}".rstrip()

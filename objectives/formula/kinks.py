@@ -29,116 +29,119 @@ _APART = 50.0
 
 @dataclass(frozen=True)
 class Side:
-    """Smooth pieces of one side, the active one first. values, labels, there: (n, k). gradients: (n, k, d)."""
+    """Smooth pieces of one side, the active one first. values, labels, present: (n, k). gradients: (n, k, d)."""
 
     values: Array
     gradients: Array
     labels: Array
-    there: Mask
+    present: Mask
 
     @property
-    def first(self) -> Side:
+    def active(self) -> Side:
         """The active piece alone."""
-        return Side(self.values[:, :1], self.gradients[:, :1], self.labels[:, :1], self.there[:, :1])
+        return Side(self.values[:, :1], self.gradients[:, :1], self.labels[:, :1], self.present[:, :1])
 
-    def at(self, places: Whole) -> Side:
+    def take(self, places: Whole) -> Side:
         """Return the pieces at some places (n, m) of each design."""
         return Side(
             np.take_along_axis(self.values, places, axis=1),
             np.take_along_axis(self.gradients, places[:, :, None], axis=1),
             np.take_along_axis(self.labels, places, axis=1),
-            np.take_along_axis(self.there, places, axis=1),
+            np.take_along_axis(self.present, places, axis=1),
         )
 
     def padded(self, width: int) -> Side:
         """Return the side with places for more pieces, which are not there."""
-        room = [(0, 0), (0, width - self.values.shape[1])]
-        values, labels, there = np.pad(self.values, room), np.pad(self.labels, room), np.pad(self.there, room)
-        return Side(values, np.pad(self.gradients, [*room, (0, 0)]), labels, there)
+        widths = [(0, 0), (0, width - self.values.shape[1])]
+        values, labels, present = np.pad(self.values, widths), np.pad(self.labels, widths), np.pad(self.present, widths)
+        return Side(values, np.pad(self.gradients, [*widths, (0, 0)]), labels, present)
 
-    def ordered(self, *, above: bool) -> Side:
+    def ordered(self, *, from_above: bool) -> Side:
         """Return the pieces in their order, those that cannot be right left out; the active one stays the first.
 
         A piece beyond the active one comes of a function that does not rise all the way from one to the other.
         """
         top = self.values[:, :1]
         with np.errstate(invalid="ignore"):
-            right = self.there & ((self.values <= top) if above else (self.values >= top))
+            right = self.present & ((self.values <= top) if from_above else (self.values >= top))
         right[:, 0] = True
-        worth = np.where(right, -self.values if above else self.values, np.inf)
-        worth[:, 0] = -np.inf
-        order = np.argsort(worth, axis=1, kind="stable")[:, :_KEPT]
-        return replace(self, there=right).at(order)
+        sort_keys = np.where(right, -self.values if from_above else self.values, np.inf)
+        sort_keys[:, 0] = -np.inf
+        order = np.argsort(sort_keys, axis=1, kind="stable")[:, :_KEPT]
+        return replace(self, present=right).take(order)
 
 
 @dataclass(frozen=True)
-class Both:
+class TwoSided:
     """A part of a formula from above and from below; both have the same active piece.
 
     sign: 1 where no design of the problem makes it negative, -1 where none makes it positive, 0 where nothing is known.
     """
 
-    above: Side
-    below: Side
+    from_above: Side
+    from_below: Side
     sign: int = 0
 
-    def on(self, slope: Array, known: int, *, above: bool) -> Side:
+    def side_for(self, slope: Array, known_sign: int, *, from_above: bool) -> Side:
         """Return the side that a function sees from above or below.
 
-        slope: (n,), of the function by this part. known: its sign if that is known; designs that differ from it, which
-        are out of their ranges, have their active piece alone.
+        slope: (n,), of the function by this part. known_sign: its sign if it is known, else 0. Designs with the other
+        sign are outside their ranges and have their active piece alone.
         """
-        same, swapped = (self.above, self.below) if above else (self.below, self.above)
-        if known:
-            seen = same if known > 0 else swapped
-            return _either(known * slope >= 0.0, seen, seen.first.padded(seen.values.shape[1]))
+        same, swapped = (self.from_above, self.from_below) if from_above else (self.from_below, self.from_above)
+        if known_sign:
+            side = same if known_sign > 0 else swapped
+            return _either(known_sign * slope >= 0.0, side, side.active.padded(side.values.shape[1]))
         width = max(same.values.shape[1], swapped.values.shape[1])
         return same if width == 1 else _either(slope >= 0.0, same.padded(width), swapped.padded(width))
 
 
-def both_of(pieces: Pieces, factor: float, sign: int) -> Both:
+def two_sided(pieces: Pieces, factor: float, sign: int) -> TwoSided:
     """Return a quantity's pieces from both sides. factor: of labels, so that sums tell the pieces of parts apart."""
     least = pieces.least
     places = np.argsort(pieces.values if least else -pieces.values, axis=1, kind="stable")
-    known = pieces.at(places)
-    own = Side(known.values, known.gradients, factor * known.labels, np.isfinite(known.values))
-    if pieces.other is None:
-        return Both(own.first, own, sign) if least else Both(own, own.first, sign)
-    more = both_of(pieces.other, factor, sign)
-    return Both(more.above, own, sign) if least else Both(own, more.below, sign)
+    ordered = pieces.take(places)
+    side = Side(ordered.values, ordered.gradients, factor * ordered.labels, np.isfinite(ordered.values))
+    if pieces.opposite is None:
+        return TwoSided(side.active, side, sign) if least else TwoSided(side, side.active, sign)
+    opposite = two_sided(pieces.opposite, factor, sign)
+    return TwoSided(opposite.from_above, side, sign) if least else TwoSided(side, opposite.from_below, sign)
 
 
 @dataclass(frozen=True)
 class Kinks:
     """An algebra of pieces. leaves: what the names mean. n, d: designs and numbers of each."""
 
-    leaves: Mapping[str, Both]
+    leaves: Mapping[str, TwoSided]
     n: int
     d: int
 
-    def number(self, number: Number) -> Both:
+    def number(self, number: Number) -> TwoSided:
         """Return a number, the same for all designs."""
-        one = smooth(np.full(self.n, number.si), np.zeros((self.n, self.d)))
-        return Both(one, one, 1 if number.si >= 0.0 else -1)
+        side = smooth(np.full(self.n, number.si), np.zeros((self.n, self.d)))
+        return TwoSided(side, side, 1 if number.si >= 0.0 else -1)
 
-    def name(self, name: str) -> Both:
+    def name(self, name: str) -> TwoSided:
         """Return the pieces of a name."""
         return self.leaves[name]
 
-    def call(self, function: str, arguments: list[Both]) -> Both:
+    def call(self, function: str, arguments: list[TwoSided]) -> TwoSided:
         """Return a function of its arguments."""
         if function == "abs":
             return replace(_extreme("max", [arguments[0], self.call("neg", arguments)]), sign=1)
         if function in ("min", "max"):
             return _extreme(function, arguments)
-        given = [item.above.values[:, 0] for item in arguments]
-        slopes = partials(function, given, _values(function, given))
+        active_values = [item.from_above.values[:, 0] for item in arguments]
+        slopes = partials(function, active_values, _values(function, active_values))
         signs, sign = _signs(function, arguments)
         sides = []
-        for above in (True, False):
-            own = [item.on(slope, up, above=above) for item, slope, up in zip(arguments, slopes, signs, strict=True)]
-            sides.append(_combined(function, own).ordered(above=above))
-        return Both(sides[0], sides[1], sign)
+        for from_above in (True, False):
+            argument_sides = [
+                item.side_for(slope, up, from_above=from_above)
+                for item, slope, up in zip(arguments, slopes, signs, strict=True)
+            ]
+            sides.append(_combined(function, argument_sides).ordered(from_above=from_above))
+        return TwoSided(sides[0], sides[1], sign)
 
 
 def smooth(values: Array, gradients: Array) -> Side:
@@ -146,17 +149,17 @@ def smooth(values: Array, gradients: Array) -> Side:
     return Side(values[:, None], gradients[:, None], np.zeros((len(values), 1)), np.ones((len(values), 1), np.bool_))
 
 
-def pieces_of(both: Both) -> Pieces:
+def pieces_of(formula: TwoSided) -> Pieces:
     """Return a formula as the greatest of its pieces, with its other side where it has kinks of both kinds."""
-    above, below = (
-        Pieces(np.where(side.there, side.values, absent), side.gradients, side.labels, absent > 0.0)
-        for side, absent in ((both.above, -np.inf), (both.below, np.inf))
+    from_above, from_below = (
+        Pieces(np.where(side.present, side.values, absent), side.gradients, side.labels, absent > 0.0)
+        for side, absent in ((formula.from_above, -np.inf), (formula.from_below, np.inf))
     )
-    for item, side in ((above, both.above), (below, both.below)):
+    for item, side in ((from_above, formula.from_above), (from_below, formula.from_below)):
         item.values[:, 0] = side.values[:, 0]  # infinite where friction locks, no number where it is not defined
-    if below.values.shape[1] == 1:
-        return above
-    return Pieces(above.values, above.gradients, above.labels, other=below)
+    if from_below.values.shape[1] == 1:
+        return from_above
+    return Pieces(from_above.values, from_above.gradients, from_above.labels, opposite=from_below)
 
 
 _RISING = {
@@ -172,75 +175,77 @@ _RISING = {
 """Signs of the slopes of functions that rise or fall everywhere."""
 
 
-def _signs(function: str, arguments: list[Both]) -> tuple[tuple[int, ...], int]:
+def _signs(function: str, arguments: list[TwoSided]) -> tuple[tuple[int, ...], int]:
     """Return the known signs of a function's slopes by its arguments, and of its value."""
-    one, other = arguments[0].sign, arguments[-1].sign
+    first, last = arguments[0].sign, arguments[-1].sign
     if function == "*":
-        return (other, one), one * other
+        return (last, first), first * last
     if function == "/":
-        return (other, -one), one * other
+        return (last, -first), first * last
     if function == "**":
-        return ((other if one > 0 else 0), 0), max(one, 0)
-    values = {"neg": -one, "+": one if one == other else 0, "sqrt": 1, "acos": 1, "asin": one, "atan": one}
+        return ((last if first > 0 else 0), 0), max(first, 0)
+    values = {"neg": -first, "+": first if first == last else 0, "sqrt": 1, "acos": 1, "asin": first, "atan": first}
     return _RISING.get(function, (0,)), values.get(function, 0)
 
 
-def _values(function: str, given: list[Array]) -> Array:
-    return UNARY[function][0](given[0]) if function in UNARY else BINARY[function][0](given[0], given[1])
+def _values(function: str, arguments: list[Array]) -> Array:
+    return UNARY[function][0](arguments[0]) if function in UNARY else BINARY[function][0](arguments[0], arguments[1])
 
 
 def _combined(function: str, sides: list[Side]) -> Side:
     """Return a smooth function of every piece of one argument with every piece of the other."""
     if len(sides) == 1:
-        (one,) = sides
-        values = _values(function, [one.values])
-        return Side(values, sum_of(partials(function, [one.values], values), [one.gradients]), one.labels, one.there)
-    one, other = sides
-    (n, p), (_, q), d = one.values.shape, other.values.shape, one.gradients.shape[2]
-    places, others = np.repeat(np.arange(p), q), np.tile(np.arange(q), p)
-    given = [one.values[:, places], other.values[:, others]]
-    values = _values(function, given)
-    slopes = partials(function, given, values)
-    gradients = sum_of(slopes, [one.gradients[:, places], other.gradients[:, others]])
+        (first,) = sides
+        values = _values(function, [first.values])
+        return Side(
+            values, sum_of(partials(function, [first.values], values), [first.gradients]), first.labels, first.present
+        )
+    first, second = sides
+    (n, p), (_, q), d = first.values.shape, second.values.shape, first.gradients.shape[2]
+    places, second_places = np.repeat(np.arange(p), q), np.tile(np.arange(q), p)
+    part_values = [first.values[:, places], second.values[:, second_places]]
+    values = _values(function, part_values)
+    slopes = partials(function, part_values, values)
+    gradients = sum_of(slopes, [first.gradients[:, places], second.gradients[:, second_places]])
     assert gradients.shape == (n, p * q, d)
     return Side(
         values,
         gradients,
-        one.labels[:, places] + other.labels[:, others],
-        one.there[:, places] & other.there[:, others],
+        first.labels[:, places] + second.labels[:, second_places],
+        first.present[:, places] & second.present[:, second_places],
     )
 
 
-def _extreme(function: str, arguments: list[Both]) -> Both:
+def _extreme(function: str, arguments: list[TwoSided]) -> TwoSided:
     """Return the least or the greatest of parts: all pieces on one side, those of the active on the other."""
     greatest = function == "max"
-    wide = [item.above if greatest else item.below for item in arguments]
-    wide = [Side(s.values, s.gradients, s.labels + _APART * place, s.there) for place, s in enumerate(wide)]
+    wide = [item.from_above if greatest else item.from_below for item in arguments]
+    wide = [Side(s.values, s.gradients, s.labels + _APART * place, s.present) for place, s in enumerate(wide)]
     tops = np.stack([item.values[:, 0] for item in wide])
     first = (np.argmax if greatest else np.argmin)(tops, axis=0)
     width = max(item.values.shape[1] for item in wide)
     all_of = [item.padded(width) for item in wide]
     together = Side(*(np.concatenate([getattr(s, f) for s in all_of], axis=1) for f in Side.__dataclass_fields__))
     places = np.argsort(np.arange(together.values.shape[1]) != (first * width)[:, None], axis=1, kind="stable")
-    together = together.at(places).ordered(above=greatest)
-    held = [item.below if greatest else item.above for item in arguments]
-    width = max(item.values.shape[1] for item in held)
-    narrow = held[0].padded(width)
-    for place, item in enumerate(held[1:], start=1):
+    together = together.take(places).ordered(from_above=greatest)
+    narrow_sides = [item.from_below if greatest else item.from_above for item in arguments]
+    width = max(item.values.shape[1] for item in narrow_sides)
+    narrow = narrow_sides[0].padded(width)
+    for place, item in enumerate(narrow_sides[1:], start=1):
         narrow = _either(first == place, item.padded(width), narrow)
     signs = {item.sign for item in arguments}
     sign = (
         1 if greatest and 1 in signs else -1 if not greatest and -1 in signs else signs.pop() if len(signs) == 1 else 0
     )
-    return Both(together, narrow, sign) if greatest else Both(narrow, together, sign)
+    return TwoSided(together, narrow, sign) if greatest else TwoSided(narrow, together, sign)
 
 
-def _either(rows: Mask, one: Side, other: Side) -> Side:
+def _either(rows: Mask, chosen: Side, alternative: Side) -> Side:
     """Return one side where `rows` (n,) says so, another one elsewhere."""
-    at = rows[:, None]
+    column = rows[:, None]
     return Side(
-        np.where(at, one.values, other.values),
-        np.where(at[:, :, None], one.gradients, other.gradients),
-        np.where(at, one.labels, other.labels),
-        np.where(at, one.there, other.there),
+        np.where(column, chosen.values, alternative.values),
+        np.where(column[:, :, None], chosen.gradients, alternative.gradients),
+        np.where(column, chosen.labels, alternative.labels),
+        np.where(column, chosen.present, alternative.present),
     )

@@ -24,13 +24,13 @@ class Linear:
         """The names that it depends on."""
         return tuple(name for name, _ in self.factors)
 
-    def plus(self, other: Linear, times: Fraction = Fraction(1)) -> Linear:
+    def plus(self, addend: Linear, times: Fraction = Fraction(1)) -> Linear:
         """Return the sum with another one times a factor."""
-        found = dict(self.factors)
-        for name, factor in other.factors:
-            found[name] = found.get(name, Fraction(0)) + times * factor
-        kept = tuple((name, factor) for name, factor in found.items() if factor)
-        return Linear(kept, self.constant + times * other.constant)
+        factors = dict(self.factors)
+        for name, factor in addend.factors:
+            factors[name] = factors.get(name, Fraction(0)) + times * factor
+        nonzero = tuple((name, factor) for name, factor in factors.items() if factor)
+        return Linear(nonzero, self.constant + times * addend.constant)
 
     def times(self, factor: Fraction) -> Linear:
         """Return a multiple."""
@@ -38,38 +38,41 @@ class Linear:
 
 
 @dataclass(frozen=True)
-class _Linears:
+class _LinearAlgebra:
     """An algebra of linear formulas; None for what is none. known: those that are named."""
 
-    known: Mapping[str, Linear | None]
+    definitions: Mapping[str, Linear | None]
 
     def number(self, number: Number) -> Linear | None:
         return Linear((), Fraction(number.si))
 
     def name(self, name: str) -> Linear | None:
-        return self.known.get(name)
+        return self.definitions.get(name)
 
     def call(self, function: str, arguments: list[Linear | None]) -> Linear | None:
-        given = [item for item in arguments if item is not None]
-        if len(given) < len(arguments):
+        linear = [item for item in arguments if item is not None]
+        if len(linear) < len(arguments):
             return None
-        one, other = given[0], given[-1]
+        first, last = linear[0], linear[-1]
         if function == "neg":
-            return one.times(Fraction(-1))
+            return first.times(Fraction(-1))
         if function in ("+", "-"):
-            return one.plus(other, Fraction(1 if function == "+" else -1))
-        if function == "*" and not (one.factors and other.factors):
-            return one.times(other.constant) if not other.factors else other.times(one.constant)
-        if function == "/" and not other.factors and other.constant:
-            return one.times(1 / other.constant)
-        if function == "abs" and one == Linear((("offset", Fraction(1)),), Fraction(0)):
+            return first.plus(last, Fraction(1 if function == "+" else -1))
+        if function == "*" and not (first.factors and last.factors):
+            return first.times(last.constant) if not last.factors else last.times(first.constant)
+        if function == "/" and not last.factors and last.constant:
+            return first.times(1 / last.constant)
+        if function == "abs" and first == Linear((("offset", Fraction(1)),), Fraction(0)):
             return Linear(((SIZE, Fraction(1)),), Fraction(0))
         return None
 
 
-def linear_of(node: Node, known: Mapping[str, Linear | None]) -> Linear | None:
-    """Return a formula that is linear in what it names; None if it is not. known: what names mean, as `unknown`."""
-    return fold(node, _Linears(known))
+def linear_of(node: Node, definitions: Mapping[str, Linear | None]) -> Linear | None:
+    """Return a formula as linear in the names in it; None if it is not linear.
+
+    definitions: linear formulas by name, those of `unknown` for dimensions and variables.
+    """
+    return fold(node, _LinearAlgebra(definitions))
 
 
 def unknown(name: str) -> Linear:

@@ -98,8 +98,8 @@ class _Reader:
 
     def refuse(self, rule: str, remedy: str = f"write it like {_EXAMPLE}") -> NoReturn:
         text = " ".join(self.text.split())
-        shown = text if len(text) <= 60 else f"{text[:60]}..."
-        raise InputError(f"{rule}; got the formula {shown!r}; {remedy}")
+        quoted = text if len(text) <= 60 else f"{text[:60]}..."
+        raise InputError(f"{rule}; got the formula {quoted!r}; {remedy}")
 
     def deeper(self) -> None:
         self.depth += 1
@@ -177,9 +177,9 @@ class _Reader:
         while self.take(","):
             arguments.append(self.sum())
         self.close()
-        least, most = ARGUMENTS[name]
-        if not least <= len(arguments) <= most:
-            count = "one argument" if most == 1 else f"{least} to {most} arguments, with commas between"
+        least, greatest = ARGUMENTS[name]
+        if not least <= len(arguments) <= greatest:
+            count = "one argument" if greatest == 1 else f"{least} to {greatest} arguments, with commas between"
             self.refuse(f"{name} takes {count}", f"it has {len(arguments)}")
         return self.call(name, *arguments)
 
@@ -205,7 +205,7 @@ class _Reader:
             place = match.end()
             if power := _POWER.match(self.text, place):
                 text, place = f"{text}^{power[1] or power[2]}", power.end()
-            match, other = _NEXT_UNIT.match(self.text, place), _OTHER_UNIT.match(self.text, place)
-            if match is None and other and self.units.has(other[1]):
-                match = other
+            match, joined = _NEXT_UNIT.match(self.text, place), _OTHER_UNIT.match(self.text, place)
+            if match is None and joined and self.units.has(joined[1]):
+                match = joined
         return text, place

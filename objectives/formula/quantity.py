@@ -14,10 +14,10 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import require_width
 from ...model.machine.varying import Varying, number_at
-from ..needs import Without
+from ..needs import Consequence
 from ..quantity import Array, Pieces, Quantity, Values
 from .expression import Call, Name, Node, fold
-from .kinks import Both, Kinks, both_of, pieces_of, smooth
+from .kinks import Kinks, TwoSided, pieces_of, smooth, two_sided
 from .linear import Linear, linear_of, unknown
 from .slopes import Slopes
 
@@ -47,7 +47,7 @@ class FormulaQuantity(Quantity):
         return all(part.has_gradient for part in self.parts)
 
     @property
-    def one_sided(self) -> bool:
+    def has_signed_offset(self) -> bool:
         """Whether it has the offset in it by another way than its size, abs(offset)."""
 
         def bare(node: Node) -> bool:
@@ -78,7 +78,7 @@ class FormulaQuantity(Quantity):
         """Return the formula of other parts of the same names."""
         return replace(self, parts=parts)
 
-    def lacks(self, mechanism: Mechanism, without: Without) -> str | None:
+    def lacks(self, mechanism: Mechanism, without: Consequence) -> str | None:
         """Return why a machine does not define it: what one of its parts lacks; None if nothing is lacking."""
         if without == "zero":  # of a part that is zero something else may be left
             return None
@@ -88,15 +88,18 @@ class FormulaQuantity(Quantity):
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the formula for designs (n, 3 + k); see `Quantity`."""
         require_width(mechanism, dimensions)
-        found = {part.name: part.evaluate(mechanism, dimensions, gradients=gradients) for part in self.parts}
-        return self.combined(found, mechanism, dimensions, gradients=gradients)
+        part_values = {part.name: part.evaluate(mechanism, dimensions, gradients=gradients) for part in self.parts}
+        return self.combined(part_values, mechanism, dimensions, gradients=gradients)
 
     def combined(
-        self, found: Mapping[str, Values], mechanism: Mechanism, dimensions: Array, *, gradients: bool = False
+        self, part_values: Mapping[str, Values], mechanism: Mechanism, dimensions: Array, *, gradients: bool = False
     ) -> Values:
-        """Return the formula for designs (n, 3 + k). found: its parts, by their names, with gradients if asked for."""
+        """Return the formula for designs (n, 3 + k).
+
+        part_values: values of its parts by name, with gradients if these are requested.
+        """
         n, d = dimensions.shape
-        leaves = dict(found)
+        leaves = dict(part_values)
         for name, values, place in self._numbers(mechanism, dimensions):
             leaves[name] = Values(values, _slope(n, d, place) if gradients else None)
         with np.errstate(all="ignore"):
@@ -124,14 +127,14 @@ class FormulaQuantity(Quantity):
             return super().pieces(mechanism, dimensions)
         require_width(mechanism, dimensions)
         n, d = dimensions.shape
-        leaves: dict[str, Both] = {}
+        leaves: dict[str, TwoSided] = {}
         for place, part in enumerate(self.parts):
-            leaves[part.name] = both_of(
+            leaves[part.name] = two_sided(
                 part.pieces(mechanism, dimensions), 1.0 + _GOLDEN * place, 0 if part.signed else 1
             )
         for name, values, column in self._numbers(mechanism, dimensions):
-            one = smooth(values, _slope(n, d, column))
-            leaves[name] = Both(one, one, dict(self.signs).get(name, 0))
+            piece = smooth(values, _slope(n, d, column))
+            leaves[name] = TwoSided(piece, piece, dict(self.signs).get(name, 0))
         with np.errstate(all="ignore"):
             return pieces_of(fold(self.expression, Kinks(leaves, n, d)))
 
@@ -155,66 +158,66 @@ def _slope(n: int, d: int, place: int | None) -> Array:
     return np.tile(np.arange(d) == place, (n, 1)).astype(np.float64)
 
 
-def equation_of(of: FormulaQuantity, value: float) -> Linear | None:
+def equation_of(formula: FormulaQuantity, value: float) -> Linear | None:
     """Return the linear equation that a formula has a value; None if it is not linear in dimensions and numbers.
 
     A quotient of two linear formulas will do too.
     """
-    known, node = _known(of), of.expression
+    definitions, node = _named_linears(formula), formula.expression
     if isinstance(node, Call) and node.function == "/":
-        above, below = (linear_of(item, known) for item in node.arguments)
-        return None if above is None or below is None else above.plus(below, -Fraction(value))
-    found = linear_of(node, known)
-    return None if found is None else found.plus(Linear((), Fraction(value)), Fraction(-1))
+        numerator, denominator = (linear_of(item, definitions) for item in node.arguments)
+        return None if numerator is None or denominator is None else numerator.plus(denominator, -Fraction(value))
+    equation = linear_of(node, definitions)
+    return None if equation is None else equation.plus(Linear((), Fraction(value)), Fraction(-1))
 
 
-def _known(of: FormulaQuantity) -> dict[str, Linear | None]:
+def _named_linears(formula: FormulaQuantity) -> dict[str, Linear | None]:
     """Return the linear formulas that a formula names, by name."""
-    found: dict[str, Linear | None] = {name: unknown(name) for name in of.dimensions}
-    found |= {item.name: unknown(item.name) for item in of.varying}
-    for part in of.parts:
+    definitions: dict[str, Linear | None] = {name: unknown(name) for name in formula.dimensions}
+    definitions |= {item.name: unknown(item.name) for item in formula.varying}
+    for part in formula.parts:
         if isinstance(part, FormulaQuantity):
-            found[part.name] = linear_of(part.expression, _known(part))
-    return found
+            definitions[part.name] = linear_of(part.expression, _named_linears(part))
+    return definitions
 
 
-def linear_form(of: FormulaQuantity) -> Linear | None:
+def linear_form(formula: FormulaQuantity) -> Linear | None:
     """Return a formula as linear in dimensions, numbers and the quantities that it names; None if it is not linear."""
-    known = _known(of)
-    for part in of.parts:
-        known[part.name] = linear_form(part) if isinstance(part, FormulaQuantity) else unknown(part.name)
-    return linear_of(of.expression, known)
+    definitions = _named_linears(formula)
+    for part in formula.parts:
+        definitions[part.name] = linear_form(part) if isinstance(part, FormulaQuantity) else unknown(part.name)
+    return linear_of(formula.expression, definitions)
 
 
 def leaves_of(quantities: Iterable[Quantity]) -> tuple[Quantity, ...]:
     """Return the quantities that others are computed from: themselves, or the parts of formulas, each once."""
 
-    def found(quantities: Iterable[Quantity]) -> Iterator[tuple[str, Quantity]]:
+    def leaf_items(quantities: Iterable[Quantity]) -> Iterator[tuple[str, Quantity]]:
         for item in quantities:
             if isinstance(item, FormulaQuantity):
-                yield from found(item.parts)
+                yield from leaf_items(item.parts)
             else:
                 yield item.name, item
 
-    return tuple(dict(found(quantities)).values())
+    return tuple(dict(leaf_items(quantities)).values())
 
 
 def with_formulas(
     quantities: Sequence[Quantity],
-    found: Mapping[str, Values],
+    leaf_values: Mapping[str, Values],
     mechanism: Mechanism,
     dimensions: Array,
     *,
     gradients: bool = False,
 ) -> list[Values]:
-    """Return the values of quantities, those of formulas combined. found: the values of `leaves_of` by name."""
-    known = dict(found)
+    """Return the values of quantities, those of formulas combined. leaf_values: the values of `leaves_of` by name."""
+    values = dict(leaf_values)
 
     def value(item: Quantity) -> Values:
-        if item.name not in known and isinstance(item, FormulaQuantity):
-            own = {part.name: value(part) for part in item.parts}
-            known[item.name] = item.combined(own, mechanism, dimensions, gradients=gradients)
-        return known[item.name]
+        if item.name not in values and isinstance(item, FormulaQuantity):
+            part_values = {part.name: value(part) for part in item.parts}
+            values[item.name] = item.combined(part_values, mechanism, dimensions, gradients=gradients)
+        return values[item.name]
 
     return [value(item) for item in quantities]
 

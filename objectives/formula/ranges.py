@@ -17,16 +17,16 @@ _ROUNDING = 1e-14
 
 @dataclass(frozen=True)
 class Interval:
-    """Values from lower to upper, SI. apart: whether zero is certainly none of them."""
+    """Values from lower to upper, SI. excludes_zero: whether zero is certainly none of them."""
 
     lower: float
     upper: float
-    apart: bool = False
+    excludes_zero: bool = False
 
     @property
     def spans_zero(self) -> bool:
         """Whether a value may be zero."""
-        return self.lower <= 0.0 <= self.upper and not self.apart
+        return self.lower <= 0.0 <= self.upper and not self.excludes_zero
 
 
 ANY = Interval(-math.inf, math.inf)
@@ -41,7 +41,7 @@ _IMAGES: dict[str, tuple[Callable[[float], float], float, float]] = {
 
 
 @dataclass(frozen=True)
-class Ranges:
+class FormulaBounds:
     """Ranges of the names of formulas.
 
     intervals: of every name, SI. linears: names that are linear in dimensions and varying numbers. advice: for a name
@@ -52,7 +52,7 @@ class Ranges:
     linears: Mapping[str, Linear | None]
     advice: Mapping[str, str]
 
-    def of(self, node: Node) -> Interval:
+    def bounds(self, node: Node) -> Interval:
         """Return bounds of a formula.
 
         Raises `InputError` for a divisor that may be zero, and for a function that is defined nowhere in the ranges.
@@ -61,7 +61,7 @@ class Ranges:
             return Interval(node.si, node.si)
         if isinstance(node, Name):
             return self.intervals[node.name]
-        given = [self.of(item) for item in node.arguments]
+        given = [self.bounds(item) for item in node.arguments]
         if node.function == "/" and given[1].spans_zero:
             self._refuse_divisor(node.arguments[1], given[1])
         if node.function == "**" and given[0].spans_zero and given[1].lower < 0.0:
@@ -69,8 +69,8 @@ class Ranges:
         found = _call(node, given)
         linear = linear_of(node, self.linears)
         if node.function == "/" and linear is None:
-            found = _both(found, self._quotient(*(linear_of(item, self.linears) for item in node.arguments)))
-        return found if linear is None else _both(found, self._linear(linear))
+            found = _intersection(found, self._quotient(*(linear_of(item, self.linears) for item in node.arguments)))
+        return found if linear is None else _intersection(found, self._linear(linear))
 
     def _refuse_divisor(self, node: Node, found: Interval) -> None:
         if isinstance(node, Name):
@@ -95,56 +95,58 @@ class Ranges:
         if not values:
             return ANY
         low, high = min(value for value, _ in values), max(value for value, _ in values)
-        room = _ROUNDING * max(abs(float(linear.constant)), *(abs(value) for value, _ in values))
-        zeros = [edge for value, edge in values if abs(value + float(linear.constant)) <= room]
+        rounding = _ROUNDING * max(abs(float(linear.constant)), *(abs(value) for value, _ in values))
+        zeros = [edge for value, edge in values if abs(value + float(linear.constant)) <= rounding]
         rest = factors.keys() - _TURNING
-        alone = (not rest and low + float(linear.constant) >= -room) or high + float(linear.constant) <= room
+        alone = (not rest and low + float(linear.constant) >= -rounding) or high + float(linear.constant) <= rounding
         return Interval(least + low, greatest + high, bool(alone and all(zeros)))
 
-    def _quotient(self, above: Linear | None, below: Linear | None) -> Interval:
+    def _quotient(self, numerator: Linear | None, denominator: Linear | None) -> Interval:
         """Return the bounds of a quotient of formulas linear in the dimensions where the linkage turns fully.
 
         It is greatest and least at corners. A bound that no design has, at the edge of turning, is left out.
         """
-        if above is None or below is None or not {*above.names, *below.names} <= _TURNING:
+        if numerator is None or denominator is None or not {*numerator.names, *denominator.names} <= _TURNING:
             return ANY
-        tops, bottoms = ({name: float(factor) for name, factor in of.factors} for of in (above, below))
+        tops, bottoms = (
+            {name: float(factor) for name, factor in linear.factors} for linear in (numerator, denominator)
+        )
         corners = self._corners()
-        under = [_sum_of(bottoms, corner) + float(below.constant) for corner in corners]
-        if not under or not (min(under) > 0.0 or max(under) < 0.0):
+        divisors = [_sum_of(bottoms, corner) + float(denominator.constant) for corner in corners]
+        if not divisors or not (min(divisors) > 0.0 or max(divisors) < 0.0):
             return ANY
         values = [
-            ((_sum_of(tops, corner) + float(above.constant)) / own, corner.edge)
-            for corner, own in zip(corners, under, strict=True)
+            ((_sum_of(tops, corner) + float(numerator.constant)) / divisor, corner.edge)
+            for corner, divisor in zip(corners, divisors, strict=True)
         ]
         low, high = min(value for value, _ in values), max(value for value, _ in values)
-        room = _ROUNDING * max(abs(low), abs(high))
-        if all(edge for value, edge in values if value <= low + room):
+        rounding = _ROUNDING * max(abs(low), abs(high))
+        if all(edge for value, edge in values if value <= low + rounding):
             low = math.nextafter(low, math.inf)
-        if all(edge for value, edge in values if value >= high - room):
+        if all(edge for value, edge in values if value >= high - rounding):
             high = math.nextafter(high, -math.inf)
         return Interval(low, high) if low <= high else ANY
 
     def _corners(self) -> list[_Corner]:
         """Return the corners of what turns fully within the ranges, for either sign of the offset."""
         crank, rod, offset = (self.intervals[name] for name in ("crank", "rod", "offset"))
-        found = []
+        corners = []
         for sign in (1.0, -1.0):
             low, high = (offset.lower, offset.upper) if sign > 0.0 else (-offset.upper, -offset.lower)
             if high < 0.0:
                 continue
             ends = [(crank.lower, crank.upper), (rod.lower, rod.upper), (max(low, 0.0), high)]
-            found += [_Corner(x, y, z, sign) for x, y, z in itertools.product(*ends) if y > x + z]
+            corners += [_Corner(x, y, z, sign) for x, y, z in itertools.product(*ends) if y > x + z]
             # Where the plane rod = crank + |offset| cuts the edges of the box.
             cuts = [(y - z, y, z) for y, z in itertools.product(ends[1], ends[2])]
             cuts += [(x, x + z, z) for x, z in itertools.product(ends[0], ends[2])]
             cuts += [(x, y, y - x) for x, y in itertools.product(ends[0], ends[1])]
-            found += [
+            corners += [
                 _Corner(*cut, sign, edge=True)
                 for cut in cuts
                 if all(low <= n <= high for n, (low, high) in zip(cut, ends, strict=True))
             ]
-        return found
+        return corners
 
 
 class _Corner(NamedTuple):
@@ -160,72 +162,76 @@ class _Corner(NamedTuple):
 _TURNING = {"crank", "rod", "offset", SIZE}
 
 
-def _sum_of(factors: Mapping[str, float], at: _Corner) -> float:
+def _sum_of(factors: Mapping[str, float], corner: _Corner) -> float:
     """Return the sum of factors times the dimensions at a corner."""
-    own = at.sign * factors.get("offset", 0.0) + factors.get(SIZE, 0.0)
-    return factors.get("crank", 0.0) * at.crank + factors.get("rod", 0.0) * at.rod + own * at.size
+    offset_factor = corner.sign * factors.get("offset", 0.0) + factors.get(SIZE, 0.0)
+    return factors.get("crank", 0.0) * corner.crank + factors.get("rod", 0.0) * corner.rod + offset_factor * corner.size
 
 
-def _both(one: Interval, other: Interval) -> Interval:
-    lower, upper = max(one.lower, other.lower), min(one.upper, other.upper)
-    return Interval(min(lower, upper), max(lower, upper), one.apart or other.apart)
+def _intersection(first: Interval, second: Interval) -> Interval:
+    lower, upper = max(first.lower, second.lower), min(first.upper, second.upper)
+    return Interval(min(lower, upper), max(lower, upper), first.excludes_zero or second.excludes_zero)
 
 
-def _call(node: Call, given: list[Interval]) -> Interval:
-    function, one, other = node.function, given[0], given[-1]
+def _call(node: Call, arguments: list[Interval]) -> Interval:
+    function, first, last = node.function, arguments[0], arguments[-1]
     if function == "neg":
-        return Interval(-one.upper, -one.lower, one.apart)
+        return Interval(-first.upper, -first.lower, first.excludes_zero)
     if function == "+":
-        return _sum(one, other)
+        return _sum(first, last)
     if function == "-":
-        return _sum(one, Interval(-other.upper, -other.lower, other.apart))
+        return _sum(first, Interval(-last.upper, -last.lower, last.excludes_zero))
     if function == "*":
-        return _hull(one, other, lambda a, b: 0.0 if 0.0 in (a, b) else a * b, one.apart and other.apart)
+        return _hull(
+            first, last, lambda a, b: 0.0 if 0.0 in (a, b) else a * b, first.excludes_zero and last.excludes_zero
+        )
     if function == "/":
-        return _hull(one, other, _quotient, one.apart)
+        return _hull(first, last, _quotient, first.excludes_zero)
     if function == "**":
-        return _power(one, other)
+        return _power(first, last)
     if function == "abs":
-        ends = sorted((abs(one.lower), abs(one.upper)))
-        return Interval(0.0 if one.lower <= 0.0 <= one.upper else ends[0], ends[1], one.apart)
+        ends = sorted((abs(first.lower), abs(first.upper)))
+        return Interval(0.0 if first.lower <= 0.0 <= first.upper else ends[0], ends[1], first.excludes_zero)
     if function in ("min", "max"):
         pick = min if function == "min" else max
         return Interval(
-            pick(item.lower for item in given), pick(item.upper for item in given), all(item.apart for item in given)
+            pick(item.lower for item in arguments),
+            pick(item.upper for item in arguments),
+            all(item.excludes_zero for item in arguments),
         )
     if function in _IMAGES:
         image, least, greatest = _IMAGES[function]
-        if one.upper < least or one.lower > greatest:
+        if first.upper < least or first.lower > greatest:
             raise InputError(
                 f"{function} is defined from {least:g} to {greatest:g}; got {text_of(node.arguments[0])}, which is "
                 f"nowhere so within the ranges; correct the formula"
             )
-        ends = sorted(image(min(max(end, least), greatest)) for end in (one.lower, one.upper))
-        return Interval(ends[0], ends[1], one.apart and function == "sqrt")
-    return _turned(function, one)
+        ends = sorted(image(min(max(end, least), greatest)) for end in (first.lower, first.upper))
+        return Interval(ends[0], ends[1], first.excludes_zero and function == "sqrt")
+    return _turned(function, first)
 
 
 def _turned(function: str, angle: Interval) -> Interval:
     """Return the bounds of sine, cosine or tangent between two angles."""
     # Within half a turn of zero sine and tangent are zero at zero alone.
-    apart = angle.apart and function != "cos" and -math.pi < angle.lower and angle.upper < math.pi
+    excludes_zero = angle.excludes_zero and function != "cos" and -math.pi < angle.lower and angle.upper < math.pi
     if not math.isfinite(angle.upper - angle.lower):
         return ANY if function == "tan" else _TRIG
-    of = {"sin": math.sin, "cos": math.cos, "tan": math.tan}[function]
-    low, high = sorted((of(angle.lower), of(angle.upper)))
+    image = {"sin": math.sin, "cos": math.cos, "tan": math.tan}[function]
+    low, high = sorted((image(angle.lower), image(angle.upper)))
     # The quarter turns at which sine and cosine are greatest and least, and the tangent has no end.
     quarters = {"sin": (1, 3), "cos": (0, 2), "tan": (1, 3)}[function]
     first, last = angle.lower / (0.5 * math.pi), angle.upper / (0.5 * math.pi)
     top, bottom = (math.floor((last - place) / 4.0) >= math.ceil((first - place) / 4.0) for place in quarters)
     if function == "tan":
-        return Interval(-math.inf, math.inf, apart) if top or bottom else Interval(low, high, apart)
-    return Interval(-1.0 if bottom else low, 1.0 if top else high, apart)
+        return Interval(-math.inf, math.inf, excludes_zero) if top or bottom else Interval(low, high, excludes_zero)
+    return Interval(-1.0 if bottom else low, 1.0 if top else high, excludes_zero)
 
 
-def _sum(one: Interval, other: Interval) -> Interval:
-    lower, upper = one.lower + other.lower, one.upper + other.upper
-    same = (one.lower >= 0.0 and other.lower >= 0.0) or (one.upper <= 0.0 and other.upper <= 0.0)
-    return Interval(lower, upper, same and (one.apart or other.apart))
+def _sum(first: Interval, second: Interval) -> Interval:
+    lower, upper = first.lower + second.lower, first.upper + second.upper
+    same = (first.lower >= 0.0 and second.lower >= 0.0) or (first.upper <= 0.0 and second.upper <= 0.0)
+    return Interval(lower, upper, same and (first.excludes_zero or second.excludes_zero))
 
 
 def _quotient(a: float, b: float) -> float:
@@ -234,19 +240,21 @@ def _quotient(a: float, b: float) -> float:
     return math.copysign(math.inf, a) * math.copysign(1.0, b) if b == 0.0 else a / b
 
 
-def _hull(one: Interval, other: Interval, of: Callable[[float, float], float], apart: bool) -> Interval:
+def _hull(
+    first: Interval, second: Interval, operation: Callable[[float, float], float], excludes_zero: bool
+) -> Interval:
     # A divisor that is never zero may come near to it from one side: there its end has that side's sign.
-    ends = [end if end or other.upper > 0.0 else -0.0 for end in (other.lower, other.upper)]
-    if other.lower < 0.0 < other.upper and of is _quotient:
-        return Interval(-math.inf, math.inf, apart)
-    found = [of(a, b) for a in (one.lower, one.upper) for b in ends]
-    return Interval(min(found), max(found), apart)
+    ends = [end if end or second.upper > 0.0 else -0.0 for end in (second.lower, second.upper)]
+    if second.lower < 0.0 < second.upper and operation is _quotient:
+        return Interval(-math.inf, math.inf, excludes_zero)
+    values = [operation(a, b) for a in (first.lower, first.upper) for b in ends]
+    return Interval(min(values), max(values), excludes_zero)
 
 
 def _power(base: Interval, exponent: Interval) -> Interval:
     if exponent.lower != exponent.upper or base.lower < 0.0:
         even = exponent.lower == exponent.upper and exponent.lower % 2 == 0
-        return Interval(0.0 if base.lower >= 0.0 or even else -math.inf, math.inf, base.apart)
+        return Interval(0.0 if base.lower >= 0.0 or even else -math.inf, math.inf, base.excludes_zero)
     power = exponent.lower
 
     def raised(x: float) -> float:
@@ -256,4 +264,4 @@ def _power(base: Interval, exponent: Interval) -> Interval:
             return math.inf
 
     ends = sorted((raised(base.lower), raised(base.upper)))
-    return Interval(ends[0], ends[1], base.apart)
+    return Interval(ends[0], ends[1], base.excludes_zero)

@@ -64,18 +64,24 @@ class Slopes:
         """Return a function of its arguments; at a kink with the slope of the first that is active."""
         if function in ("min", "max"):
             return _extreme(function, arguments)
-        given = [item.values for item in arguments]
-        values = UNARY[function][0](given[0]) if function in UNARY else BINARY[function][0](given[0], given[1])
+        argument_values = [item.values for item in arguments]
+        values = (
+            UNARY[function][0](argument_values[0])
+            if function in UNARY
+            else BINARY[function][0](argument_values[0], argument_values[1])
+        )
         if not self.gradients:
             return Values(values, None)
-        return Values(values, sum_of(partials(function, given, values), [item.gradients for item in arguments]))
+        return Values(
+            values, sum_of(partials(function, argument_values, values), [item.gradients for item in arguments])
+        )
 
 
-def partials(function: str, given: list[Array], values: Array) -> tuple[Array, ...]:
+def partials(function: str, arguments: list[Array], values: Array) -> tuple[Array, ...]:
     """Return the derivatives of a smooth function by its arguments, each of their shape."""
     if function in UNARY:
-        return (UNARY[function][1](given[0], values),)
-    return BINARY[function][1](given[0], given[1], values)
+        return (UNARY[function][1](arguments[0], values),)
+    return BINARY[function][1](arguments[0], arguments[1], values)
 
 
 def sum_of(slopes: tuple[Array, ...], gradients: list[Array | None]) -> Array:

@@ -56,22 +56,22 @@ def apply(
 
     Raises `Refused` for a function that raises, or returns anything but finite numbers of the right shape and kind.
     """
-    given: NDArray[Any] = dimensions.copy()
+    designs: NDArray[Any] = dimensions.copy()
     if column is not None:
-        given = given.astype(np.complex128)
-        given[:, column] += STEP * 1j
-    given.flags.writeable = False
+        designs = designs.astype(np.complex128)
+        designs[:, column] += STEP * 1j
+    designs.flags.writeable = False
     try:
         with np.errstate(all="ignore"):
-            found = np.asanyarray(function(make(mechanism, given)))
+            returned = np.asanyarray(function(make(mechanism, designs)))
     except InputError as error:  # of what the designs of this machine do not have
         raise Refused(f"cannot be had of this machine: {error}{place(error, function)}") from None
     except BaseException as error:  # noqa: BLE001 - whatever it raises is what it did wrong
         kind = f"in complex numbers, for the gradient, {type(error).__name__}" if column is not None else ""
         remedy = _NOT_COMPLEX if column is not None and isinstance(error, TypeError) else "correct the function"
-        said = f"{kind or type(error).__name__}: {error}".rstrip(": ")
-        raise Refused(f"must not raise; got {said}{place(error, function)}; {remedy}") from None
-    return _checked(found, dimensions, column)
+        error_text = f"{kind or type(error).__name__}: {error}".rstrip(": ")
+        raise Refused(f"must not raise; got {error_text}{place(error, function)}; {remedy}") from None
+    return _checked(returned, dimensions, column)
 
 
 _NOT_COMPLEX = (
@@ -83,40 +83,44 @@ _NOT_COMPLEX = (
 def place(error: BaseException, function: Callable[..., Any]) -> str:
     """Return where an error was raised: the last line of the function's own file, else the last line of all."""
     frames = traceback.extract_tb(error.__traceback__)
-    own = getattr(getattr(function, "__code__", None), "co_filename", "")
-    there = [frame for frame in frames if frame.filename == own] or list(frames)[-1:]
-    return f" ({Path(there[-1].filename).name}:{there[-1].lineno})" if there else ""
+    source_file = getattr(getattr(function, "__code__", None), "co_filename", "")
+    frames_of_function = [frame for frame in frames if frame.filename == source_file] or list(frames)[-1:]
+    return (
+        f" ({Path(frames_of_function[-1].filename).name}:{frames_of_function[-1].lineno})" if frames_of_function else ""
+    )
 
 
-def _checked(found: NDArray[Any], dimensions: Array, column: int | None) -> Answer:
+def _checked(returned: NDArray[Any], dimensions: Array, column: int | None) -> Answer:
     n = len(dimensions)
-    if found.dtype.kind not in "fiuc":
-        raise Refused(f"must return an array of numbers; got one of {found.dtype}; return one number for each design")
-    angles = found.angles if isinstance(found, Peaks) else None
-    angles = angles if angles is not None and angles.shape == found.shape else None
-    if found.ndim == 1:
-        found = found[:, None]
-    if found.ndim != 2 or len(found) != n or not 1 <= found.shape[1] <= PIECES:
+    if returned.dtype.kind not in "fiuc":
+        raise Refused(
+            f"must return an array of numbers; got one of {returned.dtype}; return one number for each design"
+        )
+    angles = returned.angles if isinstance(returned, Peaks) else None
+    angles = angles if angles is not None and angles.shape == returned.shape else None
+    if returned.ndim == 1:
+        returned = returned[:, None]
+    if returned.ndim != 2 or len(returned) != n or not 1 <= returned.shape[1] <= PIECES:
         raise Refused(
             f"must return one number for each design, or up to {PIECES} of which the greatest counts, "
-            f"shape ({n},) or ({n}, k); got shape {found.shape}; a curve over the cycle goes through peaks, greatest "
-            "or mean"
+            f"shape ({n},) or ({n}, k); got shape {returned.shape}; reduce a curve over the cycle by peaks, "
+            "greatest or mean"
         )
-    if (column is not None) != np.iscomplexobj(found):
+    if (column is not None) != np.iscomplexobj(returned):
         lost = "must keep the complex numbers that carry the gradient; got real ones; " + _NOT_COMPLEX
         raise Refused(lost if column is not None else "must return real numbers for real designs; got complex ones")
-    values = np.array(found.real, dtype=np.float64)
-    slopes = None if column is None else np.array(found.imag / STEP, dtype=np.float64)
+    values = np.array(returned.real, dtype=np.float64)
+    slopes = None if column is None else np.array(returned.imag / STEP, dtype=np.float64)
     bad = ~np.isfinite(values).all(axis=1)
     if slopes is not None:
         bad |= ~np.isfinite(slopes).all(axis=1)
     if bad.any():
         row = int(np.flatnonzero(bad)[0])
         wrong = values[row][~np.isfinite(values[row])]
-        what = f"{wrong[0]:g}" if len(wrong) else "a gradient that is not finite"
+        wrong_value = f"{wrong[0]:g}" if len(wrong) else "a gradient that is not finite"
         crank, rod, offset = 1e3 * dimensions[row]
         raise Refused(
-            f"must return a finite number for every design; got {what} for crank {crank:.6g} mm, rod {rod:.6g} mm, "
-            f"offset {offset:.6g} mm; correct the function"
+            f"must return a finite number for every design; got {wrong_value} for crank {crank:.6g} mm, "
+            f"rod {rod:.6g} mm, offset {offset:.6g} mm; correct the function"
         )
     return Answer(values, slopes, None if angles is None else np.array(angles, dtype=np.float64))

@@ -40,20 +40,20 @@ def load(function: str, folders: list[str]) -> Function:
     before = list(sys.path)
     sys.path[:0] = folders
     try:
-        found: Any = importlib.import_module(module)
+        target: Any = importlib.import_module(module)
         for part in name.split("."):
-            found = getattr(found, part)
+            target = getattr(target, part)
     except BaseException as error:  # noqa: BLE001 - whatever the module does when imported
-        said = f"{type(error).__name__}: {error}".rstrip(": ")
+        error_text = f"{type(error).__name__}: {error}".rstrip(": ")
         raise Refused(
-            f"must be a function in a module beside the job file or installed; got {said}{place(error, load)}; "
+            f"must be a function in a module beside the job file or installed; got {error_text}{place(error, load)}; "
             "correct module:function"
         ) from None
     finally:
         sys.path[:] = [*before, *folders]
-    if not callable(found):
-        raise Refused(f"must be a function; got {type(found).__name__}; name a function after the colon")
-    return found  # type: ignore[no-any-return]
+    if not callable(target):
+        raise Refused(f"must be a function; got {type(target).__name__}; name a function after the colon")
+    return target  # type: ignore[no-any-return]
 
 
 class Watch:
@@ -91,8 +91,8 @@ class Timed(Designs):
 
 def packed(answer: Answer) -> bytes:
     """Return an answer as bytes: shape, then values, slopes and angles, NaN where there are none."""
-    none = np.full(answer.values.shape, np.nan)
-    parts = [none if part is None else part for part in (answer.values, answer.slopes, answer.angles)]
+    blank = np.full(answer.values.shape, np.nan)
+    parts = [blank if part is None else part for part in (answer.values, answer.slopes, answer.angles)]
     return SHAPE.pack(3, *answer.values.shape) + np.stack(parts).tobytes()
 
 

@@ -103,10 +103,10 @@ class Designs:
         """Duration of the slower stroke divided by the faster, (n, 1). Raises `InputError` if cylinders differ."""
         if self.mechanism.speed_profile is None:
             return self.crank_angle_ratio
-        if not ONE_TIMING.met(self.mechanism):
+        if not ONE_TIMING.is_met(self.mechanism):
             raise InputError(f"time_ratio: {ONE_TIMING.missing}")
-        found = scaled_stroke_times(self.mechanism, self.crank, self.rod, self.offset).ratio
-        return cast(Numbers, np.where(np.real(found) >= 1.0, found, 1.0 / found))
+        ratio = scaled_stroke_times(self.mechanism, self.crank, self.rod, self.offset).ratio
+        return cast(Numbers, np.where(np.real(ratio) >= 1.0, ratio, 1.0 / ratio))
 
     @property
     def crank_angle_ratio(self) -> Numbers:
@@ -159,8 +159,8 @@ class Designs:
                 "quantities that come with the software, also in a formula"
             )
         shape = np.broadcast_shapes(np.shape(angle), (len(self), 1))
-        found, load = complex_joint_forces(self.mechanism, self._dimensions, np.broadcast_to(angle, shape))
-        parts: list[Numbers] = [*found, load]
+        reactions, load = complex_joint_forces(self.mechanism, self._dimensions, np.broadcast_to(angle, shape))
+        parts: list[Numbers] = [*reactions, load]
         if not (np.iscomplexobj(self._dimensions) or np.iscomplexobj(angle)):
             parts = [part.real for part in parts]
         torque, pivot_x, pivot_y, pin_x, pin_y, end_x, end_y, guide, force = parts
@@ -188,15 +188,15 @@ class Designs:
         """
         tau = np.broadcast_to(np.linspace(-np.pi, np.pi, _GRID, endpoint=False), (len(self), _GRID))
         spacing = _TURN / _GRID
-        found = self._sampled(curve, tau)
-        local = (found >= np.roll(found, 1, axis=1)) & (found >= np.roll(found, -1, axis=1))
-        order = np.argsort(np.where(local, -found, np.inf), axis=1, kind="stable")[:, :_PEAKS]
-        there = np.take_along_axis(local, order, axis=1)
-        order = np.where(there, order, order[:, :1])  # fewer peaks: the highest again
+        samples = self._sampled(curve, tau)
+        local = (samples >= np.roll(samples, 1, axis=1)) & (samples >= np.roll(samples, -1, axis=1))
+        order = np.argsort(np.where(local, -samples, np.inf), axis=1, kind="stable")[:, :_PEAKS]
+        is_peak = np.take_along_axis(local, order, axis=1)
+        order = np.where(is_peak, order, order[:, :1])  # fewer peaks: the highest again
         centre, half = np.take_along_axis(tau, order, axis=1), spacing
         for _ in range(_ZOOMS):
             steps = np.linspace(-half, half, _WITHIN)
-            centre = centre + steps[np.argmax(self._around(curve, centre, steps), axis=2)]
+            centre = centre + steps[np.argmax(self._sample_near(curve, centre, steps), axis=2)]
             half *= 2.0 / (_WITHIN - 1)
         centre = self._vertex(curve, centre, half)
         angle = self._uncrowded(centre)[0]
@@ -215,12 +215,12 @@ class Designs:
     @contextmanager
     def _real(self) -> Iterator[None]:
         """Be real designs meanwhile: where a curve peaks needs no derivative, and real numbers are quicker."""
-        given = self._dimensions
-        self._take(given.real)
+        designs = self._dimensions
+        self._take(designs.real)
         try:
             yield
         finally:
-            self._take(given)
+            self._take(designs)
 
     def _motion(self, angle: Numbers) -> Motion:
         """Return the motion, that of the call before where the angles are the same: a curve takes several of it."""
@@ -263,15 +263,15 @@ class Designs:
             )
         return cast(Array, values.real)
 
-    def _around(self, curve: Curve, centre: Numbers, steps: Numbers) -> Array:
+    def _sample_near(self, curve: Curve, centre: Numbers, steps: Numbers) -> Array:
         """Return the curve (n, p, s) at steps (s,) from crowded angles (n, p)."""
         tau = centre[:, :, None] + steps
         return self._sampled(curve, tau.reshape(len(centre), -1)).reshape(tau.shape)
 
     def _vertex(self, curve: Curve, centre: Numbers, half: float) -> Numbers:
         """Return where the derivative vanishes, by one step of Newton's; as before where no smooth peak is seen."""
-        found = self._around(curve, centre, np.arange(-2.0, 3.0) * half)
-        first, second = found @ _FIFTH, found @ _SECOND
+        samples = self._sample_near(curve, centre, np.arange(-2.0, 3.0) * half)
+        first, second = samples @ _FIFTH, samples @ _SECOND
         smooth = second < 0.0
         step = np.where(smooth, -first / np.where(smooth, second, 1.0), 0.0)
         return centre + np.where(np.abs(step) <= 2.0, step * half, 0.0)
@@ -285,8 +285,8 @@ class Designs:
         sides = np.concatenate([ends - _BESIDE, ends + _BESIDE], axis=1)
         jumps = curve(sides)
         for k in range(angle.shape[1]):
-            apart = np.abs(np.angle(np.exp(1j * (sides.real - angle[:, k : k + 1]))))
-            near = np.where((apart < 1e-2) & (jumps.real > values[:, k : k + 1].real), jumps.real, -np.inf)
+            distance = np.abs(np.angle(np.exp(1j * (sides.real - angle[:, k : k + 1]))))
+            near = np.where((distance < 1e-2) & (jumps.real > values[:, k : k + 1].real), jumps.real, -np.inf)
             at = np.argmax(near, axis=1)[:, None]
             onto = np.isfinite(np.take_along_axis(near, at, axis=1))[:, 0]
             values[onto, k] = np.take_along_axis(jumps, at, axis=1)[onto, 0]

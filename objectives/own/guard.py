@@ -133,22 +133,22 @@ def _relay(printed: int) -> None:
 
     The last line ends even if the function does not end it: others write to the same log.
     """
-    left, begun = PRINTED, b""
+    left, unfinished = PRINTED, b""
     while piece := os.read(printed, 1 << 16):
         if left < 0:
             continue
         rest = _LEFT_OUT.encode() if len(piece) > left else b""
-        lines, end, begun = (begun + piece[:left] + rest).rpartition(b"\n")
+        lines, end, unfinished = (unfinished + piece[:left] + rest).rpartition(b"\n")
         _write(lines + end)
         left -= len(piece)
-    if begun:
-        _write(begun + b"\n")
+    if unfinished:
+        _write(unfinished + b"\n")
 
 
 def _write(text: bytes) -> None:
-    shown = printable(text.decode(errors="backslashreplace").replace("\r\n", "\n"), kept="\n\t")
+    printable_text = printable(text.decode(errors="backslashreplace").replace("\r\n", "\n"), allowed="\n\t")
     with contextlib.suppress(OSError):  # standard error is closed
-        os.write(2, shown.encode())
+        os.write(2, printable_text.encode())
 
 
 def _set(attribute: int, value: int) -> None:

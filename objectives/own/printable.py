@@ -8,6 +8,6 @@ _CONTROL = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udff
 """Control characters of Unicode, also of lines and of the direction of writing, and lone surrogates."""
 
 
-def printable(text: str, *, kept: str = "") -> str:
+def printable(text: str, *, allowed: str = "") -> str:
     r"""Return a text with each control character, but those that are kept, as Python writes it: "\x1b"."""
-    return _CONTROL.sub(lambda found: found[0] if found[0] in kept else ascii(found[0])[1:-1], text)
+    return _CONTROL.sub(lambda found: found[0] if found[0] in allowed else ascii(found[0])[1:-1], text)

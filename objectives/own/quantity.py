@@ -110,8 +110,8 @@ class OwnQuantity(Quantity):
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3); see `Quantity`."""
         if gradients:
-            found = self.pieces(mechanism, dimensions)
-            return Values(found.values[:, 0], found.gradients[:, 0])
+            pieces = self.pieces(mechanism, dimensions)
+            return Values(pieces.values[:, 0], pieces.gradients[:, 0])
         dimensions = self._turning(dimensions)
         self._check(mechanism, dimensions)
         values = np.full(len(dimensions), np.inf)
@@ -168,24 +168,26 @@ class OwnQuantity(Quantity):
             return
         module, _, function = self.function.partition(":")
         places: Sequence[str] | None = [*self.folders, *sys.path]
-        found = None
+        spec = None
         for part in module.split("."):
-            found = None if places is None else PathFinder.find_spec(part, places)
-            if found is None:
+            spec = None if places is None else PathFinder.find_spec(part, places)
+            if spec is None:
                 self._refuse(
                     f"must be in a module beside the job file or installed; no module {module} is there; put "
                     f"{module.split('.')[0]}.py beside the job, or correct module:function"
                 )
-            places = found.submodule_search_locations
-        source = Path(found.origin) if found is not None and found.origin else None
+            places = spec.submodule_search_locations
+        source = Path(spec.origin) if spec is not None and spec.origin else None
         if source is not None and source.suffix == ".py":
             text = source.read_text(encoding="utf-8", errors="replace")
             if not re.search(rf"\b({re.escape(function)}\b|import\s+\*)", text):
                 self._refuse(f"must be in its module; {source} has no {function}; correct module:function")
 
     def _refuse(self, reason: str) -> NoReturn:
-        known = self.function if isinstance(self.function, str) else getattr(self.function, "__qualname__", "function")
-        raise InputError(f"the quantity {self.name} ({known}) {reason}") from None
+        function_name = (
+            self.function if isinstance(self.function, str) else getattr(self.function, "__qualname__", "function")
+        )
+        raise InputError(f"the quantity {self.name} ({function_name}) {reason}") from None
 
     def _turning(self, dimensions: Array) -> Array:
         if dimensions.shape[1] != 3:
@@ -216,7 +218,7 @@ class OwnQuantity(Quantity):
         again = same & (np.arange(values.shape[1]) != top)
         values = np.where(again, -np.inf, values)
         gradients = np.where(again[:, :, None], 0.0, gradients)
-        return Pieces(values, gradients, labels).at(np.argsort(-values, axis=1, kind="stable"))
+        return Pieces(values, gradients, labels).take(np.argsort(-values, axis=1, kind="stable"))
 
     def _plain(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         values = self._ask(mechanism, dimensions, None).values.max(axis=1)[:, None]
@@ -229,16 +231,16 @@ class OwnQuantity(Quantity):
         """Return central differences (n, 3) with steps of a share of what is left to locking and of the crank."""
         crank, rod, offset = dimensions.T
         step = share * np.minimum(rod - crank - np.abs(offset), crank)
-        found = np.empty((len(dimensions), 3))
+        slopes = np.empty((len(dimensions), 3))
         for column in range(3):
             ends = []
             for sign in (1.0, -1.0):
                 moved = dimensions.copy()
                 moved[:, column] += sign * step
                 ends.append((moved[:, column], self._ask(mechanism, moved, None).values.max(axis=1)))
-            (ahead, high), (behind, low) = ends
-            found[:, column] = (high - low) / (ahead - behind)
-        return found
+            (upper, high), (lower, low) = ends
+            slopes[:, column] = (high - low) / (upper - lower)
+        return slopes
 
     def _check(self, mechanism: Mechanism, dimensions: Array) -> None:
         """Refuse a complex step that is no derivative, before anything is searched with it.
@@ -250,20 +252,20 @@ class OwnQuantity(Quantity):
         rows = np.concatenate([np.zeros(0, np.int64), *self._batches(mechanism, dimensions)])
         if not len(rows):
             return
-        some = dimensions[np.unique(rows[np.linspace(0, len(rows) - 1, _WITNESSES).astype(int)])]
-        found = self._complex(mechanism, some)
-        coarse, fine = (self._differences(mechanism, some, share) for share in (2.0 * _STEP, _STEP))
+        witnesses = dimensions[np.unique(rows[np.linspace(0, len(rows) - 1, _WITNESSES).astype(int)])]
+        pieces = self._complex(mechanism, witnesses)
+        coarse, fine = (self._differences(mechanism, witnesses, share) for share in (2.0 * _STEP, _STEP))
         size = np.abs(fine).max(axis=1)
-        doubt = np.abs(fine - coarse).max(axis=1) + 1e-9 * np.abs(found.values[:, 0]) / some[:, 0]
-        apart = np.abs(found.gradients[:, 0] - fine)
-        wrong = apart.max(axis=1) > _AGREE * size + 10.0 * doubt
-        if 2 * wrong.sum() > len(some):
+        doubt = np.abs(fine - coarse).max(axis=1) + 1e-9 * np.abs(pieces.values[:, 0]) / witnesses[:, 0]
+        differences = np.abs(pieces.gradients[:, 0] - fine)
+        wrong = differences.max(axis=1) > _AGREE * size + 10.0 * doubt
+        if 2 * wrong.sum() > len(witnesses):
             row = int(np.flatnonzero(wrong)[0])
-            column = int(np.argmax(apart[row]))
-            crank, rod, offset = 1e3 * some[row]
+            column = int(np.argmax(differences[row]))
+            crank, rod, offset = 1e3 * witnesses[row]
             self._refuse(
                 "must have a gradient by complex step that agrees with differences; got "
-                f"{found.gradients[row, 0, column]:.6g} and {fine[row, column]:.6g} by the "
+                f"{pieces.gradients[row, 0, column]:.6g} and {fine[row, column]:.6g} by the "
                 f"{('crank', 'rod', 'offset')[column]} for crank {crank:.6g} mm, rod {rod:.6g} mm, offset "
                 f"{offset:.6g} mm; write magnitude in place of abs and leave the imaginary parts as they are, "
                 'or set gradient = "finite differences"'
@@ -310,10 +312,10 @@ def own_quantities() -> dict[str, Any]:
 def installed(name: str) -> OwnQuantity:
     """Return the quantity that an installed package gives under a name. Raises `InputError` if it is none."""
     entry = own_quantities()[name]
-    found = entry.load()
-    if not isinstance(found, OwnQuantity) or found.name != name:
+    quantity = entry.load()
+    if not isinstance(quantity, OwnQuantity) or quantity.name != name:
         raise InputError(
-            f"the entry point {name} of {GROUP} must be an OwnQuantity of that name; got {found!r}; "
+            f"the entry point {name} of {GROUP} must be an OwnQuantity of that name; got {quantity!r}; "
             f"correct {entry.value}"
         )
-    return found
+    return quantity

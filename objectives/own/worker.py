@@ -89,9 +89,9 @@ class Worker:
         with self._lock:
             while True:
                 with contextlib.suppress(_Suspended):
-                    return self._asked(mechanism, dimensions, column)
+                    return self._request_answer(mechanism, dimensions, column)
 
-    def _asked(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> Answer:
+    def _request_answer(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> Answer:
         self._paused = False
         if self._process is None:
             ask()
@@ -99,7 +99,7 @@ class Worker:
         machine = None if mechanism is self._mechanism else mechanism
         self._send((machine, np.ascontiguousarray(dimensions, np.float64).tobytes(), column))
         self._mechanism = mechanism
-        return unpacked(self._answer(self.limit))
+        return unpacked(self._await_answer(self.limit))
 
     def close(self) -> None:
         """End the process and all that it started."""
@@ -128,7 +128,7 @@ class Worker:
             target=_listen, args=(process.stdout, self._messages), name="own function", daemon=True
         ).start()
         self._send((self._log, self.limit, self.function, self.folders))
-        self._answer(_START + self.limit)
+        self._await_answer(_START + self.limit)
 
     def forget(self) -> None:
         """Leave the process to the one that started it, of which this one is a fork."""
@@ -144,22 +144,22 @@ class Worker:
     def _send(self, request: tuple[Any, ...]) -> None:
         assert self._process is not None
         assert self._process.stdin is not None
-        with contextlib.suppress(OSError):  # it ended; `_answer` says why
+        with contextlib.suppress(OSError):  # it ended; `_await_answer` says why
             left = memoryview(pickle.dumps(request))
             while left:
                 left = left[self._process.stdin.write(left) :]
 
-    def _answer(self, limit: float) -> bytes:
-        kind, content = self._next(limit)
+    def _await_answer(self, limit: float) -> bytes:
+        kind, content = self._next_message(limit)
         if kind == b"W":
-            return self._answer(_START + self.limit)
+            return self._await_answer(_START + self.limit)
         if not kind:
-            self._refuse(self._fate())
+            self._refuse(self._reason_of_end())
         if kind == b"E":
             self._refuse(content.decode())
         return content
 
-    def _next(self, limit: float) -> Message:
+    def _next_message(self, limit: float) -> Message:
         """Return the next message of the process, nothing if it has ended or is ended here, for being late.
 
         What interrupts ends a process that is slow. Time for which this process is suspended does not count.
@@ -195,7 +195,7 @@ class Worker:
         self.close()
         raise Refused(reason)
 
-    def _fate(self) -> str:
+    def _reason_of_end(self) -> str:
         """Return why the process ended. Raises `_Suspended` if the reason is no fault of the function."""
         assert self._process is not None
         try:
@@ -209,15 +209,17 @@ class Worker:
             raise _Suspended
         frames = [(Path(file), line) for file, line in _FRAME.findall(text)]
         module = self.function.partition(":")[0].rpartition(".")[2]
-        own = [frame for frame in frames if frame[0].stem == module] or frames  # the last call comes first
-        where = f" ({own[0][0].name}:{own[0][1]})" if own else ""
+        frames_of_function = [
+            frame for frame in frames if frame[0].stem == module
+        ] or frames  # the last call comes first
+        place = f" ({frames_of_function[0][0].name}:{frames_of_function[0][1]})" if frames_of_function else ""
         if "Timeout (" in text or self._late:
             raised = "correct it, or raise the limit if it is only slow"
             remedy = raised if self.limit < self.longest else "no call may take longer here; correct it"
-            return f"must return within {self.limit:g} s; it still ran{where} then; {remedy}"
+            return f"must return within {self.limit:g} s; it still ran{place} then; {remedy}"
         if code in _KILLED:
             return "must return; its process was killed, for lack of memory perhaps; let it take less"
-        return f"must return, not end the process; it ended with code {code}{where}; correct the function"
+        return f"must return, not end the process; it ended with code {code}{place}; correct the function"
 
 
 def _listen(stream: IO[bytes], messages: queue.SimpleQueue[Message]) -> None:
@@ -235,8 +237,8 @@ def _listen(stream: IO[bytes], messages: queue.SimpleQueue[Message]) -> None:
 def _read(stream: IO[bytes], length: int) -> bytes:
     """Return so many bytes, fewer only at the end."""
     content = bytearray()
-    while len(content) < length and (more := stream.read(length - len(content))):
-        content += more
+    while len(content) < length and (chunk := stream.read(length - len(content))):
+        content += chunk
     return bytes(content)
 
 

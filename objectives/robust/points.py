@@ -16,7 +16,7 @@ _SAME = 0.3  # labels (rad) farther apart are not the same peak; as the polish h
 
 
 @dataclass(frozen=True)
-class Around:
+class PointValues:
     """A quantity at q points around each of n designs.
 
     values: (n, q, p) of its pieces, -inf where absent; +inf in the first where the linkage does not turn fully.
@@ -62,9 +62,9 @@ def uncertain(mechanism: Mechanism) -> list[int]:
 
 def corners(columns: list[int]) -> Array:
     """Return the corners of the box, (2^d, 3), in units of the limits; opposite corners are mirrored rows."""
-    found = np.zeros((2 ** len(columns), 3))
-    found[:, columns] = list(itertools.product((-1.0, 1.0), repeat=len(columns)))
-    return found
+    points = np.zeros((2 ** len(columns), 3))
+    points[:, columns] = list(itertools.product((-1.0, 1.0), repeat=len(columns)))
+    return points
 
 
 def in_line(columns: list[int], dimensions: Array, limits: Array) -> tuple[Whole, Array]:
@@ -95,7 +95,7 @@ def star(columns: list[int]) -> Array:
     return np.array(rows)
 
 
-def around(quantity: Quantity, mechanism: Mechanism, dimensions: Array, points: Array) -> Around:
+def evaluate_points(quantity: Quantity, mechanism: Mechanism, dimensions: Array, points: Array) -> PointValues:
     """Return a quantity at points (q, 3) around designs (n, 3 + k), in units of the limits.
 
     points: of all designs, or (n, q, 3) of each.
@@ -106,35 +106,37 @@ def around(quantity: Quantity, mechanism: Mechanism, dimensions: Array, points: 
     moved[:, :, :3] += points * (absolute + fraction * np.abs(dimensions[:, None, :3]))
     turns = (moved[:, :, 0] > 0.0) & (moved[:, :, 1] > moved[:, :, 0] + np.abs(moved[:, :, 2]))
     moved = np.where(turns[:, :, None], moved, dimensions[:, None, :])
-    found = quantity.pieces(mechanism, np.ascontiguousarray(moved.reshape(n * q, width)))
-    values = found.values.reshape(n, q, found.values.shape[1]).copy()
-    gradients = found.gradients.reshape(*values.shape, width).copy()
+    pieces = quantity.pieces(mechanism, np.ascontiguousarray(moved.reshape(n * q, width)))
+    values = pieces.values.reshape(n, q, pieces.values.shape[1]).copy()
+    gradients = pieces.gradients.reshape(*values.shape, width).copy()
     local = gradients[:, :, :, :3].copy()
     gradients[:, :, :, :3] *= (1.0 + points * fraction * np.sign(dimensions[:, None, :3]))[:, :, None, :]
     values[~turns] = -np.inf
     values[~turns, 0] = np.inf
     gradients[~turns] = local[~turns] = 0.0
-    return Around(values, gradients, local, found.labels.reshape(values.shape), turns)
+    return PointValues(values, gradients, local, pieces.labels.reshape(values.shape), turns)
 
 
-def followed(here: Around) -> tuple[Array, Array, Mask]:
+def match_pieces(point_values: PointValues) -> tuple[Array, Array, Mask]:
     """Return the pieces of the first point (the centre) at all points: values (n, q, p), gradients, and where found.
 
     A piece is found at a point where a piece of nearly the same label is.
     """
-    apart = np.abs(here.labels[:, :, None, :] - here.labels[:, :1, :, None])  # (n, q, p of the centre, p)
-    apart = np.minimum(apart, np.abs(apart - 2.0 * np.pi))
-    apart = np.where(np.isfinite(here.values)[:, :, None, :], apart, np.inf)
-    twin = np.argmin(apart, axis=3)
-    found = np.take_along_axis(apart, twin[:, :, :, None], axis=3)[:, :, :, 0] < _SAME
-    found &= np.isfinite(here.values[:, :1, :])
-    values = np.take_along_axis(here.values, twin, axis=2)
-    gradients = np.take_along_axis(here.gradients, twin[:, :, :, None], axis=2)
-    return values, gradients, found
+    distance = np.abs(
+        point_values.labels[:, :, None, :] - point_values.labels[:, :1, :, None]
+    )  # (n, q, p of the centre, p)
+    distance = np.minimum(distance, np.abs(distance - 2.0 * np.pi))
+    distance = np.where(np.isfinite(point_values.values)[:, :, None, :], distance, np.inf)
+    twin = np.argmin(distance, axis=3)
+    has_twin = np.take_along_axis(distance, twin[:, :, :, None], axis=3)[:, :, :, 0] < _SAME
+    has_twin &= np.isfinite(point_values.values[:, :1, :])
+    values = np.take_along_axis(point_values.values, twin, axis=2)
+    gradients = np.take_along_axis(point_values.gradients, twin[:, :, :, None], axis=2)
+    return values, gradients, has_twin
 
 
 def _parts(mechanism: Mechanism) -> tuple[Array, Array]:
     t = mechanism.tolerances
-    both = [(float(each.absolute), float(each.fraction)) for each in (t.crank, t.rod, t.offset)]
-    absolute, fraction = np.array(both).T
+    tolerances = [(float(each.absolute), float(each.fraction)) for each in (t.crank, t.rod, t.offset)]
+    absolute, fraction = np.array(tolerances).T
     return absolute, fraction

@@ -51,9 +51,9 @@ class Sample:
         # Sobol points fill evenly in powers of two only.
         power = (self.samples - 1).bit_length()
         points = qmc.Sobol(len(self.columns), scramble=True, rng=np.random.default_rng(self.seed)).random_base2(power)
-        found = np.zeros((len(points), 3))
-        found[:, list(self.columns)] = spread(self.shape).ppf(np.clip(points, _LEAST, 1.0 - _LEAST))
-        return found
+        deviations = np.zeros((len(points), 3))
+        deviations[:, list(self.columns)] = spread(self.shape).ppf(np.clip(points, _LEAST, 1.0 - _LEAST))
+        return deviations
 
     @cached_property
     def weights(self) -> Array:
@@ -62,8 +62,8 @@ class Sample:
 
         count = len(self.deviations)
         edges = np.linspace(0.0, 1.0, count + 1)
-        found = np.diff(betainc((count + 1) * self.share, (count + 1) * (1.0 - self.share), edges))
-        return np.asarray(found / found.sum())
+        weights = np.diff(betainc((count + 1) * self.share, (count + 1) * (1.0 - self.share), edges))
+        return np.asarray(weights / weights.sum())
 
     @cached_property
     def interpolation(self) -> Array:
@@ -82,44 +82,44 @@ class Sample:
     def of_machines(self, machines: Array, slopes: Array) -> tuple[Array, Array]:
         """Return quantiles (n,) and gradients (n, width) from those of all machines, (n, s) and (n, s, width)."""
         order, rank = self._ranked(machines)
-        found = _each("ns,s->n", np.take_along_axis(machines, order, axis=1), rank)
-        slope = _each("s,nsd->nd", rank, np.take_along_axis(slopes, order[:, :, None], axis=1))
-        return found, np.where(np.isfinite(found)[:, None], slope, 0.0)
+        quantile = _einsum_by_design("ns,s->n", np.take_along_axis(machines, order, axis=1), rank)
+        slope = _einsum_by_design("s,nsd->nd", rank, np.take_along_axis(slopes, order[:, :, None], axis=1))
+        return quantile, np.where(np.isfinite(quantile)[:, None], slope, 0.0)
 
     def of_star(self, values: Array, slopes: Array) -> tuple[Array, Array]:
         """Return quantiles (n,) and gradients (n, width) from pieces at the star, (n, q, p) and (n, q, p, width)."""
         absent = ~np.isfinite(values[:, 0])[:, :, None]
-        drawn = _each("npq,qs->nps", np.where(absent, 0.0, values.transpose(0, 2, 1)), self.interpolation)
+        drawn = _einsum_by_design("npq,qs->nps", np.where(absent, 0.0, values.transpose(0, 2, 1)), self.interpolation)
         drawn = np.where(absent, -np.inf, drawn)
         piece = np.argmax(drawn, axis=1)
         machines = np.take_along_axis(drawn, piece[:, None], axis=1)[:, 0]
         order, rank = self._ranked(machines)
-        found = _each("ns,s->n", np.take_along_axis(machines, order, axis=1), rank)
-        which = np.take_along_axis(piece, order, axis=1)
+        quantile = _einsum_by_design("ns,s->n", np.take_along_axis(machines, order, axis=1), rank)
+        ordered_pieces = np.take_along_axis(piece, order, axis=1)
         slope = np.zeros((len(values), slopes.shape[3]))
         weighed = self.interpolation.T[order]
         for p in range(values.shape[2]):
-            share_of = _each("ns,nsq->nq", rank * (which == p), weighed)
-            slope += _each("nq,nqd->nd", share_of, slopes[:, :, p])
+            share_of = _einsum_by_design("ns,nsq->nq", rank * (ordered_pieces == p), weighed)
+            slope += _einsum_by_design("nq,nqd->nd", share_of, slopes[:, :, p])
         if self.shape != "normal":
-            return found, slope
+            return quantile, slope
         rows = np.arange(len(values))
         top = np.argmax(values[:, 0], axis=1)
-        control = _each("nq,dq->nd", values[rows, :, top], self.linear)
+        control = _einsum_by_design("nq,dq->nd", values[rows, :, top], self.linear)
         deviations = self.deviations[:, list(self.columns)]
-        order, rank = self._ranked(_each("nd,ds->ns", control, deviations.T))
-        shift = _each("s,nsd->nd", rank, deviations[order])
+        order, rank = self._ranked(_einsum_by_design("nd,ds->ns", control, deviations.T))
+        shift = _einsum_by_design("s,nsd->nd", rank, deviations[order])
         exact, exact_slope = linear_quantile(control, self.share)
-        by_control = _each("nd,dq->nq", exact_slope - shift, self.linear)
-        found = found + exact - _each("nd,nd->n", shift, control)
-        return found, slope + _each("nq,nqd->nd", by_control, slopes[rows, :, top])
+        by_control = _einsum_by_design("nd,dq->nq", exact_slope - shift, self.linear)
+        quantile = quantile + exact - _einsum_by_design("nd,nd->n", shift, control)
+        return quantile, slope + _einsum_by_design("nq,nqd->nd", by_control, slopes[rows, :, top])
 
     def _ranked(self, machines: Array) -> tuple[Whole, Array]:
         """Return which machines (n, s), ascending, make the quantile, and with which weights (s,)."""
         first, last = np.flatnonzero(self.weights > _FAINT)[[0, -1]]  # few of many: the others need no order
-        some = np.sort(np.argpartition(machines, (first, last), axis=1)[:, first : last + 1], axis=1)
-        order = np.argsort(np.take_along_axis(machines, some, axis=1), axis=1, kind="stable")
-        return np.take_along_axis(some, order, axis=1), self.weights[first : last + 1]
+        tail = np.sort(np.argpartition(machines, (first, last), axis=1)[:, first : last + 1], axis=1)
+        order = np.argsort(np.take_along_axis(machines, tail, axis=1), axis=1, kind="stable")
+        return np.take_along_axis(tail, order, axis=1), self.weights[first : last + 1]
 
 
 sample = lru_cache(maxsize=32)(Sample)
@@ -138,13 +138,13 @@ def linear_quantile(coefficients: Array, share: float) -> tuple[Array, Array]:
 
 def _basis(points: Array, columns: tuple[int, ...]) -> Array:
     """Return the monomials up to the second degree at points (q, 3), (q, m)."""
-    one = np.ones(len(points))
+    constant = np.ones(len(points))
     linear = [points[:, a] for a in columns]
     pairs = [points[:, a] * points[:, b] for i, a in enumerate(columns) for b in columns[i:]]
-    return np.stack([one, *linear, *pairs], axis=1)
+    return np.stack([constant, *linear, *pairs], axis=1)
 
 
-def _each(sums: str, *factors: Array) -> Array:
+def _einsum_by_design(sums: str, *factors: Array) -> Array:
     """Return sums of products, those of a design the same to the last bit whatever stands beside it.
 
     BLAS sums otherwise for other numbers of rows, einsum for other strides.

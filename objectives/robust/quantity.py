@@ -17,9 +17,9 @@ from ...model.machine.mechanism import Mechanism
 from ...model.tolerance.spreads import Shape, spread
 from ..kinds import Kind
 from ..quantity import Array, Pieces, Quantity, Values
-from .points import Around, around, corners, followed, limits_of, star, uncertain
+from .points import PointValues, corners, evaluate_points, limits_of, match_pieces, star, uncertain
 from .quantile import sample
-from .within import within
+from .worst_points import worst_inner_points
 
 Side = Literal["high", "low"]
 Case = Literal["worst case", "percentile"]
@@ -69,7 +69,7 @@ class RobustQuantity(Quantity):
         require_word("side", self.side, Side)
         require_options(self.case, self.order, self.share, self.samples, self.shape)
         whose = "all within tolerances" if self.case == "worst case" else f"{100.0 * self.share:.6g} % of machines"
-        own = {
+        facts = {
             "name": f"{self.inner.name if self.inner.name.isidentifier() else self.inner.stem}_{self.suffix}",
             "key": f"{self.inner.stem}_{self.suffix}",
             "title": f"{self.inner.short_title}, {whose}",
@@ -78,10 +78,10 @@ class RobustQuantity(Quantity):
             "domain": None,
             "floor": None,
             "in_line": None,
-            "reach": None,
+            "bounds": None,
         }
         for fact in fields(Quantity):  # the others are those of the quantity
-            object.__setattr__(self, fact.name, own.get(fact.name, getattr(self.inner, fact.name)))
+            object.__setattr__(self, fact.name, facts.get(fact.name, getattr(self.inner, fact.name)))
 
     def __reduce__(self) -> tuple[Any, ...]:
         options = {field.name for field in fields(self)} - {fact.name for fact in fields(Quantity)}
@@ -100,12 +100,12 @@ class RobustQuantity(Quantity):
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         if not uncertain(mechanism):
             return self.inner.evaluate(mechanism, dimensions, gradients=gradients)
-        found = self.pieces(mechanism, dimensions)
-        values = found.values.min(axis=1) if found.least else found.values.max(axis=1)
+        pieces = self.pieces(mechanism, dimensions)
+        values = pieces.values.min(axis=1) if pieces.least else pieces.values.max(axis=1)
         if not gradients:
             return Values(values, None)
-        first = (np.argmin if found.least else np.argmax)(found.values, axis=1)
-        return Values(values, found.gradients[np.arange(len(values)), first])
+        first = (np.argmin if pieces.least else np.argmax)(pieces.values, axis=1)
+        return Values(values, pieces.gradients[np.arange(len(values)), first])
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the greatest of smooth pieces, the least of them on the low side."""
@@ -113,10 +113,12 @@ class RobustQuantity(Quantity):
         limits = limits_of(mechanism, dimensions)  # refuses what it must
         columns = uncertain(mechanism)
         if not columns:
-            found = self.inner.pieces(mechanism, dimensions)
+            pieces = self.inner.pieces(mechanism, dimensions)
             if self.side == "high":
-                return found
-            return replace(found, least=True).at(np.argmax(found.values, axis=1)[:, None])  # the one piece that it is
+                return pieces
+            return replace(pieces, least=True).take(
+                np.argmax(pieces.values, axis=1)[:, None]
+            )  # the one piece that it is
         if self.case == "percentile":
             return self._quantile(mechanism, dimensions, tuple(columns))
         low = self.side == "low"
@@ -126,9 +128,9 @@ class RobustQuantity(Quantity):
             for rows, exact in ((spans, self._exact), (~spans, self._linear))
             if rows.any() or (len(rows) == 0 and exact == self._exact)
         ]
-        merged = _together(len(dimensions), parts, absent=np.inf if low else -np.inf)
-        found = Pieces(*merged, least=low)
-        return found.at(np.argsort(found.values if low else -found.values, axis=1, kind="stable")[:, :_KEPT])
+        merged = _merge_parts(len(dimensions), parts, absent=np.inf if low else -np.inf)
+        pieces = Pieces(*merged, least=low)
+        return pieces.take(np.argsort(pieces.values if low else -pieces.values, axis=1, kind="stable")[:, :_KEPT])
 
     def estimate(self, mechanism: Mechanism, dimensions: Array, inner: Values) -> Array:
         """Return the first-order estimate (n,) from values and gradients of the quantity itself.
@@ -145,42 +147,46 @@ class RobustQuantity(Quantity):
             width = float(ndtri(self.share)) * np.sqrt((steps**2).sum(axis=1) * float(spread(self.shape).var()))
         else:
             width = np.abs(steps).sum(axis=1)
-        return np.where(_inside(dimensions, limits), inner.values + sign * width, sign * np.inf)
+        return np.where(_box_turns_fully(dimensions, limits), inner.values + sign * width, sign * np.inf)
 
     # ---- worst case -----------------------------------------------------------------------------------------------
 
     def _exact(self, mechanism: Mechanism, dimensions: Array, columns: list[int]) -> tuple[Array, Array, Array]:
         low = self.side == "low"
-        here = around(self.inner, mechanism, dimensions, corners(columns))
-        values, slopes, labels = self._bad(here)
-        inside = within(self.inner, mechanism, dimensions, columns, here, low=low)
-        if not len(inside.rows):
+        at_corners = evaluate_points(self.inner, mechanism, dimensions, corners(columns))
+        values, slopes, labels = self._bad_side(at_corners)
+        inner_points = worst_inner_points(self.inner, mechanism, dimensions, columns, at_corners, low=low)
+        if not len(inner_points.rows):
             return values, slopes, labels
         # Further points within the box where they are worse: there they stay while the design, and its box, moves.
-        count = inside.points.shape[1]
-        more = around(self.inner, mechanism, dimensions[inside.rows], inside.points)
-        worse, slope, label = self._bad(more)
-        slope[:, :, :3] *= np.repeat(np.abs(inside.points) == 1.0, worse.shape[1] // count, axis=1)
-        room = np.full((len(values), worse.shape[1]), np.inf if low else -np.inf)
-        room_slopes, room_labels = np.zeros((*room.shape, slopes.shape[2])), np.zeros(room.shape)
-        room[inside.rows], room_slopes[inside.rows] = worse, slope
-        room_labels[inside.rows] = label + _APART * here.values.shape[1]
+        count = inner_points.points.shape[1]
+        at_inner = evaluate_points(self.inner, mechanism, dimensions[inner_points.rows], inner_points.points)
+        worse, slope, label = self._bad_side(at_inner)
+        slope[:, :, :3] *= np.repeat(np.abs(inner_points.points) == 1.0, worse.shape[1] // count, axis=1)
+        inner_values = np.full((len(values), worse.shape[1]), np.inf if low else -np.inf)
+        inner_slopes, inner_labels = np.zeros((*inner_values.shape, slopes.shape[2])), np.zeros(inner_values.shape)
+        inner_values[inner_points.rows], inner_slopes[inner_points.rows] = worse, slope
+        inner_labels[inner_points.rows] = label + _APART * at_corners.values.shape[1]
         return (
-            np.concatenate([values, room], axis=1),
-            np.concatenate([slopes, room_slopes], axis=1),
-            np.concatenate([labels, room_labels], axis=1),
+            np.concatenate([values, inner_values], axis=1),
+            np.concatenate([slopes, inner_slopes], axis=1),
+            np.concatenate([labels, inner_labels], axis=1),
         )
 
-    def _bad(self, here: Around) -> tuple[Array, Array, Array]:
+    def _bad_side(self, point_values: PointValues) -> tuple[Array, Array, Array]:
         """Return values (n, m), gradients and labels at the points: all pieces, on the low side the highest of each."""
-        labels = here.labels + _APART * np.arange(here.labels.shape[1])[:, None]
+        labels = point_values.labels + _APART * np.arange(point_values.labels.shape[1])[:, None]
         if self.side == "high":
-            n, _, _, width = here.gradients.shape
-            return here.values.reshape(n, -1), here.gradients.reshape(n, -1, width), labels.reshape(n, -1)
-        values, slopes = here.highest(here.gradients)
+            n, _, _, width = point_values.gradients.shape
+            return (
+                point_values.values.reshape(n, -1),
+                point_values.gradients.reshape(n, -1, width),
+                labels.reshape(n, -1),
+            )
+        values, slopes = point_values.highest(point_values.gradients)
         point = np.broadcast_to(_APART * np.arange(values.shape[1]), values.shape)
         # Infinite where friction locks: nothing is high there.
-        return np.where(here.turns & (values < np.inf), values, -np.inf), slopes, point
+        return np.where(point_values.turns & (values < np.inf), values, -np.inf), slopes, point
 
     def _linear(self, mechanism: Mechanism, dimensions: Array, columns: list[int]) -> tuple[Array, Array, Array]:
         """Return the linear extrapolation of every piece to every corner.
@@ -189,37 +195,39 @@ class RobustQuantity(Quantity):
         third order, 1/400 of what first order leaves out anyway; and their gradients follow from exact gradients.
         """
         signs = corners(columns)
-        here = around(self.inner, mechanism, dimensions, np.concatenate([np.zeros((1, 3)), _STEP * signs]))
-        values, slopes, found = followed(here)
+        point_values = evaluate_points(
+            self.inner, mechanism, dimensions, np.concatenate([np.zeros((1, 3)), _STEP * signs])
+        )
+        values, slopes, has_twin = match_pieces(point_values)
         centre, slope = values[:, :1], slopes[:, :1]
-        ahead, behind = np.s_[:, 1:], np.s_[:, :0:-1]  # opposite corners are mirrored rows
-        both = found[ahead] & found[behind]
+        ahead, opposite = np.s_[:, 1:], np.s_[:, :0:-1]  # opposite corners are mirrored rows
+        on_both_sides = has_twin[ahead] & has_twin[opposite]
         with np.errstate(invalid="ignore"):
-            change = (values[ahead] - values[behind]) / (2.0 * _STEP)
-        change_slope = (slopes[ahead] - slopes[behind]) / (2.0 * _STEP)
+            change = (values[ahead] - values[opposite]) / (2.0 * _STEP)
+        change_slope = (slopes[ahead] - slopes[opposite]) / (2.0 * _STEP)
         # A peak that vanishes nearby is hardly the highest: its own slope serves.
         limits = limits_of(mechanism, dimensions)
         plain = np.einsum("npi,ci->ncp", slope[:, 0, :, :3] * limits[:, None, :], signs)
-        values = np.where(np.isfinite(centre), centre + np.where(both, change, plain), -np.inf)
-        slopes = slope + np.where(both[:, :, :, None], change_slope, 0.0)
-        labels = here.labels[:, :1] + _APART * np.arange(len(signs))[:, None]
-        inside = _inside(dimensions, limits)
+        values = np.where(np.isfinite(centre), centre + np.where(on_both_sides, change, plain), -np.inf)
+        slopes = slope + np.where(on_both_sides[:, :, :, None], change_slope, 0.0)
+        labels = point_values.labels[:, :1] + _APART * np.arange(len(signs))[:, None]
+        turns_fully = _box_turns_fully(dimensions, limits)
         if self.side == "low":
             values, slopes, labels = values[:, :, :1], slopes[:, :, :1], labels[:, :, :1]  # the highest piece
-        values = np.where(inside[:, None, None], values, np.inf if self.side == "high" else -np.inf)
-        slopes = np.where(inside[:, None, None, None], slopes, 0.0)
+        values = np.where(turns_fully[:, None, None], values, np.inf if self.side == "high" else -np.inf)
+        slopes = np.where(turns_fully[:, None, None, None], slopes, 0.0)
         n, _, _, width = slopes.shape
         return values.reshape(n, -1), slopes.reshape(n, -1, width), labels.reshape(n, -1)
 
     # ---- percentile -----------------------------------------------------------------------------------------------
 
     def _quantile(self, mechanism: Mechanism, dimensions: Array, columns: tuple[int, ...]) -> Pieces:
-        here = around(self.inner, mechanism, dimensions, star(list(columns)))
-        values, slopes, found = followed(here)
-        kept: Mask = np.logical_and.reduce(found, axis=1)
-        values = np.where(kept[:, None, :], values, -np.inf)
+        star_values = evaluate_points(self.inner, mechanism, dimensions, star(list(columns)))
+        values, slopes, has_twin = match_pieces(star_values)
+        followed: Mask = np.logical_and.reduce(has_twin, axis=1)
+        values = np.where(followed[:, None, :], values, -np.inf)
         # Where a peak is not there at all points, and matters at some, the greatest of all peaks is taken as one piece.
-        top, steepest = here.highest(here.gradients)
+        top, steepest = star_values.highest(star_values.gradients)
         greatest: Array = values.max(axis=2, initial=-np.inf)
         lost = np.flatnonzero((greatest < top).any(axis=1))
         values[lost, :, 0], values[lost, :, 1:] = top[lost], -np.inf
@@ -227,19 +235,19 @@ class RobustQuantity(Quantity):
         share = self.share if self.side == "high" else 1.0 - self.share
         drawn = sample(columns, self.shape, self.samples, self.seed, share)
         # What depends on the size of an offset has a kink at zero, which machines of the sample may have.
-        reach = np.abs(drawn.deviations[:, 2]).max()
-        kinked = (2 in columns) & (np.abs(dimensions[:, 2]) < reach * limits_of(mechanism, dimensions)[:, 2])
+        widest = np.abs(drawn.deviations[:, 2]).max()
+        kinked = (2 in columns) & (np.abs(dimensions[:, 2]) < widest * limits_of(mechanism, dimensions)[:, 2])
         good = np.isfinite(top).all(axis=1) & ~kinked
         n, _, _, width = slopes.shape
         quantiles, gradients = np.full(n, np.inf if self.side == "high" else -np.inf), np.zeros((n, width))
-        for some in _blocks(good, len(drawn.deviations) * values.shape[2]):
-            quantiles[some], gradients[some] = drawn.of_star(values[some], slopes[some])
-        for some in _blocks(kinked, 32 * len(drawn.deviations)):
-            here = around(self.inner, mechanism, dimensions[some], drawn.deviations)
-            machines, steep = here.highest(here.gradients)
+        for rows in _blocks(good, len(drawn.deviations) * values.shape[2]):
+            quantiles[rows], gradients[rows] = drawn.of_star(values[rows], slopes[rows])
+        for rows in _blocks(kinked, 32 * len(drawn.deviations)):
+            star_values = evaluate_points(self.inner, mechanism, dimensions[rows], drawn.deviations)
+            machines, steep = star_values.highest(star_values.gradients)
             if self.side == "low":
-                machines = np.where(here.turns & (machines < np.inf), machines, -np.inf)
-            quantiles[some], gradients[some] = drawn.of_machines(machines, steep)
+                machines = np.where(star_values.turns & (machines < np.inf), machines, -np.inf)
+            quantiles[rows], gradients[rows] = drawn.of_machines(machines, steep)
         return Pieces(quantiles[:, None], gradients[:, None], np.zeros((n, 1)), least=self.side == "low")
 
 
@@ -250,18 +258,18 @@ def _blocks(rows: Mask, size: int) -> Iterator[Whole]:
         yield places[begin : begin + step]
 
 
-def _together(
+def _merge_parts(
     count: int, parts: list[tuple[Whole, tuple[Array, Array, Array]]], *, absent: float
 ) -> tuple[Array, Array, Array]:
     """Return values, gradients and labels of all designs from those of some each; the missing ones are `absent`."""
     if len(parts) == 1:
         return parts[0][1]
-    most = max(values.shape[1] for _, (values, _, _) in parts)
-    values, labels = np.full((count, most), absent), np.zeros((count, most))
-    slopes = np.zeros((count, most, parts[0][1][1].shape[2]))
-    for rows, (own, own_slopes, own_labels) in parts:
-        values[rows, : own.shape[1]], labels[rows, : own.shape[1]] = own, own_labels
-        slopes[rows, : own.shape[1]] = own_slopes
+    widest = max(values.shape[1] for _, (values, _, _) in parts)
+    values, labels = np.full((count, widest), absent), np.zeros((count, widest))
+    slopes = np.zeros((count, widest, parts[0][1][1].shape[2]))
+    for rows, (part_values, part_slopes, part_labels) in parts:
+        values[rows, : part_values.shape[1]], labels[rows, : part_values.shape[1]] = part_values, part_labels
+        slopes[rows, : part_values.shape[1]] = part_slopes
     return values, slopes, labels
 
 
@@ -282,6 +290,6 @@ def require_options(case: str, order: int, share: float, samples: int, shape: st
         )
 
 
-def _inside(dimensions: Array, limits: Array) -> Mask:
+def _box_turns_fully(dimensions: Array, limits: Array) -> Mask:
     crank, rod, offset = dimensions.T[:3]
     return np.asarray((crank > limits[:, 0]) & (rod - crank - np.abs(offset) > limits.sum(axis=1)))

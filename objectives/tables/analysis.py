@@ -24,17 +24,17 @@ from ..quantity import Array, Quantity
 from ..registry import QUANTITIES
 from ..time_ratio import TIME_RATIO
 from ..transmission_angle import TRANSMISSION_ANGLE
-from .of_a_turn import INNER_DEAD_CENTRE, LOADED_STROKE, OUTER_DEAD_CENTRE, PEAK_TORQUE_ANGLE, SLOW_STROKE
+from .turn_columns import INNER_DEAD_CENTRE, LOADED_STROKE, OUTER_DEAD_CENTRE, PEAK_TORQUE_ANGLE, SLOW_STROKE
 from .varying_column import varying_column
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] = ()) -> pd.DataFrame:
+def analyse(mechanism: Mechanism, dimensions: Array, *, custom: Sequence[Quantity] = ()) -> pd.DataFrame:
     """Return a table with every quantity of designs (n, 3 + k): crank, rod, offset, m, each turning fully.
 
-    own: quantities outside the registry; a free phase or shift of a target motion gets a column too. The values
+    custom: quantities outside the registry; a free phase or shift of a target motion gets a column too. The values
     of the machine's k varying numbers come after the offset, under the keys of `varying_column`. Columns
     carry their unit. Dead centres are crank angles, deg; the slow stroke is that of `stroke_times.slow_stroke`, the
     loaded stroke that of `loaded_stroke`. What a machine does not define is NaN, such as position errors without
@@ -42,10 +42,10 @@ def analyse(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] 
     """
     import pandas as pd
 
-    return pd.DataFrame(columns_of(mechanism, dimensions, own=own))
+    return pd.DataFrame(columns_of(mechanism, dimensions, custom=custom))
 
 
-def columns_of(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantity] = ()) -> dict[str, NDArray[Any]]:
+def columns_of(mechanism: Mechanism, dimensions: Array, *, custom: Sequence[Quantity] = ()) -> dict[str, NDArray[Any]]:
     """Return the columns (n,) of the table that `analyse` gives: pandas takes longer to import than one design."""
     dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64))
     dimensions = dimensions.copy()
@@ -73,12 +73,12 @@ def columns_of(mechanism: Mechanism, dimensions: Array, *, own: Sequence[Quantit
         RMS_TORQUE.field: averages.rms,
         MEAN_TORQUE.field: averages.mean,
     }
-    for quantity in (*QUANTITIES.values(), *own):
+    for quantity in (*QUANTITIES.values(), *custom):
         if quantity.field not in columns:
             columns[quantity.field] = quantity.unit.factor * quantity.evaluate(mechanism, dimensions).values
         if quantity.undefined_because([mechanism]):
             columns[quantity.field] = np.full(len(dimensions), np.nan)
-    for quantity in own:
+    for quantity in custom:
         if isinstance(quantity, MotionDeviation):
             columns |= quantity.settings(mechanism, dimensions)
     return columns

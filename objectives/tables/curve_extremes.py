@@ -99,14 +99,14 @@ def curve_extremes(mechanism: Mechanism, linkage: Linkage) -> list[CurveExtremes
     sizes = _sizes(first, samples)
     period = cycle_turns(mechanism) * _TURN
     least, greatest = _ends(values, pieces, samples, sizes, period)
-    found = []
+    extremes = []
     for row, curve in enumerate(first):
         ends = []
         for value, angle in (least[row], greatest[row]):
-            at = math.nan if math.isnan(angle) else float(linkage.at(angle).slider_position)
-            ends.append(Extreme(value, angle, at))
-        found.append(CurveExtremes(curve.name, curve.title, curve.kind, *ends))
-    return found
+            position = math.nan if math.isnan(angle) else float(linkage.at(angle).slider_position)
+            ends.append(Extreme(value, angle, position))
+        extremes.append(CurveExtremes(curve.name, curve.title, curve.kind, *ends))
+    return extremes
 
 
 def defined_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> list[Curve]:
@@ -139,7 +139,7 @@ def undefined_because(name: str, mechanism: Mechanism) -> str:
     """Return the reason why a machine does not define a curve; empty where it does."""
     if name == "load" and not mechanism.loads:
         return 'it comes from loads; got none; add a [[load]], for example force = "200 N"'
-    return next((need.missing for need in _NEEDS.get(name, ()) if not need.met(mechanism)), "")
+    return next((need.missing for need in _NEEDS.get(name, ()) if not need.is_met(mechanism)), "")
 
 
 def cuts_of(mechanism: Mechanism, linkage: Linkage) -> Array:
@@ -180,10 +180,13 @@ def _pieces(mechanism: Mechanism, linkage: Linkage) -> list[Array]:
 
 def _sizes(curves: list[Curve], samples: list[Array]) -> Array:
     """Return the greatest magnitude (m, 2) of each curve, and of all curves with its unit; NaN if not determined."""
-    own = np.max([np.abs(values).max(axis=1) for values in samples], axis=0)
+    magnitudes = np.max([np.abs(values).max(axis=1) for values in samples], axis=0)
     units = [curve.kind.unit for curve in curves]
-    shared = [np.nanmax([0.0, *(size for size, of in zip(own, units, strict=True) if of == unit)]) for unit in units]
-    return np.stack([own, shared], axis=1)
+    shared = [
+        np.nanmax([0.0, *(size for size, curve_unit in zip(magnitudes, units, strict=True) if curve_unit == unit)])
+        for unit in units
+    ]
+    return np.stack([magnitudes, shared], axis=1)
 
 
 def _ends(
@@ -198,18 +201,18 @@ def _ends(
     at, signs = rows.astype(np.intp), np.repeat([-1.0, 1.0], [len(side[1]) for side in sides])
     tops, angles = golden(lambda theta: signs * values(theta)[at, np.arange(len(at))], left, right)
     ends = []
-    for sign, (found, *_) in zip((-1.0, 1.0), sides, strict=True):
-        refined = list(found)
+    for sign, (coarse, *_) in zip((-1.0, 1.0), sides, strict=True):
+        refined = list(coarse)
         for row in np.unique(at[signs == sign]):
-            inside = np.flatnonzero((at == row) & (signs == sign))
-            best = inside[np.argmax(tops[inside])]
+            candidates = np.flatnonzero((at == row) & (signs == sign))
+            best = candidates[np.argmax(tops[candidates])]
             value, angle = refined[row]
             if tops[best] > value + _EQUAL * sizes[row, 0]:
                 value, angle = float(tops[best]), float(angles[best])
             places, heights = _maxima_at_cuts([sign * values[row] for values in samples], pieces)
-            away = np.all(np.abs(np.subtract.outer(angles[inside], places)) > 4.0 * _INSET, axis=1)
-            places = np.concatenate([[angle], places, angles[inside][away]])
-            first = first_greatest(np.concatenate([[value], heights, tops[inside][away]]), places, period)
+            away = np.all(np.abs(np.subtract.outer(angles[candidates], places)) > 4.0 * _INSET, axis=1)
+            places = np.concatenate([[angle], places, angles[candidates][away]])
+            first = first_greatest(np.concatenate([[value], heights, tops[candidates][away]]), places, period)
             refined[row] = (sign * value + 0.0, angle_in_cycle(float(places[first]), period))
         ends.append(refined)
     return ends[0], ends[1]
@@ -222,20 +225,20 @@ def _coarse(
 
     With it the brackets in which it may be exceeded: row of the curve, left and right crank angle of each.
     """
-    found: list[tuple[float, float]] = []
+    ends: list[tuple[float, float]] = []
     brackets: list[tuple[int, float, float]] = []
-    for row, (own, shared) in enumerate(sizes):
+    for row, (magnitude, shared) in enumerate(sizes):
         curve = [sign * values[row] for values in samples]
         top, bottom = max(values.max() for values in curve), min(values.min() for values in curve)
-        if math.isnan(own):
-            found.append((math.nan, math.nan))
+        if math.isnan(magnitude):
+            ends.append((math.nan, math.nan))
         elif top - bottom <= _CONSTANT * shared:
-            found.append((0.0 if own <= _CONSTANT * shared else sign * top, math.nan))
+            ends.append((0.0 if magnitude <= _CONSTANT * shared else sign * top, math.nan))
         else:
-            found.append(_best_end(curve, pieces))
+            ends.append(_best_end(curve, pieces))
             brackets += [(row, *bracket) for bracket in _brackets(curve, pieces)]
     rows, left, right = np.array(brackets, dtype=float).reshape(-1, 3).T
-    return found, rows, left, right
+    return ends, rows, left, right
 
 
 def _best_end(curve: list[Array], pieces: list[Array]) -> tuple[float, float]:
@@ -260,7 +263,7 @@ def _maxima_at_cuts(curve: list[Array], pieces: list[Array]) -> tuple[Array, Arr
 
 def _brackets(curve: list[Array], pieces: list[Array]) -> list[tuple[float, float]]:
     """Return the neighbours on both sides of every locally highest sample that may be next to the greatest value."""
-    found: list[tuple[float, float, float]] = []
+    brackets: list[tuple[float, float, float]] = []
     for angles, values in zip(pieces, curve, strict=True):
         padded = np.concatenate([[-np.inf], values, [-np.inf]])
         highest = np.flatnonzero((values >= padded[:-2]) & (values >= padded[2:]))
@@ -268,10 +271,10 @@ def _brackets(curve: list[Array], pieces: list[Array]) -> list[tuple[float, floa
         steps = np.abs(np.diff(values))  # two on each side: the last step of a piece may be short
         step = np.max([steps[np.clip(highest + k, 0, len(steps) - 1)] for k in (-2, -1, 0, 1)], axis=0)
         bounds = (values[highest] + _REACH * step).tolist()
-        found += zip(bounds, angles[before].tolist(), angles[after].tolist(), strict=True)
+        brackets += zip(bounds, angles[before].tolist(), angles[after].tolist(), strict=True)
     best = max(values.max() for values in curve)
-    found.sort(key=lambda bracket: -bracket[0])
-    return [(low, high) for bound, low, high in found[:_CANDIDATES] if bound >= best]
+    brackets.sort(key=lambda bracket: -bracket[0])
+    return [(low, high) for bound, low, high in brackets[:_CANDIDATES] if bound >= best]
 
 
 def golden(

@@ -81,9 +81,9 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
     speed = mechanism.speed
     rates, note = (_RATES, "") if speed else (_RATES_PER_ANGLE, " per crank speed")
     theta = acting.crank_angle
-    torque, of = acting.torque, ""
+    torque, all_cylinders = acting.torque, ""
     if cylinder_count(mechanism) > 1:
-        torque, of = multi_cylinder_curves(mechanism, linkage, theta).torque, " of all cylinders"
+        torque, all_cylinders = multi_cylinder_curves(mechanism, linkage, theta).torque, " of all cylinders"
     sine, cosine = np.sin(theta), np.cos(theta)
     m = motion(sine, cosine, linkage.crank, linkage.rod, linkage.offset, linkage.sign)
     third = third_derivative(sine, cosine, m, linkage.crank)
@@ -97,8 +97,13 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
         Curve("slider_jerk", f"slider jerk{note}", jerk, rates[2]),
         Curve("rod_angle", "rod angle", direction(m.across, m.along), ANGLE),
         Curve("transmission_angle", "transmission angle", moving.transmission_angle, ANGLE),
-        Curve("torque", f"drive torque{of}", torque, TORQUE),
-        Curve("power", f"drive power{of}", crank_speed(mechanism, theta)[0] * torque if speed else nothing, POWER),
+        Curve("torque", f"drive torque{all_cylinders}", torque, TORQUE),
+        Curve(
+            "power",
+            f"drive power{all_cylinders}",
+            crank_speed(mechanism, theta)[0] * torque if speed else nothing,
+            POWER,
+        ),
         Curve("load", "load on the slider", acting.load, FORCE),
         *(
             Curve(name, f"{name[:-2].replace('_', ' ')} force along {name[-1]}", getattr(acting, name), FORCE)
@@ -132,10 +137,10 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, angles: int | ArrayLike 
     )
 
 
-def even_angles(count: int, most: int = MOST) -> Array:
+def even_angles(count: int, limit: int = MOST) -> Array:
     """Return crank angles (n,), rad, evenly spaced over a turn from 0. Raises `InputError` for too few or too many."""
-    if not LEAST <= count <= most:
-        raise InputError(f"curves have {LEAST} to {most} crank angles; got {count}; ask for as many")
+    if not LEAST <= count <= limit:
+        raise InputError(f"curves have {LEAST} to {limit} crank angles; got {count}; ask for as many")
     angles: Array = np.arange(count, dtype=np.float64) * (2.0 * np.pi / count)
     return angles
 

@@ -78,19 +78,25 @@ def deviations(
     computed = {curve.name: curve for curve in defined_curves(mechanism, linkage, theta)}
     nodes = np.linspace(0.0, _TURN, _NODES + 1)
     table = {curve.name: curve.values for curve in defined_curves(mechanism, linkage, nodes)}
-    found = []
+    results = []
     for name, samples in measured.items():
-        curve, there = computed[name], np.isfinite(samples)
-        angles, values = theta[there], samples[there]
-        off = values - curve.values[there]
+        curve, measured_rows = computed[name], np.isfinite(samples)
+        angles, values = theta[measured_rows], samples[measured_rows]
+        off = values - curve.values[measured_rows]
         if np.isfinite(off).all():
-            at = int(np.argmax(np.abs(off)))
-            numbers = (_rms(off), float(off.mean()), float(off[at]), float(angles[at]), float(values[at]))
+            largest = int(np.argmax(np.abs(off)))
+            numbers = (
+                _rms(off),
+                float(off.mean()),
+                float(off[largest]),
+                float(angles[largest]),
+                float(values[largest]),
+            )
             fit = _fit(mechanism, linkage, name, angles, values, nodes, table[name])
         else:
             numbers, fit = (math.nan,) * 5, None
-        found.append(Deviation(name, curve.title, curve.kind, len(values), *numbers, fit))
-    return found
+        results.append(Deviation(name, curve.title, curve.kind, len(values), *numbers, fit))
+    return results
 
 
 def _rms(values: Array) -> float:
@@ -109,21 +115,24 @@ def _fit(
     def computed(at: Array) -> Array:
         return next(c.values for c in defined_curves(mechanism, linkage, np.mod(at, _TURN)) if c.name == name)
 
-    def left(curve: Array) -> Array:
+    def remaining_variance(curve: Array) -> Array:
         """Return the weighted variance of what is left, for curves (k, groups)."""
         off = means - curve
         middle = off @ weights
-        found: Array = ((off - middle[:, None]) ** 2) @ weights
-        return found
+        variance: Array = ((off - middle[:, None]) ** 2) @ weights
+        return variance
 
     def at_shifts(shifts: Array) -> Array:
         every = theta[None, :] + shifts[:, None]
-        return -left(computed(every.ravel()).reshape(every.shape))
+        return -remaining_variance(computed(every.ravel()).reshape(every.shape))
 
     step = _TURN / _SHIFTS
     grid: Array = step * np.arange(_SHIFTS, dtype=np.float64)
     coarse = np.concatenate(
-        [left(np.interp(np.mod(theta + part[:, None], _TURN), nodes, table)) for part in np.split(grid, 8)]
+        [
+            remaining_variance(np.interp(np.mod(theta + part[:, None], _TURN), nodes, table))
+            for part in np.split(grid, 8)
+        ]
     )
     lowest = np.flatnonzero((coarse <= np.roll(coarse, 1)) & (coarse <= np.roll(coarse, -1)))
     lowest = lowest[np.argsort(coarse[lowest], kind="stable")][:_CANDIDATES]
@@ -154,5 +163,5 @@ def _grouped(angles: Array, values: Array) -> tuple[Array, Array, Array]:
     order = np.argsort(angles, kind="stable")
     ends = np.unique(np.linspace(0, len(order), min(len(order), _GROUPS) + 1).astype(np.intp))
     counts = np.diff(ends)
-    theta, means = (np.add.reduceat(of[order], ends[:-1]) / counts for of in (angles, values))
+    theta, means = (np.add.reduceat(samples[order], ends[:-1]) / counts for samples in (angles, values))
     return theta, means, counts / len(order)

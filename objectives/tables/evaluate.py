@@ -16,10 +16,10 @@ from ...model.swing.closure import passes
 from ...model.swing.swing import Swing
 from ...model.swing.swing_batch import driven
 from ..cycle_peak import screened
-from ..formula.meant import meant
 from ..formula.quantity import leaves_of, with_formulas
+from ..formula.resolve import resolve_quantities
 from ..quantity import Array, Quantity, Values
-from .given import countable, given_designs, numbers_of, require_machine, warn_of_lengths
+from .design_arrays import countable, given_designs, numbers_of, require_machine, warn_of_lengths
 from .swinging import require_in_motion, require_of_swing
 
 
@@ -74,14 +74,14 @@ def evaluate(
            [   nan,    nan]])
     """
     require_machine(mechanism)
-    given = given_designs(designs, numbers_of(mechanism))
-    warn_of_lengths(mechanism, given)
-    return evaluated(mechanism, given, quantities, gradients=gradients, own=own, swing=swing)
+    array = given_designs(designs, numbers_of(mechanism))
+    warn_of_lengths(mechanism, array)
+    return evaluated(mechanism, array, quantities, gradients=gradients, own=own, swing=swing)
 
 
 def evaluated(
     mechanism: Mechanism,
-    given: Array,
+    designs: Array,
     quantities: Sequence[str],
     *,
     gradients: bool = False,
@@ -93,14 +93,14 @@ def evaluated(
         raise InputError(f"quantities are a list of names; got {quantities!r}; write [{quantities!r}]")
     quantities = list(quantities)
     require_in_motion(quantities, own, swing)
-    chosen = meant(quantities, mechanism, own, turning=swing is None)
+    chosen = resolve_quantities(quantities, mechanism, own, turning=swing is None)
     for item in chosen:
         if swing is not None:
             require_of_swing(item.name, item)
         reason = item.undefined_because([mechanism])
         if reason:
             raise InputError(f"{item.name}: {reason}")
-    rows, shape = np.ascontiguousarray(given.reshape(-1, given.shape[-1])), given.shape[:-1]
+    rows, shape = np.ascontiguousarray(designs.reshape(-1, designs.shape[-1])), designs.shape[:-1]
     lacking = [item.name for item in chosen if not item.has_gradient]
     if gradients and lacking:
         raise InputError(
@@ -108,15 +108,15 @@ def evaluated(
         )
     turns = moving(mechanism, swing, rows)
     turns &= countable(rows)
-    whole = bool(turns.all())
-    found = _found(mechanism, chosen, rows if whole else rows[turns], gradients)
+    all_turn = bool(turns.all())
+    evaluations = _evaluate_leaves(mechanism, chosen, rows if all_turn else rows[turns], gradients)
     values = np.full((len(rows), len(chosen)), np.nan)
     jacobian = np.full((*values.shape, rows.shape[1]), np.nan) if gradients else None
-    where: slice | Mask = slice(None) if whole else turns
-    for column, part in enumerate(found):
-        values[where, column] = part.values
+    target_rows: slice | Mask = slice(None) if all_turn else turns
+    for column, part in enumerate(evaluations):
+        values[target_rows, column] = part.values
         if jacobian is not None and part.gradients is not None:
-            jacobian[where, column] = part.gradients
+            jacobian[target_rows, column] = part.gradients
     values = values.reshape(*shape, len(chosen))
     return values if jacobian is None else (values, jacobian.reshape(*values.shape, rows.shape[1]))
 
@@ -135,18 +135,20 @@ def running(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
     return moving(mechanism, None, designs) if swing is None else driven(mechanism, swing, designs)
 
 
-def _found(mechanism: Mechanism, quantities: Sequence[Quantity], designs: Array, gradients: bool) -> list[Values]:
+def _evaluate_leaves(
+    mechanism: Mechanism, quantities: Sequence[Quantity], designs: Array, gradients: bool
+) -> list[Values]:
     leaves = leaves_of(quantities)
-    found = screened(leaves, mechanism, designs, gradients=gradients, certain=True, angles=ANGLES)
-    for of in leaves:
-        if of.name not in found:
+    values = screened(leaves, mechanism, designs, gradients=gradients, certain=True, angles=ANGLES)
+    for leaf in leaves:
+        if leaf.name not in values:
             continue
-        item = found[of.name]
+        item = values[leaf.name]
         missed = ~np.isfinite(item.values)
         if missed.any():
-            exact = of.evaluate(mechanism, designs[missed], gradients=gradients)
+            exact = leaf.evaluate(mechanism, designs[missed], gradients=gradients)
             item.values[missed] = exact.values
             if item.gradients is not None:
                 item.gradients[missed] = exact.gradients
-    found |= {q.name: q.evaluate(mechanism, designs, gradients=gradients) for q in leaves if q.name not in found}
-    return with_formulas(quantities, found, mechanism, designs, gradients=gradients)
+    values |= {q.name: q.evaluate(mechanism, designs, gradients=gradients) for q in leaves if q.name not in values}
+    return with_formulas(quantities, values, mechanism, designs, gradients=gradients)

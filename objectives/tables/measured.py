@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ..kinds import ANGLE, SHOWN, TIME, Face, Kind
+from ..kinds import ANGLE, SHOWN, TIME, DisplayUnit, Kind
 from ..quantity import Array
 from ..units import squeezed, without_in
 from .curve_extremes import every_curve, undefined_because
@@ -73,19 +73,19 @@ def columns_of(
     spoken = {_plain(curve.title): name for name, curve in curves.items()} | {name: name for name in curves}
     spoken |= {CRANK_ANGLE: CRANK_ANGLE, TIME_OF: TIME_OF}
     kinds = {name: curve.kind for name, curve in curves.items()} | {CRANK_ANGLE: ANGLE, TIME_OF: TIME}
-    found: dict[str, Column] = {}
+    columns: dict[str, Column] = {}
     for name in names:
         column = _meaning(name, spoken, kinds, units)
         if column is None:
             continue
-        first = next((other for other, given in found.items() if given.name == column.name), None)
+        first = next((earlier for earlier, column_names in columns.items() if column_names.name == column.name), None)
         if first is not None:
             raise InputError(f"a curve is measured once; got the columns {first!r} and {name!r}; drop one")
-        found[name] = column
-    given = {column.name: name for name, column in found.items()}
-    if CRANK_ANGLE in given:
-        found.pop(given.get(TIME_OF, ""), None)
-    elif TIME_OF not in given:
+        columns[name] = column
+    column_names = {column.name: name for name, column in columns.items()}
+    if CRANK_ANGLE in column_names:
+        columns.pop(column_names.get(TIME_OF, ""), None)
+    elif TIME_OF not in column_names:
         near = next((name for name in names if _near(name, ("crank_angle_deg", "time_s"))), None)
         hint = f"is {near!r} one of them?" if near is not None else f"add one to {_listed(names)}"
         raise InputError(f"{_ANGLE_NEEDED}; got neither; {hint}")
@@ -101,14 +101,14 @@ def columns_of(
             "times convert to crank angles only at constant speed; got a speed profile, "
             f"{mechanism.speed_profile.text}; give crank angles"
         )
-    measured = [name for name in found if found[name].name not in (CRANK_ANGLE, TIME_OF)]
+    measured = [name for name in columns if columns[name].name not in (CRANK_ANGLE, TIME_OF)]
     if not measured:
-        near = next((close for name in names if name not in found and (close := _curve_near(name, spoken))), None)
+        near = next((close for name in names if name not in columns and (close := _curve_near(name, spoken))), None)
         hint = f"did you mean {near}?" if near else f"curves are {', '.join(curves)}"
         raise InputError(
             f"no column is a curve with its unit, such as slider_position_mm; got {_listed(names)}; {hint}"
         )
-    return found
+    return columns
 
 
 def measured_from(
@@ -143,21 +143,21 @@ def measured_from(
         values[column.name] = scaled
     by_time = TIME_OF in values
     theta = mechanism.speed * values.pop(TIME_OF) if by_time else values.pop(CRANK_ANGLE)
-    there = np.isfinite(theta)
-    kept = {name: _one_turn(name, samples[there], linkage) for name, samples in values.items()}
-    given = {column.name: name for name, column in columns.items()}
-    empty = [name for name, samples in kept.items() if not np.isfinite(samples).any()]
+    has_angle = np.isfinite(theta)
+    curves = {name: _one_turn(name, samples[has_angle], linkage) for name, samples in values.items()}
+    column_names = {column.name: name for name, column in columns.items()}
+    empty = [name for name, samples in curves.items() if not np.isfinite(samples).any()]
     for name in empty:
-        del kept[name]
-    if not kept:
-        asked = ", ".join(repr(given[name]) for name in empty)
-        raise InputError(f"a curve has a number in a row with a crank angle; got none in {asked}; fill them in")
-    for name in kept:
+        del curves[name]
+    if not curves:
+        empty_columns = ", ".join(repr(column_names[name]) for name in empty)
+        raise InputError(f"a curve has a number in a row with a crank angle; got none in {empty_columns}; fill them in")
+    for name in curves:
         reason = undefined_because(name, mechanism)
         if reason:
-            raise InputError(f"{given[name]!r} is not defined for this machine: {reason}; or drop the column")
+            raise InputError(f"{column_names[name]!r} is not defined for this machine: {reason}; or drop the column")
     left_out = tuple(name for name in names if name not in columns or columns[name].name in empty)
-    return Measured(theta[there], kept, left_out, int(len(theta) - there.sum()), by_time)
+    return Measured(theta[has_angle], curves, left_out, int(len(theta) - has_angle.sum()), by_time)
 
 
 def _one_turn(name: str, values: Array, linkage: Linkage) -> Array:
@@ -174,14 +174,14 @@ def _meaning(text: str, spoken: Mapping[str, str], kinds: Mapping[str, Kind], un
     bracketed = _BRACKETED.fullmatch(text)
     stem = _plain(text if bracketed is None else bracketed[1])
     if bracketed is not None:
-        said, unit = (stem if stem in spoken else None), bracketed[2].strip()
+        curve_name, unit = (stem if stem in spoken else None), bracketed[2].strip()
     else:
-        said = max((name for name in spoken if f"{stem}_".startswith(f"{name}_")), key=len, default=None)
-        unit = "" if said is None else _after(said, text).strip(" _,:/")
-    if said is None:
+        curve_name = max((name for name in spoken if f"{stem}_".startswith(f"{name}_")), key=len, default=None)
+        unit = "" if curve_name is None else _text_after(curve_name, text).strip(" _,:/")
+    if curve_name is None:
         return None
-    kind = kinds[spoken[said]]
-    example = said + kind.metric.suffix
+    kind = kinds[spoken[curve_name]]
+    example = curve_name + kind.metric.suffix
     if not unit:
         raise InputError(f"a column has its unit in its name; got {text!r}; write it like {example}")
     factor = _factor(unit, kind)
@@ -191,32 +191,36 @@ def _meaning(text: str, spoken: Mapping[str, str], kinds: Mapping[str, Kind], un
     if factor is None and units is not None:
         factor = units(unit, kind)
     if factor is not None:
-        return Column(spoken[said], factor, kind)
+        return Column(spoken[curve_name], factor, kind)
     if unit in kind.typed or squeezed(unit) in map(squeezed, kind.typed):
-        units_read = " or ".join(dict.fromkeys(face.symbol for face in _faces(kind)))
-        raise InputError(f"{said} is read in {units_read}; got {text!r}; write it like {example}")
-    known = (other for other in SHOWN if _factor(unit, other) or (units is not None and units(unit, other)))
-    other = next(known, None)
-    if other is None:  # no unit: more of a name that is none here
+        units_read = " or ".join(dict.fromkeys(shown_unit.symbol for shown_unit in _display_units(kind)))
+        raise InputError(f"{curve_name} is read in {units_read}; got {text!r}; write it like {example}")
+    matching_kinds = (
+        other_kind
+        for other_kind in SHOWN
+        if _factor(unit, other_kind) or (units is not None and units(unit, other_kind))
+    )
+    other_kind = next(matching_kinds, None)
+    if other_kind is None:  # no unit: more of a name that is none here
         return None
-    raise InputError(f"{said} is {kind.name}; got {text!r}, {other.name}; write it like {example}")
+    raise InputError(f"{curve_name} is {kind.name}; got {text!r}, {other_kind.name}; write it like {example}")
 
 
 def _factor(unit: str, kind: Kind) -> float | None:
     """Return the value of a unit of tables in SI; None if it is none of the kind's."""
-    for face in _faces(kind):
-        if squeezed(unit) in (squeezed(face.symbol), squeezed(face.suffix)):
-            return 1.0 / face.factor
+    for display_unit in _display_units(kind):
+        if squeezed(unit) in (squeezed(display_unit.symbol), squeezed(display_unit.suffix)):
+            return 1.0 / display_unit.factor
     return None
 
 
-def _faces(kind: Kind) -> list[Face]:
-    return [face for face in (kind.metric, Face(kind.unit, ""), kind.inch) if face is not None and face.symbol]
+def _display_units(kind: Kind) -> list[DisplayUnit]:
+    return [unit for unit in (kind.metric, DisplayUnit(kind.unit, ""), kind.inch) if unit is not None and unit.symbol]
 
 
-def _after(said: str, text: str) -> str:
+def _text_after(name: str, text: str) -> str:
     """Return the rest of a text after a name, whose words anything may separate."""
-    return re.sub("[^a-z0-9]*" + "[^a-z0-9]+".join(said.split("_")), "", text, count=1, flags=re.IGNORECASE)
+    return re.sub("[^a-z0-9]*" + "[^a-z0-9]+".join(name.split("_")), "", text, count=1, flags=re.IGNORECASE)
 
 
 def _plain(text: str) -> str:
@@ -235,5 +239,5 @@ def _near(name: str, words: Iterable[str]) -> str | None:
 
 
 def _listed(names: list[str]) -> str:
-    some = [repr(name) for name in names[:6]]
-    return ", ".join(some) + (" ..." if len(names) > 6 else "") if some else "no columns"
+    quoted_names = [repr(name) for name in names[:6]]
+    return ", ".join(quoted_names) + (" ..." if len(names) > 6 else "") if quoted_names else "no columns"

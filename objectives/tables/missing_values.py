@@ -77,16 +77,18 @@ def _undetermined(quantity: Quantity, mechanism: Mechanism, designs: Array) -> M
     These have the worst value there is, infinite or zero, and another one without friction.
     """
     parts = [_undetermined(part, mechanism, designs) for part in quantity.made_of]
-    found = np.any(parts, axis=0) if parts else np.zeros(len(designs), np.bool_)
+    undetermined = np.any(parts, axis=0) if parts else np.zeros(len(designs), np.bool_)
     values = quantity.evaluate(mechanism, designs).values
     worst = ~np.isfinite(values) | ((values == 0.0) & (quantity.name != SELF_LOCKING_MARGIN.name))
-    rows = np.flatnonzero(worst & ~found)
+    rows = np.flatnonzero(worst & ~undetermined)
     if isinstance(quantity, OwnQuantity):  # a function is not called for locked designs
-        found[rows] = True
+        undetermined[rows] = True
     elif len(rows):
-        without = quantity.evaluate(replace(mechanism, friction=Friction()), designs[rows]).values
-        found[rows] = ~((without == values[rows]) | (np.isnan(without) & np.isnan(values[rows])))
-    return found
+        without_friction = quantity.evaluate(replace(mechanism, friction=Friction()), designs[rows]).values
+        undetermined[rows] = ~(
+            (without_friction == values[rows]) | (np.isnan(without_friction) & np.isnan(values[rows]))
+        )
+    return undetermined
 
 
 def _own_reason(quantity: Quantity, value: float, mechanism: Mechanism, design: Array) -> str:

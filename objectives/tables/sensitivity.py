@@ -29,7 +29,7 @@ _BESIDE_ZERO = 1e-100  # m, an offset of zero as seen from one side: less than r
 
 
 @dataclass(frozen=True)
-class _Centre:
+class _DeadCentre:
     """A position or a crank angle of a dead centre; `formula` is that of the open branch."""
 
     name: str
@@ -37,7 +37,7 @@ class _Centre:
     kind: Kind
     formula: Callable[[Any, Any, Any], Any]
 
-    def on(self, linkage: Linkage) -> tuple[float, list[float]]:
+    def value_and_slopes(self, linkage: Linkage) -> tuple[float, list[float]]:
         """Return value and gradient, SI; on the crossed branch x -> -x and theta -> pi - theta."""
         at = [float(linkage.crank), float(linkage.rod), float(linkage.offset)]
         value, slopes = float(self.formula(*at)), []
@@ -51,10 +51,10 @@ class _Centre:
 
 
 _DEAD_CENTRES = (
-    _Centre("inner_dead_centre_position", "inner dead centre, position", LENGTH, geometry.inner_dead_centre),
-    _Centre("outer_dead_centre_position", "outer dead centre, position", LENGTH, geometry.outer_dead_centre),
-    _Centre("inner_dead_centre", "inner dead centre, crank angle", ANGLE, geometry.inner_crank_angle),
-    _Centre("outer_dead_centre", "outer dead centre, crank angle", ANGLE, geometry.outer_crank_angle),
+    _DeadCentre("inner_dead_centre_position", "inner dead centre, position", LENGTH, geometry.inner_dead_centre),
+    _DeadCentre("outer_dead_centre_position", "outer dead centre, position", LENGTH, geometry.outer_dead_centre),
+    _DeadCentre("inner_dead_centre", "inner dead centre, crank angle", ANGLE, geometry.inner_crank_angle),
+    _DeadCentre("outer_dead_centre", "outer dead centre, crank angle", ANGLE, geometry.outer_crank_angle),
 )
 
 
@@ -83,14 +83,14 @@ def sensitivity(mechanism: Mechanism, dimensions: Array, swing: Swing | None = N
     rows = []
     ends = None if swing is None else started(mechanism, swing)
     for quantity in QUANTITIES.values() if ends is None else swinging(swing_quantities(ends)):
-        value, below, above = _one_sided(quantity, mechanism, design)
+        value, slopes_below, slopes_above = _one_sided(quantity, mechanism, design)
         if quantity.undefined_because([mechanism]):
             value = math.nan
-        rows.append(_row(quantity, value, (below, above), design, tolerances, True))
+        rows.append(_row(quantity, value, (slopes_below, slopes_above), design, tolerances, True))
     for centre in _DEAD_CENTRES if ends is None else ():
-        value, slopes = centre.on(linkage)
-        both = np.array(slopes), np.array(slopes)
-        rows.append(_row(centre, value, both, design, tolerances, centre.kind is not ANGLE))
+        value, slopes = centre.value_and_slopes(linkage)
+        sides = np.array(slopes), np.array(slopes)
+        rows.append(_row(centre, value, sides, design, tolerances, centre.kind is not ANGLE))
     return pd.DataFrame(rows)
 
 
@@ -114,23 +114,23 @@ def _one_sided(quantity: Quantity, mechanism: Mechanism, design: Array) -> tuple
 
 def _steepest(quantity: Quantity, mechanism: Mechanism, at: Array, side: float) -> Array:
     """Return the derivatives (3,) of a design towards one side, of the steepest of its equal pieces."""
-    found = quantity.pieces(mechanism, at[None])
-    values, slopes = found.values[0], found.gradients[0]
-    best = values.min() if found.least else values.max()
+    pieces = quantity.pieces(mechanism, at[None])
+    values, slopes = pieces.values[0], pieces.gradients[0]
+    best = values.min() if pieces.least else values.max()
     if np.isnan(best):  # not determined: without masses and loads there is no force to compare
         return np.full(3, np.nan)
     with np.errstate(invalid="ignore"):
         equal = np.abs(values - best) <= _TIE * abs(best)
     equal |= values == best
-    steepest = slopes[equal].max(axis=0) if (side > 0.0) != found.least else slopes[equal].min(axis=0)
+    steepest = slopes[equal].max(axis=0) if (side > 0.0) != pieces.least else slopes[equal].min(axis=0)
     with np.errstate(invalid="ignore"):
         return np.where(np.abs(steepest) * at[1] <= _ROUNDING * abs(best), 0.0, steepest)
 
 
 def _is_tip(quantity: Quantity, mechanism: Mechanism, design: Array, value: float) -> bool:
     """Whether a quantity vanishes at an offset of zero: it is rounding there, and so are its peaks' places."""
-    beside = design + np.array([0.0, 0.0, _TIP * design[1]])
-    return abs(value) <= _TIE * abs(float(quantity.evaluate(mechanism, beside[None]).values[0]))
+    nearby = design + np.array([0.0, 0.0, _TIP * design[1]])
+    return abs(value) <= _TIE * abs(float(quantity.evaluate(mechanism, nearby[None]).values[0]))
 
 
 def _beside_tip(quantity: Quantity, mechanism: Mechanism, design: Array, side: float) -> Array:
@@ -144,17 +144,27 @@ def _beside_tip(quantity: Quantity, mechanism: Mechanism, design: Array, side: f
 
 
 def _row(
-    of: Quantity | _Centre, value: float, sides: tuple[Array, Array], design: Array, tolerances: Array, relative: bool
+    quantity: Quantity | _DeadCentre,
+    value: float,
+    sides: tuple[Array, Array],
+    design: Array,
+    tolerances: Array,
+    relative: bool,
 ) -> dict[str, Any]:
-    unit = of.kind.metric
-    row: dict[str, Any] = {"quantity": of.name, "title": of.title, "unit": unit.symbol, "value": unit.factor * value}
-    known = math.isfinite(value)
+    unit = quantity.kind.metric
+    row: dict[str, Any] = {
+        "quantity": quantity.name,
+        "title": quantity.title,
+        "unit": unit.symbol,
+        "value": unit.factor * value,
+    }
+    is_finite = math.isfinite(value)
     for n, dimension in enumerate(DIMENSIONS):
-        defined = relative and known and value != 0.0 and design[n] != 0.0
-        below, above = (float(side[n]) if known else math.nan for side in sides)
+        defined = relative and is_finite and value != 0.0 and design[n] != 0.0
+        slope_below, slope_above = (float(side[n]) if is_finite else math.nan for side in sides)
         # More of a negative offset's size lies below it.
-        less, more = (below, above) if design[n] >= 0.0 else (above, below)
-        for suffix, slope, share in (("", above, more), ("_below", below, less)):
+        smaller, larger = (slope_below, slope_above) if design[n] >= 0.0 else (slope_above, slope_below)
+        for suffix, slope, share in (("", slope_above, larger), ("_below", slope_below, smaller)):
             row[f"{dimension}_per_mm{suffix}"] = unit.factor * slope * 1e-3
             row[f"{dimension}_percent{suffix}"] = share * float(design[n]) / value if defined else math.nan
             row[f"{dimension}_tolerance{suffix}"] = unit.factor * slope * float(tolerances[n])

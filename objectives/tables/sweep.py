@@ -15,7 +15,7 @@ from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ..formula.meant import meant
+from ..formula.resolve import resolve_quantities
 from ..quantity import Array, Quantity
 from .missing_values import missing_value_reasons
 
@@ -38,26 +38,31 @@ class Axis:
 
 
 def sweep(
-    mechanism: Mechanism, dimensions: Array, over: Sequence[Axis], of: Sequence[str], *, own: Sequence[Quantity] = ()
+    mechanism: Mechanism,
+    dimensions: Array,
+    axes: Sequence[Axis],
+    quantity_names: Sequence[str],
+    *,
+    custom: Sequence[Quantity] = (),
 ) -> pd.DataFrame:
     """Return a table with a row for every combination of the values of the axes, the first axis slowest.
 
-    dimensions: (3,) crank, rod, offset, m, of the design swept from; what is swept is replaced. of: quantities or
-    formulas. own: those that it may name besides those of the registry.
+    dimensions: (3,) crank, rod, offset, m, of the starting design; swept parameters replace its values. quantity_names:
+    quantities or formulas. custom: quantities that it may name besides those of the registry.
     Columns: crank_mm, rod_mm, offset_mm, speed_rpm, each quantity under its field in its shown unit, and reason: why
     the row lacks values (NaN), "" otherwise. An infinite quantity (rod to offset without offset) stays infinite.
     Raises `InputError` for unknown names, an axis given twice, or more than a million rows.
     """
-    quantities = meant(of, mechanism, own)
-    names = [axis.parameter for axis in over]
+    quantities = resolve_quantities(quantity_names, mechanism, custom)
+    names = [axis.parameter for axis in axes]
     if not names or not quantities:
         raise InputError("a sweep needs something to sweep over and a quantity; got none; give at least one of each")
     if len(set(names)) < len(names):
         raise InputError(f"a sweep must be over different parameters; got {', '.join(names)}; leave out the second")
-    count = math.prod(len(axis.values) for axis in over)
+    count = math.prod(len(axis.values) for axis in axes)
     if count > MOST:
         raise InputError(f"a sweep has at most {MOST:,} combinations; got {count:,}; take fewer values")
-    grid = np.array(list(product(*(axis.values for axis in over))))
+    grid = np.array(list(product(*(axis.values for axis in axes))))
     designs = np.tile(np.asarray(dimensions, dtype=np.float64).reshape(1, 3), (count, 1))
     speeds = np.full(count, mechanism.speed)
     for n, name in enumerate(names):
@@ -73,27 +78,27 @@ def sweep(
     for item in quantities:
         values = np.full(count, np.nan)
         for speed in np.unique(speeds):
-            here = np.flatnonzero(turns & (speeds == speed))
-            if len(here):
+            rows = np.flatnonzero(turns & (speeds == speed))
+            if len(rows):
                 machine = replace(mechanism, speed=float(speed))
-                found = item.unit.factor * item.evaluate(machine, designs[here]).values
-                why = missing_value_reasons(item, found, machine, designs[here])
-                values[here] = np.where([bool(reason) for reason in why], np.nan, found)
-                for row, reason in zip(here.tolist(), why, strict=True):
+                computed = item.unit.factor * item.evaluate(machine, designs[rows]).values
+                why = missing_value_reasons(item, computed, machine, designs[rows])
+                values[rows] = np.where([bool(reason) for reason in why], np.nan, computed)
+                for row, reason in zip(rows.tolist(), why, strict=True):
                     if reason:
                         missing.setdefault(row, {}).setdefault(reason, []).append(item.title)
         columns[item.field] = values
     for row, found_missing in missing.items():
-        reasons[row] = _together(found_missing, len(quantities))
+        reasons[row] = _join_reasons(found_missing, len(quantities))
     table = pd.DataFrame(columns)
     table["reason"] = reasons
     return table
 
 
-def _together(missing: Mapping[str, Sequence[str]], count: int) -> str:
+def _join_reasons(missing: Mapping[str, Sequence[str]], count: int) -> str:
     """Return the reasons of a row. missing: titles by reason, which are left out where one reason is that of all."""
-    whole = any(len(titles) == count for titles in missing.values())
-    return "; ".join(reason if whole else f"{', '.join(titles)}: {reason}" for reason, titles in missing.items())
+    is_shared = any(len(titles) == count for titles in missing.values())
+    return "; ".join(reason if is_shared else f"{', '.join(titles)}: {reason}" for reason, titles in missing.items())
 
 
 def _reason(design: Array, mechanism: Mechanism) -> str:

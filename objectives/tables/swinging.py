@@ -23,12 +23,12 @@ from .varying_column import varying_column
 
 def swing_facts() -> tuple[SwingQuantity, ...]:
     """Return the facts of all quantities that a swing may have."""
-    return tuple(of for of in FACTS.values() if isinstance(of, SwingQuantity))
+    return tuple(fact for fact in FACTS.values() if isinstance(fact, SwingQuantity))
 
 
 def swing_quantities(swing: Swing) -> tuple[SwingQuantity, ...]:
     """Return the quantities that a swing has."""
-    return tuple(replace(of, swing=swing) for of in swing_facts() if of.unfit(swing) is None)
+    return tuple(replace(fact, swing=swing) for fact in swing_facts() if fact.unfit(swing) is None)
 
 
 def why_not(name: str, swing: Swing | None) -> str | None:
@@ -44,11 +44,11 @@ def why_not(name: str, swing: Swing | None) -> str | None:
     return fact.unfit(swing)
 
 
-def require_in_motion(names: Iterable[str], own: Iterable[Quantity], swing: Swing | None) -> None:
-    """Raise `InputError` for the name of a quantity of a swing that a motion does not have. own: of the problem."""
-    known = {of.name for of in own}
+def require_in_motion(names: Iterable[str], custom: Iterable[Quantity], swing: Swing | None) -> None:
+    """Raise `InputError` for the name of a quantity of a swing that a motion does not have. custom: of the problem."""
+    custom_names = {item.name for item in custom}
     for name in names:
-        reason = None if name in known else why_not(name, swing)
+        reason = None if name in custom_names else why_not(name, swing)
         if reason is not None:
             raise InputError(f"{name}: {reason}")
 
@@ -60,8 +60,8 @@ def require_loads(mechanism: Mechanism) -> None:
         "speed_profile": mechanism.speed_profile,
         "acceleration": mechanism.acceleration or None,
     }
-    for key, given in of_turns.items():
-        if given is not None:
+    for key, value in of_turns.items():
+        if value is not None:
             raise InputError(f"mechanism.{key}: it is of a crank that turns through; got it with a swing; leave it out")
     for load in mechanism.loads:
         if load.enters in (Enters.CYLINDER, Enters.BURNING_CYLINDER):
@@ -87,21 +87,21 @@ def require_of_swing(key: str, quantity: Quantity) -> None:
     """Raise `InputError` for a quantity of a crank that turns through."""
     for leaf in leaves_of([quantity]):
         if leaf.turning:
-            known = ", ".join(of.name for of in swing_facts())
+            swing_names = ", ".join(fact.name for fact in swing_facts())
             raise InputError(
                 f'{key}: {leaf.name} is of a crank that turns through; got [motion] kind = "swing"; '
-                f"use a quantity of a swing ({known}), or leave it out"
+                f"use a quantity of a swing ({swing_names}), or leave it out"
             )
 
 
-def swinging(own: Sequence[Quantity]) -> tuple[Quantity, ...]:
-    """Return the quantities that designs of a swing have, by place. own: of the problem."""
-    every: Iterable[Quantity] = (*QUANTITIES.values(), *own)
-    kept = [of for of in every if not any(leaf.turning for leaf in leaves_of([of]))]
-    return tuple(sorted(kept, key=lambda of: of.place))
+def swinging(custom: Sequence[Quantity]) -> tuple[Quantity, ...]:
+    """Return the quantities that designs of a swing have, by place. custom: of the problem."""
+    every: Iterable[Quantity] = (*QUANTITIES.values(), *custom)
+    quantities = [item for item in every if not any(leaf.turning for leaf in leaves_of([item]))]
+    return tuple(sorted(quantities, key=lambda item: item.place))
 
 
-def columns_of(mechanism: Mechanism, dimensions: Array, own: Sequence[Quantity]) -> dict[str, NDArray[Any]]:
+def columns_of(mechanism: Mechanism, dimensions: Array, custom: Sequence[Quantity]) -> dict[str, NDArray[Any]]:
     """Return the columns (n,) of designs (n, 3 + k) that swing, as `analysis.columns_of` of those that rotate fully."""
     dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64)).copy()
     dimensions[:, 2] = without_rounding(dimensions[:, 1], dimensions[:, 2])
@@ -111,7 +111,7 @@ def columns_of(mechanism: Mechanism, dimensions: Array, own: Sequence[Quantity])
     for place, item in enumerate(mechanism.varying):
         key, unit = varying_column(item)
         columns[key] = unit.factor * dimensions[:, 3 + place]
-    for quantity in swinging(own):
+    for quantity in swinging(custom):
         if quantity.undefined_because([mechanism]):
             columns[quantity.field] = np.full(len(dimensions), np.nan)
         else:

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.numbers import unit_of
 from ...model.machine.varying import Varying
-from ..kinds import KINDS, LENGTH, Face
+from ..kinds import KINDS, LENGTH, DisplayUnit
 
 
-def varying_column(varying: Varying) -> tuple[str, Face]:
+def varying_column(varying: Varying) -> tuple[str, DisplayUnit]:
     """Return the key of a varying number in tables and JSON, and the unit there.
 
     The key is the name without a leading "mechanism", with underscores, and the unit: "mechanism.slider.mass" becomes
@@ -28,7 +28,7 @@ def number_in_words(name: str) -> str:
     return re.sub("^sections pins (.+)", r"\1 diameter", words)
 
 
-def columns_of_numbers(varying: Sequence[Varying]) -> dict[str, tuple[str, Face]]:
+def columns_of_numbers(varying: Sequence[Varying]) -> dict[str, tuple[str, DisplayUnit]]:
     """Return key and unit of every number of a design by name: crank, rod, offset, and those that vary besides."""
     lengths = {name: (f"{name}{LENGTH.metric.suffix}", LENGTH.metric) for name in DIMENSIONS}
     return lengths | {item.name: varying_column(item) for item in varying}

@@ -21,14 +21,14 @@ def violations(mechanism: Mechanism, values_of: Callable[[str], ArrayLike | None
     values_of: gives the values (n,) of a quantity by its name, SI, NaN for a design without one, None where there are
     none. Zero where a design does not go beyond; quantities of which none does are left out.
     """
-    found = {}
-    for name, of in QUANTITIES.items():
-        values = np.atleast_1d(np.asarray(values_of(name) if of.allowed_by else None, dtype=np.float64))
+    excesses = {}
+    for name, quantity in QUANTITIES.items():
+        values = np.atleast_1d(np.asarray(values_of(name) if quantity.allowed_by else None, dtype=np.float64))
         if np.isnan(values).all():
             continue
-        allowable = of.allowable(mechanism)
-        beyond = values - allowable if of.better == "low" else allowable - values
-        beyond = np.where(beyond > _ROUNDING * abs(allowable), beyond, 0.0)  # zero too for what has no value
-        if beyond.any():
-            found[name] = beyond
-    return found
+        allowable = quantity.allowable(mechanism)
+        excess = values - allowable if quantity.better == "low" else allowable - values
+        excess = np.where(excess > _ROUNDING * abs(allowable), excess, 0.0)  # zero too for what has no value
+        if excess.any():
+            excesses[name] = excess
+    return excesses

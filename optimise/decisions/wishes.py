@@ -17,7 +17,7 @@ import numpy as np
 
 from ...model.errors import InputError
 from ...objectives.swing_quantity import SwingQuantity
-from ...objectives.units import shown, to_si
+from ...objectives.units import quote, to_si
 from ..front.front import ParetoFront
 from ..problem.violation import minimised
 
@@ -82,7 +82,7 @@ def _read(front: ParetoFront, column: int, given: object) -> Wish:
     kind, value = of.kind, limit[1] if limit else given
     if kind.unit and isinstance(value, str) and _NUMBER.fullmatch(value.strip()):
         raise InputError(
-            f"the wish for {of.name} must be {kind.name} with its unit; got {shown(value)}; write it like "
+            f"the wish for {of.name} must be {kind.name} with its unit; got {quote(value)}; write it like "
             f'"{kind.example}"'
         )
     try:

@@ -51,7 +51,7 @@ class Axes:
                 found.append(np.array([ends.lower]))
             elif name in given:
                 side = part.slow_side() if name == "offset" else None
-                values = given[name].within(ends)
+                values = given[name].values_in(ends)
                 found.append(values if side is None else values[side * values > 0.0])
             else:
                 found.append(None)

@@ -30,7 +30,7 @@ class Relaxation:
 
     quantity: str
     relation: str
-    asked: float
+    requested: float
     reachable: float
     unit: str
     title: str
@@ -38,21 +38,21 @@ class Relaxation:
     standing: bool = False
 
     @property
-    def told(self) -> str:
+    def rounded_value(self) -> str:
         """The reachable value, in digits that can be asked for."""
         if self.alone:
             return exact(self.reachable)
-        return safe(self.reachable, "down" if self.reachable < self.asked else "up")
+        return safe(self.reachable, "down" if self.reachable < self.requested else "up")
 
     @property
     def number(self) -> float:
         """The reachable value as a number, as it is told."""
-        return float(self.told)
+        return float(self.rounded_value)
 
     @property
     def with_unit(self) -> str:
         """The reachable value as it is told, with its unit."""
-        return f"{self.told} {self.unit}".rstrip()
+        return f"{self.rounded_value} {self.unit}".rstrip()
 
     def sentence(self, *, kept: str = "all else") -> str:
         """Return the relaxation in words. kept: what the other requirements are called."""
@@ -66,7 +66,7 @@ class Relaxation:
         return f"{self.title} {self.relation} {self.with_unit} instead of {self._number_asked()}"
 
     def _number_asked(self) -> str:
-        return f"{self.asked:.10g} {self.unit}".rstrip()
+        return f"{self.requested:.10g} {self.unit}".rstrip()
 
 
 def missed(problem: Problem, constraint: Constraint, word: Word, bound: float, value: float) -> Relaxation | None:
@@ -91,7 +91,7 @@ def relaxations(
     """
     for word, bound in constraint.sides:
         sense = _SENSES[word]
-        free = _without(problem, constraint, word)
+        free = _drop_side(problem, constraint, word)
         # What grows without bound somewhere is brought near to what is asked instead: beyond that it does not matter.
         unbounded = problem.quantity(constraint.quantity).in_line == math.inf
         sought: Sense = "target" if unbounded else sense
@@ -110,7 +110,7 @@ def relaxations(
         yield item
 
 
-def _without(problem: Problem, constraint: Constraint, word: Word) -> Problem:
+def _drop_side(problem: Problem, constraint: Constraint, word: Word) -> Problem:
     """Return the problem with one side of a constraint let go.
 
     Of a floor a little is kept: the one that a job without it has would hide what can be had below that.

@@ -21,7 +21,7 @@ from ...model.input_warning import both_readings
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import LENGTH, SMALL_LENGTH
 from ...objectives.quantity import Quantity
-from ...objectives.units import shown, to_si
+from ...objectives.units import quote, to_si
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
 from ..problem.violation import FEASIBLE, constraints_of
@@ -128,7 +128,7 @@ def _allowed(part: Problem, given: Mapping[str, float | str]) -> dict[str, float
         if name not in names:
             raise InputError(
                 f"only requirements of this job may be missed: {', '.join(constraints) or 'it has none'}; got "
-                f"{shown(name)}; name one of them"
+                f"{quote(name)}; name one of them"
             )
         if names[name] in found:
             raise InputError(f"a requirement may have only one allowed miss; got two for {names[name]}; leave out one")
@@ -154,7 +154,7 @@ def _miss(value: float | str, of: Quantity, constraint: Constraint) -> float:
     if percent is not None and of.kind.unit:
         bound = max(abs(bound) for _, bound in constraint.sides) * of.unit.factor
         amount = f"{0.01 * float(percent[1]) * bound:.4g} {of.unit.symbol}"
-        raise InputError(f"must be {of.kind.name}, not a percentage; got {shown(value)}; write {shown(amount)}")
+        raise InputError(f"must be {of.kind.name}, not a percentage; got {quote(value)}; write {quote(amount)}")
     kind = SMALL_LENGTH if of.kind is LENGTH else of.kind
     return to_si(value, kind, sign="positive", plain=not isinstance(value, str))
 

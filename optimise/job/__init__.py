@@ -19,15 +19,15 @@ from pydantic import ValidationError
 
 from ...model.errors import InfeasibleError, InputError, InputWarning, JobError
 from ...model.file_names import path_from_text, path_text
-from ...objectives.units import shown
+from ...objectives.units import quote
 from ..problem.problem import Problem
-from .beside import Files
 from .catalogue import catalogues, with_catalogues, with_options
+from .custom_quantities import declared, modules_beside
 from .file import LARGEST, read, require_plain
 from .load_file import load_files, with_loads
 from .messages import LONGEST, MOST, explain
 from .model import Job, job_with
-from .own import declared, modules_beside
+from .named_files import Files
 from .plain_numbers import PlainNumbers, plain_bounds, plain_values, read_noting
 from .schema import schema_of
 from .speed_profile import speeds_file, with_speeds
@@ -117,7 +117,7 @@ def _named(path: str | PathLike[str]) -> Iterator[None]:
         with contextlib.suppress(OSError, ValueError):
             if file.suffix.casefold() == ".toml" and file.is_file() and file.stat().st_size <= LARGEST:
                 message = with_lines(message, file.read_text(encoding="utf-8-sig"))
-        error.args = (f"{name if name.isprintable() else shown(name)}: {message}",)
+        error.args = (f"{name if name.isprintable() else quote(name)}: {message}",)
         raise error from None
 
 

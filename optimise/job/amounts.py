@@ -15,7 +15,7 @@ from ...objectives.formula.expression import ARGUMENTS
 from ...objectives.kinds import RATIO, Kind
 from ...objectives.own.quantity import require_name
 from ...objectives.registry import FACTS
-from ...objectives.units import shown, to_si
+from ...objectives.units import quote, to_si
 from .quantities import SLOW_STROKE
 from .values import Physical
 
@@ -29,7 +29,7 @@ class _Read(Physical):
     def read(self, value: object) -> Any:
         found = None if isinstance(value, bool) or not isinstance(value, str | int | float) else amount_of(value)
         if found is None or not abs(found[0]) <= _MOST:
-            raise InputError(f'must be a number with its unit, such as "310 EUR", or a number; got {shown(value)}')
+            raise InputError(f'must be a number with its unit, such as "310 EUR", or a number; got {quote(value)}')
         return value
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
@@ -82,10 +82,10 @@ def amounts_of(choices: Mapping[str, list[Mapping[str, Any]]], taken: Collection
         for name, kind in kinds_of_amounts(options).items():
             if name in owners:
                 raise JobError(
-                    f"choice {shown(choice)}: an amount must have a unique name; got {name}, which {owners[name]} has "
+                    f"choice {quote(choice)}: an amount must have a unique name; got {name}, which {owners[name]} has "
                     "too; rename one; a formula can add the two"
                 )
-            owners[name] = f"the choice {shown(choice)}"
+            owners[name] = f"the choice {quote(choice)}"
             found[name] = Amount(
                 name=name,
                 kind=kind,

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 from ...model.arrays import Array
 from ...model.errors import InfeasibleError
 from ...model.linkage.dimensions import DIMENSIONS
+from ...objectives.bounds import CLEAR, LengthRanges
 from ...objectives.formula.quantity import FormulaQuantity, equation_of
 from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
 from ...objectives.quantity import Quantity
-from ...objectives.reach import CLEAR, Ranges
 from ...objectives.registry import QUANTITIES
 from ...objectives.time_ratio import CRANK_ANGLE_RATIO, TIME_RATIO, ratio_of
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
@@ -44,15 +44,15 @@ class Box:
     share: Range = _ANY
 
     @classmethod
-    def of(cls, problem: Problem) -> Box:
+    def from_problem(cls, problem: Problem) -> Box:
         """Return the ranges of a problem, narrowed by nothing yet."""
         return cls(crank=problem.crank, rod=problem.rod, offset=_sizes(problem.offset))
 
     def possible(self, of: Quantity) -> tuple[float, float]:
         """Return bounds of a quantity that has a reach, SI; needs `turns`."""
-        assert of.reach is not None
+        assert of.bounds is not None
         ends = ((ends.lower, ends.upper) for ends in (self.crank, self.rod, self.offset))
-        return of.reach.bounds(Ranges(*(end for pair in ends for end in pair)))
+        return of.bounds.compute(LengthRanges(*(end for pair in ends for end in pair)))
 
     @property
     def turns(self) -> bool:
@@ -63,7 +63,7 @@ class Box:
 
 def require_reachable(problem: Problem) -> None:
     """Raise InfeasibleError if full rotation or a constraint on geometry is out of reach within the ranges."""
-    box = Box.of(problem)
+    box = Box.from_problem(problem)
     if not box.turns:
         raise InfeasibleError(
             "variables: the rod must exceed crank + |offset| for full rotation; "
@@ -111,22 +111,22 @@ def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> B
 
 def _require_within(of: Quantity, constraint: Constraint, box: Box, problem: Problem) -> None:
     """Raise InfeasibleError unless the constraint overlaps what is possible."""
-    key, reach = key_of(["constraints", of.name]), problem.reach_of(of)
-    if reach is None:
+    key, bounds = key_of(["constraints", of.name]), problem.reach_of(of)
+    if bounds is None:
         return
     least, greatest = box.possible(of)
     room = SLACK * max((abs(end) for end in (least, greatest) if math.isfinite(end)), default=0.0)
     if constraint.lower is not None and constraint.lower > greatest + room:
-        allowed, instead = reach.more, "ask for less"
+        allowed, instead = bounds.to_raise, "ask for less"
     elif constraint.upper is not None and constraint.upper + room < least:
-        allowed, instead = reach.less, "ask for more"
+        allowed, instead = bounds.to_lower, "ask for more"
     else:
         return
     told, active = _possible(problem, constraint)
     remedy = ", ".join([f"allow {allowed}", *([f"relax {' and '.join(active)}"] if active else []), f"or {instead}"])
     same = equation_of(of, 0.0) if isinstance(of, FormulaQuantity) else None
     if same is not None and not same.names:
-        told, remedy = f"it is {_shown(of, float(same.constant))} for every design", "leave it out"
+        told, remedy = f"it is {_format_value(of, float(same.constant))} for every design", "leave it out"
     raise InfeasibleError(f"{key}: {told}; got {_bounds(constraint, of)}; {remedy}")
 
 
@@ -152,13 +152,15 @@ def _possible(problem: Problem, constraint: Constraint) -> tuple[str, list[str]]
     rules = [_in_words(problem, rule) for rule in active]
     rules += [_OTHERS] if len(kept) > 1 + len({rule.quantity for rule in active}) else []
     held = f" and with {' and '.join(rules)}," if rules else ""
-    side = "at most" if found.reachable < found.asked else "at least"
+    side = "at most" if found.reachable < found.requested else "at least"
     return f"{ranges}{held} {side} {found.with_unit} is possible", [rule.quantity for rule in active]
 
 
 def _in_words(problem: Problem, rule: Constraint) -> str:
     of = problem.quantity(rule.quantity)
-    return f"{rule.quantity} {' and '.join(f'{RELATIONS[word]} {_shown(of, bound)}' for word, bound in rule.sides)}"
+    return (
+        f"{rule.quantity} {' and '.join(f'{RELATIONS[word]} {_format_value(of, bound)}' for word, bound in rule.sides)}"
+    )
 
 
 def _rules_on_dimensions(problem: Problem) -> tuple[Constraint, ...]:
@@ -215,7 +217,7 @@ def beyond_both(problem: Problem, of: Quantity, share: Range = _ANY) -> str | No
         1.0 + SLACK
     ):
         return None
-    held = f"with a least transmission angle of {_shown(TRANSMISSION_ANGLE, angle.lower)}"
+    held = f"with a least transmission angle of {_format_value(TRANSMISSION_ANGLE, angle.lower)}"
     for kept in (_rules_on_dimensions(problem), (ratio, angle)):
         ratios, angles = (_nearest(problem, item, kept)[0] for item in (ratio, angle))
         held_too = f" and {_OTHERS}" if len(kept) > 2 else ""
@@ -252,14 +254,14 @@ def _sizes(offset: Range) -> Range:
     return Range(lower=0.0 if across else ends[0], upper=ends[1])
 
 
-def _shown(of: Quantity, value: float) -> str:
+def _format_value(of: Quantity, value: float) -> str:
     unit = of.unit
     return f"{float(f'{value * unit.factor:.5g}'):.12g} {unit.symbol}".rstrip()  # 100000, not 1e+05
 
 
 def _bounds(constraint: Constraint, of: Quantity | None = None) -> str:
     of = of or QUANTITIES[constraint.quantity]
-    return " and ".join(f"{word} {_shown(of, bound)}" for word, bound in constraint.sides)
+    return " and ".join(f"{word} {_format_value(of, bound)}" for word, bound in constraint.sides)
 
 
 def _extremes(box: Box) -> str:

@@ -15,11 +15,11 @@ from typing import Any
 
 from ...model.errors import InputError, JobError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.units import shown
-from .beside import Files, text_beside
+from ...objectives.units import quote
 from .catalogue_columns import Column, columns_of
 from .catalogue_screening import screened
 from .messages import key_of
+from .named_files import Files, read_named_text
 from .paths import unknown_path, with_number
 from .table_file import TableFile, read_table
 from .table_layout import of_numbers
@@ -72,7 +72,7 @@ def with_catalogues(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
     job = dict(data)
     if catalogues(data):
         job["choice"] = [
-            {**part, "table": text_beside(files, key_of(["choice", place, "file"]), part["file"])}
+            {**part, "table": read_named_text(files, key_of(["choice", place, "file"]), part["file"])}
             if _names_file(part)
             else part
             for place, part in enumerate(job["choice"])
@@ -97,7 +97,7 @@ def with_options(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Catalogu
         if "option" in part:
             raise JobError(f"{key}: must stand without options; got both; leave out one of the two")
         file = part.get("file")
-        where = f"{key_of(['choice', place, 'file'])}: {shown(file)}" if isinstance(file, str) else f"{key}: the table"
+        where = f"{key_of(['choice', place, 'file'])}: {quote(file)}" if isinstance(file, str) else f"{key}: the table"
         catalogue = read_catalogue(part["table"], where, names, data, str(part.get("name", "")))
         parts[place] = {**part, "option": catalogue.options}
         found.append(catalogue)
@@ -132,8 +132,8 @@ def _catalogue(table: TableFile, own: frozenset[str], tables: Mapping[str, Any] 
         _require_given(columns, where, tables)
     _require_names(table)
     used = [column for column in map(partial(_with_cells, table), columns) if column is not None]
-    places = [column.place for column in used if column.kind is not None or not column.kept]
-    blank = [column.place for column in used if column.word is not None or column.kept]
+    places = [column.place for column in used if column.kind is not None or not column.is_amount]
+    blank = [column.place for column in used if column.word is not None or column.is_amount]
     digits = dict(zip(places, table.digits(places, missing=blank), strict=True))
     given = (digits.get(place) or table.texts(place) for place in range(len(table.heads)))
     cells = [list(row) for row in zip(*given, strict=True)]
@@ -151,8 +151,8 @@ def _catalogue(table: TableFile, own: frozenset[str], tables: Mapping[str, Any] 
         lost={cells[row][0]: cells[by][0] for row, by in found.lost.items()},
         excluded={cells[row][0]: why for row, why in found.excluded.items()},
         compared=found.compared,
-        idle=tuple(column.header for column in used if column.kept and column.name not in found.asked),
-        added={column.header: column.said for column in used if column.added},
+        idle=tuple(column.header for column in used if column.is_amount and column.name not in found.requested),
+        added={column.header: column.header_text for column in used if column.added},
     )
 
 
@@ -166,11 +166,11 @@ def _require_names(table: TableFile) -> None:
         if not label or label.startswith(_FORMULA) or len(label) > _LONGEST or not label.isprintable():
             raise JobError(
                 f"{row}, column name: must be a name of 1 to {_LONGEST} characters on one line, none of = + @ first; "
-                f"got {shown(label)}; write it out"
+                f"got {quote(label)}; write it out"
             )
         if label in labels:
             raise JobError(
-                f"{row}, column name: names must differ; got {shown(label)} of row {labels[label]} again; rename one"
+                f"{row}, column name: names must differ; got {quote(label)} of row {labels[label]} again; rename one"
             )
         labels[label] = number
 
@@ -179,16 +179,16 @@ def _with_cells(table: TableFile, column: Column) -> Column | None:
     """Return a column, one that is kept as numbers or texts; None if it is empty. Texts are checked."""
     cells = table.texts(column.place)
     filled = [cell for cell in cells if cell]
-    if not column.kept or column.unit or not filled:
-        return None if column.kept and not column.unit else column
+    if not column.is_amount or column.unit or not filled:
+        return None if column.is_amount and not column.unit else column
     if of_numbers(filled) and not any(map(_ARTICLE.fullmatch, filled)):
         return column
     for number, cell in zip(table.rows, cells, strict=True):
         if cell.startswith("=") or len(cell) > _LONGEST_NOTE or not (cell.isprintable() or not cell):
             raise JobError(
-                f"{table.at(number, column.place)}: must be a number, or a text of at most {_LONGEST_NOTE} characters "
-                f"on one line, no formula; got {shown(cell)}; correct it, or let the column name begin with # to skip "
-                "it"
+                f"{table.cell_name(number, column.place)}: must be a number, or a text of at most {_LONGEST_NOTE} "
+                f"characters on one line, no formula; got {quote(cell)}; correct it, or let the column name begin with "
+                "# to skip it"
             )
     return replace(column, kind=None)
 
@@ -197,17 +197,21 @@ def _require_given(columns: Sequence[Column], name: str, tables: Mapping[str, An
     """Refuse a column that sets a number which the job does not give, or seems to be meant to set one."""
     machine = tables.get("mechanism")
     for column in columns:
-        if column.kept and isinstance(machine, Mapping) and isinstance(machine.get(column.name), str | int | float):
+        if (
+            column.is_amount
+            and isinstance(machine, Mapping)
+            and isinstance(machine.get(column.name), str | int | float)
+        ):
             behind = f" ({column.unit})" if column.unit else ""
             raise JobError(
-                f"{name}, column {shown(column.header)}: it would be stored with designs but have no effect; did you "
+                f"{name}, column {quote(column.header)}: it would be stored with designs but have no effect; did you "
                 f"mean mechanism.{column.name}{behind}? rename it, or let it begin with # to skip it"
             )
-        if column.word is None and not column.kept and column.name not in DIMENSIONS:
+        if column.word is None and not column.is_amount and column.name not in DIMENSIONS:
             try:
                 with_number(tables, column.name, 0.0)
             except LookupError:
-                raise JobError(f"{name}, column {shown(column.header)}: {unknown_path(column.name, tables)}") from None
+                raise JobError(f"{name}, column {quote(column.header)}: {unknown_path(column.name, tables)}") from None
 
 
 def _option(columns: Sequence[Column], row: Sequence[str], *, searched: bool) -> dict[str, Any]:
@@ -218,7 +222,7 @@ def _option(columns: Sequence[Column], row: Sequence[str], *, searched: bool) ->
             continue
         if column.word is not None:
             found.setdefault("constraints", {}).setdefault(column.name, {})[column.word] = column.value(cell)
-        elif not column.kept:
+        elif not column.is_amount:
             found.setdefault("values", {})[column.name] = column.value(cell)
         elif column.kind is not None:
             found.setdefault("amounts", {})[column.name] = column.value(cell)

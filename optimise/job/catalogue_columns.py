@@ -19,7 +19,7 @@ from ...objectives.formula.parser import parse
 from ...objectives.kinds import LENGTH, Kind
 from ...objectives.own.quantity import LONGEST_NAME, own_quantities
 from ...objectives.registry import FACTS, QUANTITIES
-from ...objectives.units import closest, shown, to_si
+from ...objectives.units import closest, quote, to_si
 
 _UNIT = r"(?:\((?P<unit>[^()]*)\)|\[(?P<other>[^\[\]]*)\])?"
 _COLUMN = re.compile(rf"(?P<name>[^#]+?)(?:\s+(?P<word>min|max|equals))?\s*{_UNIT}")
@@ -41,9 +41,9 @@ _NEAR = 0.85
 class Column:
     """A column. header: as it is written. name: of a quantity, a path, or of a column that is kept with designs.
 
-    word: of a limit; None for others. kept: whether it is neither a limit nor a number of the job. unit: as written.
-    kind: of a limit or a number that is kept; None where the job knows it, and of a text. added: whether the word is
-    not in the header.
+    word: of a limit; None for others. is_amount: whether it is neither a limit nor a number of the job. unit: as
+    written. kind: of a limit or an amount; None where the job knows it, and for a text. added: whether the word is not
+    in the header.
     """
 
     place: int
@@ -52,7 +52,7 @@ class Column:
     word: str | None
     unit: str
     kind: Kind | None = None
-    kept: bool = False
+    is_amount: bool = False
     added: bool = False
 
     def value(self, cell: str) -> str | float:
@@ -66,7 +66,7 @@ class Column:
         return self.word == "min" or (self.word == "max" and (of is None or of.floor is None))
 
     @property
-    def said(self) -> str:
+    def header_text(self) -> str:
         """What it is read as, as a header."""
         return f"{self.name} {self.word or ''} ({self.unit})".replace(" ()", "").replace("  ", " ")
 
@@ -80,18 +80,18 @@ def columns_of(header: Sequence[str], name: str, own: frozenset[str]) -> list[Co
     """
     if header[0] != "name":
         remedy = "rename it" if header[0].casefold() == "name" else "rename or move it"
-        raise JobError(f'{name}: the first column must be headed "name"; got {shown(header[0])}; {remedy}')
+        raise JobError(f'{name}: the first column must be headed "name"; got {quote(header[0])}; {remedy}')
     found: list[Column] = []
     for place, text in enumerate(header[1:], 1):
         if text.startswith("#"):
             continue
-        where = f"{name}, column {shown(text)}"
+        where = f"{name}, column {quote(text)}"
         column = _column(place, text, where, own)
         same = next((of for of in found if (of.name, of.word) == (column.name, column.word)), None)
         if same is not None:
             raise JobError(
-                f"{where}: columns must differ; got it and {shown(same.header)}, which are both read as "
-                f"{column.said.partition(' (')[0].strip()}; leave out or rename one"
+                f"{where}: columns must differ; got it and {quote(same.header)}, which are both read as "
+                f"{column.header_text.partition(' (')[0].strip()}; leave out or rename one"
             )
         found.append(column)
     if not found:
@@ -112,7 +112,7 @@ def _column(place: int, text: str, where: str, own: frozenset[str]) -> Column:
             if not re.fullmatch(r"[\w -]+", name) or closest(key, (*_quantities(), *own)) is not None:
                 raise JobError(f"{where}: {error}") from None
             raise JobError(
-                f"{where}: a limit must be on a quantity; got {shown(name)}, which is not one; name the column "
+                f"{where}: a limit must be on a quantity; got {quote(name)}, which is not one; name the column "
                 f'"{name}{f" ({unit})" if unit else ""}" and bound {key} in [constraints]'
             ) from None
         if kind is not None:
@@ -125,7 +125,7 @@ def _column(place: int, text: str, where: str, own: frozenset[str]) -> Column:
         _require_unit(unit, of.kind, where, text)
         return Column(place, text, of.name, "max" if of.better == "low" else "min", unit, of.kind, added=True)
     _require_kept(text, name, unit, where, own)
-    return Column(place, text, identifier(name), None, unit, kind_of_amount(unit), kept=True)
+    return Column(place, text, identifier(name), None, unit, kind_of_amount(unit), is_amount=True)
 
 
 def identifier(text: str) -> str:
@@ -208,7 +208,7 @@ def _require_unit(unit: str, kind: Kind, where: str, head: str) -> None:
     """Refuse a limit's unit that is none of its quantity. head: of the column, with the unit."""
     if kind.unit and not unit:
         raise JobError(
-            f"{where}: the heading has no unit; write, for example, {shown(f'{head} ({_unit(kind.example)})')}"
+            f"{where}: the heading has no unit; write, for example, {quote(f'{head} ({_unit(kind.example)})')}"
         )
     try:
         to_si(f"1 {unit}" if kind.unit else 1.0, kind)
@@ -216,7 +216,7 @@ def _require_unit(unit: str, kind: Kind, where: str, head: str) -> None:
             raise InputError("")
     except InputError:
         raise JobError(
-            f"{where}: must have a unit of {kind.name}; got {shown(unit)}; "
+            f"{where}: must have a unit of {kind.name}; got {quote(unit)}; "
             + (f"write it like ({_unit(kind.example)})" if kind.unit else "leave it out")
         ) from None
 

@@ -37,10 +37,10 @@ class _Asked:
     bound: float | None = None
 
 
-def _asked(tables: Mapping[str, Any], columns: Sequence[Column]) -> dict[str, _Asked]:
+def _requests(tables: Mapping[str, Any], columns: Sequence[Column]) -> dict[str, _Asked]:
     """Return what a job asks of the amounts of a catalogue that it names."""
     objectives, constraints, own = (_table_of(tables, name) for name in ("objectives", "constraints", "quantity"))
-    plain = {column.name for column in columns if column.kept}
+    plain = {column.name for column in columns if column.is_amount}
     words: set[str] = set()  # in formulas, through which they may count either way
     for key, value in (*objectives.items(), *constraints.items()):
         words |= set() if key in plain else set(words_of(key))
@@ -49,7 +49,7 @@ def _asked(tables: Mapping[str, Any], columns: Sequence[Column]) -> dict[str, _A
         words |= set(words_of(part.get("formula"))) if isinstance(part, Mapping) else set()
     found = {}
     for column in columns:
-        if not column.kept or column.kind is None:
+        if not column.is_amount or column.kind is None:
             continue
         wish, bounds = objectives.get(column.name), constraints.get(column.name)
         ways = {0} if column.name in words else set()
@@ -83,7 +83,7 @@ class Screened:
 
     searched: those that are searched. lost: places of others, each with one that beats it. excluded: places of those
     that lack an amount that is asked for, or have one that the job's own constraints exclude, each with the reason in
-    words; if these exclude every row, none. compared: what rows are compared in. asked: the amounts among it.
+    words; if these exclude every row, none. compared: what rows are compared in. requested: the amounts among it.
     """
 
     order: list[int]
@@ -91,7 +91,7 @@ class Screened:
     lost: dict[int, int]
     excluded: dict[int, str]
     compared: tuple[str, ...]
-    asked: frozenset[str]
+    requested: frozenset[str]
 
 
 def screened(columns: Sequence[Column], rows: Sequence[list[str]], tables: Mapping[str, Any], where: str) -> Screened:
@@ -100,27 +100,27 @@ def screened(columns: Sequence[Column], rows: Sequence[list[str]], tables: Mappi
     columns: with cells that are checked. rows: cells. tables: of the job, which say what is asked for. where: what
     messages begin with. Raises JobError if no row has all that is asked for.
     """
-    asked, constraints = _asked(tables, columns), _table_of(tables, "constraints")
+    asked, constraints = _requests(tables, columns), _table_of(tables, "constraints")
     fixed, costs = list[Array](), list[Array]()
     compared = list[str]()
     blanks, beyond = dict[int, str](), dict[int, str]()
     for column in columns:
         blank = np.array([not row[column.place] for row in rows])
-        wanted = asked.get(column.name) if column.kept else None
-        if column.kept and wanted is None:
+        wanted = asked.get(column.name) if column.is_amount else None
+        if column.is_amount and wanted is None:
             continue
         factor = 1.0 if column.kind is None or not column.unit else to_si(f"1 {column.unit}", column.kind)
         values = factor * np.array([float(row[column.place] or 0.0) for row in rows])
-        compared += [] if column.word is None and wanted is None else [column.said.partition(" (")[0]]
+        compared += [] if column.word is None and wanted is None else [column.header_text.partition(" (")[0]]
         if wanted is not None:
             without = f"no {column.name.replace('_', ' ')}, which the job requires"
             blanks |= dict.fromkeys(np.flatnonzero(blank).tolist(), without)
-            beyond |= _beyond(constraints.get(column.name), column, values, rows)
+            beyond |= _exclusions(constraints.get(column.name), column, values, rows)
             floor = -math.inf if wanted.bound is None else wanted.way * wanted.bound
             (costs if wanted.way else fixed).append(np.maximum(wanted.way * values, floor) if wanted.way else values)
         elif column.word is not None and column.monotone:
             side = -1.0 if column.word == "max" else 1.0
-            floor = _held(constraints.get(column.name), column, side)
+            floor = _limit_cost(constraints.get(column.name), column, side)
             costs.append(np.maximum(np.where(blank, -math.inf, side * values), floor))
         else:
             fixed += [np.where(blank, 0.0, values), blank.astype(np.float64)]
@@ -149,11 +149,11 @@ def screened(columns: Sequence[Column], rows: Sequence[list[str]], tables: Mappi
         lost=lost,
         excluded=dict(sorted(excluded.items())),
         compared=tuple(compared),
-        asked=frozenset(asked),
+        requested=frozenset(asked),
     )
 
 
-def _beyond(bounds: object, column: Column, values: Array, rows: Sequence[list[str]]) -> dict[int, str]:
+def _exclusions(bounds: object, column: Column, values: Array, rows: Sequence[list[str]]) -> dict[int, str]:
     """Return which rows have an amount beyond the job's own constraints on it, each with the reason in words.
 
     values: of the amount, SI.
@@ -172,7 +172,7 @@ def _beyond(bounds: object, column: Column, values: Array, rows: Sequence[list[s
     return found
 
 
-def _held(bounds: object, column: Column, side: float) -> float:
+def _limit_cost(bounds: object, column: Column, side: float) -> float:
     """Return the cost of the job's own limit on the quantity of a column, below which rows are equal.
 
     side: 1 of a least value, -1 of a greatest one.
@@ -187,7 +187,7 @@ def _order(columns: Sequence[Column], rows: Sequence[list[str]]) -> Whole:
 
     A blank price, mass or limit comes last, and of equal rows the first one first.
     """
-    amounts = {column.name: (1.0, column) for column in columns if column.kept and column.kind is not None}
+    amounts = {column.name: (1.0, column) for column in columns if column.is_amount and column.kind is not None}
     limits = [(-1.0 if column.word == "min" else 1.0, column) for column in columns if column.word is not None]
     keys = [amounts[name] for name in ORDER if name in amounts] + limits
     table = [

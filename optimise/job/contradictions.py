@@ -18,7 +18,7 @@ from ...model.machine.loads.compressor import Compressor
 from ...objectives.proportions import STROKE
 from ...objectives.swing_quantity import SwingQuantity
 from ...objectives.time_ratio import TIME_RATIO
-from ...objectives.units import shown
+from ...objectives.units import quote
 from ..feasibility.swinging import require_swinging
 from ..problem.impossible import require_longer_slow_stroke
 from ..problem.problem import Problem
@@ -38,7 +38,7 @@ def require_consistent(problem: Problem) -> None:
 
     `InfeasibleError` if its parts are valid but no design meets them all, else `JobError`.
     """
-    for key, quantity, word, value in _asked(problem):
+    for key, quantity, word, value in _bounds_and_targets(problem):
         _require_possible(problem, key, quantity, word, value)
     for objective in problem.objectives:
         _require_free(problem, objective.quantity)
@@ -125,7 +125,7 @@ def _require_reachable_restated(problem: Problem) -> None:
         raise InfeasibleError(f"{error}; this is what {words}") from None
 
 
-def _asked(problem: Problem) -> Iterator[tuple[str, str, str, float]]:
+def _bounds_and_targets(problem: Problem) -> Iterator[tuple[str, str, str, float]]:
     """Yield key, quantity, word and value of every bound and target."""
     for constraint in problem.constraints:
         for word, value in constraint.sides:
@@ -134,7 +134,7 @@ def _asked(problem: Problem) -> Iterator[tuple[str, str, str, float]]:
         for constraint in variant.limits:
             for word, value in constraint.sides:
                 yield (
-                    f"choice {' and '.join(map(shown, variant.labels))}: {key_of([constraint.quantity])}",
+                    f"choice {' and '.join(map(quote, variant.labels))}: {key_of([constraint.quantity])}",
                     constraint.quantity,
                     word,
                     value,
@@ -211,7 +211,7 @@ def require_slow_stroke(problem: Problem) -> None:
         where = "above" if narrowed.offset.lower >= 0.0 else "below"
         kept = f"or leave out constraints.slow_stroke, which keeps the offset {where} 0"
         raise InfeasibleError(f"{error}, {kept}") from None
-    greatest = Box.of(narrowed).possible(TIME_RATIO)[1]
+    greatest = Box.from_problem(narrowed).possible(TIME_RATIO)[1]
     floor = TIME_RATIO.floor or 1.0
     if greatest < floor and (ratio is None or ((ratio.lower or 0.0) <= 1.0 and ratio.upper is None)):
         least = 1.0 + 0.5 * (greatest - 1.0)

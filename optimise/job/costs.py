@@ -67,7 +67,7 @@ class CostsPart(Built[Costs]):
     crank_angle: AngleCostPart | None = optional("of the crank angle", {"cost": 10.0, "at": "0.1 deg", "max": "1 deg"})
 
     @model_validator(mode="after")
-    def _some(self) -> CostsPart:
+    def _require_any_cost(self) -> CostsPart:
         if not self.model_fields_set:
             raise InputError(
                 "must name at least one of crank, rod, offset and crank_angle; got an empty table; "

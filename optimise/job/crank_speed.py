@@ -10,7 +10,7 @@ from pydantic import model_validator
 from ...model.errors import InputError
 from ...model.machine.speed_profile import SpeedTable
 from ...objectives.kinds import ANGULAR_SPEED, STROKE_RATE, TIME
-from ...objectives.units import shown
+from ...objectives.units import quote
 from .speed_profile import SpeedProfilePart
 from .values import AngularAcceleration, Part, Within, optional
 
@@ -49,7 +49,7 @@ class _CrankSpeed(Within):
                 'a small speed, for example "0.1 rpm"'
             )
         if abs(found) < 2.0 * math.pi / _SLOWEST * (1.0 - _ROUNDING):
-            raise InputError(f"must be {self.rule}; got {shown(value)}; {self.hint}")
+            raise InputError(f"must be {self.rule}; got {quote(value)}; {self.hint}")
         return found
 
 

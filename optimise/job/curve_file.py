@@ -19,7 +19,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.errors import InputError
 from ...objectives.kinds import ANGLE, TIME, Kind
-from ...objectives.units import per_si, shown, squeezed, symbol_in, without_in
+from ...objectives.units import per_si, quote, squeezed, symbol_in, without_in
 from .table_file import TableFile
 
 _BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]")
@@ -42,34 +42,34 @@ class Head(NamedTuple):
 
 @dataclass(frozen=True)
 class Curve:
-    """Values over places, both in the units of their heads. said: what was read and made of it, in words."""
+    """Values over places, both in the units of their heads. notes: what was read and made of it, in words."""
 
     name: str
-    over: Head
-    of: Head
-    at: Array
+    argument_head: Head
+    value_head: Head
+    arguments: Array
     values: Array
-    said: tuple[str, ...]
+    notes: tuple[str, ...]
 
     @property
     def turn(self) -> float:
         """A turn of the crank in the unit of its angle."""
-        return _TURNS.get(self.over.unit, 2.0 * math.pi * per_si(self.over.unit))
+        return _TURNS.get(self.argument_head.unit, 2.0 * math.pi * per_si(self.argument_head.unit))
 
     @property
     def span(self) -> float:
         """Turns from the first point to the last one."""
-        return float(self.at[-1] - self.at[0]) / self.turn
+        return float(self.arguments[-1] - self.arguments[0]) / self.turn
 
     def texts(self) -> tuple[list[str], list[str]]:
         """Return places and values as a job has them."""
-        found = ((self.over.unit, self.at), (self.of.unit, self.values))
+        found = ((self.argument_head.unit, self.arguments), (self.value_head.unit, self.values))
         places, values = ([f"{number!r} {unit}" for number in numbers.tolist()] for unit, numbers in found)
         return places, values
 
     def source(self, file: str) -> str:
         """Return what was understood of a file, in words."""
-        return f"{file}: {'; '.join(self.said)}"
+        return f"{file}: {'; '.join(self.notes)}"
 
 
 def curve_in(table: TableFile, over: Sequence[Kind], of: Sequence[Kind]) -> Curve:
@@ -80,12 +80,12 @@ def curve_in(table: TableFile, over: Sequence[Kind], of: Sequence[Kind]) -> Curv
         units = zip(table.heads, (over, of), strict=True)
         example = ",".join(f"{text} ({_likely(text, kinds).metric.symbol})" for text, kinds in units)
         raise InputError(
-            f"{table.name}: the columns have no units; got {', '.join(map(shown, table.heads))}; write, for example, "
-            f"{shown(example)}"
+            f"{table.name}: the columns have no units; got {', '.join(map(quote, table.heads))}; write, for example, "
+            f"{quote(example)}"
         )
     angles = [head for head in heads if head.kind is ANGLE and ANGLE in over]
-    x = _one(table, [head for head in heads if head.kind in over and not (angles and head.kind is TIME)], over)
-    y = _one(table, [head for head in heads if head.kind in of and head is not x], of)
+    x = _only_head(table, [head for head in heads if head.kind in over and not (angles and head.kind is TIME)], over)
+    y = _only_head(table, [head for head in heads if head.kind in of and head is not x], of)
     for head in (x, y):
         _require_kind(table, head, kinds)
     at, values = table.numbers([x.place, y.place])
@@ -128,7 +128,7 @@ def _require_kind(table: TableFile, head: Head, kinds: Sequence[Kind]) -> None:
     named = [kind for kind in kinds if _names(head.text, kind)]
     if named and head.kind not in named:
         raise InputError(
-            f"{table.name}, column {shown(head.text)}: must have the unit of {named[0].name}, as its name says; got "
+            f"{table.name}, column {quote(head.text)}: must have the unit of {named[0].name}, as its name says; got "
             f"{head.unit}, which is {head.kind.name}; correct the unit or the name"
         )
 
@@ -139,11 +139,11 @@ def _remedy(heads: Sequence[str], kinds: Sequence[Kind]) -> str:
     words |= {"grad": ANGLE.metric.symbol} if ANGLE in kinds else {}
     for unit in (unit for head in heads if not head.startswith("#") for unit in _units(head)):
         if meant := words.get(squeezed(unit).casefold()):
-            return f"the unit {shown(unit)} is not known; write {meant}"
+            return f"the unit {quote(unit)} is not known; write {meant}"
     return "name the unit"
 
 
-def _one(table: TableFile, heads: list[Head], kinds: Sequence[Kind]) -> Head:
+def _only_head(table: TableFile, heads: list[Head], kinds: Sequence[Kind]) -> Head:
     """Return the only one of some columns, or of several of one kind the only one that names it."""
     named = [head for head in heads if _names(head.text, head.kind)]
     found = named if len(named) == 1 and len({head.kind for head in heads}) == 1 else heads
@@ -154,20 +154,20 @@ def _one(table: TableFile, heads: list[Head], kinds: Sequence[Kind]) -> Head:
     if not found:
         raise InputError(
             f"{what}, with its unit in brackets or at the end of its name; got "
-            f"{', '.join(map(shown, table.heads[:6]))}; " + _remedy(table.heads, kinds)
+            f"{', '.join(map(quote, table.heads[:6]))}; " + _remedy(table.heads, kinds)
         )
     raise InputError(
-        f"{what}; got {' and '.join(shown(head.text) for head in found[:3])}; let the names of the others begin with #"
+        f"{what}; got {' and '.join(quote(head.text) for head in found[:3])}; let the names of the others begin with #"
     )
 
 
 def _rising(curve: Curve, table: TableFile) -> Curve:
     """Return a curve whose places go up: turned round where they go down, over full turns where they begin again."""
-    at, values, said = curve.at, curve.values, curve.said
+    at, values, said = curve.arguments, curve.values, curve.notes
     steps = np.diff(at)
     if (steps < 0.0).sum() > (steps > 0.0).sum():
         at, values, said = at[::-1], values[::-1], (*said, "sorted upwards")
-    if curve.over.kind is ANGLE:
+    if curve.argument_head.kind is ANGLE:
         wraps = np.concatenate([[0], np.cumsum(np.diff(at) < -0.5 * curve.turn)])
         if wraps[-1]:
             at, said = at + curve.turn * wraps, (*said, "angles continue beyond one turn")
@@ -175,24 +175,26 @@ def _rising(curve: Curve, table: TableFile) -> Curve:
     if len(wrong):
         n = int(wrong[0])
         raise InputError(
-            f"{table.name}: {shown(curve.over.text)} must increase; got {at[n + 1]:g} after {at[n]:g}; sort the rows, "
-            "and keep only one stroke if the position moves back and forth"
+            f"{table.name}: {quote(curve.argument_head.text)} must increase; got {at[n + 1]:g} after {at[n]:g}; sort "
+            "the rows, and keep only one stroke if the position moves back and forth"
         )
-    return replace(curve, at=at, values=values, said=said)
+    return replace(curve, arguments=at, values=values, notes=said)
 
 
 def over_angle(curve: Curve, speed: float) -> Curve:
     """Return a curve over time as one over the crank angle at a constant speed, rad/s; others as they are."""
-    if curve.over.kind is not TIME:
+    if curve.argument_head.kind is not TIME:
         return curve
-    wrong = np.flatnonzero(np.diff(curve.at) < 0.0)
+    wrong = np.flatnonzero(np.diff(curve.arguments) < 0.0)
     if len(wrong):
-        raise InputError(f"{curve.name}: times must increase; got {curve.at[wrong[0] + 1]:g} later; sort the rows")
-    turns = curve.at / per_si(curve.over.unit) * speed / (2.0 * math.pi)
-    said = (*curve.said, f"times are crank angles at {speed * 30.0 / math.pi:.6g} rpm")
+        raise InputError(
+            f"{curve.name}: times must increase; got {curve.arguments[wrong[0] + 1]:g} later; sort the rows"
+        )
+    turns = curve.arguments / per_si(curve.argument_head.unit) * speed / (2.0 * math.pi)
+    said = (*curve.notes, f"times are crank angles at {speed * 30.0 / math.pi:.6g} rpm")
     order = slice(None, None, -1 if speed < 0.0 else 1)
-    head = curve.over._replace(kind=ANGLE, unit="deg")
-    return replace(curve, over=head, at=360.0 * turns[order], values=curve.values[order], said=said)
+    head = curve.argument_head._replace(kind=ANGLE, unit="deg")
+    return replace(curve, argument_head=head, arguments=360.0 * turns[order], values=curve.values[order], notes=said)
 
 
 def of_cycle(curve: Curve, turns: int | None) -> tuple[Curve, int]:
@@ -200,26 +202,30 @@ def of_cycle(curve: Curve, turns: int | None) -> tuple[Curve, int]:
 
     A record that ends nearly with whole turns ends with them. Raises `InputError` for one between one turn and two.
     """
-    near = min(_CLOSE, 0.5 * float(curve.at[-1] - curve.at[-2]) / curve.turn) if len(curve.at) > 1 else 0.0
+    near = (
+        min(_CLOSE, 0.5 * float(curve.arguments[-1] - curve.arguments[-2]) / curve.turn)
+        if len(curve.arguments) > 1
+        else 0.0
+    )
     whole = round(curve.span)
     if whole >= 1 and 0.0 < abs(curve.span - whole) <= near:
-        at = curve.at[0] + (curve.at - curve.at[0]) * (whole / curve.span)
-        at[-1] = curve.at[0] + whole * curve.turn
-        curve = replace(curve, at=at)
+        at = curve.arguments[0] + (curve.arguments - curve.arguments[0]) * (whole / curve.span)
+        at[-1] = curve.arguments[0] + whole * curve.turn
+        curve = replace(curve, arguments=at)
     if turns is None:
         turns = 1 if curve.span <= 1.0 else 2
-        step = float(np.median(np.diff(curve.at))) / curve.turn
+        step = float(np.median(np.diff(curve.arguments))) / curve.turn
         if turns == 2 and not max(1.5, 2.0 - 2.0 * step) <= curve.span <= 2.0:
             raise InputError(
                 f"{curve.name} must cover one or two turns unless the job gives the cycle; got {curve.span:.4g} turns; "
                 'give cycle = "360 deg" or "720 deg"; the first cycle in the file is used'
             )
         if turns == 2:
-            curve = replace(curve, said=(*curve.said, "two turns, a cycle of 720 deg"))
+            curve = replace(curve, notes=(*curve.notes, "two turns, a cycle of 720 deg"))
     if curve.span > turns:
-        kept = curve.at < curve.at[0] + (turns - near) * curve.turn
-        said = (*curve.said, f"the first cycle of {curve.span / turns:.4g}")
-        curve = replace(curve, at=curve.at[kept], values=curve.values[kept], said=said)
+        kept = curve.arguments < curve.arguments[0] + (turns - near) * curve.turn
+        said = (*curve.notes, f"the first cycle of {curve.span / turns:.4g}")
+        curve = replace(curve, arguments=curve.arguments[kept], values=curve.values[kept], notes=said)
     return curve, turns
 
 
@@ -228,11 +234,11 @@ def opened(curve: Curve) -> Curve:
 
     Raises `InputError` if the two differ by more than a thousandth of the curve's range, or for two at one place.
     """
-    twice = np.flatnonzero(np.diff(curve.at) == 0.0)
+    twice = np.flatnonzero(np.diff(curve.arguments) == 0.0)
     if len(twice):
-        at = f"{curve.at[twice[0]]:g} {curve.over.unit}"
+        at = f"{curve.arguments[twice[0]]:g} {curve.argument_head.unit}"
         raise InputError(
-            f"{curve.name}: {shown(curve.over.text)} must increase; got {at} twice; leave out one of the two"
+            f"{curve.name}: {quote(curve.argument_head.text)} must increase; got {at} twice; leave out one of the two"
         )
     curve, _ = of_cycle(curve, 1)
     if curve.span < 1.0:
@@ -241,10 +247,10 @@ def opened(curve: Curve) -> Curve:
     if abs(last - first) > _CLOSE * np.ptp(curve.values):
         raise InputError(
             f"{curve.name}: the last row is one turn after the first and must have the same value; got {first:g} and "
-            f"{last:g} {curve.of.unit}; correct one of them, or leave out the last row"
+            f"{last:g} {curve.value_head.unit}; correct one of them, or leave out the last row"
         )
-    said = (*curve.said, "the last row repeats the first and is ignored")
-    return replace(curve, at=curve.at[:-1], values=curve.values[:-1], said=said)
+    said = (*curve.notes, "the last row repeats the first and is ignored")
+    return replace(curve, arguments=curve.arguments[:-1], values=curve.values[:-1], notes=said)
 
 
 def thinned(curve: Curve) -> Curve:
@@ -253,23 +259,23 @@ def thinned(curve: Curve) -> Curve:
     No value of the curve changes by more than `SHARE` of its range: Ramer, Computer Graphics and Image Processing 1
     (1972) 244, with the deviation along the values, which is greatest at a point that is left out.
     """
-    if len(curve.at) <= MOST_KEPT:
+    if len(curve.arguments) <= MOST_KEPT:
         return curve
     bound = SHARE * float(np.ptp(curve.values))
-    kept = np.zeros(len(curve.at), dtype=bool)
-    ends = [0, *(np.flatnonzero(np.diff(curve.at) == 0.0) + 1).tolist(), len(curve.at)]
+    kept = np.zeros(len(curve.arguments), dtype=bool)
+    ends = [0, *(np.flatnonzero(np.diff(curve.arguments) == 0.0) + 1).tolist(), len(curve.arguments)]
     left = [(a, b - 1) for a, b in pairwise(ends)]
     while left:
         a, b = left.pop()
         kept[[a, b]] = True
         if b - a < 2:
             continue
-        x, y = curve.at[a : b + 1], curve.values[a : b + 1]
+        x, y = curve.arguments[a : b + 1], curve.values[a : b + 1]
         off = np.abs(y[0] + (y[-1] - y[0]) * ((x - x[0]) / (x[-1] - x[0])) - y)
         far = int(np.argmax(off[1:-1])) + 1
         if off[far] > bound:
             left += [(a, a + far), (a + far, b)]
     count = int(kept.sum())
-    share = f"{bound:.3g} {curve.of.unit}, {100.0 * SHARE:g} % of its range"
+    share = f"{bound:.3g} {curve.value_head.unit}, {100.0 * SHARE:g} % of its range"
     said = f"{count:,} points kept; no value changes by more than {share}"
-    return replace(curve, at=curve.at[kept], values=curve.values[kept], said=(*curve.said, said))
+    return replace(curve, arguments=curve.arguments[kept], values=curve.values[kept], notes=(*curve.notes, said))

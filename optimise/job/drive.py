@@ -85,7 +85,7 @@ AnyMotor = Annotated[
     | Annotated[RatedMotor, Tag("(rated_torque)")]
     | Annotated[TableMotor, Tag("(speeds)")],
     Discriminator(_KINDS.tag),
-    BeforeValidator(_KINDS.one),
+    BeforeValidator(_KINDS.require_one),
 ]
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ...model.errors import JobError
-from ...objectives.units import shown
+from ...objectives.units import quote
 from .messages import DEEPEST, key_of
 from .toml_errors import in_words
 
@@ -34,7 +34,7 @@ def read(path: Path) -> dict[str, Any]:
     """Return the tables of a job file, TOML or JSON by its ending. Raises JobError."""
     if path.suffix.casefold() not in (".toml", ".json"):
         raise JobError(
-            f"the name of a job file must end in .toml or .json; got {shown(path.suffix or path.name)}; rename the file"
+            f"the name of a job file must end in .toml or .json; got {quote(path.suffix or path.name)}; rename the file"
         )
     content = _bytes(path)
     if b"\0" in content:
@@ -88,13 +88,13 @@ def _tables(text: str, suffix: str) -> dict[str, Any]:
     except json.JSONDecodeError as error:
         line = text.split("\n")[error.lineno - 1].strip()
         raise JobError(
-            f"line {error.lineno}: the file must be JSON; got {shown(line)}, which is invalid from column "
+            f"line {error.lineno}: the file must be JSON; got {quote(line)}, which is invalid from column "
             f"{error.colno}; put names, texts and values with units in double quotes, and commas between entries"
         ) from None
     except ValueError:
         raise _too_long() from None
     if not isinstance(data, dict):
-        raise JobError(f"a job must be a JSON object; got {shown(data)}; put it in braces")
+        raise JobError(f"a job must be a JSON object; got {quote(data)}; put it in braces")
     return data
 
 
@@ -133,7 +133,7 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     table = dict(pairs)
     if len(table) < len(pairs):
         twice = Counter(name for name, _ in pairs).most_common(1)[0][0]
-        raise JobError(f"a key may be given only once; got {shown(twice)} twice; remove one")
+        raise JobError(f"a key may be given only once; got {quote(twice)} twice; remove one")
     return table
 
 
@@ -163,14 +163,14 @@ def require_plain(value: object, at: tuple[object, ...] = ()) -> None:
     """
     if not at:
         if not isinstance(value, Mapping):
-            raise JobError(f"a job must be a table of keys; got {shown(value)}")
+            raise JobError(f"a job must be a table of keys; got {quote(value)}")
         require_few(value)
     if len(at) > DEEPEST:
         raise JobError(f"tables must be nested at most {DEEPEST} deep; got more; flatten the job")
     if isinstance(value, Mapping):
         for key, item in value.items():
             if not isinstance(key, str):
-                raise JobError(f"a key must be text; got {shown(key)}")
+                raise JobError(f"a key must be text; got {quote(key)}")
             if item is None:
                 raise JobError(f"{key_of((*at, key))}: must have a value; got null; leave the key out instead")
             require_plain(item, (*at, key))

@@ -16,7 +16,7 @@ from itertools import pairwise
 from typing import Any
 
 from ...model.errors import InputError
-from ...objectives.units import shown
+from ...objectives.units import quote
 
 KEYS = frozenset({"min", "max", "step", "series", "values"})
 """Keys of a table that says the values of a variable."""
@@ -60,7 +60,7 @@ def read_grid(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid
     for key in given:
         if key not in KEYS:
             raise InputError(
-                f"discrete values may only have the keys {', '.join(sorted(KEYS))}; got {shown(key)}; correct or "
+                f"discrete values may only have the keys {', '.join(sorted(KEYS))}; got {quote(key)}; correct or "
                 "remove it"
             )
     words = [key for key in ("step", "series", "values") if key in given]
@@ -77,7 +77,7 @@ def read_grid(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid
     lower, upper = read(given["min"]), read(given["max"])
     if lower > upper:
         raise InputError(
-            f"must run from min to max; got {shown(given['min'])} to {shown(given['max'])}, an empty range; "
+            f"must run from min to max; got {quote(given['min'])} to {quote(given['max'])}, an empty range; "
             f"{swap(given['min'], given['max'])}"
         )
     room = _ROOM * max(abs(lower), abs(upper))
@@ -85,7 +85,7 @@ def read_grid(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid
     values, rule = found(given, read, lower - room, upper + room)
     if not values:
         raise InputError(
-            f"must have a value from {shown(given['min'])} to {shown(given['max'])}; {rule} has none; widen the "
+            f"must have a value from {quote(given['min'])} to {quote(given['max'])}; {rule} has none; widen the "
             "range, or choose other values"
         )
     return Grid(tuple(values), rule)
@@ -97,7 +97,7 @@ def _listed(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid:
     values = given["values"]
     if not isinstance(values, list | tuple) or len(values) < 2:
         raise InputError(
-            f'values must be a list of two or more, like ["20 mm", "25 mm"]; got {shown(values)}; give a single value '
+            f'values must be a list of two or more, like ["20 mm", "25 mm"]; got {quote(values)}; give a single value '
             "without a list"
         )
     if len(values) > MOST:
@@ -105,7 +105,7 @@ def _listed(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid:
     found = sorted(read(value) for value in values)
     for one, other in pairwise(found):
         if one == other:
-            raise InputError(f"values must differ; got {shown(values)}; leave out the second")
+            raise InputError(f"values must differ; got {quote(values)}; leave out the second")
     return Grid(tuple(found), f"one of {len(found)} values")
 
 
@@ -117,10 +117,10 @@ def _multiples(
     except InputError as error:
         raise InputError(f"step {error}") from None
     if not step > 0.0:
-        raise InputError(f"step must be above zero; got {shown(given['step'])}; give its size")
+        raise InputError(f"step must be above zero; got {quote(given['step'])}; give its size")
     if (upper - lower) / step > MOST:
         raise InputError(
-            f"step must give at most {MOST} values; got {shown(given['step'])}, which gives "
+            f"step must give at most {MOST} values; got {quote(given['step'])}, which gives "
             f"{(upper - lower) / step:.4g}; use a larger step, or a range [lower, upper]"
         )
     exact = Decimal(repr(step))  # a multiple as it is written: the step's decimals times a whole number, rounded once
@@ -143,10 +143,10 @@ def _preferred(
 ) -> tuple[list[float], str]:
     name = given["series"]
     if name not in SERIES:
-        raise InputError(f"series must be one of {', '.join(SERIES)}; got {shown(name)}; choose one of these")
+        raise InputError(f"series must be one of {', '.join(SERIES)}; got {quote(name)}; choose one of these")
     if not read(given["min"]) > 0.0:
         raise InputError(
-            f"preferred numbers must be above zero; got min {shown(given['min'])}; raise it, or give the values as a "
+            f"preferred numbers must be above zero; got min {quote(given['min'])}; raise it, or give the values as a "
             "list"
         )
     number, unit = _parts(given["min"])

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from ...model.errors import InputError
-from ...objectives.units import closest, shown
+from ...objectives.units import closest, quote
 from .values import Part
 
 
@@ -14,24 +14,24 @@ from .values import Part
 class Kinds:
     """The kinds of a part, each by its key. choice: all of them, for messages. remedy: where a table is of several.
 
-    meant: keys by other words that people try for them.
+    synonyms: keys by other words that people try for them.
     """
 
     parts: Mapping[str, type[Part]]
     choice: str
     remedy: str
-    meant: Mapping[str, str] = field(default_factory=dict)
+    synonyms: Mapping[str, str] = field(default_factory=dict)
 
-    def one(self, value: object) -> object:
+    def require_one(self, value: object) -> object:
         """Return the value; refuse one that is no table, of no kind, or of several kinds."""
         if isinstance(value, Part):
             return value
         if not isinstance(value, Mapping):
-            raise InputError(f"must be a table such as {self.choice}; got {shown(value)}")
+            raise InputError(f"must be a table such as {self.choice}; got {quote(value)}")
         found = [key for key in self.parts if key in value]
         if not found:
-            keys = ", ".join(shown(key).strip('"') for key in list(value)[:6]) or "no keys"
-            near = [self.meant.get(key) or closest(key, self.parts) for key in value if isinstance(key, str)]
+            keys = ", ".join(quote(key).strip('"') for key in list(value)[:6]) or "no keys"
+            near = [self.synonyms.get(key) or closest(key, self.parts) for key in value if isinstance(key, str)]
             meant = next((f"; did you mean {key}?" for key in near if key), "")
             raise InputError(f"must be one of {self.choice}; got {keys}{meant}")
         if len(found) > 1:

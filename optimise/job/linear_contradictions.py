@@ -52,10 +52,10 @@ def require_compatible(problem: Problem) -> None:
                 seen[key] = _possible(rows, ends, turning=problem.motion is None)
             if seen[key]:
                 return
-    raise InfeasibleError(_told(parts[0]))
+    raise InfeasibleError(_conflict_text(parts[0]))
 
 
-def _told(part: Problem) -> str:
+def _conflict_text(part: Problem) -> str:
     """Return which requirements of a problem exclude each other, as few as do on either sign of the offset."""
     sides = [_programme(part, sign) for sign, _ in signs(part)]
     names = list(dict.fromkeys(row.name for rows, _ in sides for row in rows))

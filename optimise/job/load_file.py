@@ -9,11 +9,11 @@ from ...model.errors import InputError, JobError
 from ...model.machine.loads.load import ANGLE_DATUM, CYCLE, Entry, Table
 from ...model.machine.loads.registry import kinds
 from ...objectives.kinds import ANGLE, TIME, Kind
-from ...objectives.units import shown
+from ...objectives.units import quote
 from . import values
-from .beside import SOURCE, Files, require_point_count, table_beside
 from .curve_file import curve_in, of_cycle, over_angle, thinned
 from .messages import key_of
+from .named_files import SOURCE, Files, read_named_table, require_point_count
 from .stated_speed import stated_speed
 
 
@@ -42,28 +42,28 @@ def _filled(part: Any, place: int, files: Files, data: Mapping[str, Any]) -> Any
     for key in part:
         if key not in known:
             raise JobError(
-                f"{key_of(['load', place, key])}: a load with file must not have this key; got {shown(part[key])}; "
+                f"{key_of(['load', place, key])}: a load with file must not have this key; got {quote(part[key])}; "
                 f"possible here: {', '.join(known)}"
             )
     over = (*dict.fromkeys(at for at, _ in tables), TIME)
-    curve = curve_in(table_beside(files, name, file), over, tuple(dict.fromkeys(of for _, of in tables)))
-    found = tables.get((ANGLE if curve.over.kind is TIME else curve.over.kind, curve.of.kind))
+    curve = curve_in(read_named_table(files, name, file), over, tuple(dict.fromkeys(of for _, of in tables)))
+    found = tables.get((ANGLE if curve.argument_head.kind is TIME else curve.argument_head.kind, curve.value_head.kind))
     if found is None:
         raise InputError(
-            f"{curve.name} must be a table of a load; got {shown(curve.of.text)} over {shown(curve.over.text)}; give "
-            "torques over the crank angle"
+            f"{curve.name} must be a table of a load; got {quote(curve.value_head.text)} over "
+            f"{quote(curve.argument_head.text)}; give torques over the crank angle"
         )
     at, of = (entry.name for entry in found.entries if entry.several)
     rest = {key: value for key, value in part.items() if key != "file"}
-    if curve.over.kind is TIME:
+    if curve.argument_head.kind is TIME:
         signed = ANGLE_DATUM in found.entries and rest.get(ANGLE_DATUM.name, ANGLE_DATUM.default) == ANGLE_DATUM.default
         speed = stated_speed(data, curve.name)
         curve = over_angle(curve, speed if signed else abs(speed))
-    if curve.over.kind is ANGLE:
+    if curve.argument_head.kind is ANGLE:
         curve, turns = of_cycle(curve, {"360 deg": 1, "720 deg": 2}.get(str(rest.get(CYCLE.name))))
         rest |= {CYCLE.name: "720 deg"} if turns == 2 else {}
     curve = thinned(curve)
-    require_point_count(len(curve.at), curve.name, 2)
+    require_point_count(len(curve.arguments), curve.name, 2)
     places, sizes = curve.texts()
     return rest | {at: places, of: sizes, SOURCE: curve.source(file)}
 

@@ -20,11 +20,11 @@ from pydantic import (
 from ...model.errors import InputError
 from ...model.machine.loads import load as model
 from ...model.machine.loads.registry import kinds
-from ...objectives.units import shown
+from ...objectives.units import quote
 from . import values
-from .beside import MOST_POINTS, SOURCE, unread
 from .kinds import Kinds
 from .load_file import tables_of_points
+from .named_files import MOST_POINTS, SOURCE, unread_file_error
 from .values import Checked, optional
 
 
@@ -34,7 +34,7 @@ def increasing(given: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float
     for n, (before, after) in enumerate(itertools.pairwise(points)):
         if after <= before:
             raise InputError(
-                f"must increase; got {shown(given[n + 1])} after {shown(given[n])}; sort the table and remove "
+                f"must increase; got {quote(given[n + 1])} after {quote(given[n])}; sort the table and remove "
                 "repeated points"
             )
     return points
@@ -45,7 +45,7 @@ def stepping(given: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, 
     at: tuple[float, ...] = handler(given)
     n = model.out_of_order(at)
     if n is not None:
-        raise InputError(model.order_rule(n, at, shown(given[n]), shown(given[n - 1])))
+        raise InputError(model.order_rule(n, at, quote(given[n]), quote(given[n - 1])))
     return at
 
 
@@ -107,7 +107,7 @@ def _file_part() -> type[LoadPart]:
 
 
 def _refused(file: str, **_: object) -> model.Load:
-    raise unread(file, "points")
+    raise unread_file_error(file, "points")
 
 
 PARTS = {table.key: _part(table) for kind in kinds() for table in kind.tables} | {"file": _file_part()}
@@ -132,5 +132,5 @@ else:
     Load = Annotated[
         reduce(or_, (Annotated[part, Tag(f"({key})")] for key, part in PARTS.items())),
         Discriminator(_KINDS.tag),
-        BeforeValidator(_KINDS.one),
+        BeforeValidator(_KINDS.require_one),
     ]

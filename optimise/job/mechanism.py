@@ -13,7 +13,7 @@ from ...model.machine.arrangement import MOST, Arrangement
 from ...model.machine.links import Bar, Counterweight, Link, RigidLink
 from ...model.machine.mechanism import Branch, Clearances, Tolerances, Window
 from ...model.machine.slider_distances import DeadCentre, SliderDistances
-from ...objectives.units import shown
+from ...objectives.units import quote
 from .crank_speed import CrankSpeedPart
 from .values import (
     Angle,
@@ -79,7 +79,7 @@ def _one_way(value: object) -> object:
     if not isinstance(value, Mapping):
         raise InputError(
             "must be a table, { width, depth, density } or { mass, ... }; "
-            f"got {shown(value)}; the length of a link belongs in [variables]"
+            f"got {quote(value)}; the length of a link belongs in [variables]"
         )
     section, mass = sorted(_SECTION & set(value)), sorted(_MASS & set(value))
     if section and mass:

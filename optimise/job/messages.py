@@ -10,7 +10,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from ...objectives.registry import FACTS
-from ...objectives.units import closest, shown, spread
+from ...objectives.units import closest, quote, spread
 
 _MOST_KEYS = 20  # that are told where none is near
 
@@ -115,7 +115,7 @@ def key_of(path: Sequence[object]) -> str:
         else:
             word = str(part)
             plain = word.isidentifier() and word.isascii() and len(word) <= 60
-            text += ("." if text else "") + (word if plain else shown(word))
+            text += ("." if text else "") + (word if plain else quote(word))
     return text or "the job"
 
 
@@ -135,12 +135,12 @@ def _unknown(loc: Sequence[Any], value: object, schema: Schema) -> tuple[str, st
         noun = path[-2] if isinstance(path[-1], int) else "table"
         owners = " or ".join(filter(None, (", ".join(others[:-1]), others[-1])))
         return (
-            f"{place}: a {noun} with {kind} must not have this key; got {shown(value)}; it belongs to a {noun} with "
+            f"{place}: a {noun} with {kind} must not have this key; got {quote(value)}; it belongs to a {noun} with "
             f"{owners}; {possible}"
         ), ""
     owner = place_of(str(key), schema)
     near = None if owner else closest(str(key), allowed)
-    what, meant = f"key {shown(str(key))}", near
+    what, meant = f"key {quote(str(key))}", near
     if not table and isinstance(value, Mapping | list):
         what, meant = f"heading [{place}]", next(iter(headings([near or ""], schema)), near)
     choice = f"did you mean {meant}?" if near else owner or possible
@@ -181,7 +181,7 @@ def sentence_of(details: ErrorDetails, schema: Schema) -> str:
     kind, value, context, path = details["type"], details["input"], details.get("ctx", {}), details["loc"]
     example = example_of(schema, path)
     write = f"; write for example {example}" if example else ""
-    got = f"got {shown(value)}"
+    got = f"got {quote(value)}"
     if kind == "value_error":
         return str(context["error"])
     if kind == "missing":
@@ -206,7 +206,7 @@ def sentence_of(details: ErrorDetails, schema: Schema) -> str:
         return f"{rule_of(details)}; got {len(value)}{write}"
     if rule_of(details) == _TABLE and isinstance(value, str | float | int) and "equals" in _properties(schema, path):
         if value in _WISHES:
-            return f"{shown(value)} belongs below [objectives]; got it below [{path[0]}]; move it there"
+            return f"{quote(value)} belongs below [objectives]; got it below [{path[0]}]; move it there"
         bounds = ["equals"] if spread(value) else ["equals", "min", "max"]
         first, *others = (f"{{ {word} = {toml(value)} }}" for word in bounds)
         write = f"; write {key_of(path[-1:])} = {', '.join(filter(None, (first, ' or '.join(others))))}"
@@ -243,7 +243,7 @@ def toml(value: object) -> str:
         return "{ " + ", ".join(f"{key_of([key])} = {toml(item)}" for key, item in value.items()) + " }"
     if isinstance(value, list):
         return "[" + ", ".join(toml(item) for item in value) + "]"
-    return shown(value)
+    return quote(value)
 
 
 def _properties(schema: Schema, path: Sequence[Any]) -> dict[str, Any]:

@@ -12,16 +12,16 @@ from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.slider_distances import SliderDistances
 from ...model.machine.two_turns import turns_per_cycle
-from ...objectives.units import shown
+from ...objectives.units import quote
 from ..methods.registry import methods
 from ..problem.problem import Settings
 from .costs import CostsPart
+from .custom_quantities import MOST_OWN, Declared, QuantityPart, named, one_line
 from .drive import DrivePart
 from .joints import ClearancePart, FrictionPart
 from .loads import Load
 from .mechanism import MechanismPart, TolerancesPart
 from .motion import MotionPart
-from .own import MOST_OWN, Declared, QuantityPart, named, one_line
 from .quantities import ConstraintsPart, ObjectivesPart, Stated, tables
 from .robust import RobustPart
 from .sections import EXAMPLE as SECTIONS
@@ -78,11 +78,11 @@ class OptimiserPart(Built[Settings]):
 
 def _printable(text: str) -> str:
     if not text.strip() or not text.replace("\n", " ").replace("\t", " ").isprintable():
-        raise InputError(f"must be printable text, not empty; got {shown(text)}")
+        raise InputError(f"must be printable text, not empty; got {quote(text)}")
     return text
 
 
-def _some(objectives: ObjectivesPart) -> ObjectivesPart:
+def _require_objective(objectives: ObjectivesPart) -> ObjectivesPart:
     if not objectives.model_fields_set:
         raise InputError(
             'must name at least one quantity; got an empty table; add for example peak_torque = "minimise"'
@@ -158,7 +158,7 @@ class Job(Part):
     constraints: ConstraintsPart = optional(
         "requirements that every design must meet", EXAMPLE["constraints"], default=ConstraintsPart()
     )
-    objectives: Annotated[ObjectivesPart, AfterValidator(_some)] = required(
+    objectives: Annotated[ObjectivesPart, AfterValidator(_require_objective)] = required(
         "objectives: the front shows the best compromises", EXAMPLE["objectives"]
     )
     robust: RobustPart | None = optional(
@@ -203,5 +203,5 @@ def job_with(declared: Declared) -> type[Job]:
 def _job_with(own: tuple[tuple[str, Stated], ...], formulas: tuple[str, ...]) -> type[Job]:
     constraints, objectives = tables(dict(own), formulas)
     choice: Any = choice_with(constraints)
-    wishes: Any = Annotated[objectives, AfterValidator(_some)]
+    wishes: Any = Annotated[objectives, AfterValidator(_require_objective)]
     return retyped(Job, choice=tuple[choice, ...], constraints=constraints, objectives=wishes)

@@ -8,12 +8,12 @@ from typing import Any
 
 from ...objectives.counted import counted
 from ...objectives.registry import FACTS
-from ...objectives.units import shown
-from .beside import SOURCE
+from ...objectives.units import quote
 from .catalogue import Catalogue, with_options
+from .custom_quantities import declared
 from .messages import key_of, toml
 from .model import Job, job_with
-from .own import declared
+from .named_files import SOURCE
 from .plain_numbers import read_noting
 
 _MOST = 6  # plain numbers that are told one by one
@@ -72,21 +72,25 @@ def _of_catalogue(table: Catalogue) -> Iterator[str]:
     left = table.rows - len(table.lost) - len(table.excluded)
     told = bool(table.lost or table.excluded)
     said = [f"of {counted(table.rows, 'row')} {left} {'is' if left == 1 else 'are'} searched"] if told else []
-    said += [f"omitted: {_some([f'{row} ({why})' for row, why in table.excluded.items()])}"] if table.excluded else []
+    said += (
+        [f"omitted: {_join_first([f'{row} ({why})' for row, why in table.excluded.items()])}"] if table.excluded else []
+    )
     if few:
-        said += [f"{'others' if table.excluded else 'the others'} lose in {_all(table.compared)}: {_some(few)}"]
+        said += [
+            f"{'others' if table.excluded else 'the others'} lose in {_join_all(table.compared)}: {_join_first(few)}"
+        ]
         said += ["each design names the least row that also suffices"]
-    said += [f"not used, but stored with each design: {_all(table.idle)}"] if table.idle else []
+    said += [f"not used, but stored with each design: {_join_all(table.idle)}"] if table.idle else []
     if said:
         yield f"{table.name}: {'; '.join(said)}"
     yield from (f"{table.name}: the column {header} is read as {said}" for header, said in table.added.items())
 
 
-def _all(names: Sequence[str]) -> str:
+def _join_all(names: Sequence[str]) -> str:
     return ", ".join(names[:-1]) + f" and {names[-1]}" if len(names) > 1 else "".join(names) or "nothing that differs"
 
 
-def _some(lines: Sequence[str]) -> str:
+def _join_first(lines: Sequence[str]) -> str:
     return ", ".join(lines[:_MOST]) + (f" and {len(lines) - _MOST} more" if len(lines) > _MOST else "")
 
 
@@ -100,7 +104,7 @@ def sources_of(data: Mapping[str, Any]) -> list[str]:
     ]
     return [
         *(f"{key_of(path)}, {part[SOURCE]}" for path, part in places if isinstance(part, Mapping) and part.get(SOURCE)),
-        *(f"choice {shown(table.name)}: {table.understood}" for table in with_options(data)[1]),
+        *(f"choice {quote(table.name)}: {table.understood}" for table in with_options(data)[1]),
     ]
 
 

@@ -47,7 +47,7 @@ def _reasons(problem: Problem, variant: int) -> Iterator[str]:
         return
     if part.motion is not None:
         return
-    box = Box.of(part)
+    box = Box.from_problem(part)
     if not box.turns:
         yield "no rod in its range exceeds crank + |offset|"
         return

@@ -20,7 +20,7 @@ def with_number(job: Part | Mapping[str, Any], path: str, value: Any) -> dict[st
     root, *rest = path.split(".")
     if root not in ROOTS:
         raise LookupError(root)
-    found: dict[str, Any] = _with(job, [root, *rest], value)
+    found: dict[str, Any] = _replace_at(job, [root, *rest], value)
     return found
 
 
@@ -37,7 +37,7 @@ def unknown_path(path: str, tables: Mapping[str, Any]) -> str:
     several = _several(path, tables)
     if several:
         return several
-    near = closest(path, [known for known, value in _given(tables, "") if _is_plain(value)])
+    near = closest(path, [known for known, value in _leaves(tables, "") if _is_plain(value)])
     hint = (
         f"did you mean {near}?" if near else f"give it in [{path.partition('.')[0]}] first, as single designs have it"
     )
@@ -53,7 +53,7 @@ def _several(path: str, tables: Mapping[str, Any]) -> str:
             "values in a list, such as the points of a table, cannot vary; solve a job for each list"
         )
     if whole and isinstance(part, Mapping):
-        number = next((known for known, value in _given(part, path) if _is_number(value)), None)
+        number = next((known for known, value in _leaves(part, path) if _is_number(value)), None)
         named = f"; did you mean {number}?" if number else " without a number that can vary"
         return f"must name a number that the job gives; got {path}, a table{named}"
     return ""
@@ -78,7 +78,7 @@ def _reached(path: str, tables: Mapping[str, Any]) -> tuple[Any, bool]:
     return part, steps[0] in ROOTS
 
 
-def _with(part: Any, steps: list[str], value: Any) -> Any:
+def _replace_at(part: Any, steps: list[str], value: Any) -> Any:
     step, *rest = steps
     table: Any
     place: Any
@@ -91,7 +91,7 @@ def _with(part: Any, steps: list[str], value: Any) -> Any:
     else:
         raise LookupError(step)
     if rest:
-        table[place] = _with(table[place], rest, value)
+        table[place] = _replace_at(table[place], rest, value)
     elif _is_plain(table[place]):
         table[place] = value
     else:
@@ -108,15 +108,15 @@ def _is_number(value: object) -> bool:
     return (isinstance(value, float | int) and not isinstance(value, bool)) or str(value)[:1] in set("+-.0123456789")
 
 
-def _given(data: Any, root: str) -> Iterator[tuple[str, Any]]:
+def _leaves(data: Any, root: str) -> Iterator[tuple[str, Any]]:
     """Yield path and value of everything in a job that is no table; places in lists count from 1."""
     if isinstance(data, Mapping):
         for name, item in data.items():
             if root or name in ROOTS:
-                yield from _given(item, f"{root}.{name}" if root else str(name))
+                yield from _leaves(item, f"{root}.{name}" if root else str(name))
     elif isinstance(data, list | tuple):
         for place, item in enumerate(data):
             if isinstance(item, Mapping):
-                yield from _given(item, f"{root}.{place + 1}")
+                yield from _leaves(item, f"{root}.{place + 1}")
     else:
         yield root, data

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import Kind
 from ...objectives.registry import FACTS
-from ...objectives.units import shown
+from ...objectives.units import quote
 from ..problem.problem import Problem
 from .messages import key_of, keys_of, toml
 from .paths import with_number
@@ -48,7 +48,7 @@ class PlainNumbers:
             return None
         number = (doubtful or numbers)[0]
         text = toml(self.value)
-        given = text if len(text) <= _LONGEST else shown(self.value)
+        given = text if len(text) <= _LONGEST else quote(self.value)
         what = "mixes numbers with and without a unit" if mixed else "has no unit"
         what = f"{what} and is" if number == self.value else f"{what}: {number:g} is"
         read = f'"{number:g} {self.kind.unit}"'
@@ -95,7 +95,7 @@ def read_noting(
     tried: Mapping[str, Any] = data
     for _, path, value in varying:
         try:
-            tried = _with(tried, path, plain_in(value)[0])
+            tried = _with_number_at(tried, path, plain_in(value)[0])
         except LookupError:  # a word of the table, such as the name of a series
             continue
     kinds = {path: kind for path, _, _, kind in _placed(job, tried)[1]}
@@ -145,10 +145,10 @@ def _varying(data: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]]:
     for part in data.get("choice", ()):
         for option in part.get("option", ()):
             for path, value in leaves_of(option.get("values", {}), ""):
-                yield f"choice {shown(part['name'])}, option {shown(option['name'])}: {path}", path, value
+                yield f"choice {quote(part['name'])}, option {quote(option['name'])}: {path}", path, value
 
 
-def _with(data: Mapping[str, Any], path: str, number: float) -> dict[str, Any]:
+def _with_number_at(data: Mapping[str, Any], path: str, number: float) -> dict[str, Any]:
     if path in DIMENSIONS:
         return {**data, "variables": {**data["variables"], path: number}}
     return with_number(data, path, number)

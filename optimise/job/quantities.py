@@ -32,7 +32,7 @@ from ...model.linkage.linkage import SlowStroke
 from ...objectives.formula.formulas import ROOTS, Formulas, is_formula
 from ...objectives.kinds import RATIO, Kind
 from ...objectives.registry import FACTS
-from ...objectives.units import closest, shown, spread
+from ...objectives.units import closest, quote, spread
 from ..problem.requirements import SENSES, Constraint, Objective, Word
 from .grids import swap
 from .messages import key_of, toml
@@ -58,7 +58,7 @@ class Bounds(Part):
             raise InputError("must have min, max or equals; got an empty table; add one of the three")
         if equals is not None and not (lower is None and upper is None):
             given = data if isinstance(data, Mapping) else {"equals": equals, "min": lower, "max": upper}
-            got = " and ".join(f"{word} {shown(given[word])}" for word in ("equals", "min", "max") if word in given)
+            got = " and ".join(f"{word} {quote(given[word])}" for word in ("equals", "min", "max") if word in given)
             raise InputError(f"equals cannot be combined with min or max; got {got}; leave out equals or the other")
         both = isinstance(lower, float) and isinstance(upper, float)  # a formula is a text still
         if both and lower > upper:
@@ -68,7 +68,7 @@ class Bounds(Part):
 
 def _crossed(given: Mapping[Any, object]) -> str:
     return (
-        f"min must not exceed max; got min {shown(given['min'])} and max {shown(given['max'])}; "
+        f"min must not exceed max; got min {quote(given['min'])} and max {quote(given['max'])}; "
         f"{swap(given['min'], given['max'])} or leave out one"
     )
 
@@ -103,7 +103,7 @@ class _Raw(Physical):
 
     def read(self, value: object) -> Any:
         if isinstance(value, bool) or not isinstance(value, str | int | float):
-            raise InputError(f'must be a value with a unit, such as "1 mm", or a number in SI; got {shown(value)}')
+            raise InputError(f'must be a value with a unit, such as "1 mm", or a number in SI; got {quote(value)}')
         return value
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
@@ -140,9 +140,9 @@ def _sense(value: object) -> object:
             return SENSES[value]
         near = closest(value, ("minimise", "maximise"))
         meant = f'; did you mean "{near}"?' if near else ""
-        raise InputError(f"must be {_WANTED}; got {shown(value)}{meant}")
+        raise InputError(f"must be {_WANTED}; got {quote(value)}{meant}")
     if not isinstance(value, Mapping | Target):
-        raise InputError(f"must be {_WANTED}; got {shown(value)}")
+        raise InputError(f"must be {_WANTED}; got {quote(value)}")
     return value
 
 
@@ -174,7 +174,7 @@ class _Table(Part):
 
     @model_validator(mode="before")
     @classmethod
-    def _apart(cls, data: Any) -> Any:
+    def _split_formulas(cls, data: Any) -> Any:
         """Put formulas into a table of their own."""
         if not isinstance(data, Mapping):
             return data

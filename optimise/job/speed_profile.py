@@ -13,8 +13,8 @@ from ...model.errors import InputError
 from ...model.machine.speed_profile import Harmonics, Profile, SpeedTable
 from ...objectives.kinds import ANGLE, ANGULAR_SPEED, TIME
 from ...objectives.units import per_si
-from .beside import MOST_POINTS, SOURCE, Files, require_point_count, table_beside, unread
 from .curve_file import Curve, curve_in, opened
+from .named_files import MOST_POINTS, SOURCE, Files, read_named_table, require_point_count, unread_file_error
 from .values import Angle, AngularSpeed, Checked, Number, Source, optional, source
 
 _TOLERANCE = 1e-3  # relative, for the mean of a table against the speed and the end of a turn against 360 deg
@@ -22,7 +22,7 @@ _TOLERANCE = 1e-3  # relative, for the mean of a table against the speed and the
 
 def _profile(**given: Any) -> Profile:
     if given.get("file") is not None:
-        raise unread(given["file"], "points")
+        raise unread_file_error(given["file"], "points")
     table = {name: given[name] for name in ("crank_angles", "speeds") if given.get(name) is not None}
     waves = {name: given[name] for name in ("cosines", "sines") if given.get(name) is not None}
     if bool(table) == bool(waves):
@@ -85,9 +85,9 @@ def with_speeds(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
     file, job = speeds_file(data), dict(data)
     if file is None:
         return job
-    curve = curve_in(table_beside(files, "mechanism.speed_profile.file", file), (ANGLE, TIME), (ANGULAR_SPEED,))
-    curve = opened(_over_turn(curve) if curve.over.kind is TIME else curve)
-    require_point_count(len(curve.at), curve.name, 4)
+    curve = curve_in(read_named_table(files, "mechanism.speed_profile.file", file), (ANGLE, TIME), (ANGULAR_SPEED,))
+    curve = opened(_over_turn(curve) if curve.argument_head.kind is TIME else curve)
+    require_point_count(len(curve.arguments), curve.name, 4)
     angles, speeds = curve.texts()
     profile = {"crank_angles": angles, "speeds": speeds, SOURCE: curve.source(file)}
     return {**job, "mechanism": {**job["mechanism"], "speed_profile": profile}}
@@ -97,7 +97,10 @@ def _over_turn(curve: Curve) -> Curve:
     """Return a curve over time as one over the crank angle, deg: the first turn, from crank angle 0 on."""
     from scipy.interpolate import CubicSpline
 
-    at, rpm = curve.at / per_si(curve.over.unit), curve.values / per_si(curve.of.unit) * (30.0 / math.pi)
+    at, rpm = (
+        curve.arguments / per_si(curve.argument_head.unit),
+        curve.values / per_si(curve.value_head.unit) * (30.0 / math.pi),
+    )
     if len(at) < 4 or np.any(np.diff(at) <= 0.0):
         raise InputError(
             f"{curve.name}: times must increase and be at least four; got {len(at)}; sort them and remove repeated "
@@ -128,6 +131,6 @@ def _over_turn(curve: Curve) -> Curve:
         )
     angles = np.mod(way * turned[kept], 360.0)
     order = np.argsort(angles, kind="stable")
-    over, of = curve.over._replace(kind=ANGLE, unit="deg"), curve.of._replace(unit="rpm")
-    said = (*curve.said, f"the first of {turned[-1] / 360.0:.4g} turns over time")
+    over, of = curve.argument_head._replace(kind=ANGLE, unit="deg"), curve.value_head._replace(unit="rpm")
+    said = (*curve.notes, f"the first of {turned[-1] / 360.0:.4g} turns over time")
     return Curve(curve.name, over, of, angles[order], rpm[kept][order], said)

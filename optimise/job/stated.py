@@ -21,10 +21,10 @@ from ..problem.requirements import Constraint, merged
 from ..problem.violation import FEASIBLE, violated_by
 from .amounts import amounts_of, excluded_in_words
 from .contradictions import require_consistent
+from .custom_quantities import formulas_of, functions_of
 from .messages import key_of
 from .model import Job
 from .motion import require_apart, require_no_speed, require_speed, require_start, require_swing_asked, with_margin
-from .own import formulas_of, functions_of
 from .quantities import constraints_of, objectives_of, slow_stroke_of
 from .robust import robustly
 from .target_motion import require_target
@@ -64,7 +64,7 @@ def problem_of(
     constraints = with_margin(_joined(constraints_of(job.constraints, formulas), formulas), job.motion.margin_asked)
     asked = {item.quantity for item in objectives} | {item.quantity for item in constraints}
     missing = [of for of in amounts if of.name in asked]
-    known = QUANTITIES | {of.name: of for of in (*own, *formulas.made.values())}
+    known = QUANTITIES | {of.name: of for of in (*own, *formulas.formula_quantities.values())}
     variants, left_out = _possible(variants, constraints, known, missing)
     catalogue, _ = _possible(catalogue, constraints, known, missing)
     if choices and not variants:
@@ -94,7 +94,10 @@ def problem_of(
         costs=None if job.costs is None else job.costs.build(),
         sections=None if job.sections is None else job.sections.build(),
         settings=job.optimiser.build(),
-        own=(*own, *(made for name, made in formulas.made.items() if name in job.quantity or name in named)),
+        own=(
+            *own,
+            *(made for name, made in formulas.formula_quantities.items() if name in job.quantity or name in named),
+        ),
     )
     _require_shorter(problem)
     try:
@@ -131,7 +134,7 @@ def _joined(constraints: Iterable[Constraint], formulas: Formulas) -> tuple[Cons
         try:
             (found[name],) = merged((found.get(name, constraint), constraint))
         except InputError:
-            asked = _asked((found[name], constraint), formulas.made[name])
+            asked = _bounds_text((found[name], constraint), formulas.formula_quantities[name])
             raise InfeasibleError(
                 f"{key_of(['constraints', name])}: the requirements on one formula must not contradict each other; "
                 f"got {asked}; leave out one of them"
@@ -182,11 +185,11 @@ def _contradiction(variant: Variant, constraints: Iterable[Constraint], known: M
         try:
             (given[name],) = merged(both)
         except InputError:
-            return f"{known[name].title} {_asked(both, known[name])}, which exclude each other"
+            return f"{known[name].title} {_bounds_text(both, known[name])}, which exclude each other"
     return None
 
 
-def _asked(constraints: Iterable[Constraint], of: Quantity) -> str:
+def _bounds_text(constraints: Iterable[Constraint], of: Quantity) -> str:
     """Return in words what constraints ask of a quantity."""
     sides = (side for item in constraints for side in item.sides)
     return " and ".join(f"{word} {bound * of.unit.factor:.6g} {of.unit.symbol}".rstrip() for word, bound in sides)

@@ -52,7 +52,7 @@ class StatedFormula:
 def own_names(tables: Mapping[str, Any]) -> list[OwnName]:
     """Return the names that formulas may have in this job alone: its own quantities, and the numbers that vary."""
     kinds = _Kinds(tables)
-    own = [OwnName(name, _title(name, part), kinds.own(name)) for name, part in kinds.stated.items()]
+    own = [OwnName(name, _title(name, part), kinds.quantity_kind(name)) for name, part in kinds.stated.items()]
     own += [OwnName(name, name.replace("_", " "), kind) for name, kind in kinds.amounts.items()]
     return [*own, *(OwnName(path, number_in_words(path), kind) for path, kind in kinds.varying)]
 
@@ -68,7 +68,7 @@ def stated_formulas(tables: Mapping[str, Any]) -> list[StatedFormula]:
 
 def _read(key: str, text: str, kinds: _Kinds) -> StatedFormula:
     try:
-        return StatedFormula(key, kinds.of(text), None)
+        return StatedFormula(key, kinds.formula_kind(text), None)
     except InputError as error:
         return StatedFormula(key, None, str(error))
 
@@ -113,7 +113,7 @@ class _Kinds:
         self.names = frozenset((*self._known, *self.stated))
         self._units = Units(self.names)
 
-    def of(self, text: str) -> Kind | None:
+    def formula_kind(self, text: str) -> Kind | None:
         """Return the kind of a formula; None while that of a name in it is not known. Raises InputError."""
         if not text.strip():
             raise InputError('is missing; write a formula such as "offset - 2 * crank"')
@@ -122,23 +122,23 @@ class _Kinds:
         for name in names_in(node):
             if name not in self.names:
                 raise unknown_name(name, [*self._known, *self.stated], self._units, text)
-            found[name] = self.own(name)
+            found[name] = self.quantity_kind(name)
         known = {name: kind for name, kind in found.items() if kind is not None}
         return kind_of_formula(node, known) if len(known) == len(found) else None
 
-    def own(self, name: str) -> Kind | None:
+    def quantity_kind(self, name: str) -> Kind | None:
         """Return the kind of a quantity of the job's own; None while it is not known."""
         if name not in self._known:
             self._known[name] = None  # until it is found: of one that defines itself it stays so
-            self._known[name] = self._found(self.stated[name])
+            self._known[name] = self._stated_kind(self.stated[name])
         return self._known[name]
 
-    def _found(self, part: Mapping[str, Any]) -> Kind | None:
+    def _stated_kind(self, part: Mapping[str, Any]) -> Kind | None:
         unit, formula = part.get("unit"), part.get("formula")
         try:
             if isinstance(unit, str):
                 return kind_for(unit)
-            return self.of(formula) if isinstance(formula, str) else None
+            return self.formula_kind(formula) if isinstance(formula, str) else None
         except InputError:
             return None
 

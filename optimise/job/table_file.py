@@ -22,7 +22,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.errors import InputError
 from ...objectives.counted import counted
-from ...objectives.units import is_value, number_and_unit, shown
+from ...objectives.units import is_value, number_and_unit, quote
 from .table_layout import (
     EXPONENT,
     MISSING,
@@ -115,14 +115,14 @@ class _Portion:
 
 @dataclass
 class TableFile:
-    """A table that was read. name: of the file, for messages. heads: of its columns. said: of separator and signs.
+    """A table that was read. name: of the file, for messages. heads: of its columns. notes: of separator and signs.
 
     signs: the decimal one and the one that parts thousands, once numbers were asked for.
     """
 
     name: str
     heads: tuple[str, ...]
-    said: list[str]
+    notes: list[str]
     separator: str
     portions: list[_Portion] = field(repr=False)
     signs: tuple[str, str] = (".", ",")
@@ -139,9 +139,9 @@ class TableFile:
             ", ".join(self._number_in_words(of.columns[place].split("\n")[n]) for place in places) for of, n in ends
         )
         names = (self.heads[place] for place in places)
-        heads = ", ".join(name if name.isprintable() else shown(name) for name in names)
+        heads = ", ".join(name if name.isprintable() else quote(name) for name in names)
         rows = f"{len(self):,} row{'s' if len(self) > 1 else ''}"
-        return "; ".join([f"{rows} of {heads}{more}", f"first {first}", f"last {last}", *self.said])
+        return "; ".join([f"{rows} of {heads}{more}", f"first {first}", f"last {last}", *self.notes])
 
     def _number_in_words(self, cell: str) -> str:
         decimal, grouping = self.signs
@@ -180,8 +180,8 @@ class TableFile:
         for place, column, cells in zip(places, numbers, found, strict=True):
             for n in np.flatnonzero(np.isnan(column)):
                 if cells[n]:
-                    where = self.at(self.rows[n], place)
-                    raise InputError(f"{where}: must be a number or empty; got {shown(cells[n])}; correct it")
+                    where = self.cell_name(self.rows[n], place)
+                    raise InputError(f"{where}: must be a number or empty; got {quote(cells[n])}; correct it")
         return found
 
     def _with_points(self, places: Sequence[int]) -> list[tuple[_Portion, dict[int, str]]]:
@@ -189,14 +189,14 @@ class TableFile:
         parts = [(portion, {n: with_plain_signs(portion.columns[n]) for n in places}) for portion in self.portions]
         signs = _Signs([text for _, cells in parts for text in cells.values()])
         decimal, grouping = self.signs = self._decimal(signs)
-        example = signs.first(_group(decimal))
+        example = signs.first_match(_group(decimal))
         word = "comma" if decimal == "," else "point"
         said = f"decimal {word}"
         if example is not None and (number := f"{float(example.replace(decimal, '.')):g}") != example:
             said = f"the {word} is read as a decimal {word}, so {example} is {number}; if it separates thousands, "
             said += f"write {example.replace(decimal, '')}"
-        if (example is not None or decimal == ",") and said not in self.said:
-            self.said.append(said)
+        if (example is not None or decimal == ",") and said not in self.notes:
+            self.notes.append(said)
         in_threes = rf"[+-]?\d{{1,3}}(?:\{grouping}\d{{3}})+(?:\{decimal}\d*)?{EXPONENT}"
         wrong = re.compile(rf"^(?!{in_threes}$).*\{grouping}.*$", re.MULTILINE | re.ASCII)
         for _, cells in parts:
@@ -208,12 +208,12 @@ class TableFile:
 
     def _decimal(self, signs: _Signs) -> tuple[str, str]:
         """Return the decimal sign of a file's numbers and the one that parts thousands."""
-        point, comma = signs.first(_sure(".", ",")), signs.first(_sure(",", "."))
+        point, comma = signs.first_match(_sure(".", ",")), signs.first_match(_sure(",", "."))
         if point is not None and comma is not None:
             raise InputError(f"{self.name} must use one decimal sign; got {comma} and {point}; write all numbers alike")
         if point is not None or comma is not None:
             return (".", ",") if comma is None else (",", ".")
-        comma, point = signs.first(_group(",")), signs.first(_group("."))
+        comma, point = signs.first_match(_group(",")), signs.first_match(_group("."))
         if comma is not None and (point is not None or self.separator == ","):
             other = f" and {point}" if point is not None else ""
             raise InputError(
@@ -231,9 +231,9 @@ class TableFile:
                 return found
         except ValueError:
             pass
-        return np.array([self._one(place, portion, n, cell, missing=missing) for n, cell in enumerate(cells)])
+        return np.array([self._number(place, portion, n, cell, missing=missing) for n, cell in enumerate(cells)])
 
-    def _one(self, place: int, portion: _Portion, n: int, cell: str, *, missing: bool) -> float:
+    def _number(self, place: int, portion: _Portion, n: int, cell: str, *, missing: bool) -> float:
         if _NUMBER.fullmatch(cell) and np.isfinite(float(cell)):
             return float(cell)
         if missing and cell.casefold() in MISSING:
@@ -242,16 +242,16 @@ class TableFile:
         if not got:
             why = "an empty cell; fill it, or leave out the row"
         elif got.startswith("="):
-            why = f"the formula {shown(got)}; save values instead of formulas"
+            why = f"the formula {quote(got)}; save values instead of formulas"
         else:
             with_unit = number_and_unit(got) if is_value(got) else None
             number = with_unit[0] if with_unit and with_unit[1] else "the number alone"
-            why = f"{shown(got)}; write {number}, as the unit belongs in the heading"
-        raise InputError(f"{self.at(int(portion.lines[n]), place)}: must be a number; got {why}")
+            why = f"{quote(got)}; write {number}, as the unit belongs in the heading"
+        raise InputError(f"{self.cell_name(int(portion.lines[n]), place)}: must be a number; got {why}")
 
-    def at(self, line: int, place: int) -> str:
+    def cell_name(self, line: int, place: int) -> str:
         """Return the words for a cell in messages."""
-        return f"{self.name}, row {line}, column {shown(self.heads[place])}"
+        return f"{self.name}, row {line}, column {quote(self.heads[place])}"
 
 
 class _Signs:
@@ -260,7 +260,7 @@ class _Signs:
     def __init__(self, texts: Sequence[str]) -> None:
         self._texts = [text for text in texts if "." in text or "," in text]
 
-    def first(self, pattern: str) -> str | None:
+    def first_match(self, pattern: str) -> str | None:
         """Return the first cell of a form; None if there is none."""
         cells = re.compile(rf"^(?:{pattern})$", re.MULTILINE | re.ASCII)
         return next((hit[0] for hit in map(cells.search, self._texts) if hit), None)
@@ -308,7 +308,7 @@ def _read(text: str, name: str, *, ragged: bool) -> TableFile:
         first = next(lines, None)
     elif len(heads) == 1 and stated_separator(text) and any(sign in heads[0] for sign in SEPARATORS if sign != " "):
         raise InputError(
-            f'{name} must separate its cells as its line "sep={separator}" states; got {shown(heads[0])}; correct '
+            f'{name} must separate its cells as its line "sep={separator}" states; got {quote(heads[0])}; correct '
             "that line, or leave it out"
         )
     width = len(heads) if first is None else len(first[1])
@@ -332,7 +332,7 @@ def _read(text: str, name: str, *, ragged: bool) -> TableFile:
     found = list(_portions(rows, len(heads), name, ragged=ragged))
     if not found:
         raise InputError(f"{name} must have rows below the column names; got none; add them")
-    said = [f"separated by {SEPARATORS.get(separator, shown(separator))}"] if len(heads) > 1 else []
+    said = [f"separated by {SEPARATORS.get(separator, quote(separator))}"] if len(heads) > 1 else []
     said += [f"{counted(titles, 'title line')} above the column names skipped"] if titles else []
     return TableFile(name, tuple(heads), said, separator, found)
 

@@ -59,13 +59,13 @@ def problem(
         require_feasible=require_feasible,
     )
     warn_of(found)
-    return replace(found, own=tuple(_with(item, given) for item in found.own)) if given else found
+    return replace(found, own=tuple(_with_functions(item, given) for item in found.own)) if given else found
 
 
-def _with(item: Quantity, given: Mapping[str, Function]) -> Quantity:
+def _with_functions(item: Quantity, given: Mapping[str, Function]) -> Quantity:
     if isinstance(item, OwnQuantity) and item.name in given:
         return replace(item, function=given[item.name])
-    return item.with_parts(tuple(_with(part, given) for part in item.made_of))
+    return item.with_parts(tuple(_with_functions(part, given) for part in item.made_of))
 
 
 def _plain(value: object) -> object:

@@ -11,9 +11,9 @@ from ...model.errors import InputError, JobError
 from ...model.kinematics.target_motion import Freedom, TargetMotion
 from ...objectives.kinds import ANGLE, LENGTH, TIME
 from ...objectives.motion_deviation import DEVIATIONS
-from .beside import MOST_POINTS, SOURCE, Files, require_point_count, table_beside, unread
 from .curve_file import curve_in, opened, over_angle
 from .loads import increasing
+from .named_files import MOST_POINTS, SOURCE, Files, read_named_table, require_point_count, unread_file_error
 from .stated_speed import stated_speed
 from .values import Angle, Checked, Length, Part, Source, optional, source
 
@@ -51,7 +51,7 @@ class TargetMotionPart(Checked[TargetMotion]):
     def build(self) -> TargetMotion:
         """Return the target motion as the model has it."""
         if self.file is not None:
-            raise unread(self.file, "points")
+            raise unread_file_error(self.file, "points")
         if self.crank_angles is None or self.positions is None:
             raise InputError("a target motion needs crank_angles and positions, or a file; got neither; add them")
         return super().build()
@@ -80,9 +80,9 @@ def with_points(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
     file, job = points_file(data), dict(data)
     if file is None or {"crank_angles", "positions"} & set(job["target_motion"]):
         return job
-    curve = curve_in(table_beside(files, "target_motion.file", file), (ANGLE, TIME), (LENGTH,))
-    curve = opened(over_angle(curve, stated_speed(data, curve.name)) if curve.over.kind is TIME else curve)
-    require_point_count(len(curve.at), curve.name, 3)
+    curve = curve_in(read_named_table(files, "target_motion.file", file), (ANGLE, TIME), (LENGTH,))
+    curve = opened(over_angle(curve, stated_speed(data, curve.name)) if curve.argument_head.kind is TIME else curve)
+    require_point_count(len(curve.arguments), curve.name, 3)
     angles, positions = curve.texts()
     rest = {key: value for key, value in job["target_motion"].items() if key != "file"}
     points = {"crank_angles": angles, "positions": positions, SOURCE: curve.source(file)}

@@ -138,38 +138,39 @@ def in_words(text: str, error: str) -> str:
     opened = [n for n, line in enumerate(lines, start=1) for _ in re.findall("\"\"\"|'''", line)]
     if not place and len(opened) % 2:
         return _unclosed(lines[: opened[-1]], "the end of the file")
-    within = start < number and _left(lines[start - 1 : number - 1]) < 0
+    within = start < number and _unread_size(lines[start - 1 : number - 1]) < 0
     if not place or (within and begins):
         first = start if within else number
-        if _left(lines[first - 1 : number - begins * within]) < 0:
+        if _unread_size(lines[first - 1 : number - begins * within]) < 0:
             return _unclosed(lines[:first], f"line {number}" if place else "the end of the file")
     path = _path_of(lines[: start if within else number]) or _path_of([*lines[: number - 1], f"{code} ="])
     like = example_of(schema_of(Job), path)
     before = _LIST if within else ""
     if like and _BARE.fullmatch(code) and _with_brackets(code)[1] == code:
         rules, edited = ["there must be = and a value after a key"], like
-    elif within and _left([before + code]) <= 0:
+    elif within and _unread_size([before + code]) <= 0:
         number = max(n for n in range(start, number) if _code(lines[n - 1]).strip())
         code = _code(lines[number - 1])
         rules, edited = ["a line of a list must end with a comma"], f"{code},"
     else:
         joined = [" ".join(map(_code, lines[number - 1 : n])) for n in range(number + 1, number + _MOST_JOINED)]
         few = not within and len(joined[-1]) <= _LONGEST
-        last = next((number + n for n, one in enumerate(joined, start=1) if few and not _left([one])), 0)
+        last = next((number + n for n, one in enumerate(joined, start=1) if few and not _unread_size([one])), 0)
         if last:
             rule = "a text, or keys in braces, must be on one line"
-            return f"{_at(number, path)}{rule}; got lines {number} to {last}; join them"
+            return f"{_line_prefix(number, path)}{rule}; got lines {number} to {last}; join them"
         rules, edited = _edited(before + code, path)
     if rules:
         edited = edited.removeprefix(before)
         path = path if within else _path_of([*lines[: number - 1], edited])
         if set(rules) <= {_TEXT_QUOTED, _VALUE_QUOTED} and (refused := _refused(lines[: number - 1], edited)):
             return f"line {number}, {refused}"
-        got, write = (_shown(one, _same(code, edited)) for one in (code, edited))
-        return f"{_at(number, path)}{'; '.join(rules)}; got {got}; write {write}"
+        got, write = (_quote_line(one, _same(code, edited)) for one in (code, edited))
+        return f"{_line_prefix(number, path)}{'; '.join(rules)}; got {got}; write {write}"
     like = like or "key = value, a heading like [objectives], or # and a comment"
     return (
-        f"{_at(number, path)}must be a line like {like}; got {_shown(code, int(place[2]) if place else 0)}; "
+        f"{_line_prefix(number, path)}must be a line like {like}; got "
+        f"{_quote_line(code, int(place[2]) if place else 0)}; "
         "write keys in plain letters, and texts and values with units in quotes"
     )
 
@@ -215,7 +216,7 @@ def _begins(line: str) -> bool:
     return bool(_KEY.match(line[:_LONGEST]) or _HEADER.fullmatch(line[:_LONGEST]))
 
 
-def _left(lines: Sequence[str]) -> int:
+def _unread_size(lines: Sequence[str]) -> int:
     """Return how much of lines the parser does not read, in signs other than quotes and spaces, counted from 1.
 
     0 if it reads all of it, -1 if the lines end within a list or text.
@@ -233,14 +234,14 @@ def _left(lines: Sequence[str]) -> int:
 def _edited(line: str, path: Path) -> tuple[list[str], str]:
     """Return the rules that a line breaks and the line as they want it; no rules if it cannot be read even then."""
     rules: list[str] = []
-    left = _left([line]) if len(line) <= _LONGEST else 0
+    left = _unread_size([line]) if len(line) <= _LONGEST else 0
     while left > 0:
         rule, values = _with_values(line, path)
         both = [(f"{rule}; {_APART_BY}", _COMMAS(values)[1])] if rule else []
         tried = [*(edit(line) for edit in _SIGNS), (rule, values), *both, *(edit(line) for edit in _EDITS)]
         tried += _with_a_sign_more_or_less(line)
-        rule, line = min(tried, key=lambda one: max(_left([one[1]]), 0))
-        left, before = _left([line]), left
+        rule, line = min(tried, key=lambda one: max(_unread_size([one[1]]), 0))
+        left, before = _unread_size([line]), left
         if left >= before:
             return [], line
         rules += [rule] if rule not in rules else []
@@ -252,7 +253,7 @@ def _with_values(line: str, path: Path) -> tuple[str, str]:
     rules = []
 
     def value(found: re.Match[str]) -> str:
-        if found[1] or not _left([f"x = {found[3]}"]) or not _WRITTEN.match(found[3]):
+        if found[1] or not _unread_size([f"x = {found[3]}"]) or not _WRITTEN.match(found[3]):
             return found[0]
         inner = _INNER.search(line[: found.start(3)])
         in_braces = inner is not None and "{" in line[: inner.start()]
@@ -300,7 +301,7 @@ def _with_a_sign_more_or_less(line: str) -> Iterator[tuple[str, str]]:
             yield "text must have quotes on both sides", f'{line[:place]}"{line[place:]}'
     for found in reversed(list(re.finditer("[]\"'[(){}]", line))):
         without = line[: found.start()] + line[found.end() :]
-        if not _left([without]):
+        if not _unread_size([without]):
             yield f"one {found[0]} too many", without
 
 
@@ -327,15 +328,17 @@ def _unclosed(lines: Sequence[str], end: str) -> str:
         tried = [one, f'{one}"'] if not line.endswith(three) else []
     else:
         rule, tried = "a list must end with ]", [f"{line}]"]
-    write = next((f"write {_shown(one)}" for one in tried if not _left([one])), f"add {three or ']'} where it ends")
-    return f"{_at(len(lines), _path_of(lines))}{rule}; got {_shown(line)}, open at {end}; {write}"
+    write = next(
+        (f"write {_quote_line(one)}" for one in tried if not _unread_size([one])), f"add {three or ']'} where it ends"
+    )
+    return f"{_line_prefix(len(lines), _path_of(lines))}{rule}; got {_quote_line(line)}, open at {end}; {write}"
 
 
 def _repeated(lines: Sequence[str], inner: str | None) -> str:
     """Return the message on a key or table that stands in the last of some lines and above. inner: a key in braces."""
     *above, (last, path, brackets) = _paths(lines)
     if inner:
-        return f"{_at(last, (*path, inner))}may be given only once; got it twice; remove one"
+        return f"{_line_prefix(last, (*path, inner))}may be given only once; got it twice; remove one"
     near = [one for one in above if one[1][: len(path)] == path or path[: len(one[1])] == one[1]]
     first, other, opened = max(near, key=lambda one: (min(len(one[1]), len(path)), one[1] == path))
     shared = min(path, other, key=len)
@@ -344,7 +347,7 @@ def _repeated(lines: Sequence[str], inner: str | None) -> str:
         write = next(iter(headings(name.split("."), schema_of(Job))), f"[{name}]")
         rule, wrong = (SEVERAL, f"[{name}]") if write.startswith("[[") else (SINGLE, f"[[{name}]]")
         number = first if wrong.startswith(f"{opened}{name[0]}") else last
-        return f"{_at(number, shared)}{rule.format(name)}; got {wrong}; write {write}"
+        return f"{_line_prefix(number, shared)}{rule.format(name)}; got {wrong}; write {write}"
     remedy = "put both in one place, or remove one"
     if path == other and brackets:
         remedy = "move the lines below it there"
@@ -355,9 +358,9 @@ def _repeated(lines: Sequence[str], inner: str | None) -> str:
         fits = [one for one, keys in known if path[-1] in keys and not _refused([one], lines[-1])]
         if moved and fits:
             rule = f"this value belongs below the heading {fits[0]}"
-            return f"{_at(last, path)}{rule}; got it below {own}; write {fits[0]} above line {moved[0]}"
+            return f"{_line_prefix(last, path)}{rule}; got it below {own}; write {fits[0]} above line {moved[0]}"
         remedy = f"remove one, or begin another with {own} above it" if own.startswith("[[") else "remove one"
-    return f"{_at(last, path)}may be given only once; got {key_of(other)} in line {first} already; {remedy}"
+    return f"{_line_prefix(last, path)}may be given only once; got {key_of(other)} in line {first} already; {remedy}"
 
 
 def _paths(lines: Sequence[str]) -> Iterator[tuple[int, Path, str]]:
@@ -385,7 +388,7 @@ def _path_of(lines: Sequence[str]) -> Path:
     return path if number == len(lines) and not brackets else ()
 
 
-def _at(number: int, path: Path) -> str:
+def _line_prefix(number: int, path: Path) -> str:
     """Return how a message on a line and its key begins."""
     return f"line {number}, {key_of(path)}: " if path else f"line {number}: "
 
@@ -395,7 +398,7 @@ def _same(one: str, other: str) -> int:
     return next((n for n, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other)))
 
 
-def _shown(line: str, place: int = 0) -> str:
+def _quote_line(line: str, place: int = 0) -> str:
     """Return a line for a message: printable, and of a long one what stands around a place in it."""
     first = max(place - _MOST_SHOWN // 2, 0) if len(line) > _MOST_SHOWN else 0
     text = re.sub(f"[{SPACES}]", "␣", line[first:].strip(" \t").replace("\n", " and below it "))

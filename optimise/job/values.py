@@ -27,9 +27,9 @@ from ...model.machine.loads import load
 from ...model.machine.mechanism import Tolerance
 from ...objectives import kinds, units
 from ...objectives.kinds import Kind
-from ...objectives.units import Sign, shown, spread, to_si
-from .beside import SOURCE
+from ...objectives.units import Sign, quote, spread, to_si
 from .grids import Grid, grid_schema, read_grid, says_values, swap
+from .named_files import SOURCE
 
 SHORTEST = 1e-9
 """m; a shorter link is a mistaken unit."""
@@ -118,7 +118,7 @@ def of_spread(value: object, ends: Sequence[object], error: InputError) -> Input
         return error
     rule = str(error).partition(";")[0]
     return InputError(
-        f"{rule}; got {shown(value)}, which is {ends[0]} to {ends[1]}; "
+        f"{rule}; got {quote(value)}, which is {ends[0]} to {ends[1]}; "
         "correct its unit, its middle value or the part after +-"
     )
 
@@ -131,7 +131,7 @@ class _Read:
     def read(self, value: object) -> object:
         raise NotImplementedError
 
-    def _noted(self, value: object, info: core_schema.ValidationInfo) -> object:
+    def _validate(self, value: object, info: core_schema.ValidationInfo) -> object:
         """Read a value; in the validation context `PLAIN` raise instead for one with numbers without a unit."""
         plain = info.context == PLAIN and self.kind.unit and not self.kind.amount and plain_in(value)
         try:
@@ -144,7 +144,7 @@ class _Read:
         return found
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
-        return core_schema.with_info_plain_validator_function(self._noted)
+        return core_schema.with_info_plain_validator_function(self._validate)
 
 
 @dataclass(frozen=True)
@@ -171,7 +171,7 @@ class GasPressure(Physical):
         if pressure < 0.0 or (pressure == 0.0 and self.sign == "positive"):
             rule = "above vacuum, 0" if self.sign == "positive" else "at or above vacuum, 0"
             raise InputError(
-                f"an absolute pressure must be {rule}; got {shown(value)}; add the ambient pressure, about 1.01325 "
+                f"an absolute pressure must be {rule}; got {quote(value)}; add the ambient pressure, about 1.01325 "
                 "bar, to a gauge pressure"
             )
         return pressure
@@ -190,7 +190,7 @@ class Within(Physical):
         """Return the value in SI; raises InputError."""
         found = super().read(value)
         if not self.least <= found <= self.most:
-            raise InputError(f"must be {self.rule}; got {shown(value)}; {self.hint}")
+            raise InputError(f"must be {self.rule}; got {quote(value)}; {self.hint}")
         return found
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
@@ -274,20 +274,20 @@ class RangeOf(_Read):
         text = value[0] if isinstance(value, list | tuple) and len(value) == 1 else value
         if isinstance(text, str) and (two := _ENDS.fullmatch(text)):
             write = f'["{two[1]} {two[2] or two[4]}", "{two[3]} {two[4]}"]'
-            raise InputError(f"each end of a range must be a text of its own; got {shown(value)}; write {write}")
+            raise InputError(f"each end of a range must be a text of its own; got {quote(value)}; write {write}")
         if len(ends) != 2:
             write = 'write it like ["20 mm", "200 mm"]'
             if len(ends) == 3:
-                keys = (f"{key} = {shown(end)}" for key, end in zip(("min", "max", "step"), ends, strict=True))
+                keys = (f"{key} = {quote(end)}" for key, end in zip(("min", "max", "step"), ends, strict=True))
                 write = f"for a range with steps write {{ {', '.join(keys)} }}"
-            raise InputError(f"must be one value or a range [lower, upper]; got {shown(value)}; {write}")
+            raise InputError(f"must be one value or a range [lower, upper]; got {quote(value)}; {write}")
         try:
             lower, upper = (self._length(end) for end in ends)
         except InputError as error:
             raise (error if isinstance(value, list | tuple) else of_spread(value, ends, error)) from None
         if lower > upper:
             raise InputError(
-                f"must run from its lower to its upper end; got {shown(ends[0])} to {shown(ends[1])}, an empty range; "
+                f"must run from its lower to its upper end; got {quote(ends[0])} to {quote(ends[1])}, an empty range; "
                 f"{swap(*ends)}"
             )
         return lower, upper
@@ -295,15 +295,15 @@ class RangeOf(_Read):
     def _length(self, value: object) -> float:
         length = to_si(value, kinds.LENGTH, sign=self.sign)
         if self.sign == "positive" and length < SHORTEST:
-            raise InputError(f"must be at least {SHORTEST:g} m; got {shown(value)}; check the unit")
+            raise InputError(f"must be at least {SHORTEST:g} m; got {quote(value)}; check the unit")
         return length
 
     def _choices(self, values: object) -> Choices:
         if not isinstance(values, list | tuple) or len(values) < 2:
-            raise InputError(f'choices must be at least two lengths, like ["100 mm", "125 mm"]; got {shown(values)}')
+            raise InputError(f'choices must be at least two lengths, like ["100 mm", "125 mm"]; got {quote(values)}')
         lengths = sorted(self._length(value) for value in values)
         if len(set(lengths)) < len(lengths):
-            raise InputError(f"choices must differ; got {shown(values)}; leave out the second")
+            raise InputError(f"choices must differ; got {quote(values)}; leave out the second")
         return Choices(tuple(lengths))
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
@@ -341,7 +341,7 @@ class ToleranceOf(_Read):
             percent = -1.0
         if not 0.0 <= percent < 100.0:
             raise InputError(
-                f"a percentage of the dimension must be from 0 % to below 100 %; got {shown(value)}; write it like "
+                f"a percentage of the dimension must be from 0 % to below 100 %; got {quote(value)}; write it like "
                 '"0.1 %"'
             )
         return percent / 100.0
@@ -380,7 +380,7 @@ class PartOfStroke(_Read):
         part = found[1].lower() if found else ""
         if not found or (part == "whole" and f"{part} {found[2].lower()}" != "whole stroke"):
             raise InputError(
-                f'must be "first" or "last" and a length, or "whole stroke"; got {shown(value)}; write it like '
+                f'must be "first" or "last" and a length, or "whole stroke"; got {quote(value)}; write it like '
                 '"last 60 mm"'
             )
         if part == "whole":
@@ -391,7 +391,7 @@ class PartOfStroke(_Read):
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
         written = core_schema.plain_serializer_function_ser_schema(repr)
-        return core_schema.with_info_plain_validator_function(self._noted, serialization=written)
+        return core_schema.with_info_plain_validator_function(self._validate, serialization=written)
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
         pattern = r"^\s*([Tt]he\s+)?([Ww]hole\s+stroke|([Ff]irst|[Ll]ast)\s+.*\d.*)\s*$"

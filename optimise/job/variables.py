@@ -15,11 +15,11 @@ from pydantic import AfterValidator, Field, model_validator
 
 from ...model.errors import InputError
 from ...objectives.formula.formulas import ROOTS
-from ...objectives.units import shown
+from ...objectives.units import quote
 from .amounts import Amounts
-from .beside import LARGEST, unread
 from .grids import says_values
 from .messages import DEEPEST
+from .named_files import LARGEST, unread_file_error
 from .quantities import ConstraintsPart
 from .values import AnyRange, Part, PositiveRange, optional, required, retyped
 
@@ -28,7 +28,7 @@ EXAMPLE = {"peak_torque": {"max": "40 N m"}, "rms_torque": {"max": "22 N m"}}
 """Of what an option may ask for."""
 
 
-def _more(what: str, example: dict[str, Any]) -> Any:
+def _variable_table(what: str, example: dict[str, Any]) -> Any:
     return optional(f"numbers of {what} that may vary, by their keys there", example, default={})
 
 
@@ -45,12 +45,12 @@ class VariablesPart(Part):
         "on the open branch, to its right on the crossed one",
         ["0 mm", "200 mm"],
     )
-    mechanism: Table = _more("[mechanism]", {"slider": {"mass": ["0.5 kg", "2 kg"]}})
-    load: Table = _more("a [[load]], by its position, 1 for the first,", {"1": {"force": ["100 N", "200 N"]}})
-    friction: Table = _more("[friction]", {"guide": [0.05, 0.15]})
-    tolerances: Table = _more("[tolerances]", {"crank": ["0.02 mm", "0.1 mm"]})
-    motion: Table = _more("[motion]: where a swing starts", {"from": ["0 deg", "40 deg"]})
-    sections: Table = _more("[sections]", {"pins": {"crank_pin": ["10 mm", "20 mm"]}})
+    mechanism: Table = _variable_table("[mechanism]", {"slider": {"mass": ["0.5 kg", "2 kg"]}})
+    load: Table = _variable_table("a [[load]], by its position, 1 for the first,", {"1": {"force": ["100 N", "200 N"]}})
+    friction: Table = _variable_table("[friction]", {"guide": [0.05, 0.15]})
+    tolerances: Table = _variable_table("[tolerances]", {"crank": ["0.02 mm", "0.1 mm"]})
+    motion: Table = _variable_table("[motion]: where a swing starts", {"from": ["0 deg", "40 deg"]})
+    sections: Table = _variable_table("[sections]", {"pins": {"crank_pin": ["10 mm", "20 mm"]}})
 
     @model_validator(mode="before")
     @classmethod
@@ -62,7 +62,7 @@ class VariablesPart(Part):
         for key, value in data.items():
             steps = key.split(".") if isinstance(key, str) and key.partition(".")[0] in ROOTS else [key]
             if len(steps) > DEEPEST:
-                raise InputError(f"a path must have at most {DEEPEST} words; got {shown(key)}; shorten it")
+                raise InputError(f"a path must have at most {DEEPEST} words; got {quote(key)}; shorten it")
             _place(found, steps, deepcopy(value), key)
         return found
 
@@ -109,11 +109,11 @@ class OptionPart(Part):
         return dict(leaves_of(self.values, ""))
 
 
-def _apart(options: tuple[OptionPart, ...]) -> tuple[OptionPart, ...]:
+def _require_distinct_names(options: tuple[OptionPart, ...]) -> tuple[OptionPart, ...]:
     names = [option.name for option in options]
     for name in names:
         if names.count(name) > 1:
-            raise InputError(f"options of a choice must have different names; got {shown(name)} twice; rename one")
+            raise InputError(f"options of a choice must have different names; got {quote(name)} twice; rename one")
     return options
 
 
@@ -123,7 +123,7 @@ class ChoicePart(Part):
     name: Annotated[str, Field(min_length=1, max_length=40, pattern=r"^[A-Za-z][A-Za-z0-9_ -]*$")] = required(
         "name of the choice; its column in the table of designs is choice_<name>", "rod section"
     )
-    option: Annotated[tuple[OptionPart, ...], AfterValidator(_apart)] = optional(
+    option: Annotated[tuple[OptionPart, ...], AfterValidator(_require_distinct_names)] = optional(
         "options to choose from, unless they are in a file",
         [
             {"name": "30 x 10", "values": {"mechanism.rod.width": "30 mm", "mechanism.rod.depth": "10 mm"}},
@@ -144,9 +144,9 @@ class ChoicePart(Part):
     )
 
     @model_validator(mode="after")
-    def _given(self) -> Self:
+    def _require_options(self) -> Self:
         if self.file is not None and self.table is None:
-            raise unread(self.file, "options")
+            raise unread_file_error(self.file, "options")
         if len(self.option) < (2 if self.rows is None and self.table is None else 1):
             raise InputError(
                 f"must have two options or more, or a file; got {len(self.option)}; add [[choice.option]] tables"
@@ -157,7 +157,7 @@ class ChoicePart(Part):
 def choice_with(constraints: type[ConstraintsPart]) -> type[ChoicePart]:
     """Return the choice whose options may constrain quantities of a job's own too."""
     option: Any = retyped(OptionPart, constraints=constraints)
-    return retyped(ChoicePart, option=Annotated[tuple[option, ...], AfterValidator(_apart)])
+    return retyped(ChoicePart, option=Annotated[tuple[option, ...], AfterValidator(_require_distinct_names)])
 
 
 def varying_in(tables: Mapping[str, Any]) -> dict[str, Any]:

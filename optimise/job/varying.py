@@ -25,7 +25,7 @@ from ...model.machine.varying import Varying
 from ...objectives.amount import Amount
 from ...objectives.formula.formulas import Formulas
 from ...objectives.kinds import ANGULAR_SPEED
-from ...objectives.units import shown, spread
+from ...objectives.units import quote, spread
 from ..problem.discrete import Discrete
 from ..problem.problem import Variant
 from ..problem.requirements import Constraint, Range
@@ -125,7 +125,7 @@ def discrete_of(job: Job) -> tuple[Discrete, ...]:
             for part in job.choice:
                 if any(name in option.paths for option in part.option):
                     raise JobError(
-                        f"variables.{name}: a number set by options of the choice {shown(part.name)} must not be a "
+                        f"variables.{name}: a number set by options of the choice {quote(part.name)} must not be a "
                         "variable as well; leave out one of the two"
                     )
             found.append(Discrete(name=name, values=given.values, rule=given.rule))
@@ -159,7 +159,7 @@ def reach_of(job: Job) -> dict[str, Range]:
     found = {}
     for name in DIMENSIONS:
         options = [
-            _length(name, option.paths[name], f"choice {shown(part.name)}, option {shown(option.name)}")
+            _length(name, option.paths[name], f"choice {quote(part.name)}, option {quote(option.name)}")
             for part in job.choice
             for option in part.option
             if name in option.paths
@@ -184,15 +184,15 @@ def _axes(job: Job, formulas: Formulas, amounts: Mapping[str, Amount]) -> Iterat
         if is_choice(given):
             values = given["choices"]
             if not isinstance(values, list | tuple) or len(values) < 2:
-                raise JobError(f"variables.{path}: choices must be a list of at least two values; got {shown(values)}")
+                raise JobError(f"variables.{path}: choices must be a list of at least two values; got {quote(values)}")
             labels = [str(value) for value in values]
             if len(set(labels)) < len(labels):
-                raise JobError(f"variables.{path}: choices must differ; got {shown(values)}; leave out the second")
+                raise JobError(f"variables.{path}: choices must differ; got {quote(values)}; leave out the second")
             yield path.removeprefix("mechanism."), [_Option(str(value), {path: value}) for value in values]
     for part in job.choice:
         options = []
         for rank, o in enumerate(part.option):
-            where = f"choice {shown(part.name)}, option {shown(o.name)}"
+            where = f"choice {quote(part.name)}, option {quote(o.name)}"
             options.append(
                 _Option(
                     o.name,
@@ -224,7 +224,7 @@ def _variant(job: Job, names: list[str], chosen: tuple[_Option, ...]) -> Variant
     except JobError:
         for name, option in zip(names, chosen, strict=True):  # one that is wrong by itself is named
             single = next(iter(_single(name, option)), None)
-            own = f"variables.{single}" if single else f"choice {shown(name)}, option {shown(option.label)}"
+            own = f"variables.{single}" if single else f"choice {quote(name)}, option {quote(option.label)}"
             with_values(job, {path: value for path, value in option.values.items() if path in values}, own)
         raise
     return Variant(
@@ -255,7 +255,7 @@ def _slow_stroke(chosen: tuple[_Option, ...]) -> SlowStroke | None:
     if len(wanted) > 1:
         raise JobError(
             "choice: options that are chosen together must have the same slow stroke; got "
-            f"{' and '.join(f'{stroke} with {shown(label)}' for stroke, label in wanted.items())}; leave out one"
+            f"{' and '.join(f'{stroke} with {quote(label)}' for stroke, label in wanted.items())}; leave out one"
         )
     return next(iter(wanted), None)
 
@@ -271,7 +271,7 @@ def _length(name: str, value: Any, key: str) -> tuple[float, float] | Choices:
         found = RangeOf("any" if name == "offset" else "positive").read(value)
         if isinstance(found, Grid):
             raise InputError(
-                f"of an option must be a value or a range; got {shown(value)}; give the values in [variables]"
+                f"of an option must be a value or a range; got {quote(value)}; give the values in [variables]"
             )
         return found
     except InputError as error:
@@ -290,7 +290,7 @@ def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
     given = spread(given) or given
     if not isinstance(given, list | tuple) or len(given) != 2:
         raise JobError(
-            f"{key}: must be a range [lower, upper], {{ choices = [...] }}, or values; got {shown(given)}; "
+            f"{key}: must be a range [lower, upper], {{ choices = [...] }}, or values; got {quote(given)}; "
             "what does not vary is given in its own place alone"
         )
     jobs = [with_values(job, {path: end}, key) for end in given]
@@ -298,7 +298,7 @@ def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
     lower, upper = (_number(other, path, key) for other in jobs)
     if not lower < upper:
         raise JobError(
-            f"{key}: must run from its lower to its upper end; got {shown(given[0])} to {shown(given[1])}; "
+            f"{key}: must run from its lower to its upper end; got {quote(given[0])} to {quote(given[1])}; "
             f"{swap(*given)}"
         )
     sets = []
@@ -371,7 +371,7 @@ def _number(job: Job, path: str, key: str) -> float:
     share = ToleranceOf.share(part)
     number = part if share is None else share
     if isinstance(number, bool) or not isinstance(number, int | float):
-        raise JobError(f"{key}: must name a number; got {shown(part)}; make it a choice instead")
+        raise JobError(f"{key}: must name a number; got {quote(part)}; make it a choice instead")
     return float(number)
 
 

@@ -50,13 +50,13 @@ class Cost:
                 f"got {self.least:g} to {self.greatest:g}; a given tolerance belongs to the mechanism, without a cost"
             )
 
-    def of(self, tolerance: float) -> float:
+    def cost_at(self, tolerance: float) -> float:
         """Return the cost of a tolerance, m or rad; infinite at zero."""
         return self.fixed + self.cost * (self.at / tolerance) ** self.exponent if tolerance > 0.0 else math.inf
 
     def slope(self, tolerance: float) -> float:
         """Return the change of the cost with the tolerance, per m or rad; never positive."""
-        return -self.exponent * (self.of(tolerance) - self.fixed) / tolerance
+        return -self.exponent * (self.cost_at(tolerance) - self.fixed) / tolerance
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,11 +69,11 @@ class Costs:
     crank_angle: Cost | None = None
 
     def __post_init__(self) -> None:
-        if not self.given:
+        if not self.by_name:
             raise InputError("costs must name at least one of crank, rod, offset and crank_angle; got none")
 
     @property
-    def given(self) -> dict[str, Cost]:
+    def by_name(self) -> dict[str, Cost]:
         """The costs that there are, by name, in the order of `NAMES`."""
         return {name: cost for name in NAMES if (cost := getattr(self, name)) is not None}
 
@@ -85,6 +85,6 @@ NAMES = (*DIMENSIONS, "crank_angle")
 def costs_before(costs: Costs, linkage: Linkage, before: Mechanism) -> dict[str, float] | None:
     """Return the cost of each tolerance of a mechanism, by name; None if one with a cost is zero."""
     reach = dict(zip(NAMES, limits(before, linkage)[: len(NAMES)], strict=True))
-    if not all(reach[name] > 0.0 for name in costs.given):
+    if not all(reach[name] > 0.0 for name in costs.by_name):
         return None
-    return {name: cost.of(float(reach[name])) for name, cost in costs.given.items()}
+    return {name: cost.cost_at(float(reach[name])) for name, cost in costs.by_name.items()}

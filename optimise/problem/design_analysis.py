@@ -17,14 +17,21 @@ from ...model.linkage.single import single
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
 from ...model.swing.swing import Swing, require_swing
-from ...objectives.formula.meant import meant
 from ...objectives.formula.quantity import FormulaQuantity
+from ...objectives.formula.resolve import resolve_quantities
 from ...objectives.kinds import unit_text
 from ...objectives.quantity import Array, Quantity, Values
 from ...objectives.registry import QUANTITIES
 from ...objectives.tables.cycle_curves import cycle_curves, cycle_table, even_angles
+from ...objectives.tables.design_arrays import (
+    countable,
+    given_designs,
+    numbers_of,
+    require_machine,
+    shortly,
+    warn_of_lengths,
+)
 from ...objectives.tables.deviation import deviations
-from ...objectives.tables.given import countable, given_designs, numbers_of, require_machine, shortly, warn_of_lengths
 from ...objectives.tables.measured import measured_from
 from ...objectives.tables.missing_values import missing_value_reason
 from ...objectives.tables.swinging import require_in_motion, swinging
@@ -67,7 +74,7 @@ class Analysis(Mapping[str, float]):
         if name in self.undefined:
             raise InputError(f"{name} is not defined here: {self.undefined[name]}")
         require_in_motion([name], self.quantities, self.swing)
-        (known,) = meant([name], self.mechanism, self.quantities, turning=self.swing is None)
+        (known,) = resolve_quantities([name], self.mechanism, self.quantities, turning=self.swing is None)
         if isinstance(known, FormulaQuantity) and known.name not in self.found:
             return self._of_formula(known)
         if known.name not in self.found:
@@ -188,7 +195,7 @@ class Analysis(Mapping[str, float]):
     def _repr_html_(self) -> str:
         """Picture of the linkage and table of its quantities, for notebooks."""
         table = self.table().to_html(float_format="{:.5g}".format, na_rep="")
-        lines = "".join(f"<p>{escape(line)}</p>" for line in (self.title, self._beyond()) if line)
+        lines = "".join(f"<p>{escape(line)}</p>" for line in (self.title, self._violation_text()) if line)
         return f"<div>{lines}{self.linkage._repr_html_() or ''}{table}</div>"
 
     def __repr__(self) -> str:
@@ -196,10 +203,10 @@ class Analysis(Mapping[str, float]):
         numbers = ", ".join(
             f"{item.title} {item.unit.factor * self.found[item.name]:.4g} {item.unit.symbol}".rstrip() for item in shown
         )
-        parts = [numbers, f"{len(self.found)} quantities, {len(self.undefined)} undefined", self._beyond()]
+        parts = [numbers, f"{len(self.found)} quantities, {len(self.undefined)} undefined", self._violation_text()]
         return f"Analysis({self.linkage.label}: {'; '.join(filter(None, parts))})"
 
-    def _beyond(self) -> str:
+    def _violation_text(self) -> str:
         titles = [QUANTITIES[name].title for name in self.violated]
         return f"beyond the allowable value: {', '.join(titles)}" if titles else ""
 

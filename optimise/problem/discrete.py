@@ -35,7 +35,7 @@ class Discrete:
         if not self.values or not all(map(math.isfinite, self.values)) or not rising:
             raise InputError(f"the values of {self.name} must be finite and ascending, at least one; sort them")
 
-    def within(self, ends: Range) -> Array:
+    def values_in(self, ends: Range) -> Array:
         """Return the values of a range."""
         room = SAME * max(abs(ends.lower), abs(ends.upper))
         return np.array([value for value in self.values if ends.lower - room <= value <= ends.upper + room])

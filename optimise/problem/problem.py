@@ -19,12 +19,12 @@ from ...model.machine.crank_loads import require_no_winding
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...objectives.amount import Amount, with_amounts
-from ...objectives.formula.meant import is_formula, meant
+from ...objectives.bounds import QuantityBounds
+from ...objectives.formula.resolve import is_formula, resolve_quantities
 from ...objectives.quantity import Array, Quantity
-from ...objectives.reach import Reach
 from ...objectives.registry import QUANTITIES, listed
+from ...objectives.tables.design_arrays import given_designs, numbers_of, warn_of_lengths
 from ...objectives.tables.evaluate import evaluated
-from ...objectives.tables.given import given_designs, numbers_of, warn_of_lengths
 from ...objectives.tables.swinging import (
     require_in_motion,
     require_loads,
@@ -257,7 +257,7 @@ class Problem:
         """
         require_in_motion([name], self.own, self.motion)
         lengths = {name: getattr(self, name) for name in DIMENSIONS}
-        (found,) = meant([name], self.mechanism, self.own, ranges=lengths, turning=self.motion is None)
+        (found,) = resolve_quantities([name], self.mechanism, self.own, ranges=lengths, turning=self.motion is None)
         return found
 
     @overload
@@ -417,9 +417,9 @@ class Problem:
         """The constraints and those that come with choices."""
         return (*self.constraints, *(limit for variant in self.variants for limit in variant.limits))
 
-    def reach_of(self, of: Quantity) -> Reach | None:
+    def reach_of(self, of: Quantity) -> QuantityBounds | None:
         """Return the reach of a quantity if it holds for every machine of the problem."""
-        return of.reach if all(of.reach_for(machine) is not None for machine in self.machines) else None
+        return of.bounds if all(of.bounds_for(machine) is not None for machine in self.machines) else None
 
     def without_gradient(self) -> list[str]:
         """Return the names in objectives and constraints, those of choices too, that have no gradient."""
@@ -456,7 +456,7 @@ class Problem:
             rod=chosen.rod,
             offset=chosen.offset,
             constraints=merged((*self.constraints, *chosen.limits)),
-            slow_stroke=_one(self.slow_stroke, chosen.slow_stroke),
+            slow_stroke=_common_stroke(self.slow_stroke, chosen.slow_stroke),
             own=tuple(with_amounts(of, amounts) for of in self.own),
             choices=(),
             variants=(),
@@ -475,7 +475,7 @@ def _in_words(of: Quantity, constraint: Constraint) -> str:
     return f"{of.title}: {', '.join(ends)}"
 
 
-def _one(stroke: SlowStroke | None, more: SlowStroke | None) -> SlowStroke | None:
+def _common_stroke(stroke: SlowStroke | None, more: SlowStroke | None) -> SlowStroke | None:
     """Return the slow stroke that both ask for. Raises `InputError` if they differ."""
     if stroke is not None and more is not None and stroke != more:
         raise InputError(

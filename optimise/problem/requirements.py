@@ -43,7 +43,7 @@ class Range:
     def __post_init__(self) -> None:
         if not (_finite(self.lower) and _finite(self.upper) and self.lower <= self.upper):
             raise InputError(
-                f"a range needs lower <= upper, both finite; got {_shown(self.lower)} to {_shown(self.upper)}"
+                f"a range needs lower <= upper, both finite; got {_format(self.lower)} to {_format(self.upper)}"
             )
 
     @property
@@ -69,7 +69,7 @@ class Constraint:
             raise InputError(f"the constraint on {self.quantity} needs a lower bound, an upper bound or a value")
         for bound in (self.lower, self.upper):
             if bound is not None and not _finite(bound):
-                raise InputError(f"the constraint on {self.quantity} must be a finite number, SI; got {_shown(bound)}")
+                raise InputError(f"the constraint on {self.quantity} must be a finite number, SI; got {_format(bound)}")
         if self.lower is not None and self.upper is not None and self.lower > self.upper:
             raise InputError(
                 f"the constraint on {self.quantity} is empty: min {self.lower:g} exceeds max {self.upper:g}"
@@ -110,7 +110,7 @@ class Objective:
         if (self.sense == "target") != (self.target is not None):
             raise InputError(f"the objective {self.quantity} needs a target exactly when its sense is 'target'")
         if self.target is not None and not _finite(self.target):
-            raise InputError(f"the target of {self.quantity} must be a finite number, SI; got {_shown(self.target)}")
+            raise InputError(f"the target of {self.quantity} must be a finite number, SI; got {_format(self.target)}")
         _warn_of_units(self.quantity, {"target": self.target})
 
 
@@ -163,5 +163,5 @@ def _finite(value: object) -> bool:
     return isinstance(value, Real) and math.isfinite(value)
 
 
-def _shown(value: object) -> str:
+def _format(value: object) -> str:
     return f"{value:g}" if isinstance(value, Real) else repr(value)

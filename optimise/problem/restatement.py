@@ -135,7 +135,7 @@ def _is_analytic(of: FormulaQuantity) -> bool:
     An argument of an inverse sine or cosine may be clipped to 1: beyond it the function is undefined.
     """
 
-    def one(node: Node) -> bool:
+    def has_analytic_form(node: Node) -> bool:
         if not isinstance(node, Call):
             return True
         if node.function in ("asin", "acos"):
@@ -143,12 +143,14 @@ def _is_analytic(of: FormulaQuantity) -> bool:
             if isinstance(inner, Call) and inner.function in ("min", "max") and len(inner.arguments) == 2:
                 end = 1.0 if inner.function == "min" else -1.0
                 left = [item for item in inner.arguments if not (isinstance(item, Number) and item.si == end)]
-                return len(left) == 1 and one(left[0])
+                return len(left) == 1 and has_analytic_form(left[0])
         if node.function == "abs":
             return node.arguments[0] == Name("offset")
-        return node.function not in ("min", "max") and all(map(one, node.arguments))
+        return node.function not in ("min", "max") and all(map(has_analytic_form, node.arguments))
 
-    return one(of.expression) and all(_is_analytic(part) for part in of.parts if isinstance(part, FormulaQuantity))
+    return has_analytic_form(of.expression) and all(
+        _is_analytic(part) for part in of.parts if isinstance(part, FormulaQuantity)
+    )
 
 
 def _random_designs(crank: Range, rod: Range, offset: Range) -> Array:

@@ -9,7 +9,7 @@ from ...model.errors import InputError
 from ...model.machine.varying import Varying
 from ...objectives.quantity import Quantity
 from ...objectives.registry import FACTS
-from ...objectives.tables.of_a_turn import OF_A_TURN
+from ...objectives.tables.turn_columns import OF_A_TURN
 from ...objectives.tables.varying_column import columns_of_numbers
 
 RESIDUAL, STATUS = "residual", "status"

@@ -95,8 +95,8 @@ def _on_unseen_kink(problem: Problem, variants: Whole, dimensions: Array) -> Mas
         rows = np.flatnonzero(variants == variant)
         for of in formulas:
             pieces = of.pieces(problem.part(variant).mechanism, dimensions[rows])
-            if pieces.other is not None:
-                held = pieces if asked[of.name] else pieces.other
+            if pieces.opposite is not None:
+                held = pieces if asked[of.name] else pieces.opposite
                 apart = np.abs(held.values - held.values[:, :1])
                 ties = (apart <= ACTIVE * np.abs(held.values[:, 0]).max()).sum(axis=1) > 1
                 found[rows] |= ties
@@ -133,7 +133,7 @@ def columns_of(
         for rows in np.split(own, range(_AT_ONCE, len(own), _AT_ONCE)):
             report(done, len(dimensions))
             judged = analysis.columns_of if problem.motion is None else swinging.columns_of
-            columns = judged(part.mechanism, dimensions[rows], own=part.own)
+            columns = judged(part.mechanism, dimensions[rows], custom=part.own)
             report(done, len(dimensions))
             before = 3 + len(part.mechanism.varying)
             of_size = dict(itertools.islice(columns.items(), before))

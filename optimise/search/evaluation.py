@@ -199,7 +199,7 @@ class Evaluator:
 
 def _to_unit_box(found: Pieces, jacobian: Array) -> Pieces:
     """Return the pieces of designs with gradients by the unit-box coordinates; jacobian: (n, 3 + v, k), of these."""
-    other = None if found.other is None else _to_unit_box(found.other, jacobian)
+    other = None if found.opposite is None else _to_unit_box(found.opposite, jacobian)
     heights, sizes = np.abs(found.values), np.abs(found.gradients)
     # Most are bounded. The products of a copy in another order would round otherwise.
     if heights.max(initial=0.0) < _HUGE and sizes.max(initial=0.0) < _HUGE and found.gradients.flags.c_contiguous:
@@ -243,8 +243,8 @@ def _binding_pieces(pieces: Pieces, side: float) -> Pieces:
     to hold it up. A quantity with kinks of both kinds has pieces for either. Peaks come highest first, closed forms in
     any order.
     """
-    if pieces.other is not None and pieces.least == (side > 0.0):
-        return pieces.other
+    if pieces.opposite is not None and pieces.least == (side > 0.0):
+        return pieces.opposite
     if pieces.least == (side < 0.0) or pieces.values.shape[1] == 1:
         return pieces
     first = (np.argmin if pieces.least else np.argmax)(pieces.values, axis=1)

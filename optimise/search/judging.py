@@ -71,7 +71,7 @@ def _join_pieces(parts: Sequence[Pieces]) -> Pieces:
         filled = [np.pad(each, more, constant_values=absent) for each, more in zip(columns, room, strict=True)]
         return np.concatenate(filled)
 
-    others = [_opposite_pieces(part) for part in parts] if any(part.other for part in parts) else []
+    others = [_opposite_pieces(part) for part in parts] if any(part.opposite for part in parts) else []
     return Pieces(
         rows([part.values for part in parts], np.inf if least else -np.inf),
         rows([part.gradients for part in parts]),
@@ -83,7 +83,7 @@ def _join_pieces(parts: Sequence[Pieces]) -> Pieces:
 
 def _opposite_pieces(part: Pieces) -> Pieces:
     """Return a quantity from its other side, where some designs have no kink on it: its active piece alone."""
-    if part.other is not None:
-        return part.other
+    if part.opposite is not None:
+        return part.opposite
     active = (np.argmin if part.least else np.argmax)(part.values, axis=1)
-    return replace(part.at(active[:, None]), least=not part.least)
+    return replace(part.take(active[:, None]), least=not part.least)

@@ -101,7 +101,7 @@ def _may_differ(of: Quantity) -> bool:
     if of.constant:
         return False
     if isinstance(of, FormulaQuantity):
-        return of.one_sided or any(map(_may_differ, of.parts))
+        return of.has_signed_offset or any(map(_may_differ, of.parts))
     return QUANTITIES.get(of.name) != of
 
 

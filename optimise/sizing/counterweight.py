@@ -134,20 +134,20 @@ def balance(
     measure: Measure = "peak",
     arm: float | None = None,
     radius: float | None = None,
-    most: float | None = None,
+    greatest_moment: float | None = None,
     rod: RodSpace | None = None,
 ) -> Balance:
     """Return the counterweight, instead of the mechanism's own, and the rod balance of least shaking of one linkage.
 
     arm: m, the shaking moment counts as moment / arm; left out if None. It needs a rod balance: no counterweight
-    changes it. radius: of the counterweight, m; that of the mechanism's own, or the crank, if None. most: greatest
-    moment of the counterweight, kg m. rod: the space for a rod balance; none if None.
+    changes it. radius: of the counterweight, m; if None that of the mechanism's counterweight, or the crank.
+    greatest_moment: of the counterweight, kg m. rod: the space for a rod balance; none if None.
     Raises `InputError` for a crank that stands or accelerates, and where nothing that moves has a mass.
     """
     require_word("measure", measure, Measure)
     require_plain(mechanism, "the balance of a counterweight")
     linkage = single(mechanism, linkage)
-    for name, value in (("arm", arm), ("radius", radius), ("most", most)):
+    for name, value in (("arm", arm), ("radius", radius), ("greatest_moment", greatest_moment)):
         if value is not None and not (math.isfinite(value) and value > 0.0):
             raise InputError(f"{name} must be positive and finite; got {value:g}")
     if mechanism.acceleration or not mechanism.speed:
@@ -162,7 +162,7 @@ def balance(
         )
     if not moving_moment(mechanism, linkage) > 0.0:
         raise InputError("balancing needs masses; crank, rod and slider have none; give at least one")
-    return _Programme(mechanism, linkage, measure, arm, most, rod).solve(
+    return _Programme(mechanism, linkage, measure, arm, greatest_moment, rod).solve(
         radius or mechanism.counterweight.radius or float(linkage.crank)
     )
 
@@ -175,7 +175,7 @@ class _Programme:
     linkage: Linkage
     measure: Measure
     arm: float | None
-    most: float | None
+    greatest_moment: float | None
     rod: RodSpace | None
 
     def __post_init__(self) -> None:
@@ -233,7 +233,7 @@ class _Programme:
                 rules.append(cp.norm(parts, axis=0) <= goals[-1])
             else:
                 rules.append(cp.abs(first + others @ z) <= goals[-1])
-        held = [] if self.most is None else [cp.norm(z[:2]) <= self.most / self.unit[0]]
+        held = [] if self.greatest_moment is None else [cp.norm(z[:2]) <= self.greatest_moment / self.unit[0]]
         rules += held
         if self.rod is not None:
             rules += [cp.quad_over_lin(z[3:5], z[2]) <= z[5], z[5] <= z[2], z[2] <= self.rod.mass / self.unit[2]]
@@ -245,14 +245,14 @@ class _Programme:
             raise InputError(f"the cone solver found no balance ({problem.status}); masses must be of comparable size")
         x = np.zeros(6)
         x[: self.count] = z.value * self.unit[: self.count]
-        tight = self.most is not None and math.hypot(x[0], x[1]) > self.most * (1.0 - 1e-6)
+        tight = self.greatest_moment is not None and math.hypot(x[0], x[1]) > self.greatest_moment * (1.0 - 1e-6)
         price = held[0].dual_value * self.force / self.unit[0] if tight else 0.0
-        return self._lightest(self._inside(x)), float(problem.value * self.force), float(price)
+        return self._lightest(self._clip(x)), float(problem.value * self.force), float(price)
 
-    def _inside(self, x: Array) -> Array:
+    def _clip(self, x: Array) -> Array:
         """Return x within its bounds, from where the solver's rounding left it."""
-        if self.most is not None:
-            x[:2] *= min(1.0, self.most / max(math.hypot(x[0], x[1]), 1e-300))
+        if self.greatest_moment is not None:
+            x[:2] *= min(1.0, self.greatest_moment / max(math.hypot(x[0], x[1]), 1e-300))
         if self.rod is not None:
             mass = min(float(x[2]), self.rod.mass) if x[2] > 1e-9 * self.rod.mass else 0.0
             inertia = min(max(float(x[5]), 0.0), mass * self.rod.radius**2)
@@ -268,7 +268,7 @@ class _Programme:
         inertia = first * reach if self.arm is None else max(0.0, float(x[5]))
         mass = max(inertia / reach**2, first**2 / inertia) if inertia else 0.0
         light = np.array([x[0] + (x[2] - mass) * float(self.linkage.crank), x[1], mass, x[3], x[4], inertia])
-        return light if self.most is None or math.hypot(light[0], light[1]) <= self.most else x
+        return light if self.greatest_moment is None or math.hypot(light[0], light[1]) <= self.greatest_moment else x
 
     def _rising(self, x: Array, angles: Array, after: Mechanism) -> Array:
         """Return the crank angles of exact peaks that exceed all those at the angles that the programme has."""

@@ -30,14 +30,14 @@ class ErrorRows:
     def __init__(self, mechanism: Mechanism, linkage: Linkage, costs: Costs, limit: float, kind: Kind) -> None:
         self.mechanism, self.linkage, self.limit = mechanism, linkage, limit
         self.power = 1 if kind == "worst case" else 2
-        self.names = tuple(costs.given)
+        self.names = tuple(costs.by_name)
         self._chosen = [NAMES.index(name) for name in self.names]
         self._given = limits(mechanism, linkage)
         self._given[self._chosen] = 0.0
         self.start = np.mod(np.concatenate(counted_angles(mechanism, linkage, count=_START)), _TURN)
         self.scale = np.ones(len(self._chosen))
         share = 1.0 / (len(self._chosen) * self.rows(self.start)[0].max(axis=0))
-        self.scale = np.minimum(share, np.array([cost.greatest for cost in costs.given.values()]) ** self.power)
+        self.scale = np.minimum(share, np.array([cost.greatest for cost in costs.by_name.values()]) ** self.power)
 
     def rows(self, angles: Array) -> tuple[Array, Array]:
         """Return the coefficients (m, n) of x and what is left for them (m,) at crank angles (m,), rad."""

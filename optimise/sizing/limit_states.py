@@ -84,7 +84,7 @@ class BarLoads:
     pins: dict[str, tuple[Any, float]]
     bent_eye: str = ""
 
-    def each(self, above: Above) -> BarLoads:
+    def map_loads(self, above: Above) -> BarLoads:
         """Return the same with `above` applied to each that own mass adds to."""
         return replace(
             self, **{name: above(load) for name, load in vars(self).items() if name not in ("pins", "bent_eye")}
@@ -154,11 +154,15 @@ def rod_loads(
 ) -> BarLoads:
     """Return the loads on the rod, its own mass included."""
     rho, fatigue = material.density, 1.0 / material.endurance
-    axial = rho * d * (_some(whip.spinning * length**2 / 8.0) * w + _some(math.pi / 8.0 * whip.along) * w**2)
+    axial = rho * d * (_positive(whip.spinning * length**2 / 8.0) * w + _positive(math.pi / 8.0 * whip.axial) * w**2)
     moment = (
         rho
         * d
-        * (_some(whip.moment) * w + _some(whip.across / 12.0) * w**3 + _some(math.pi / 128.0 * whip.turning) * w**4)
+        * (
+            _positive(whip.moment) * w
+            + _positive(whip.lateral / 12.0) * w**3
+            + _positive(math.pi / 128.0 * whip.turning) * w**4
+        )
     )
     return BarLoads(
         axial=joints["rod"] + axial,
@@ -186,8 +190,8 @@ def crank_loads(
     rho, fatigue, pull = material.density, 1.0 / material.endurance, math.hypot(*mechanism.gravity)
     first = length**2 / 2.0 * w + math.pi * length / 8.0 * w**2 + w**3 / 12.0
     second = length**3 / 3.0 * w + math.pi * length**2 / 8.0 * w**2 + length / 6.0 * w**3 + math.pi / 128.0 * w**4
-    axial = rho * d * (_some(mechanism.speed**2) * first + _some(pull) * (length * w + math.pi / 8.0 * w**2))
-    moment = rho * d * (_some(pull) * first + _some(abs(mechanism.acceleration)) * second)
+    axial = rho * d * (_positive(mechanism.speed**2) * first + _positive(pull) * (length * w + math.pi / 8.0 * w**2))
+    moment = rho * d * (_positive(pull) * first + _positive(abs(mechanism.acceleration)) * second)
     return BarLoads(
         axial=joints["crank"] + axial,
         compression=joints["crank compression"] + axial,
@@ -224,9 +228,9 @@ def joint_terms(joints: JointLoads, material: Material, limits: SectionLimits) -
     }
     least = _NOTHING * max(terms.values())
     floors = {name: least / material.endurance if name.endswith("fatigue") else least for name in terms}
-    return {name: _some(max(value, floors[name])) for name, value in terms.items()}
+    return {name: _positive(max(value, floors[name])) for name, value in terms.items()}
 
 
-def _some(value: float) -> float:
+def _positive(value: float) -> float:
     """Return a coefficient that a posynomial can have: none is zero."""
     return max(value, _TINY)

@@ -77,8 +77,8 @@ class Whip:
     """
 
     moment: float
-    across: float
-    along: float
+    lateral: float
+    axial: float
     turning: float
     spinning: float
 
@@ -121,14 +121,14 @@ def whip_of(mechanism: Mechanism, linkage: Linkage) -> Whip:
     for place in (0.0, float(linkage.rod)):
         point = linkage.rod_point(angles, along=place, speed=mechanism.speed, acceleration=mechanism.acceleration)
         ends.append(point.acceleration - np.asarray(mechanism.gravity))
-    across = np.stack([(end * normal).sum(axis=1) for end in ends])
-    along = np.stack([(end * axis).sum(axis=1) for end in ends])
+    lateral = np.stack([(end * normal).sum(axis=1) for end in ends])
+    axial = np.stack([(end * axis).sum(axis=1) for end in ends])
     share = np.linspace(0.0, 1.0, _STATIONS)
     shapes = np.stack([share * (1.0 - share) * (2.0 - share), share * (1.0 - share) * (1.0 + share)])
     return Whip(
-        moment=float(np.abs(across.T @ shapes).max() * float(linkage.rod) ** 2 / 6.0),
-        across=float(np.abs(across).max()),
-        along=float(np.abs(along).max()),
+        moment=float(np.abs(lateral.T @ shapes).max() * float(linkage.rod) ** 2 / 6.0),
+        lateral=float(np.abs(lateral).max()),
+        axial=float(np.abs(axial).max()),
         turning=float(np.abs(motion.rod_acceleration).max()),
         spinning=float((motion.rod_velocity**2).max()),
     )

@@ -62,7 +62,7 @@ class Sections:
     change: float
 
     @property
-    def settled(self) -> bool:
+    def is_converged(self) -> bool:
         """Whether sections and dynamics agree."""
         return self.change <= 1e-6
 
@@ -186,7 +186,7 @@ class _Task:
             ("crank", x[0], x[1], z[0], 2.0 * crank, of_crank),
             ("rod", x[2], x[3], z[1], rod, of_rod),
         ):
-            states = limit_states(w, d, own, buckling_length, loads.each(above), self.material, self.limits, above)
+            states = limit_states(w, d, own, buckling_length, loads.map_loads(above), self.material, self.limits, above)
             found |= {f"{part}: {name}": state for name, state in states.items()}
         return found
 
@@ -213,7 +213,7 @@ class _Programme:
         monomials = cp.multiply(self.loads, cp.gmatmul(self.powers, self.sizes))
         bounds: list[Any] = []
 
-        def above(expression: Any) -> Any:
+        def upper_bound_variable(expression: Any) -> Any:
             """Return a variable no less than an expression: at the optimum equal where it counts."""
             bound = cp.Variable(pos=True)
             bounds.append(expression <= bound)
@@ -221,7 +221,10 @@ class _Programme:
 
         x = [self.sizes[row] for row in range(4)]
         states = task.limit_states(
-            x, [z[0], z[1]], {name: above(monomials[row]) for row, name in enumerate(loads)}, above
+            x,
+            [z[0], z[1]],
+            {name: upper_bound_variable(monomials[row]) for row, name in enumerate(loads)},
+            upper_bound_variable,
         )
         self.held = {
             name: state <= (1.0 if name.endswith(("width", "depth")) else over) for name, state in states.items()

@@ -132,7 +132,7 @@ class _Programme:
     """The programme in x, with the limit as 1."""
 
     def __init__(self, rows: ErrorRows, costs: Costs) -> None:
-        self.error, self.costs = rows, list(costs.given.values())
+        self.error, self.costs = rows, list(costs.by_name.values())
         self.least, self.greatest, at = (
             rows.scaled(np.array([getattr(cost, name) for cost in self.costs])) for name in ("least", "greatest", "at")
         )
@@ -246,7 +246,7 @@ class _Programme:
             if slope != 0.0:
                 bound = "least" if slope > 0.0 else "greatest"
             saving = abs(slope) * self.error.power * x / t  # dx = p x dt / t
-            parts.append(Part(name, float(t), cost.of(float(t)), bound, float(saving)))
+            parts.append(Part(name, float(t), cost.cost_at(float(t)), bound, float(saving)))
         order = np.argsort(point.angles)
         # d(limit^p) = p limit^p dlimit / limit
         savings = point.multipliers[order] * self.error.power / self.error.limit

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.units import shown
+from ...objectives.units import quote
 from ...optimise.job.model import Job as JobModel
 from ..designs.columns import find_column
 from ..designs.picking_options import require_alone
@@ -188,7 +188,7 @@ class Asked:
             if name not in taken:
                 raise InputError(f"an input must be one of {', '.join(_INPUTS)}; got {name[:60]!r}; leave it out")
             if _INPUTS[name]["type"] == "string" and not isinstance(self.inputs[name], str):
-                raise InputError(f"inputs.{name} must be a text; got {shown(self.inputs[name])}; correct it")
+                raise InputError(f"inputs.{name} must be a text; got {quote(self.inputs[name])}; correct it")
 
     @property
     def alone(self) -> str | None:

@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 from pydantic.fields import FieldInfo
 
 from ...model.errors import InputError
-from ...objectives.units import closest, shown
+from ...objectives.units import closest, quote
 from ...optimise.job.messages import rule_of
 from ...optimise.job.schema import schema_of
 from .call import Answer, Call
@@ -77,11 +77,11 @@ class Tool:
             near = closest(name, known)
             remedy = f"did you mean {near}?" if near else "leave it out"
             rule = f"accepts only {', '.join(known)}" if known else "has no inputs"
-            return f"{self.name} {rule}; got {shown(name)}; {remedy}"
+            return f"{self.name} {rule}; got {quote(name)}; {remedy}"
         if details["type"] == "missing":
             return f"{self.name} needs {name}, which is missing; add it"
         path = ".".join(str(part) for part in details["loc"] if not str(part).startswith(("dict[", "str", "list[")))
-        return f"{path} {rule_of(details)}; got {shown(details['input'])}; correct it"
+        return f"{path} {rule_of(details)}; got {quote(details['input'])}; correct it"
 
 
 def _default_of(one: Any) -> Any:

@@ -103,12 +103,12 @@ def _part(part: Part, bare: bool) -> str | NumberPart | PhrasePart:
 
 
 def _unit(kind: Kind) -> PhrasePart:
-    return PhrasePart(**{system: unit_text(kind.face(system).symbol) for system in _SYSTEMS})
+    return PhrasePart(**{system: unit_text(kind.display_unit(system).symbol) for system in _SYSTEMS})
 
 
 def _number(value: Value, bare: bool) -> NumberPart:
     def shown(system: System) -> dict[str, Any]:
-        face = value.kind.face(system)
+        face = value.kind.display_unit(system)
         number = None if value.number is None else json_ready(face.factor * value.number)
         digits, decimals = digits_of(value, system)
         unit = "" if bare or value.bare else unit_text(face.symbol)

@@ -252,7 +252,7 @@ def _example(look: Look) -> ExampleModel | None:
         slow_stroke=str(slow_stroke(machine, linkage)),
         stroke_mm=1e3 * float(linkage.stroke),
         slider_ends_mm=(1e3 * float(linkage.dead_centres[0]), 1e3 * float(linkage.dead_centres[1])),
-        time_ratio=float(time_ratio(machine, linkage)) if ONE_TIMING.met(machine) else None,
+        time_ratio=float(time_ratio(machine, linkage)) if ONE_TIMING.is_met(machine) else None,
         least_transmission_angle_deg=math.degrees(float(linkage.least_transmission_angle)),
         motion=_motion(linkage),
     )

@@ -144,15 +144,15 @@ def _methods(request: Request) -> list[str]:
 
 def rule_and_value(details: Mapping[str, Any]) -> str:
     """Return what is wrong where pydantic says so: rule, value, remedy."""
-    from ...objectives.units import shown
+    from ...objectives.units import quote
     from ...optimise.job.messages import rule_of
 
     if details["type"] == "missing":
         return "is missing, but required; add it"
     if details["type"] == "extra_forbidden":
-        return f"unknown; got {shown(details['input'])}; leave it out"
+        return f"unknown; got {quote(details['input'])}; leave it out"
     rule = rule_of(details) if details["type"] not in _OBJECT else "must be a JSON object, in braces"
-    return f"{rule}; got {shown(details['input'])}; correct it"
+    return f"{rule}; got {quote(details['input'])}; correct it"
 
 
 def _place(location: Sequence[Any]) -> str:

@@ -191,7 +191,7 @@ def _leave_out(row: Row, mechanism: Mechanism, *, alone: bool) -> list[str]:
 
     if not alone:
         return []
-    missing = [of for of in QUANTITIES.values() if any(not need.met(mechanism) for need in of.needs)]
+    missing = [of for of in QUANTITIES.values() if any(not need.is_met(mechanism) for need in of.needs)]
     more = ("loaded_stroke", f"{PEAK_TORQUE.name}_angle_deg")
     row.update(dict.fromkeys((*more, *(of.field for of in missing))))
     notes = ["torque, forces and position error need masses, loads and tolerances; give a JOB"]

@@ -130,11 +130,11 @@ def value_of(key: str, given: object, kind: Kind, *, sign: Any = "any") -> float
 
     Raises `InputError` that begins with the key.
     """
-    from ...objectives.units import shown, to_si
+    from ...objectives.units import quote, to_si
 
     text = isinstance(given, str)
     if text and kind.unit and plain_number(str(given)) is not None:
-        raise InputError(f'{key} must be {kind.name} with its unit; got {shown(given)}; write it like "{kind.example}"')
+        raise InputError(f'{key} must be {kind.name} with its unit; got {quote(given)}; write it like "{kind.example}"')
     try:
         return to_si(given, kind, sign=sign, plain=not text)
     except InputError as error:

@@ -124,7 +124,7 @@ def look_between(
 
 def lengths_in_words(linkage: Linkage, system: System = "metric", *, digits: int = 7, stroke: bool = False) -> str:
     """Return the dimensions of a linkage, with its stroke where that is asked, and its branch."""
-    names, face = (*DIMENSIONS, *(["stroke"] if stroke else [])), LENGTH.face(system)
+    names, face = (*DIMENSIONS, *(["stroke"] if stroke else [])), LENGTH.display_unit(system)
     lengths = (f"{name} {face.factor * float(getattr(linkage, name)):.{digits}g} {face.symbol}" for name in names)
     return f"{', '.join(lengths)}; {linkage.branch} branch"
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...objectives.kinds import Face, Kind, System, unit_text
+from ...objectives.kinds import DisplayUnit, Kind, System, unit_text
 from ..render.blocks import Text
 from ..render.formatting import format_text
 
@@ -82,10 +82,10 @@ def over_turn(
 
 def panel_in(panel: Panel, system: System) -> Panel:
     """Return a panel as it is drawn: its numbers in the units of a system, its texts with them."""
-    x, y = (None if kind is None else kind.face(system) for kind in (panel.along, panel.kind))
+    x, y = (None if kind is None else kind.display_unit(system) for kind in (panel.along, panel.kind))
     across, up = (1.0 if face is None else face.factor for face in (x, y))
 
-    def text(of: Text, face: Face | None = None) -> str:
+    def text(of: Text, face: DisplayUnit | None = None) -> str:
         words = format_text(of, system, printed=True)
         return f"{words}, {unit_text(face.symbol)}" if face is not None and face.symbol else words
 

@@ -55,31 +55,31 @@ def require_allowed(tables: Mapping[str, Any], allowed: Collection[str]) -> None
 def functions_of(tables: Mapping[str, Any]) -> dict[str, str]:
     """Return the functions that a job names, by the names of their quantities. Raises `JobError` for what is none."""
     from ...objectives.own.quantity import FUNCTION
-    from ...objectives.units import shown
+    from ...objectives.units import quote
 
     parts, found = tables.get("quantity", {}), {}
     write = 'write it like { function = "mymodule:myfunction" }'
     if not isinstance(parts, Mapping):
-        raise JobError(f"quantity: must be a table of tables, each with a function; got {shown(parts)}; leave it out")
+        raise JobError(f"quantity: must be a table of tables, each with a function; got {quote(parts)}; leave it out")
     for name, part in parts.items():
         if not isinstance(part, Mapping):
-            raise JobError(f"quantity.{name[:60]}: must be a table of keys; got {shown(part)}; {write}")
+            raise JobError(f"quantity.{name[:60]}: must be a table of keys; got {quote(part)}; {write}")
         if "formula" in part and "function" not in part:
             continue  # runs nothing
         function = part.get("function")
         if not (isinstance(function, str) and FUNCTION.fullmatch(function)):
-            got = f"got {shown(function)}" if "function" in part else "it is missing"
+            got = f"got {quote(function)}" if "function" in part else "it is missing"
             raise JobError(f"quantity.{name[:60]}.function: must name a module and a function in it; {got}; {write}")
         found[name] = function
     return found
 
 
 def _refused(name: str, function: str, allowed: Collection[str]) -> JobError:
-    from ...objectives.units import shown
+    from ...objectives.units import quote
 
     here = f"choose from {', '.join(sorted(allowed))}, have it allowed" if allowed else "have it allowed"
     return JobError(
-        f"quantity.{name[:60]}: only functions that the operator allows may run here; got {shown(function)}; {here} "
+        f"quantity.{name[:60]}: only functions that the operator allows may run here; got {quote(function)}; {here} "
         f"(serve, worker or mcp with --allow-quantity {function[:200]}), or solve the job with `slidercrank optimise`"
     )
 

@@ -57,7 +57,7 @@ def numbers_of(mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] =
     from ...objectives.tables.analysis import columns_of
     from .peaks import row_of
 
-    return determined(rows_of(columns_of(mechanism, row_of(linkage), own=own))[0], mechanism, linkage, own)
+    return determined(rows_of(columns_of(mechanism, row_of(linkage), custom=own))[0], mechanism, linkage, own)
 
 
 def determined(
@@ -70,7 +70,7 @@ def determined(
     from ...objectives.peak_torque import PEAK_TORQUE
     from ...objectives.registry import QUANTITIES
     from ...objectives.tables.missing_values import missing_value_reason
-    from ...objectives.tables.of_a_turn import PEAK_TORQUE_ANGLE
+    from ...objectives.tables.turn_columns import PEAK_TORQUE_ANGLE
 
     reasons: dict[str, str] = {}
     for of in (*QUANTITIES.values(), *own):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, get_args
 
 from ...model.errors import InputError
-from ...objectives.kinds import Face, Kind
+from ...objectives.kinds import DisplayUnit, Kind
 
 if TYPE_CHECKING:
     from ...objectives.units import Sign
@@ -40,9 +40,9 @@ class Input:
     required: bool = False
 
     @property
-    def unit(self) -> Face:
+    def unit(self) -> DisplayUnit:
         """Unit in the API, whose numbers are metric."""
-        return Face("", "") if self.kind is None else self.kind.metric
+        return DisplayUnit("", "") if self.kind is None else self.kind.metric
 
     @property
     def key(self) -> str:
@@ -77,7 +77,7 @@ class Input:
         word: what the door calls the input. Raises `InputError` that begins with it.
         """
         from ...model.machine.loads.load import require_word
-        from ...objectives.units import shown
+        from ...objectives.units import quote
         from ..designs.selection import value_of
 
         if self.kind is None:
@@ -89,7 +89,7 @@ class Input:
         value = value_of(word, given, kind, sign=self.sign)
         if self.below is not None and value >= self.below:
             limit = f"{self.unit.factor * self.below:g} {self.unit.symbol}".rstrip()
-            raise InputError(f"{word} must be less than {limit}; got {shown(given)}; write it like {self.usual}")
+            raise InputError(f"{word} must be less than {limit}; got {quote(given)}; write it like {self.usual}")
         return value
 
     def typed(self, number: float | str) -> str:

@@ -51,7 +51,7 @@ class Plain(Input):
         """Return the number, the texts, or the texts by name. Raises `InputError` that begins with the word."""
         from pydantic import ValidationError
 
-        from ...objectives.units import shown
+        from ...objectives.units import quote
         from ...optimise.job.messages import rule_of
 
         form = get_origin(self.type)
@@ -62,7 +62,7 @@ class Plain(Input):
         try:
             return self._adapter.validate_python(value, strict=True)
         except ValidationError as error:
-            rule, got = rule_of(error.errors(include_url=False)[0]), shown(given)
+            rule, got = rule_of(error.errors(include_url=False)[0]), quote(given)
             raise InputError(f"{word} {rule}; got {got}; write it like {self.usual or self.example}") from None
 
 
@@ -71,13 +71,13 @@ def texts_by_name(texts: Sequence[object], word: str, form: str, example: str) -
 
     Raises `InputError` for what is not of the form, and for a name that comes twice.
     """
-    from ...objectives.units import shown
+    from ...objectives.units import quote
 
     found: dict[str, str] = {}
     for text in texts:
         name, equals, value = (piece.strip() for piece in str(text).rpartition("="))
         if not (equals and name and value):
-            raise InputError(f"{word} must be {form}; got {shown(text)}; write it like {example}")
+            raise InputError(f"{word} must be {form}; got {quote(text)}; write it like {example}")
         if name in found:
             raise InputError(f"{word} gives each name once; got {name} twice; leave out one")
         found[name] = value

@@ -32,7 +32,7 @@ def format_value(value: Value, system: System = "metric", *, bare: bool = False,
     """Return a value with its unit in a system. bare: without the unit. printed: as figures write numbers."""
     if value.number is None or math.isnan(value.number):
         return value.missing
-    face = value.kind.face(system)
+    face = value.kind.display_unit(system)
     digits, decimals = digits_of(value, system)
     number, unit = face.factor * value.number, "" if bare or value.bare else unit_text(face.symbol)
     if printed and decimals is None:
@@ -46,7 +46,7 @@ def format_value(value: Value, system: System = "metric", *, bare: bool = False,
 
 def digits_of(value: Value, system: System) -> tuple[int, int | None]:
     """Return how many significant digits of a value are shown in a system, and how many after the point instead."""
-    if value.kind.face(system) is value.kind.metric:
+    if value.kind.display_unit(system) is value.kind.metric:
         return value.digits, value.decimals
     return max(value.digits, _LEAST_DIGITS), None
 
@@ -60,7 +60,7 @@ def format_text(text: Text, system: System = "metric", *, bare: bool = False, pr
     if isinstance(text, Phrase):
         return text.metric if system == "metric" else text.inch
     if isinstance(text, Unit):
-        return unit_text(text.kind.face(system).symbol)
+        return unit_text(text.kind.display_unit(system).symbol)
     return "".join(format_text(part, system, printed=printed) for part in text)
 
 
@@ -68,7 +68,7 @@ def heads(table: Table, system: System = "metric", *, separator: str = ", ") -> 
     """Return the heads of a table, each with the unit of its column after a separator."""
     found = []
     for column in table.columns:
-        unit = "" if column.kind is None else unit_text(column.kind.face(system).symbol)
+        unit = "" if column.kind is None else unit_text(column.kind.display_unit(system).symbol)
         found.append(separator.join(part for part in (format_text(column.title, system), unit) if part))
     return tuple(found)
 

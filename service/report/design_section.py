@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ...model.errors import InputError
 from ...objectives.keys import key_in
 from ...objectives.kinds import unit_text
-from ...objectives.needs import Without
+from ...objectives.needs import Consequence
 from ...objectives.registry import QUANTITIES
 from ..designs.columns import Column, all_columns
 from ..designs.requirements import requirements_of
@@ -98,7 +98,7 @@ def _columns_of_machine(subject: Subject) -> tuple[list[Column], list[str]]:
         value, of = subject.row[column.key], known.get(column.key)
         without = value is None or (isinstance(value, float) and math.isnan(value))
         if of is not None and column.key not in asked:
-            without = without or any(of.lacks(mechanism, word) for word in get_args(Without))
+            without = without or any(of.lacks(mechanism, word) for word in get_args(Consequence))
         if without and column.key not in asked:
             absent.append(column.title)
         else:

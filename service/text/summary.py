@@ -48,7 +48,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
         "given": [*_motion(problem), *_machine(problem), *_own(problem)],
         "loads": problem.mechanism.load_texts,
         "tolerances": _tolerances(problem.mechanism),
-        "costs": [] if problem.costs is None else [_cost(*item) for item in problem.costs.given.items()],
+        "costs": [] if problem.costs is None else [_cost(*item) for item in problem.costs.by_name.items()],
         "variables": [
             *(f"{name} {_lengths(problem, name)}" for name in DIMENSIONS),
             *(_varying(item) for item in problem.mechanism.varying),

@@ -166,7 +166,7 @@ def fitted(quantity: Quantity, machine: Mechanism) -> Mechanism:
     """
     found = _fitted(set(quantity.needs), machine)
     for need in quantity.needs:
-        if need.without == "undefined" and not need.met(found):
+        if need.consequence == "undefined" and not need.is_met(found):
             found = _with_example(need, found)
     return _kept(found)
 

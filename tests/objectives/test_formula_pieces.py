@@ -36,7 +36,7 @@ def tied(of: Quantity, seed: int, *, above: bool = True) -> Any:
 
     def active(x: np.ndarray) -> Any:
         found = of.pieces(MACHINE, x)
-        found = found if above or found.other is None else found.other
+        found = found if above or found.opposite is None else found.opposite
         return np.floor(found.labels[:, 0] / 50.0)  # the argument; the angle of a peak moves by itself
 
     low, high = np.zeros(200), np.ones(200)
@@ -55,7 +55,7 @@ def test_at_a_tie_the_slope_in_every_direction_is_the_greatest_of_the_pieces(tex
     x = tied(of, 5)
     assert len(x) > 3
     found = of.pieces(MACHINE, x)
-    assert found.other is None
+    assert found.opposite is None
     ties = found.values >= found.values[:, :1] - 1e-9 * np.abs(found.gradients[:, :1] * x[:, None]).max(axis=2)
     assert (ties.sum(axis=1) > 1).any()
     random = np.random.default_rng(6)
@@ -73,14 +73,14 @@ def test_a_formula_with_kinks_of_both_kinds_is_known_from_both_sides(text: str) 
     x = designs(100, 7)
     found = of.pieces(MACHINE, x)
     values = of.evaluate(MACHINE, x).values
-    assert found.other is not None
+    assert found.opposite is not None
     np.testing.assert_allclose(found.values.max(axis=1), values, rtol=1e-14)
-    np.testing.assert_allclose(found.other.values.min(axis=1), values, rtol=1e-14)
+    np.testing.assert_allclose(found.opposite.values.min(axis=1), values, rtol=1e-14)
     # A step changes the value by no more than the greatest piece says, by no less than the least of the other side.
     way = np.random.default_rng(8).normal(size=x.shape) * x * 1e-3
     after = of.evaluate(MACHINE, x + way).values
     room = 2e-5 * np.abs(values)
     most = (found.values + np.einsum("npd,nd->np", found.gradients, way)).max(axis=1)
-    least = (found.other.values + np.einsum("npd,nd->np", found.other.gradients, way)).min(axis=1)
+    least = (found.opposite.values + np.einsum("npd,nd->np", found.opposite.gradients, way)).min(axis=1)
     assert (after <= most + room).all()
     assert (after >= least - room).all()

@@ -13,11 +13,11 @@ import pytest
 from slidercrank.model.errors import InputError
 from slidercrank.objectives.formula.expression import ARGUMENTS, Call, Name, Node, Number
 from slidercrank.objectives.formula.linear import linear_of, unknown
-from slidercrank.objectives.formula.ranges import Interval, Ranges
+from slidercrank.objectives.formula.ranges import FormulaBounds, Interval
 
 BOX = {"a": (0.5, 2.0), "b": (-1.5, 0.75), "c": (-3.0, -0.25), "d": (0.0, 1.0)}
 LENGTHS = {"crank": (0.1, 0.2), "rod": (0.5, 0.6), "offset": (-0.1, 0.1)}
-RANGES = Ranges({name: Interval(*ends) for name, ends in (BOX | LENGTHS).items()}, {}, {})
+RANGES = FormulaBounds({name: Interval(*ends) for name, ends in (BOX | LENGTHS).items()}, {}, {})
 SIGNS: dict[str, Callable[..., float]] = {
     "neg": lambda x: -x,
     "+": lambda x, y: x + y,
@@ -68,7 +68,7 @@ def test_no_value_of_a_random_formula_is_beyond_its_bounds() -> None:
     while taken < 600:
         node = random_node(random, 3)
         try:
-            found = RANGES.of(node)
+            found = RANGES.bounds(node)
         except InputError:
             continue
         for at in points:
@@ -94,7 +94,7 @@ def test_bounds_of_one_function_are_reached(function: str) -> None:
         exponent = (Number(3.0, "3"),) if function == "**" else ()
         node = Call(function, (*(Name(name) for name in names), *exponent))
         try:
-            found = RANGES.of(node)
+            found = RANGES.bounds(node)
         except InputError:
             continue
         held = []
@@ -146,5 +146,5 @@ def test_linear_formulas_have_exactly_the_values_of_what_they_stand_for() -> Non
 
 
 def test_even_powers_are_never_negative_and_odd_ones_may_be() -> None:
-    assert RANGES.of(Call("**", (Name("b"), Number(2.0, "2")))).lower == 0.0
-    assert RANGES.of(Call("**", (Name("b"), Number(3.0, "3")))).lower <= BOX["b"][0] ** 3
+    assert RANGES.bounds(Call("**", (Name("b"), Number(2.0, "2")))).lower == 0.0
+    assert RANGES.bounds(Call("**", (Name("b"), Number(3.0, "3")))).lower <= BOX["b"][0] ** 3

@@ -12,7 +12,7 @@ import pytest
 import slidercrank as sc
 from slidercrank.model.errors import InputError
 from slidercrank.objectives.formula.expression import Call, Name
-from slidercrank.objectives.formula.ranges import Interval, Ranges
+from slidercrank.objectives.formula.ranges import FormulaBounds, Interval
 from slidercrank.objectives.tables.sweep import Axis, sweep
 from tests import random_formulas
 from tests.random_formulas import MACHINE, designs
@@ -119,7 +119,7 @@ def test_sine_cosine_and_tangent_divide_where_their_angles_keep_them_off_zero() 
         inside = np.linspace(low, high, 4001)
         for function in ("sin", "cos", "tan"):
             node = Call(function, (Name("angle"),))
-            found = Ranges({"angle": Interval(low, high)}, {}, {}).of(node)
+            found = FormulaBounds({"angle": Interval(low, high)}, {}, {}).bounds(node)
             values = getattr(np, function)(inside)
             assert found.lower <= values.min() + 1e-12
             assert values.max() <= found.upper + 1e-12

@@ -80,7 +80,7 @@ def test_deviation_that_is_rounding_has_no_slope() -> None:
 
 @pytest.mark.parametrize(("phase", "shift"), list(itertools.product(("fixed", "free"), repeat=2)))
 def test_table_says_phase_and_shift_where_they_are_free(phase: Freedom, shift: Freedom) -> None:
-    table = analyse(Mechanism(), DESIGNS[:4], own=motion_deviations(target(phase, shift)))
+    table = analyse(Mechanism(), DESIGNS[:4], custom=motion_deviations(target(phase, shift)))
     assert {"motion_deviation_mm", "motion_deviation_rms_mm"} <= set(table.columns)
     assert ("motion_phase_deg" in table) == ("motion_phase_rms_deg" in table) == (phase == "free")
     assert ("motion_shift_mm" in table) == ("motion_shift_rms_mm" in table) == (shift == "free")

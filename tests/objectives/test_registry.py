@@ -67,7 +67,7 @@ def test_every_average_says_over_what_it_is_taken() -> None:
     for name in told - {"mean_effective_pressure", "delivered_work"}:
         found = QUANTITIES[name]
         (over,) = (over for over in ("over time", "over the crank angle") if over in found.title)
-        of_angle = isinstance(found, CycleAverage) and found.which == "mean" and not found.times_speed
+        of_angle = isinstance(found, CycleAverage) and found.statistic == "mean" and not found.times_speed
         assert over == ("over the crank angle" if of_angle else "over time") or name == "torque_fluctuation"
         assert over in re.sub("over the time of a (cycle|turn)", "over time", found.sentence), name
         assert over in found.formula, name

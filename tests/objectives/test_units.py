@@ -11,7 +11,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.objectives import kinds, units
 from slidercrank.objectives.kinds import KINDS, Kind
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.objectives.units import closest, kind_of, shown, to_si
+from slidercrank.objectives.units import closest, kind_of, quote, to_si
 
 PLATES = [
     *("1/min", "/min", "min^-1", "U/min", "Upm", "r/min", "r.p.m.", "spm", "SPM", "stroke/min", "strokes/min"),
@@ -250,11 +250,11 @@ def test_text_that_looks_like_a_value_is_either_read_or_refused(value: str) -> N
 
 
 def test_values_are_shown_as_in_a_job_file() -> None:
-    assert [shown(v) for v in (True, "a", [1, "b"], 0.5, [])] == ["true", '"a"', '[1, "b"]', "0.5", "[]"]
-    assert shown([[1], [2]]) == "a list of 2"
-    assert shown({"a": 1, "b": 2}) == "a table of 2 keys"
-    assert len(shown("x" * 1000)) < 80
-    assert shown('5 Ω\n"\u200b') == '"5 Ω\\n\\"\\u200b"'  # escaped only where it cannot be printed
+    assert [quote(v) for v in (True, "a", [1, "b"], 0.5, [])] == ["true", '"a"', '[1, "b"]', "0.5", "[]"]
+    assert quote([[1], [2]]) == "a list of 2"
+    assert quote({"a": 1, "b": 2}) == "a table of 2 keys"
+    assert len(quote("x" * 1000)) < 80
+    assert quote('5 Ω\n"\u200b') == '"5 Ω\\n\\"\\u200b"'  # escaped only where it cannot be printed
 
 
 def test_the_nearest_word_is_found_whatever_its_case() -> None:

@@ -86,7 +86,7 @@ def test_a_word_in_a_wrong_place_or_missing_is_told_with_the_header_that_helps(n
         assert f'file, column "{wrong}": ' in str(told.value)
         assert str(told.value).endswith(f"in lower case; write {right}")
     if name == "transmission_angle":  # one that says its good side
-        assert [column.said for column in columns_of(["name", f"{name} (deg)"], "file", frozenset())] == [
+        assert [column.header_text for column in columns_of(["name", f"{name} (deg)"], "file", frozenset())] == [
             "transmission_angle min (deg)"
         ]
     elif name != "crank":  # a number of the job

@@ -284,7 +284,7 @@ def test_both_spellings_of_an_objective_mean_the_same() -> None:
 def meeting(quantity: Quantity, job: dict[str, Any]) -> dict[str, Any]:
     """Return a job with the examples that messages give for the needs of a quantity that it does not meet."""
     for need in quantity.needs:
-        if not need.met(parse_job(job).mechanism):
+        if not need.is_met(parse_job(job).mechanism):
             job = with_example(job, need)
     return job
 

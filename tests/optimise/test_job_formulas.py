@@ -14,8 +14,8 @@ import pytest
 from slidercrank.model.errors import JobError
 from slidercrank.objectives.formula.quantity import FormulaQuantity
 from slidercrank.optimise.job import job_schema, parse_job
+from slidercrank.optimise.job.custom_quantities import declared
 from slidercrank.optimise.job.model import job_with
-from slidercrank.optimise.job.own import declared
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.solve import solve
 

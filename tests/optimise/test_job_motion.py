@@ -133,7 +133,7 @@ def test_places_that_are_no_swing_are_refused(job: dict[str, Any], words: str) -
             {"motion": {"law": "table", "duration": "3 s", "law_times": [0, 0.5, 1], "law_shares": [0, 1]}},
             "must have the same number of values; got 3 and 2",
         ),
-        ({"constraints": {"swing_angle": {"equals": "90 deg"}}}, "states it, by from and to, the same for all designs"),
+        ({"constraints": {"swing_angle": {"equals": "90 deg"}}}, "fixes it by from and to for all designs"),
         (
             {"variables": {**FITTED, "motion": {"to": ["90 deg", "110 deg"]}}},
             "may vary; got to as a variable",

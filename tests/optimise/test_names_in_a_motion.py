@@ -26,8 +26,8 @@ def by_places() -> Problem:
 @pytest.mark.parametrize(
     ("kind", "name", "words"),
     [
-        ("places", "actuator_travel", r"\[motion\] states it, by slider_from and slider_to"),
-        ("angles", "swing_angle", r"\[motion\] states it, by from and to"),
+        ("places", "actuator_travel", r"\[motion\] fixes it by slider_from and slider_to"),
+        ("angles", "swing_angle", r"\[motion\] fixes it by from and to"),
         ("angles", "peak_actuator_torque", 'got driver = "slider"; use peak_actuator_force'),
         ("angles", "peak_actuator_power", r"give \[motion\] a law and a duration"),
         ("turns", "swing_energy", "needs a swinging crank; this crank rotates fully"),

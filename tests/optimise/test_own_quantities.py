@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError, JobError
-from slidercrank.objectives.kinds import Face, kind_in
+from slidercrank.objectives.kinds import DisplayUnit, kind_in
 from slidercrank.objectives.own import quantity as own_module
 from slidercrank.objectives.own.designs import magnitude
 from slidercrank.objectives.own.quantity import OwnQuantity
 from slidercrank.optimise.decisions.like import like
 from slidercrank.optimise.job import files_beside, load_job, parse_job
-from slidercrank.optimise.job.own import FormulaPart, named
+from slidercrank.optimise.job.custom_quantities import FormulaPart, named
 from slidercrank.optimise.problem.requirements import Constraint, Objective
 from slidercrank.optimise.solve import solve
 
@@ -154,7 +154,7 @@ def test_bounds_are_read_in_the_unit_that_is_declared() -> None:
     declared = {"function": "a:b", "unit": "MPa"}
     problem = parse_job(job(declared, constraints={"mine": {"max": "10 N/m^2"}}))
     assert problem.constraints[0].upper == 10.0
-    assert problem.own[0].unit == Face("MPa", "_MPa", 1e-6)
+    assert problem.own[0].unit == DisplayUnit("MPa", "_MPa", 1e-6)
     with pytest.raises(JobError, match=r"constraints.mine.max: must be a pressure; got \"10 mm\", which is a length"):
         parse_job(job(declared, constraints={"mine": {"max": "10 mm"}}))
     jerk = parse_job(job({"function": "a:b", "unit": "mm/s^3"}, constraints={"mine": {"min": "5 mm/s^3"}}))

@@ -113,8 +113,8 @@ def test_words_of_other_parts_are_checked_too() -> None:
     target = TargetMotion(crank_angles=(0.0, 1.0, 2.0), positions=(0.1, 0.2, 0.3))
     with pytest.raises(InputError, match="measure must be 'greatest' or 'rms'; got 'RMS'"):
         MotionDeviation(name="x", title="x", kind=LENGTH, target=target, measure="RMS")  # type: ignore[arg-type]
-    with pytest.raises(InputError, match="which must be 'mean' or 'rms'; got 'peak'"):
-        replace(RMS_TORQUE, which="peak")  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="statistic must be 'mean' or 'rms'; got 'peak'"):
+        replace(RMS_TORQUE, statistic="peak")  # type: ignore[arg-type]
 
 
 def test_a_target_belongs_to_the_sense_target_only() -> None:

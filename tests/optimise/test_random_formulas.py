@@ -181,9 +181,9 @@ def test_pieces_of_random_formulas_are_the_greatest_and_the_least_of_them() -> N
         found, values = of.pieces(MACHINE, x), of.evaluate(MACHINE, x, gradients=True)
         assert values.gradients is not None
         np.testing.assert_allclose(found.values.max(axis=1), values.values, rtol=1e-12, atol=1e-12)
-        if found.other is not None:
+        if found.opposite is not None:
             both += 1
-            assert found.other.least
-            np.testing.assert_allclose(found.other.values.min(axis=1), values.values, rtol=1e-12, atol=1e-12)
+            assert found.opposite.least
+            np.testing.assert_allclose(found.opposite.values.min(axis=1), values.values, rtol=1e-12, atol=1e-12)
         assert not isinstance(of, FormulaQuantity) or found.values.shape[1] == of.pieces(MACHINE, x[:1]).values.shape[1]
     assert both > 5

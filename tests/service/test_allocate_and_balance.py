@@ -117,7 +117,7 @@ def test_balance_is_that_of_the_model(job: Path, command: Command) -> None:
     done = command("balance", job, "--offset", "60 mm", "--radius", "80 mm", "--mass", "6 kg", "--json")
     assert done.exit_code == 0, done.stderr
     numbers, mechanism = json.loads(done.stdout), load_job(job).mechanism
-    found = balance(mechanism, LINKAGE, radius=0.08, most=0.48)
+    found = balance(mechanism, LINKAGE, radius=0.08, greatest_moment=0.48)
     assert numbers["counterweight_moment_kg_m"] == pytest.approx(found.moment, rel=1e-9)
     assert numbers["counterweight_kg"] == pytest.approx(found.moment / 0.08, rel=1e-9)
     weight = Counterweight(

@@ -30,7 +30,7 @@ def test_without_a_job_motion_and_proportions_are_given(command: Command) -> Non
     assert set(DESIGN_KEYS) <= set(row)
     assert row["stroke_mm"] == pytest.approx(1e3 * linkage.stroke, rel=1e-14)
     assert row["time_ratio"] == pytest.approx(linkage.time_ratio, rel=1e-14)
-    of_quantities = {of.field: any(not need.met(Mechanism()) for need in of.needs) for of in QUANTITIES.values()}
+    of_quantities = {of.field: any(not need.is_met(Mechanism()) for need in of.needs) for of in QUANTITIES.values()}
     for key, value in row.items():
         assert (value is None) == of_quantities.get(key, "loaded" in key or "torque" in key), key
     assert "need masses" in done.stderr

@@ -35,7 +35,7 @@ METRIC = "|".join(
     sorted((re.escape(unit_text(kind.metric.symbol)) for kind in SHOWN if kind.inch), key=len, reverse=True)
 )
 _LB_IN2 = 1.0 / (0.45359237 * 0.0254**2)
-_PSI = PRESSURE.face("inch").factor * 1e5
+_PSI = PRESSURE.display_unit("inch").factor * 1e5
 OTHER_KEYS = {
     "saving_N_per_kg": ("saving_lbf_per_lb", 0.45359237 / 4.4482216152605),
     "saving_per_um": ("saving_per_in", 25400.0),
@@ -111,8 +111,8 @@ def assert_in_inches(metric: Any, inch: Any, factor: float = 1.0) -> None:
     if isinstance(metric, dict):
         for (key, value), (shown, other) in zip(metric.items(), inch.items(), strict=True):
             name, kind = kind_of_key(key)
-            own = kind.face("inch").factor / kind.metric.factor
-            expected = OTHER_KEYS.get(key, (name + kind.face("inch").suffix if kind.inch else key, own))
+            own = kind.display_unit("inch").factor / kind.metric.factor
+            expected = OTHER_KEYS.get(key, (name + kind.display_unit("inch").suffix if kind.inch else key, own))
             assert shown == expected[0]
             assert_in_inches(value, other, expected[1] if split_unit(key)[1] else factor)
     elif isinstance(metric, list):

@@ -33,7 +33,7 @@ METRIC = "|".join(
 @pytest.mark.parametrize("kind", [*SHOWN, PERCENT, RATIO], ids=lambda kind: kind.name)
 def test_a_number_in_inches_is_the_metric_one_times_the_factor_with_four_digits_at_least(kind: Kind) -> None:
     random = np.random.default_rng(7)
-    face = kind.face("inch")
+    face = kind.display_unit("inch")
     for number in (10.0 ** random.uniform(-6.0, 6.0, 40) * random.choice([-1.0, 1.0], 40)).tolist():
         digits = int(random.integers(2, 7))
         value = Value(number, kind, digits)

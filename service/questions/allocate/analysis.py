@@ -12,7 +12,7 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.signals.signals import Signal
 from ....model.tolerance.exact import worst
-from ....objectives.kinds import ANGLE, LENGTH, face
+from ....objectives.kinds import ANGLE, LENGTH, display_unit
 from ....optimise.problem.costs import Costs, costs_before
 from ....optimise.problem.problem import Problem
 from ....optimise.sizing.tolerance_allocation import Allocation, allocate
@@ -75,7 +75,9 @@ class Tolerances(Record):
     """Whether the cost is proven to be the least."""
 
 
-_STEP = replace(LENGTH, metric=face("1 µm", 1e6), inch=face("0.0001 in", 1e4 * LENGTH.face("inch").factor))
+_STEP = replace(
+    LENGTH, metric=display_unit("1 µm", 1e6), inch=display_unit("0.0001 in", 1e4 * LENGTH.display_unit("inch").factor)
+)
 """A step of length, for what it saves: as a unit of its own."""
 
 
@@ -204,7 +206,7 @@ def _row(tolerance: Tolerance) -> tuple[Text, ...]:
 
 def _saving_per_step(per_um: float | None) -> Value:
     """Return what a step of length saves."""
-    per = replace(_STEP, metric=face("", 1e-6), inch=face("", 1.0 / _STEP.face("inch").factor))
+    per = replace(_STEP, metric=display_unit("", 1e-6), inch=display_unit("", 1.0 / _STEP.display_unit("inch").factor))
     return Value(None if per_um is None else 1e6 * per_um, per, 4)
 
 

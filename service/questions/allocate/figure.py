@@ -79,7 +79,7 @@ def _cumulated_error(linear: FirstOrder, kind: str) -> tuple[Array, Array]:
 
 def allocation_figure(data: AllocationCurves, system: System = "metric") -> Figure:
     """Return the figure in a system of units: above the error over the cycle, below the costs."""
-    unit = LENGTH.face(system)
+    unit = LENGTH.display_unit(system)
     limit = unit.factor * data.limit
     count = len(data.names)
     foot = 0.55 + 0.42 * count

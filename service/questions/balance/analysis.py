@@ -60,7 +60,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Shaking:
     Root mean squares are over time. Inertia forces only: gravity and load are left out (`model.dynamics.inertia`). The
     values without counterweight are None if the machine has none. Raises `InputError` for a crank without a speed.
     """
-    if not MOTION.met(mechanism):
+    if not MOTION.is_met(mechanism):
         raise InputError(MOTION.missing)
     weight, bare = mechanism.counterweight, _bare(mechanism)
     force, moment = (_shaken(mechanism, signal, linkage) for *_, signal in _CURVES)

@@ -11,7 +11,7 @@ import numpy as np
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....objectives.kinds import FORCE, LENGTH, MASS, TORQUE, face
+from ....objectives.kinds import FORCE, LENGTH, MASS, TORQUE, display_unit
 from ....optimise.problem.problem import Problem
 from ....optimise.sizing.counterweight import Balance, RodSpace, Shaking, balance
 from ....optimise.sizing.words import Measure
@@ -103,7 +103,7 @@ def prepare(
         measure=measure,
         arm=arm,
         radius=at,
-        most=None if mass is None else mass * at,
+        greatest_moment=None if mass is None else mass * at,
         rod=_rod_space(inputs, words or {}),
     )
     return {"found": found}
@@ -175,8 +175,8 @@ def blocks(numbers: BalanceNumbers) -> list[Block]:
     saving = numbers["saving_N_per_kg"]
     remark: Text = ""
     if saving:
-        inch = FORCE.face("inch").factor / MASS.face("inch").factor
-        per_mass = replace(FORCE, metric=face("N"), inch=face("lbf", inch))
+        inch = FORCE.display_unit("inch").factor / MASS.display_unit("inch").factor
+        per_mass = replace(FORCE, metric=display_unit("N"), inch=display_unit("lbf", inch))
         text = "at its maximum; each further {unit} would save {saving}"
         remark = words(text, unit=Unit(MASS), saving=Value(saving, per_mass, 4))
     shown: list[NamedNumber] = [

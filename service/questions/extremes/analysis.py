@@ -117,7 +117,7 @@ def _strokes(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | N
     strokes: dict[str, dict[str, Any]] = {name: {"crank_angle_deg": math.degrees(angles[name])} for name in _STROKES}
     times = (
         scaled_stroke_times(mechanism, linkage.crank, linkage.rod, linkage.offset)
-        if ONE_TIMING.met(mechanism)
+        if ONE_TIMING.is_met(mechanism)
         else None
     )
     found: dict[str, Any] = {

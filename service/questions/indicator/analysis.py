@@ -15,12 +15,12 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.loads.cylinder import Cylinder
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
-from ....objectives.kinds import PRESSURE, VOLUME, face
+from ....objectives.kinds import PRESSURE, VOLUME, display_unit
 from ...figures.sheets import Line, Panel, Sheet, over_turn, turn
 from ...render.blocks import Block, NamedNumber, number_list, recorded
 from ..answers import Note, Record
 
-_GAS_PRESSURE = replace(PRESSURE, metric=face("bar", 1e-5))
+_GAS_PRESSURE = replace(PRESSURE, metric=display_unit("bar", 1e-5))
 Event = Annotated[float | None, Note("null where no such event comes")]
 _BAR, _CM3 = _GAS_PRESSURE.metric.factor, VOLUME.metric.factor
 

@@ -65,7 +65,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Motor:
     design = row_of(linkage)
     signals = (Signal.TORQUE, Signal.POWER, Signal.REFLECTED_INERTIA)
     torque, power, greatest = (peak(mechanism, signal, linkage) for signal in signals)
-    averages, moves = average_torque(mechanism, design), SPEED.met(mechanism)
+    averages, moves = average_torque(mechanism, design), SPEED.is_met(mechanism)
 
     least, least_angle = _least_inertia(mechanism, linkage)
     return {

@@ -11,7 +11,7 @@ from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.keys import key_in, metric_key, split_unit
 from ....objectives.kinds import LENGTH, SMALL_LENGTH, Kind, System, shown_in
-from ....objectives.units import shown
+from ....objectives.units import quote
 from ....optimise.front.progress import stage_text
 from ....optimise.front.rounded import Rounded, drop_conversion_rounding
 from ...designs.columns import find_column
@@ -90,7 +90,7 @@ def steps_of(to: Sequence[str], part: Problem, key: str) -> dict[str, float]:
         name, equals, value = (piece.strip() for piece in text.rpartition("="))
         name = metric_key(name)
         if not value:
-            raise InputError(f"{key} must be STEP or NAME=STEP; got {shown(text)}; write it like {_TO.example}")
+            raise InputError(f"{key} must be STEP or NAME=STEP; got {quote(text)}; write it like {_TO.example}")
         if equals and name not in names:
             raise InputError(f"{key} is for {', '.join(kinds)}; got {name!r}; name one of them, like {_TO.example}")
         one = names[name] if equals else ""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from ....model.linkage.dimensions import DIMENSIONS
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....objectives.kinds import LENGTH, RATIO, SHOWN, Kind, System, face, shown_in
+from ....objectives.kinds import LENGTH, RATIO, SHOWN, Kind, System, display_unit, shown_in
 from ....objectives.registry import QUANTITIES
 from ....objectives.tables.sensitivity import sensitivity
 from ...render.blocks import Block, Table, Text, Unit, Value, column, heading, note, words
@@ -109,8 +109,10 @@ def blocks(numbers: Sensitivity) -> list[Block]:
 
 def _per_length(kind: Kind) -> Kind:
     """Return the kind of a derivative by a dimension; its unit is left out, as the heading says for how much it is."""
-    inch = kind.face("inch").factor / LENGTH.face("inch").factor
-    return replace(kind, metric=face("", kind.metric.factor / LENGTH.metric.factor), inch=face("", inch))
+    inch = kind.display_unit("inch").factor / LENGTH.display_unit("inch").factor
+    return replace(
+        kind, metric=display_unit("", kind.metric.factor / LENGTH.metric.factor), inch=display_unit("", inch)
+    )
 
 
 def _derivative(row: dict[str, Any], key: str, kind: Kind, digits: int) -> Text:

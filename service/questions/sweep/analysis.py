@@ -53,7 +53,7 @@ def answer(
     ]
     names = [name for text in of for name in _names(text)]
     quantities = [problem.quantity(name) for name in names]
-    table = sweep(problem.mechanism.nominal, np.array(lengths), axes, names, own=problem.own)
+    table = sweep(problem.mechanism.nominal, np.array(lengths), axes, names, custom=problem.own)
     rows = rows_of(table.to_dict("list"))
     stuck = [row["reason"] for row in rows if row["reason"]]
     return Answer(

@@ -71,7 +71,7 @@ def error_bands(mechanism: Mechanism, linkage: Linkage, *, samples: int = SAMPLE
 
 def tolerances_figure(bands: Bands, system: System = "metric") -> Figure:
     """Return the figure in a system of units: the bands, beside them random machines, below where they come from."""
-    unit = LENGTH.face(system)
+    unit = LENGTH.display_unit(system)
     figure = style.new_figure(9.2, 7.2)
     note = "Monte Carlo: normal errors, limits at three standard deviations; pins pressed to either side"
     style.heading(figure, "Slider position error from tolerances", note)

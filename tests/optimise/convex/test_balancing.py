@@ -190,7 +190,7 @@ def test_scipy_finds_the_same_least_peak(arm: float | None) -> None:
 
 def test_peaks_are_exact_and_less_than_before() -> None:
     for machine, linkage in random_cases(3, seed=6):
-        found = balance(machine, linkage, rod=RodSpace(radius=0.05, mass=0.8), arm=0.4, most=0.2)
+        found = balance(machine, linkage, rod=RodSpace(radius=0.05, mass=0.8), arm=0.4, greatest_moment=0.2)
         before, after = found.hodograph(TURN)
         for curves, shaking in ((before, found.shaking_before), (after, found.shaking_after)):
             size = np.hypot(curves.force_x, curves.force_y)
@@ -213,11 +213,11 @@ def test_the_price_of_a_bounded_counterweight_predicts_one_percent_more(measure:
     free = balance(machine, linkage, measure=measure)
     assert free.saving == 0.0
     most = 0.5 * free.moment
-    found = balance(machine, linkage, measure=measure, most=most)
+    found = balance(machine, linkage, measure=measure, greatest_moment=most)
     assert found.moment == pytest.approx(most, rel=1e-7)
-    more = balance(machine, linkage, measure=measure, most=1.01 * most)
+    more = balance(machine, linkage, measure=measure, greatest_moment=1.01 * most)
     assert found.objective - more.objective == pytest.approx(found.saving * 0.01 * most, rel=0.02)
-    wide = balance(machine, linkage, measure=measure, most=2.0 * free.moment)
+    wide = balance(machine, linkage, measure=measure, greatest_moment=2.0 * free.moment)
     assert wide.saving == 0.0
     assert wide.objective == pytest.approx(free.objective, rel=1e-8)
 
@@ -230,7 +230,7 @@ def test_what_makes_no_sense_is_refused() -> None:
         ((wrong(machine, speed=0.0), {}), "constant crank speed; got 0 rad/s"),
         ((wrong(machine, slider_mass=0.0), {}), "balancing needs masses"),
         ((machine, {"arm": 0.3}), "the counterweight does not affect the shaking moment .* without a rod balance"),
-        ((machine, {"most": 0.0}), "most must be positive"),
+        ((machine, {"greatest_moment": 0.0}), "greatest_moment must be positive"),
         ((machine, {"radius": math.nan}), "radius must be positive"),
         ((machine, {"measure": "mean"}), "measure must be"),
     ):

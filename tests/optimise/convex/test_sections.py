@@ -96,8 +96,8 @@ def demands(
             material.density * depth * math.pi * width**4 / 128.0,
         )
         if part == "rod":
-            own = line * l**2 * whip.spinning / 8.0 + disc * whip.along
-            bend = line * whip.moment + lever * whip.across + gyration * whip.turning
+            own = line * l**2 * whip.spinning / 8.0 + disc * whip.axial
+            bend = line * whip.moment + lever * whip.lateral + gyration * whip.turning
             bend_a, bend_m, bend_peak = bend, 0.0, bend
             pins = [(joints.crank_pin, limits.crank_pin), (joints.slider_pin, limits.slider_pin)]
         else:
@@ -147,7 +147,7 @@ def test_slsqp_in_plain_variables_finds_the_same_mass() -> None:
     task = random_task(0)
     _, linkage, material, limits = task
     found = size_sections(*task)
-    assert found.settled
+    assert found.is_converged
 
     def relative_mass(x: Any) -> Any:
         w, d, v, e = 1e-3 * x
@@ -319,7 +319,7 @@ def test_wrong_input_is_refused_in_words() -> None:
 
 def test_sections_know_whether_they_have_settled() -> None:
     found: Sections = size_sections(MACHINE, LINKAGE, STEEL, LIMITS)
-    assert found.settled
+    assert found.is_converged
     assert max(found.utilisation.values()) <= 1.0 + 1e-6
     assert found.mass == pytest.approx(found.crank.mass(0.05) + found.rod.mass(0.2), rel=1e-12)
     assert all(found.utilisation[name] >= 1.0 - 1e-5 for name, rate in found.sensitivity.items() if rate > 1e-3)

@@ -70,8 +70,8 @@ def test_with_one_active_angle_it_is_the_dearest_of_the_closed_forms_of_single_a
     for design in random_designs(9, seed=2, least_margin=0.05):
         linkage, costs = linkage_of(design), random_costs(random, free=True)
         found = allocate(linkage, costs, limit, kind)
-        b = np.array([cost.cost * cost.at for cost in costs.given.values()])
-        fixed = sum(cost.fixed for cost in costs.given.values())
+        b = np.array([cost.cost * cost.at for cost in costs.by_name.values()])
+        fixed = sum(cost.fixed for cost in costs.by_name.values())
 
         def alone(theta: Any, b: Array = b, linkage: Linkage = linkage) -> Any:
             return np.sum((b * influence_sizes(linkage, theta).T) ** power, axis=-1) ** root / limit
@@ -104,11 +104,11 @@ def by_slsqp(mechanism: Mechanism, linkage: Linkage, costs: Costs, limit: float,
     gap = mechanism.tolerances.clearances
     pins = np.array([gap.crank_pivot, gap.crank_pin, gap.slider_pin])
     room = 1.0 - np.sum(pins**power) * s[1] - gap.guide**power * s[2]
-    each = list(costs.given.values())
+    each = list(costs.by_name.values())
     unit = np.array([cost.at for cost in each])
 
     def cost(z: Array) -> float:
-        return float(sum(c.of(float(t)) for c, t in zip(each, unit * np.exp(z), strict=True)))
+        return float(sum(c.cost_at(float(t)) for c, t in zip(each, unit * np.exp(z), strict=True)))
 
     def slope(z: Array) -> Array:
         return np.array([c.slope(float(t)) * t for c, t in zip(each, unit * np.exp(z), strict=True)])
@@ -153,7 +153,7 @@ def test_slsqp_on_many_angles_finds_the_same_tolerances(kind: Kind) -> None:
             continue
         compared += 1
         there = by_slsqp(mechanism, linkage, costs, limit, found)
-        cost = sum(c.of(float(t)) for c, t in zip(costs.given.values(), there, strict=True))
+        cost = sum(c.cost_at(float(t)) for c, t in zip(costs.by_name.values(), there, strict=True))
         assert found.cost == pytest.approx(cost, rel=1e-8)
         np.testing.assert_allclose(values_of(found), there, rtol=1e-6)
     assert compared >= 5
@@ -193,7 +193,7 @@ def test_prices_predict_what_loosening_a_limit_or_a_bound_by_one_percent_saves(k
         if which == "limit":
             return base.cost - allocate(SIEVE, costs, 2e-4 * (1.0 + share), kind).cost, base.saving * 2e-4 * share
         part = next(part for part in base.parts if part.name == which)
-        cost = costs.given[which]
+        cost = costs.by_name[which]
         end = {"greatest": cost.greatest * (1.0 + share)} if which == "rod" else {"least": cost.least * (1.0 - share)}
         moved = dataclasses.replace(costs, **{which: dataclasses.replace(cost, **end)})
         return base.cost - allocate(SIEVE, moved, 2e-4, kind).cost, part.saving * part.tolerance * share
@@ -252,5 +252,5 @@ def test_what_can_not_be_met_or_makes_no_sense_is_refused() -> None:
     ):
         with pytest.raises(InputError, match=message):
             wrong()
-    assert cost.of(0.0) == np.inf
-    assert list(PLAIN.given) == list(NAMES)
+    assert cost.cost_at(0.0) == np.inf
+    assert list(PLAIN.by_name) == list(NAMES)

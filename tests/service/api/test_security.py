@@ -10,7 +10,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from slidercrank.objectives.units import shown
+from slidercrank.objectives.units import quote
 from slidercrank.service.api.job_requests import EXAMPLE
 from slidercrank.service.store import Artefact, Store
 from tests.service.api.conftest import Serve
@@ -194,7 +194,7 @@ def test_a_function_that_is_no_text_is_refused(serve: Serve) -> None:
             for path in ("/jobs", "/check"):
                 sentence = refused(client.post(path, json={"job": job}), 422)
                 assert sentence.startswith("quantity.x.function: must "), sentence
-                assert f"got {shown(function)}; " in sentence
+                assert f"got {quote(function)}; " in sentence
 
 
 def test_a_database_that_is_gone_is_told_with_when_to_come_again(

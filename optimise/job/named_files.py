@@ -7,7 +7,7 @@ from pathlib import Path, PurePath
 
 from ...model.errors import InputError, JobError
 from ...model.file_names import path_from_text
-from ...objectives.units import shown
+from ...objectives.units import quote
 from .table_file import TableFile, bytes_of, read_table, text_of
 
 Files = Path | Mapping[str, str | bytes]
@@ -20,16 +20,16 @@ SOURCE = "source"
 """Key of a table that was filled from a file: what was understood of it, in words; no part of the problem."""
 
 
-def table_beside(files: Files, key: str, file: str) -> TableFile:
+def read_named_table(files: Files, key: str, file: str) -> TableFile:
     """Return the table in a file that a job names under a key. Raises `InputError`."""
-    return read_table(text_beside(files, key, file), f"{key}: {shown(file)}")
+    return read_table(read_named_text(files, key, file), f"{key}: {quote(file)}")
 
 
-def text_beside(files: Files, key: str, file: str) -> str:
+def read_named_text(files: Files, key: str, file: str) -> str:
     """Return the text of a file that a job names under a key. Raises `InputError`."""
-    name = f"{key}: {shown(file)}"
+    name = f"{key}: {quote(file)}"
     if PurePath(file).is_absolute() or ".." in PurePath(file).parts:
-        raise JobError(f"{key}: must lie beside the job file; got {shown(file)}; copy it there")
+        raise JobError(f"{key}: must lie beside the job file; got {quote(file)}; copy it there")
     if isinstance(files, Path):
         return text_of(bytes_of(files / path_from_text(file), name, LARGEST), name)
     if file not in files:
@@ -39,11 +39,11 @@ def text_beside(files: Files, key: str, file: str) -> str:
     return content if isinstance(content, str) else text_of(content, name)
 
 
-def unread(file: str, instead: str) -> InputError:
+def unread_file_error(file: str, instead: str) -> InputError:
     """Return the refusal of a file that nobody read. instead: what may be given in its place."""
     return InputError(
         f"a file must lie beside the job file, or be sent with the job (API: files), and replaces {instead}; got file "
-        f"{shown(file)}; send it, or give only the {instead}"
+        f"{quote(file)}; send it, or give only the {instead}"
     )
 
 

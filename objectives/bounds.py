@@ -19,7 +19,7 @@ CLEAR = 1.0 + 1e-12
 
 
 @dataclass(frozen=True)
-class Ranges:
+class LengthRanges:
     """Least and greatest crank r, rod l and |offset| a, m, with some design among them that turns fully."""
 
     r0: float
@@ -41,21 +41,21 @@ class Ranges:
 
 
 @dataclass(frozen=True)
-class Within:
+class KnownBounds:
     """Bounds that are known already, SI."""
 
     lower: float
     upper: float
 
-    def __call__(self, _: Ranges) -> tuple[float, float]:
+    def __call__(self, _: LengthRanges) -> tuple[float, float]:
         """Return them."""
         return self.lower, self.upper
 
 
 @dataclass(frozen=True, kw_only=True)
-class Reach:
+class QuantityBounds:
     """Bounds of a quantity within ranges, SI, and in words what the ranges must allow for more or less of it."""
 
-    bounds: Callable[[Ranges], tuple[float, float]]
-    more: str
-    less: str
+    compute: Callable[[LengthRanges], tuple[float, float]]
+    to_raise: str
+    to_lower: str

@@ -10,7 +10,7 @@ import numpy as np
 from ...model.arrays import Mask, Whole
 from ...model.machine.mechanism import Mechanism
 from ..quantity import Array, Quantity
-from .points import Around, around, corners, followed, in_line, limits_of
+from .points import PointValues, corners, evaluate_points, in_line, limits_of, match_pieces
 
 _BESIDE = 1e-6  # of the limits: how far from offset zero tells a kink there from a curve that turns nearby
 _LOST = 1e-13  # of a value: what a point must be worse by than another one
@@ -20,19 +20,25 @@ _EXACT = 1e-15
 
 
 @dataclass(frozen=True)
-class Inside:
+class InnerPoints:
     """Points (m, q, 3), in units of the limits, of the designs `rows` (m,) that have some besides the corners."""
 
     rows: Whole
     points: Array
 
 
-def within(
-    quantity: Quantity, mechanism: Mechanism, dimensions: Array, columns: list[int], here: Around, *, low: bool
-) -> Inside:
+def worst_inner_points(
+    quantity: Quantity,
+    mechanism: Mechanism,
+    dimensions: Array,
+    columns: list[int],
+    at_corners: PointValues,
+    *,
+    low: bool,
+) -> InnerPoints:
     """Return points inside the box of designs (n, 3 + k) that may be worse than all its corners.
 
-    here: the quantity at the corners. low: whether the least value is wanted, else the greatest.
+    at_corners: the quantity at the corners. low: whether the least value is wanted, else the greatest.
     1. What depends on |offset| turns at zero: those points are given wherever the limits span it.
     2. At the worst of all these points the quantity must get better on every way into the box, to first order.
        Where it does not it turns within: from there its worst is sought by sequential quadratic programming.
@@ -40,72 +46,82 @@ def within(
     limits = limits_of(mechanism, dimensions)
     spanning, points = in_line(columns, dimensions, limits)
     ends = corners(columns)
-    worst, slopes, turns = _worst(here, low)
+    worst, slopes, turns = _losses(at_corners, low)
     start = ends[np.argmax(worst, axis=1)]
-    inward = (start * _of_worst(worst, slopes)) * limits
+    inward = (start * _slopes_at_worst(worst, slopes)) * limits
     best = worst.max(axis=1)
     doubtful = (inward[:, columns] < -_FLAT * np.abs(best)[:, None]).any(axis=1)
     if len(spanning):
-        at_zero, zero_slopes, _ = _worst(around(quantity, mechanism, dimensions[spanning], points), low)
+        at_zero, zero_slopes, _ = _losses(evaluate_points(quantity, mechanism, dimensions[spanning], points), low)
         beaten = at_zero.max(axis=1) >= best[spanning]
-        rows, own = spanning[beaten], points[beaten]
+        rows, zero_points = spanning[beaten], points[beaten]
         place = np.argmax(at_zero[beaten], axis=1)
-        start[rows], best[rows] = own[np.arange(len(rows)), place], at_zero[beaten].max(axis=1)
-        inward = start[rows] * _of_worst(at_zero[beaten], zero_slopes[beaten]) * limits[rows]
-        others = [column for column in columns if column != 2]
-        doubtful[rows] = (inward[:, others] < -_FLAT * np.abs(best[rows])[:, None]).any(axis=1)
-        beside = start[rows][:, None, :] + _BESIDE * np.array([[[0.0, 0.0, 1.0]], [[0.0, 0.0, -1.0]]]).transpose(
+        start[rows], best[rows] = zero_points[np.arange(len(rows)), place], at_zero[beaten].max(axis=1)
+        inward = start[rows] * _slopes_at_worst(at_zero[beaten], zero_slopes[beaten]) * limits[rows]
+        other_columns = [column for column in columns if column != 2]
+        doubtful[rows] = (inward[:, other_columns] < -_FLAT * np.abs(best[rows])[:, None]).any(axis=1)
+        next_to_zero = start[rows][:, None, :] + _BESIDE * np.array([[[0.0, 0.0, 1.0]], [[0.0, 0.0, -1.0]]]).transpose(
             1, 0, 2
         )
-        near, _, _ = _worst(around(quantity, mechanism, dimensions[rows], beside), low)
+        near, _, _ = _losses(evaluate_points(quantity, mechanism, dimensions[rows], next_to_zero), low)
         doubtful[rows] |= near.max(axis=1, initial=-np.inf) > best[rows] + _LOST * np.abs(best[rows])
     doubtful &= turns.all(axis=1) & np.isfinite(best)
-    found = {
-        int(row): _sought(quantity, mechanism, dimensions[row], columns, start[row], low)
+    sought = {
+        int(row): _search_worst_point(quantity, mechanism, dimensions[row], columns, start[row], low)
         for row in np.flatnonzero(doubtful)
     }
     rows = np.union1d(spanning, np.flatnonzero(doubtful)).astype(np.int64)
     count = len(ends) // 2 if len(spanning) else 0
-    given = np.repeat(start[rows][:, None], count + 1, axis=1)  # what has no point of its own has its worst again
+    inner_points = np.repeat(
+        start[rows][:, None], count + 1, axis=1
+    )  # what has no point of its own has its worst again
     if len(spanning):
-        given[np.searchsorted(rows, spanning), :count] = points
-    for at, row in enumerate(rows.tolist()):
-        given[at, count] = found.get(row, start[row])
-    return Inside(rows, given)
+        inner_points[np.searchsorted(rows, spanning), :count] = points
+    for index, row in enumerate(rows.tolist()):
+        inner_points[index, count] = sought.get(row, start[row])
+    return InnerPoints(rows, inner_points)
 
 
-def _worst(here: Around, low: bool) -> tuple[Array, Array, Mask]:
+def _losses(point_values: PointValues, low: bool) -> tuple[Array, Array, Mask]:
     """Return a quantity as a loss at points (n, q), its slopes (n, q, 3), and where the linkage turns."""
-    values, slopes = here.highest(here.local)
+    values, slopes = point_values.highest(point_values.local)
     sign = -1.0 if low else 1.0
-    return np.where(here.turns, sign * values, np.inf), sign * slopes, here.turns
+    return np.where(point_values.turns, sign * values, np.inf), sign * slopes, point_values.turns
 
 
-def _of_worst(worst: Array, slopes: Array) -> Array:
+def _slopes_at_worst(worst: Array, slopes: Array) -> Array:
     """Return the slopes (n, 3) at the worst of the points."""
     return np.take_along_axis(slopes, np.argmax(worst, axis=1)[:, None, None], axis=1)[:, 0]
 
 
-def _sought(
+def _search_worst_point(
     quantity: Quantity, mechanism: Mechanism, design: Array, columns: list[int], start: Array, low: bool
 ) -> Array:
     """Return the worst point (3,) near a start. Of a least-of-the-greatest, several peaks may meet there (minimax)."""
     from scipy.optimize import minimize
 
     search: Any = minimize  # its stubs do not follow SLSQP's
-    begun = around(quantity, mechanism, design[None], start[None])
-    many = np.isfinite(begun.values[0, 0]) if low else np.argmax(begun.values[0, 0]) == np.arange(begun.values.shape[2])
-    size = abs(float(begun.values[0, 0].max())) or 1.0
-    reach = limits_of(mechanism, design[None])[0]
+    at_start = evaluate_points(quantity, mechanism, design[None], start[None])
+    many = (
+        np.isfinite(at_start.values[0, 0])
+        if low
+        else np.argmax(at_start.values[0, 0]) == np.arange(at_start.values.shape[2])
+    )
+    size = abs(float(at_start.values[0, 0].max())) or 1.0
+    tolerances = limits_of(mechanism, design[None])[0]
 
     def pieces(point: Array) -> tuple[Array, Array]:
         at = start.copy()
         at[columns] = point
-        both = around(quantity, mechanism, design[None], np.stack([start, at]))
-        values, _, there = followed(both)
-        _, local, _ = followed(Around(both.values, both.local, both.local, both.labels, both.turns))
-        kept = many & there[0, 1]
-        return np.where(kept, values[0, 1], -np.inf)[many] / size, local[0, 1][many] * reach / size
+        point_values = evaluate_points(quantity, mechanism, design[None], np.stack([start, at]))
+        values, _, has_twin = match_pieces(point_values)
+        _, local, _ = match_pieces(
+            PointValues(
+                point_values.values, point_values.local, point_values.local, point_values.labels, point_values.turns
+            )
+        )
+        counted_pieces = many & has_twin[0, 1]
+        return np.where(counted_pieces, values[0, 1], -np.inf)[many] / size, local[0, 1][many] * tolerances / size
 
     # Unknowns: the point and, of a minimax, the bound that no piece exceeds.
     begin = start[columns]
@@ -114,21 +130,23 @@ def _sought(
     value, slope = (lambda z: -float(pieces(z)[0][0])), (lambda z: -pieces(z)[1][0, columns])
     if low:
 
-        def room(z: Array) -> Array:
+        def slack(z: Array) -> Array:
             values = pieces(z[:-1])[0]
             return np.where(np.isfinite(values), z[-1] - values, 1.0)
 
-        def room_slopes(z: Array) -> Array:
+        def slack_slopes(z: Array) -> Array:
             values, slopes = pieces(z[:-1])
-            known = np.isfinite(values)[:, None]
-            return np.concatenate([np.where(known, -slopes[:, columns], 0.0), np.where(known, 1.0, 0.0)], axis=1)
+            is_finite = np.isfinite(values)[:, None]
+            return np.concatenate(
+                [np.where(is_finite, -slopes[:, columns], 0.0), np.where(is_finite, 1.0, 0.0)], axis=1
+            )
 
-        limits_met = [{"type": "ineq", "fun": room, "jac": room_slopes}]
+        limits_met = [{"type": "ineq", "fun": slack, "jac": slack_slopes}]
         begin, bounds = np.append(begin, float(pieces(begin)[0].max())), [*bounds, (None, None)]
         value, slope = (lambda z: float(z[-1])), (lambda _: np.append(np.zeros(len(columns)), 1.0))
     options: Any = {"maxiter": _STEPS, "ftol": _EXACT}
     result = search(value, begin, jac=slope, bounds=bounds, constraints=limits_met, method="SLSQP", options=options)
-    found = start.copy()
+    worst_point = start.copy()
     if np.isfinite(result.x).all():
-        found[columns] = np.clip(result.x[: len(columns)], -1.0, 1.0)
-    return found
+        worst_point[columns] = np.clip(result.x[: len(columns)], -1.0, 1.0)
+    return worst_point

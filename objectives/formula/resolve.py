@@ -11,33 +11,33 @@ from ..registry import QUANTITIES, quantity
 from .formulas import Ends, Formulas
 
 
-def meant(
+def resolve_quantities(
     names: Sequence[str],
     mechanism: Mechanism,
-    own: Collection[Quantity] = (),
+    custom: Collection[Quantity] = (),
     *,
     ranges: Mapping[str, Ends] | None = None,
     turning: bool = True,
 ) -> list[Quantity]:
     """Return the quantities that names and formulas mean.
 
-    own: quantities of a problem besides those that every one has. ranges: of the dimensions, for the refusal of what
+    custom: quantities of a problem besides those that every one has. ranges: of the dimensions, for the refusal of what
     may divide by zero in them; without, such a formula has no value where it does. turning: whether the crank must
     turn through. Raises `InputError` with the nearest names, or with what is wrong with a formula.
     """
     formulas: Formulas | None = None
-    found = []
+    quantities = []
     for name in names:
-        if is_formula(name, mechanism, own):
-            formulas = formulas or Formulas(own, mechanism, ranges, {}, turning=turning)
-            found.append(formulas.quantity(name, f"the formula {' '.join(name[:60].split())}"))
+        if is_formula(name, mechanism, custom):
+            formulas = formulas or Formulas(custom, mechanism, ranges, {}, turning=turning)
+            quantities.append(formulas.quantity(name, f"the formula {' '.join(name[:60].split())}"))
         else:
-            found.append(quantity(name, own))
-    return found
+            quantities.append(quantity(name, custom))
+    return quantities
 
 
-def is_formula(name: object, mechanism: Mechanism, own: Collection[Quantity] = ()) -> bool:
+def is_formula(name: object, mechanism: Mechanism, custom: Collection[Quantity] = ()) -> bool:
     """Return whether a text is no name of a quantity, but of a dimension or a number that varies, or more."""
-    if not isinstance(name, str) or name in QUANTITIES or any(of.name == name for of in own):
+    if not isinstance(name, str) or name in QUANTITIES or any(quantity.name == name for quantity in custom):
         return False
     return name in DIMENSIONS or any(item.name == name for item in mechanism.varying) or not name.isidentifier()

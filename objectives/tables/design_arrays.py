@@ -42,39 +42,39 @@ def given_designs(designs: object, names: Sequence[str]) -> Array:
     Columns of a table, or the index of one row, are found by these names, in any order and among others; without names
     they go by their order. Raises `InputError` for what holds no real numbers, for other columns, and other widths.
     """
-    wanted = ", ".join(names)
-    given = _by_name(designs, names)
+    needed = ", ".join(names)
+    table_or_array = _by_name(designs, names)
     try:
-        if isinstance(given, np.ma.MaskedArray):  # what is masked is not there
-            given = np.ma.filled(np.ma.asarray(given, dtype=np.float64), np.nan)
-        found = np.asarray(given)
-        written = found.dtype.kind in "US" or (found.dtype.kind == "O" and any(isinstance(x, str) for x in found.flat))
-        if written or np.iscomplexobj(found):
+        if isinstance(table_or_array, np.ma.MaskedArray):  # what is masked is not there
+            table_or_array = np.ma.filled(np.ma.asarray(table_or_array, dtype=np.float64), np.nan)
+        array = np.asarray(table_or_array)
+        written = array.dtype.kind in "US" or (array.dtype.kind == "O" and any(isinstance(x, str) for x in array.flat))
+        if written or np.iscomplexobj(array):
             raise TypeError
-        found = np.asarray(found, dtype=np.float64)
+        array = np.asarray(array, dtype=np.float64)
     except (TypeError, ValueError):
         raise InputError(
-            f"designs are arrays of real numbers, SI; got {shortly(designs)}; give {wanted} of each, in m, not as text "
+            f"designs are arrays of real numbers, SI; got {shortly(designs)}; give {needed} of each, in m, not as text "
             "and not complex"
         ) from None
-    if found.ndim == 0 or found.shape[-1] != len(names):
+    if array.ndim == 0 or array.shape[-1] != len(names):
         raise InputError(
-            f"designs need {len(names)} numbers each ({wanted}), as the last axis; got an array of shape {found.shape}"
+            f"designs need {len(names)} numbers each ({needed}), as the last axis; got an array of shape {array.shape}"
         )
-    return found
+    return array
 
 
-def warn_of_lengths(of: object, designs: Array, greatest: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
+def warn_of_lengths(owner: object, designs: Array, greatest: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
     """Warn of designs (..., 3 + k) with lengths beyond any machine, which are in mm rather than in m.
 
-    Once for each machine or problem `of`, in the name of whoever calls the caller. greatest: crank, rod and offset, m,
-    that are meant, whatever their size.
+    Once for each machine or problem `owner`, attributed to the caller of the caller. greatest: intended crank, rod and
+    offset, m, whatever their size.
     """
-    if _WARNED in vars(of):
+    if _WARNED in vars(owner):
         return
     doubt = in_both_units((designs[..., place] for place in range(3)), (max(LONGEST, size) for size in greatest))
     if doubt is not None:
-        vars(of)[_WARNED] = True
+        vars(owner)[_WARNED] = True
         warnings.warn(f"lengths of designs are in m: {doubt}", InputWarning, stacklevel=3)
 
 
@@ -83,10 +83,10 @@ def countable(designs: Array) -> Mask:
     return np.asarray(np.isfinite(designs).all(axis=1) & (designs[:, 0] > _LEAST) & (designs[:, 1] < _MOST))
 
 
-def shortly(given: object) -> str:
+def shortly(value: object) -> str:
     """Return a value as it prints, or only its type where that is long."""
-    text = repr(given)
-    return text if len(text) <= 60 and "\n" not in text else type(given).__name__
+    text = repr(value)
+    return text if len(text) <= 60 and "\n" not in text else type(value).__name__
 
 
 def _by_name(designs: object, names: Sequence[str]) -> object:
@@ -102,5 +102,5 @@ def _by_name(designs: object, names: Sequence[str]) -> object:
             f"a table of designs has the columns {', '.join(names)}, SI; got {columns}; rename them, lengths "
             "in m; the designs of a front are `front.dimensions`"
         )
-    found: object = designs[list(names)]
-    return found
+    ordered_columns: object = designs[list(names)]
+    return ordered_columns

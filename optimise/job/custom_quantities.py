@@ -26,7 +26,7 @@ from ...objectives.own.quantity import (
     require_name,
 )
 from ...objectives.registry import FACTS
-from ...objectives.units import is_value, kind_for, per_si, shown
+from ...objectives.units import is_value, kind_for, per_si, quote
 from .amounts import amounts_in, kinds_of_amounts
 from .kinds import Kinds
 from .quantities import SLOW_STROKE, Stated
@@ -36,7 +36,7 @@ from .values import Part, Physical, optional, required
 def _function(text: str) -> str:
     if not FUNCTION.fullmatch(text):
         raise InputError(
-            f'must name a module and a function in it; got {shown(text)}; write it like "mymodule:myfunction", or '
+            f'must name a module and a function in it; got {quote(text)}; write it like "mymodule:myfunction", or '
             "give the function itself in Python"
         )
     return text
@@ -47,7 +47,7 @@ def _unit(text: str) -> str:
         kind_for(text)
     except InputError as error:
         raise InputError(
-            f'must be a unit; got {shown(text)}: {error}; write it like "N m", or "" for a ratio'
+            f'must be a unit; got {quote(text)}: {error}; write it like "N m", or "" for a ratio'
         ) from None
     return text
 
@@ -55,7 +55,7 @@ def _unit(text: str) -> str:
 def one_line(text: str) -> str:
     """Return a text; refuse one that is empty or of several lines."""
     if not text.strip() or not text.isprintable():
-        raise InputError(f"must be one line of text, not empty; got {shown(text)}")
+        raise InputError(f"must be one line of text, not empty; got {quote(text)}")
     return text
 
 
@@ -121,7 +121,7 @@ _KINDS = Kinds(
 QuantityPart = Annotated[
     Annotated[FunctionPart, Tag("(function)")] | Annotated[FormulaPart, Tag("(formula)")],
     Discriminator(_KINDS.tag),
-    BeforeValidator(_KINDS.one),
+    BeforeValidator(_KINDS.require_one),
 ]
 """A quantity of a job's own: a function, or a formula."""
 Parts = dict[str, FunctionPart | FormulaPart]
@@ -132,7 +132,7 @@ def named(parts: Parts) -> Parts:
     for name, part in parts.items():
         if name in FACTS or name in (SLOW_STROKE, *DIMENSIONS, *ARGUMENTS):
             raise InputError(
-                f"the name of a quantity must be new; got {shown(name)}, which exists already; choose another name"
+                f"the name of a quantity must be new; got {quote(name)}, which exists already; choose another name"
             )
         require_name(name)
         if isinstance(part, FunctionPart):
@@ -174,7 +174,7 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
     names = _formulas(parts)
     if parts and not allowed and len(names) < len(parts):
         raise JobError(
-            f"quantity: custom functions are not run here; got {shown(parts)}; leave the table out, or have them "
+            f"quantity: custom functions are not run here; got {quote(parts)}; leave the table out, or have them "
             "installed as a package with entry points in slidercrank.quantities"
         )
     parts = parts if isinstance(parts, Mapping) else {}
