@@ -14,7 +14,7 @@ import numpy as np
 
 import slidercrank as sc
 from slidercrank.optimise.job import parse_job, with_files
-from slidercrank.service.figures.style import BLUE, INK, SMALL, VERMILION, dress, new_figure, place, save
+from slidercrank.service.figures.style import BLUE, INK, SMALL, VERMILION, add_axes, new_figure, save, style_axes
 
 DOCS = Path(__file__).parents[1] / "docs"
 _STROKE, _ROD, _OFFSET = 0.15, 0.22, -0.04  # m
@@ -79,8 +79,8 @@ def _draw(example: Example, file: Path) -> None:
     position, force = 1e3 * cycle["slider_position_m"].to_numpy(), cycle["load_N"].to_numpy()
     outward = cycle["slider_velocity_m_s"].to_numpy() >= 0.0
     figure = new_figure(5.2, 2.2)
-    axes = place(figure, 0.75, 0.5, 4.25, 1.45)
-    dress(axes, across=6, up=4)
+    axes = add_axes(figure, 0.75, 0.5, 4.25, 1.45)
+    style_axes(axes, most_x_ticks=6, most_y_ticks=4)
     axes.axhline(0.0, color=INK, linewidth=0.8)
     for stroke, colour, style, name in ((outward, BLUE, "-", "outward"), (~outward, VERMILION, "--", "inward")):
         order = np.argsort(position[stroke], kind="stable")

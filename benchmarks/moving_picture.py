@@ -15,19 +15,19 @@ from PIL.Image import Image as Picture
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.front.front import ParetoFront
-from slidercrank.service.drawings.parts import Look, look_of, moving, pins_at, scenery
+from slidercrank.service.drawings.parts import Look, fixed_shapes, look_of, moving_shapes, pin_positions
 from slidercrank.service.figures.painting import paint, show_rectangle
 from slidercrank.service.figures.style import (
     INK,
     TEXT,
     TITLE,
     VERMILION,
+    add_axes,
     colours,
-    dress,
-    limits,
     new_figure,
-    place,
-    write,
+    padded_limits,
+    style_axes,
+    write_text,
 )
 
 STEPS, REST, MILLISECONDS = 42, 18, 70
@@ -66,7 +66,7 @@ def exploring_front(front: ParetoFront, file: Path) -> None:
     figure = new_figure(_WIDTH, _HEIGHT)
     figure.set_dpi(_DOTS)
     chart, stage = _chart(figure, of), _stage(figure, looks)
-    write(figure, 0.3, _HEIGHT - 0.32, f"{len(front)} Pareto-optimal feeders", fontsize=TITLE, weight="bold")
+    write_text(figure, 0.3, _HEIGHT - 0.32, f"{len(front)} Pareto-optimal feeders", fontsize=TITLE, weight="bold")
     reading = figure.text(4.75 / _WIDTH, 0.2 / _HEIGHT, "", fontsize=TEXT, color=INK, linespacing=1.5)
     canvas: Any = figure.canvas
     canvas.draw()
@@ -74,8 +74,8 @@ def exploring_front(front: ParetoFront, file: Path) -> None:
     shown = visits(len(front), front.knee())
     for step, row in enumerate(shown):
         angle = 2.0 * math.pi * _TURNS * step / len(shown)
-        pin, slider = pins_at(linkages[row], angle)
-        shapes = [*scenery(linkages[row], looks[row], below=True), *moving(pin, slider, looks[row])]
+        pin, slider = pin_positions(linkages[row], angle)
+        shapes = [*fixed_shapes(linkages[row], looks[row], bearing_below=True), *moving_shapes(pin, slider, looks[row])]
         (dot,) = chart.plot(
             of.across[row], of.up[row], "o", markersize=11, markerfacecolor="none", markeredgecolor=VERMILION, mew=2.2
         )
@@ -103,15 +103,15 @@ def _save(frames: list[Picture], file: Path) -> None:
 
 def _chart(figure: Figure, of: _Columns) -> Axes:
     """Return axes with the designs of the front."""
-    axes = place(figure, 0.75, 0.6, 2.75, 2.35)
-    dress(axes, across=4, up=4)
+    axes = add_axes(figure, 0.75, 0.6, 2.75, 2.35)
+    style_axes(axes, most_x_ticks=4, most_y_ticks=4)
     across, up, colour = _LABELS.values()
-    axes.set_xlim(*limits(of.across.min(), of.across.max()))
-    axes.set_ylim(*limits(of.up.min(), of.up.max()))
+    axes.set_xlim(*padded_limits(of.across.min(), of.across.max()))
+    axes.set_ylim(*padded_limits(of.up.min(), of.up.max()))
     axes.set_xlabel(across, fontsize=TEXT, color=INK)
     axes.set_ylabel(up, fontsize=TEXT, color=INK)
     dots = axes.scatter(of.across, of.up, c=of.colour, s=20, cmap=colours(), linewidths=0.0)
-    bar = figure.colorbar(dots, cax=place(figure, 3.62, 0.6, 0.1, 2.35))
+    bar = figure.colorbar(dots, cax=add_axes(figure, 3.62, 0.6, 0.1, 2.35))
     bar.set_label(colour, fontsize=TEXT, color=INK)
     bar.ax.tick_params(labelsize=TEXT - 1.0, length=2)
     bar.outline.set_visible(False)
@@ -124,6 +124,6 @@ def _stage(figure: Figure, looks: list[Look]) -> Axes:
     left, low = extents[:, :2].min(axis=0)
     right, high = extents[:, 2:].max(axis=0)
     margin = 0.04 * (right - left)
-    axes = place(figure, 4.45, 0.65, _WIDTH - 4.5, _HEIGHT - 0.7)
+    axes = add_axes(figure, 4.45, 0.65, _WIDTH - 4.5, _HEIGHT - 0.7)
     show_rectangle(axes, left - margin, low - margin, right + margin, high + margin)
     return axes

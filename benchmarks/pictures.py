@@ -27,7 +27,7 @@ from slidercrank.optimise.solve import solve
 from slidercrank.service.drawings.linkage_drawing import linkage_drawing
 from slidercrank.service.figures.front import draw_front
 from slidercrank.service.figures.painting import drawing_figure
-from slidercrank.service.figures.panels import save_sheet
+from slidercrank.service.figures.panels import save_figure
 from slidercrank.service.figures.style import save
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.questions.cylinders import analysis as cylinders
@@ -105,8 +105,8 @@ def compressor(folder: Path) -> None:
     """Draw pressure and volume of the shipped compressor, and the torque of two of them on one crankshaft."""
     machine = load_job(_JOB.with_name("compressor.toml")).mechanism
     two = replace(machine, arrangement=Arrangement(phases=(0.0, math.pi), places=(-0.05, 0.05)))
-    save_sheet(indicator.figure(machine, _COMPRESSOR), folder / "compressor_indicator.png")
-    save_sheet(cylinders.figure(two, _COMPRESSOR), folder / "compressor_cylinders.png")
+    save_figure(indicator.figure(machine, _COMPRESSOR), folder / "compressor_indicator.png")
+    save_figure(cylinders.figure(two, _COMPRESSOR), folder / "compressor_cylinders.png")
 
 
 def methods(folder: Path) -> None:

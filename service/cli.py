@@ -28,7 +28,7 @@ from ..model.errors import InfeasibleError, InputWarning, OutputLost, Slidercran
 from .commands.ending import FAULT, INTERRUPTED, NOTHING_FEASIBLE, WRONG_INPUT, with_infeasible_json
 from .resources.disk import full_places, is_full
 from .text.options import for_typer
-from .text.screen import give, say
+from .text.screen import print_message, print_output
 from .text.streams import give_up_output, guard_streams
 
 _DEBUG = "SLIDERCRANK_DEBUG"
@@ -46,7 +46,7 @@ _COMMANDS = (
     *("serve", "submit", "jobs", "watch", "cancel", "resume", "delete", "worker", "mcp", "doctor"),
 )
 _MODULES = {"check": "job", "schema": "job", "front": "runs", "watch": "submit"}
-_MODULES |= dict.fromkeys(("inverse", "swing", "allocate", "balance", "sections"), "question")
+_MODULES |= dict.fromkeys(("inverse", "swing", "allocate", "balance", "sections"), "question_commands")
 _MODULES |= dict.fromkeys(("jobs", "cancel", "resume", "delete"), "queue")
 """Modules of the commands that have none of their own name."""
 
@@ -76,10 +76,10 @@ class Commands(TyperGroup):
         except SlidercrankError as error:
             if os.environ.get(_DEBUG):
                 raise
-            say(f"slidercrank: {error}")
+            print_message(f"slidercrank: {error}")
             raise typer.Exit(NOTHING_FEASIBLE if isinstance(error, InfeasibleError) else WRONG_INPUT) from None
         except KeyboardInterrupt:
-            say("slidercrank: interrupted")
+            print_message("slidercrank: interrupted")
             raise typer.Exit(INTERRUPTED) from None
         except typer.Abort:
             raise
@@ -88,12 +88,12 @@ class Commands(TyperGroup):
                 _say_in_own_words(error)
                 raise
             if _short_of_memory(error):
-                say(_MORE_MEMORY)
+                print_message(_MORE_MEMORY)
                 raise typer.Exit(WRONG_INPUT) from None
             if isinstance(error, OSError) and is_full(error):
-                say(f"slidercrank: Disk full: {full_places(error)}; free some space")
+                print_message(f"slidercrank: Disk full: {full_places(error)}; free some space")
                 raise typer.Exit(WRONG_INPUT) from None
-            say(
+            print_message(
                 f"slidercrank: unexpected {type(error).__name__}: {error}; this is a fault of slidercrank, not of the "
                 f"input; see {_log_of(error)}"
             )
@@ -109,7 +109,7 @@ def _input_warnings_said() -> Iterator[None]:
         def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
             if issubclass(category, InputWarning):
                 if str(message) not in shown:
-                    say(f"warning: {message}")
+                    print_message(f"warning: {message}")
                 shown.add(str(message))
             else:
                 others(message, category, *place, **more)
@@ -181,7 +181,7 @@ def _version(asked: bool) -> None:
             number = version("slidercrank")
         except PackageNotFoundError:
             number = "(not installed)"
-        give(f"slidercrank {number}\n")
+        print_output(f"slidercrank {number}\n")
         raise typer.Exit
 
 
@@ -204,10 +204,10 @@ def main() -> None:
     try:
         app(prog_name="slidercrank")
     except OutputLost as error:  # of the help, which no command prints
-        say(f"slidercrank: {error}")
+        print_message(f"slidercrank: {error}")
         sys.exit(WRONG_INPUT)
     except MemoryError:  # in telling of another error
-        say(_MORE_MEMORY)
+        print_message(_MORE_MEMORY)
         sys.exit(WRONG_INPUT)
     finally:
         try:  # while a failure can still be told

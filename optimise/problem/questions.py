@@ -26,8 +26,8 @@ _REMEDIES = {
 }
 
 
-class Question(Protocol):
-    """What a design can be asked. One with a `subject`, "front" or "job", is a `WiderQuestion`."""
+class DesignQuestion(Protocol):
+    """What a design can be asked. One with a `subject`, "front" or "job", is a `FrontOrJobQuestion`."""
 
     def answer(
         self, mechanism: Mechanism, linkage: Linkage, problem: Any, inputs: Mapping[str, object]
@@ -40,7 +40,7 @@ class Question(Protocol):
         """
 
 
-class WiderQuestion(Protocol):
+class FrontOrJobQuestion(Protocol):
     """What a front or a job can be asked."""
 
     def answer_of(self, subject: Any, row: int | None, inputs: Mapping[str, object]) -> dict[str, Any]:

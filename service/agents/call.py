@@ -31,7 +31,7 @@ _LONGEST = 255  # characters of a name; no file has more
 
 
 @dataclass(frozen=True)
-class Answer:
+class ToolAnswer:
     """Answer of a tool. record: for programs. text: for people. is_error: whether the caller has to do something."""
 
     record: dict[str, Any]
@@ -66,10 +66,10 @@ class Call:
 
     def _require_inside(self, path: Path, name: str) -> None:
         try:
-            inside = len(name) <= _LONGEST and path.resolve().is_relative_to(self.runs.resolve())
+            is_inside = len(name) <= _LONGEST and path.resolve().is_relative_to(self.runs.resolve())
         except (OSError, ValueError, RuntimeError):  # no name of a file, a circle of links
-            inside = False
-        if not inside:
+            is_inside = False
+        if not is_inside:
             raise InputError(
                 f"a run is a folder in {self.runs} without links that lead elsewhere; got {name[:200]!r}; "
                 "name one of the list of runs"

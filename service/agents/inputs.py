@@ -13,10 +13,18 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.units import quote
 from ...optimise.job.model import Job as JobModel
 from ..designs.columns import find_column
-from ..designs.picking_options import require_alone
+from ..designs.picking_options import require_single_choice
 from ..designs.stored_designs import front_of, stored_design
 from ..presets.jobs import shipped_jobs
-from ..questions.discovery import ALL, COMMANDS, OF_DESIGNS, QUESTIONS, TOPICS, WIDER, chosen_topics
+from ..questions.discovery import (
+    ALL,
+    DESIGN_QUESTIONS,
+    FRONT_OR_JOB_QUESTIONS,
+    QUESTION_COMMANDS,
+    QUESTIONS,
+    TOPICS,
+    chosen_topics,
+)
 from ..questions.inputs import read_inputs
 from ..text.options import Dimensions, Rows, Units
 from ..text.tables import ROWS
@@ -30,8 +38,10 @@ if TYPE_CHECKING:
 
 _TABLES = ", ".join(f"{name} ({field.description})" for name, field in JobModel.model_fields.items())
 _SHOWN = [f"{name} ({topic.shows})" for name, topic in TOPICS.items()]
-_SHOWN += [f"{name} ({command.help.partition('.')[0]}; alone)" for name, command in COMMANDS.items()]
-_SHOWN += [f"{name} ({one.help.partition('.')[0]}; alone, of a {one.subject})" for name, one in WIDER.items()]
+_SHOWN += [f"{name} ({command.help.partition('.')[0]}; alone)" for name, command in QUESTION_COMMANDS.items()]
+_SHOWN += [
+    f"{name} ({one.help.partition('.')[0]}; alone, of a {one.subject})" for name, one in FRONT_OR_JOB_QUESTIONS.items()
+]
 _INPUTS: dict[str, dict[str, Any]] = {}
 for _topic in QUESTIONS.values():
     for _one in _topic.inputs:
@@ -70,7 +80,7 @@ Dimension = Annotated[
 
 
 @dataclass(frozen=True)
-class Shown:
+class FrontPart:
     """Part of a front that an answer has."""
 
     rows: Rows = ROWS
@@ -83,11 +93,11 @@ class Shown:
     ] = None
     units: Units = "metric"
 
-    def keys(self, known: list[str], usual: list[str]) -> list[str] | None:
+    def keys(self, columns: list[str], usual: list[str]) -> list[str] | None:
         """Return the columns that are asked for, None for all. Raises `InputError` for others."""
         if self.columns == [ALL]:
             return None
-        return usual if self.columns is None else [find_column(name, known).key for name in self.columns]
+        return usual if self.columns is None else [find_column(name, columns).key for name in self.columns]
 
 
 class Machine(NamedTuple):
@@ -110,14 +120,14 @@ class Design:
     rod: Dimension = None
     offset: Dimension = None
 
-    def found(self, call: Call) -> Machine:
+    def machine(self, call: Call) -> Machine:
         """Return the machine. Raises `InputError` for none, and for two."""
         if (self.run is None) == (self.job is None):
-            got = "both" if self.run else "neither"
-            raise InputError(f"a design must come from a run or a job; got {got}; give one of them")
+            received = "both" if self.run else "neither"
+            raise InputError(f"a design must come from a run or a job; got {received}; give one of them")
         return self._machine_of_job(call) if self.run is None else self._machine_of_run(call, self.run)
 
-    def stated(self, call: Call) -> Problem:
+    def problem(self, call: Call) -> Problem:
         """Return the problem of the job. Raises `InputError` for none."""
         if self.job is None or self.run is not None:
             raise InputError("a question to a job needs one; got none; give a job, without a run")
@@ -131,13 +141,13 @@ class Design:
     def front(self, call: Call) -> tuple[Path, ParetoFront, int | None]:
         """Return the folder of the run, its front and the row of the design. Raises `InputError` for no run."""
         if self.run is None or self.job is not None:
-            got = "a job" if self.job is not None else "none"
-            raise InputError(f"a front is of a run; got {got}; name a run, without a job")
+            received = "a job" if self.job is not None else "none"
+            raise InputError(f"a front is of a run; got {received}; name a run, without a job")
         self._require_no_lengths()
         folder, result = call.run(self.run)
         row = None
         if self.design is not None:
-            require_alone(self.design, result, others=False)
+            require_single_choice(self.design, result, has_other_choice=False)
             row = self.design - 1
         return folder, front_of(call.problem_of_run(folder, result), result), row
 
@@ -152,9 +162,9 @@ class Design:
         self._require_no_lengths()
         folder, result = call.front(run)
         number = 1 + (result.knee or 0) if self.design is None else self.design
-        require_alone(number, result, others=False)
-        of = stored_design(call.problem_of_run(folder, result), result, number)
-        return Machine(of.mechanism, of.linkage, of.part)
+        require_single_choice(number, result, has_other_choice=False)
+        stored = stored_design(call.problem_of_run(folder, result), result, number)
+        return Machine(stored.mechanism, stored.linkage, stored.part)
 
     def _machine_of_job(self, call: Call) -> Machine:
         problem = call.problem(tables_of(self.job or {}, self.files), feasible=False)
@@ -162,7 +172,7 @@ class Design:
 
 
 @dataclass(frozen=True)
-class Asked:
+class TopicRequest:
     """What a design is asked."""
 
     topics: Topics = field(default_factory=list)
@@ -178,14 +188,14 @@ class Asked:
                 f"{self.alone} may not be combined with other topics; got {', '.join(self.topics)}; ask for the "
                 "others separately"
             )
-        if self.alone in WIDER:
+        if self.alone in FRONT_OR_JOB_QUESTIONS:
             return
-        taken = [one.name for name in self.names for one in QUESTIONS[name].inputs]
+        accepted = [item.name for name in self.names for item in QUESTIONS[name].inputs]
         for name in self.inputs:
-            if name not in taken and name in _INPUTS:
-                (topic, *_) = (topic for topic in QUESTIONS.values() if any(one.name == name for one in topic.inputs))
+            if name not in accepted and name in _INPUTS:
+                (topic, *_) = (topic for topic in QUESTIONS.values() if any(item.name == name for item in topic.inputs))
                 raise InputError(f"{name} is an input of the topic {topic.name}, which is missing; add that topic")
-            if name not in taken:
+            if name not in accepted:
                 raise InputError(f"an input must be one of {', '.join(_INPUTS)}; got {name[:60]!r}; leave it out")
             if _INPUTS[name]["type"] == "string" and not isinstance(self.inputs[name], str):
                 raise InputError(f"inputs.{name} must be a text; got {quote(self.inputs[name])}; correct it")
@@ -193,7 +203,7 @@ class Asked:
     @property
     def alone(self) -> str | None:
         """The topic that is a command of its own, None without one."""
-        return next((name for name in self.topics if name in COMMANDS or name in WIDER), None)
+        return next((name for name in self.topics if name in QUESTION_COMMANDS or name in FRONT_OR_JOB_QUESTIONS), None)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -202,6 +212,6 @@ class Asked:
 
     def options(self) -> dict[str, dict[str, Any]]:
         """Return the inputs of each topic, in SI. Raises `InputError`."""
-        takes = {name: OF_DESIGNS[name].inputs for name in self.names}
-        given = {name: {one.name: self.inputs.get(one.name) for one in inputs} for name, inputs in takes.items()}
-        return {name: read_inputs(takes[name], given[name], f"the topic {name}") for name in takes}
+        takes = {name: DESIGN_QUESTIONS[name].inputs for name in self.names}
+        texts = {name: {item.name: self.inputs.get(item.name) for item in inputs} for name, inputs in takes.items()}
+        return {name: read_inputs(takes[name], texts[name], f"the topic {name}") for name in takes}

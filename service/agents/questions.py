@@ -17,17 +17,17 @@ from ...optimise.job.messages import nodes_at, toml
 from ...optimise.job.model import Job
 from ...optimise.job.schema import schema_of
 from ..designs.quantity_facts import facts_of_all
-from ..designs.turning import require_turning
+from ..designs.rotating_crank import require_rotating_crank
 from ..jobs.find_run import run_folders
 from ..jobs.job_toml import job_toml
 from ..jobs.submission import ending_own
 from ..presets.jobs import shipped_jobs
-from ..questions.answers import schema_of as schema_of_answer
-from ..questions.discovery import ALL, OF_DESIGNS, QUESTIONS, WIDER
-from ..questions.question import Question
-from ..questions.wider import Watch, WiderQuestion
-from .call import Answer, Call, tables_of, text_of
-from .inputs import Asked, Design, Files, JobInput
+from ..questions.answer_types import schema_of as schema_of_answer
+from ..questions.design_question import DesignQuestion
+from ..questions.discovery import ALL, DESIGN_QUESTIONS, FRONT_OR_JOB_QUESTIONS, QUESTIONS
+from ..questions.front_or_job_question import FrontOrJobQuestion, SearchListener
+from .call import Call, ToolAnswer, tables_of, text_of
+from .inputs import Design, Files, JobInput, TopicRequest
 
 if TYPE_CHECKING:
     from .inputs import Machine
@@ -37,7 +37,7 @@ _OF_TOPIC = ("name", "title", "help", "usual", "example", "required")
 _OF_KEY = ("description", "examples", "default", "enum")
 
 
-def list_known(call: Call) -> Answer:
+def list_contents(call: Call) -> ToolAnswer:
     """List what there is: jobs that ship, quantities, topics with their inputs, and the latest runs.
 
     `describe` explains each. Start from a job that ships and is near to the task.
@@ -52,12 +52,15 @@ def list_known(call: Call) -> Answer:
     topics, runs = list(map(_topic, QUESTIONS.values())), list(_runs(call))
     lines = [
         *("Included jobs:", *(f"  {job['name']}: {job['sentence'] or job['title']}" for job in jobs)),
-        *("Topics:", *(f"  {one['name']}, of a {one['of']}: {one['shows'].partition(chr(10))[0]}" for one in topics)),
+        *(
+            "Topics:",
+            *(f"  {topic['name']}, of a {topic['of']}: {topic['shows'].partition(chr(10))[0]}" for topic in topics),
+        ),
         *("Quantities:", f"  {', '.join(facts['name'] for facts in quantities)}"),
         *("Runs, newest first:", *(f"  {run['run']}: {run['message']}" for run in runs)),
     ]
     record = {"jobs": jobs, "quantities": quantities, "topics": topics, "runs": runs}
-    return Answer(record, "\n".join(lines))
+    return ToolAnswer(record, "\n".join(lines))
 
 
 def describe(
@@ -71,22 +74,25 @@ def describe(
             max_length=200,
         ),
     ],
-) -> Answer:
+) -> ToolAnswer:
     """Describe a quantity (meaning, formula, unit), a topic, a job that ships (its tables and TOML), a key of a job."""
     word = name.strip()
-    facts = {one["name"]: one for one in facts_of_all()}
+    facts = {item["name"]: item for item in facts_of_all()}
     record: dict[str, Any] = {}
     lines = []
     if word in facts:
-        record["quantity"] = of = facts[word]
-        lines.append(f"{of['title']} ({of['column']}): {of['sentence']} {of['advice']}\n{of['formula']}")
+        record["quantity"] = quantity = facts[word]
+        lines.append(
+            f"{quantity['title']} ({quantity['column']}): {quantity['sentence']} {quantity['advice']}\n"
+            f"{quantity['formula']}"
+        )
     if word in QUESTIONS:
         record["topic"] = topic = _topic(QUESTIONS[word])
-        asked = "".join(f"\n  {one.name}: {one.remark}" for one in QUESTIONS[word].inputs)
-        lines.append(f"topic {word}: {topic['shows']}{asked}")
-    if word in OF_DESIGNS:
-        topic["answer"] = answer = schema_of_answer(OF_DESIGNS[word].answer_type)
-        lines.append(f"  answer, whose keys end otherwise in inches: {', '.join(answer['properties'])}")
+        input_lines = "".join(f"\n  {item.name}: {item.remark}" for item in QUESTIONS[word].inputs)
+        lines.append(f"topic {word}: {topic['shows']}{input_lines}")
+    if word in DESIGN_QUESTIONS:
+        topic["answer"] = schema = schema_of_answer(DESIGN_QUESTIONS[word].answer_type)
+        lines.append(f"  answer, whose keys end otherwise in inches: {', '.join(schema['properties'])}")
     if word in shipped_jobs():
         text = job_toml(shipped_jobs()[word])
         record["job"] = {"tables": shipped_jobs()[word], "toml": text}
@@ -98,28 +104,28 @@ def describe(
         near = closest(word, [*facts, *QUESTIONS, *shipped_jobs()])
         remedy = f"did you mean {near}?" if near else "call `list` for all names"
         raise NotFound(f"a name must be that of a quantity, a topic, a job or a key of a job; got {word!r}; {remedy}")
-    return Answer(record, "\n".join(lines))
+    return ToolAnswer(record, "\n".join(lines))
 
 
-def ask(call: Call, *, subject: Design, question: Asked) -> Answer:
+def ask(call: Call, *, subject: Design, question: TopicRequest) -> ToolAnswer:
     """Analyse one design: all its quantities, how it meets the rules of its job, and topics such as static_forces.
 
     The design is one of a run, its knee if none is named, or has lengths of your own for a job. Some topics are of
     the front of a run, such as wish, or of a job, such as sweep.
     """
-    if question.alone in WIDER:
-        return _wider(call, subject, question, WIDER[question.alone])
+    if question.alone in FRONT_OR_JOB_QUESTIONS:
+        return _wider(call, subject, question, FRONT_OR_JOB_QUESTIONS[question.alone])
     options = question.options()
-    of = subject.found(call)
-    with ending_own(of.problem):
-        alone = question.alone or ("swing" if of.problem.motion is not None and not question.topics else None)
+    machine = subject.machine(call)
+    with ending_own(machine.problem):
+        alone = question.alone or ("swing" if machine.problem.motion is not None and not question.topics else None)
         if alone is not None:
-            return _analyse_by_command(alone, of, question)
-        require_turning(of.problem.motion, f"the topic {next(iter(options), '')}")
-        return _analyse_rotating(call, of, options, question)
+            return _analyse_by_command(alone, machine, question)
+        require_rotating_crank(machine.problem.motion, f"the topic {next(iter(options), '')}")
+        return _analyse_rotating(call, machine, options, question)
 
 
-def check(call: Call, *, job: JobInput, files: Files = {}) -> Answer:  # noqa: B006
+def check(call: Call, *, job: JobInput, files: Files = {}) -> ToolAnswer:  # noqa: B006
     """Check a job before it is searched: what was understood, or what is wrong or contradictory, with the remedy."""
     from ...objectives.own.quantity import OwnQuantity
     from ..preview.preview import look_at
@@ -129,79 +135,90 @@ def check(call: Call, *, job: JobInput, files: Files = {}) -> Answer:  # noqa: B
     look = look_at(tables, call.problem)
     record: dict[str, Any] = {
         "valid": look.problem is not None,
-        "wrong": [asdict(one) for one in look.wrong],
+        "wrong": [asdict(mistake) for mistake in look.wrong],
         "said": look.said,
         "unchecked": look.unchecked,
     }
     if look.problem is None:
-        lines = [": ".join(filter(None, (one.path, one.sentence))) for one in look.wrong]
-        return Answer(record, "\n".join(("this job cannot be solved:", *dict.fromkeys((*lines, *look.said)))))
-    for own in look.problem.own:
-        if isinstance(own, OwnQuantity):
-            own.require_function()
+        lines = [": ".join(filter(None, (mistake.path, mistake.sentence))) for mistake in look.wrong]
+        return ToolAnswer(record, "\n".join(("this job cannot be solved:", *dict.fromkeys((*lines, *look.said)))))
+    for quantity in look.problem.own:
+        if isinstance(quantity, OwnQuantity):
+            quantity.require_function()
     record |= job_in_words(look.problem, tables)
-    told = [f"{name}: {'; '.join(record[name])}" for name in ("given", "variables", "rules", "objectives", "warnings")]
+    lists = [f"{name}: {'; '.join(record[name])}" for name in ("given", "variables", "rules", "objectives", "warnings")]
     heading = f"a valid job: {look.problem.name}"
-    return Answer(record, "\n".join((heading, *told, freedom_in_words(look.problem), *look.said, *record["notes"])))
+    return ToolAnswer(
+        record, "\n".join((heading, *lists, freedom_in_words(look.problem), *look.said, *record["notes"]))
+    )
 
 
-def _analyse_rotating(call: Call, of: Machine, options: Mapping[str, dict[str, Any]], question: Asked) -> Answer:
+def _analyse_rotating(
+    call: Call, machine: Machine, options: Mapping[str, dict[str, Any]], question: TopicRequest
+) -> ToolAnswer:
     """Analyse a design that turns fully. options: of each topic."""
-    from ..designs.requirements import judged
+    from ..designs.requirements import judge_rules
     from ..questions.analysis_text import show_analysis
-    from ..questions.design_analysis import analysis_of, numbers_of
+    from ..questions.design_analysis import analysis_of, quantities_of_design
 
-    row, undefined = numbers_of(of.mechanism, of.linkage, of.problem.own)
-    found = analysis_of(
+    row, undefined = quantities_of_design(machine.mechanism, machine.linkage, machine.problem.own)
+    analysis = analysis_of(
         row,
-        of.mechanism,
-        of.linkage,
+        machine.mechanism,
+        machine.linkage,
         tuple(options),
         options=options,
         cancelled=call.cancelled,
         lenient=ALL in question.topics,
         undefined=undefined,
     )
-    rules = judged(of.problem, row, question.units)
-    text = text_of(lambda screen: show_analysis(screen, found, rules, question.units, own=of.problem.own))
-    return Answer(found.record(question.units, rules), "\n".join((text, *found.notes, *found.refused)))
+    rules = judge_rules(machine.problem, row, question.units)
+    text = text_of(lambda screen: show_analysis(screen, analysis, rules, question.units, custom=machine.problem.own))
+    return ToolAnswer(analysis.record(question.units, rules), "\n".join((text, *analysis.notes, *analysis.refused)))
 
 
-def _analyse_by_command(name: str, of: Machine, question: Asked) -> Answer:
+def _analyse_by_command(name: str, machine: Machine, question: TopicRequest) -> ToolAnswer:
     """Ask a design what is a command of its own."""
-    from ..designs.shown_units import record_in
+    from ..designs.display_units import record_in
     from ..render.terminal import print_blocks
 
-    asked = OF_DESIGNS[name].asked(of.mechanism, of.linkage, of.problem, question.inputs)
-    record = asked.numbers(lambda: False)
-    text = text_of(lambda screen: print_blocks(screen, asked.blocks(record), question.units))
-    return Answer(record_in(record, question.units), "\n".join((text, *asked.notes(record))))
+    bound_question = DESIGN_QUESTIONS[name].for_problem(
+        machine.mechanism, machine.linkage, machine.problem, question.inputs
+    )
+    record = bound_question.numbers(lambda: False)
+    text = text_of(lambda screen: print_blocks(screen, bound_question.blocks(record), question.units))
+    return ToolAnswer(record_in(record, question.units), "\n".join((text, *bound_question.notes(record))))
 
 
-def _wider(call: Call, subject: Design, question: Asked, of: WiderQuestion) -> Answer:
+def _wider(call: Call, subject: Design, question: TopicRequest, definition: FrontOrJobQuestion) -> ToolAnswer:
     """Ask the front of a run, or a job."""
     from ..render.terminal import print_blocks
 
     place, row, inputs = dict[str, Any](), None, question.inputs
-    if of.subject == "job":
-        asked: Any = subject.stated(call)
-        problem, inputs = asked, subject.lengths | inputs
+    if definition.subject == "job":
+        target: Any = subject.problem(call)
+        problem, inputs = target, subject.lengths | inputs
     else:
-        folder, asked, row = subject.front(call)
-        problem, place = asked.problem, {"run": path_text(folder)}
+        folder, target, row = subject.front(call)
+        problem, place = target.problem, {"run": path_text(folder)}
     with ending_own(problem):
-        answer = of.ask(asked, inputs, row=row, watch=Watch(cancelled=call.cancelled))
+        answer = definition.ask(target, inputs, row=row, watch=SearchListener(cancelled=call.cancelled))
     text = text_of(lambda screen: print_blocks(screen, answer.blocks, question.units))
     record = place | answer.record(question.units)
-    return Answer(record, "\n".join((text, *answer.notes)), is_error=not answer.met)
+    return ToolAnswer(record, "\n".join((text, *answer.notes)), is_error=not answer.is_satisfied)
 
 
-def _topic(of: Question | WiderQuestion) -> dict[str, Any]:
-    inputs = [{key: getattr(one, key) for key in _OF_TOPIC} for one in of.inputs]
-    if isinstance(of, WiderQuestion):
-        return {"name": of.name, "of": of.subject, "shows": inspect.cleandoc(of.help), "inputs": inputs}
-    shows = of.shows if of.command is None else inspect.cleandoc(of.command.help)
-    return {"name": of.name, "of": "design", "shows": shows, "inputs": inputs}
+def _topic(question: DesignQuestion | FrontOrJobQuestion) -> dict[str, Any]:
+    inputs = [{key: getattr(item, key) for key in _OF_TOPIC} for item in question.inputs]
+    if isinstance(question, FrontOrJobQuestion):
+        return {
+            "name": question.name,
+            "of": question.subject,
+            "shows": inspect.cleandoc(question.help),
+            "inputs": inputs,
+        }
+    shows = question.shows if question.command is None else inspect.cleandoc(question.command.help)
+    return {"name": question.name, "of": "design", "shows": shows, "inputs": inputs}
 
 
 def _runs(call: Call) -> Iterator[dict[str, Any]]:
@@ -212,8 +229,13 @@ def _runs(call: Call) -> Iterator[dict[str, Any]]:
         except (RunError, InputError) as error:
             yield {"run": folder.name, "name": "", "status": "unfinished", "designs": 0, "message": str(error)}
             continue
-        told = {"name": result.name, "status": result.status, "designs": len(result.designs), "message": result.message}
-        yield {"run": folder.name, **told}
+        summary = {
+            "name": result.name,
+            "status": result.status,
+            "designs": len(result.designs),
+            "message": result.message,
+        }
+        yield {"run": folder.name, **summary}
 
 
 def _key(name: str) -> dict[str, Any]:

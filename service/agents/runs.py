@@ -13,9 +13,9 @@ from pydantic import Field
 from ...model.errors import InfeasibleError, InputError
 from ...model.file_names import path_text
 from ...objectives.kinds import System
-from ..designs.picking_options import require_alone
-from ..designs.selection import none_meets, numbered, part_of
-from ..designs.shown_units import result_in
+from ..designs.display_units import result_in
+from ..designs.picking_options import require_single_choice
+from ..designs.selection import no_match_message, numbered_rows, result_part
 from ..designs.stored_designs import front_of, stored_design
 from ..jobs.submission import LONGEST_CALL, ending_own, job_json
 from ..motion.design_file import ENDINGS, design_file
@@ -25,8 +25,8 @@ from ..runs.run_folder import write_file
 from ..text.design_options import Pick, Selection, SettingOptions
 from ..text.options import Run, Units
 from ..text.tables import show_design, show_front, show_result, spread_rows, usual_keys
-from .call import Answer, Call, tables_of, text_of
-from .inputs import Files, Number, OptionalJob, Shown
+from .call import Call, ToolAnswer, tables_of, text_of
+from .inputs import Files, FrontPart, Number, OptionalJob
 
 if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
@@ -61,23 +61,23 @@ class Search:
         float | None, Field(description="Time limit in seconds; the designs found so far are returned.", gt=0.0)
     ] = None
 
-    def begun(self, call: Call, store: Store, settings: SettingOptions) -> AbstractContextManager[Opened]:
+    def open_run(self, call: Call, store: Store, settings: SettingOptions) -> AbstractContextManager[Opened]:
         """Return the context of its run. Raises `InputError` for neither or both of job and run."""
         from ..workers.own_search import new_run, resumed_run, with_settings
 
         if (self.job is None) == (self.resume is None):
-            got = "both" if self.job else "neither"
-            raise InputError(f"a search needs a job, or a run to continue; got {got}; give one of them")
+            received = "both" if self.job else "neither"
+            raise InputError(f"a search needs a job, or a run to continue; got {received}; give one of them")
         if self.resume is not None:
-            if settings.given:
+            if settings.overrides:
                 raise InputError("a run must continue with its original number of designs and seed; leave them out")
             return resumed_run(store, call.runs, call.folder(self.resume).name, call.problem_again)
         tables = tables_of(self.job or {}, self.files)
-        problem, stated = with_settings(call.problem(tables, seconds=LONGEST_CALL), tables, settings.given)
+        problem, stated = with_settings(call.problem(tables, seconds=LONGEST_CALL), tables, settings.overrides)
         return new_run(store, call.runs, problem, stated, [job_json(stated)])
 
 
-def optimise(call: Call, *, search: Search, settings: SettingOptions, part: Shown) -> Answer:
+def optimise(call: Call, *, search: Search, settings: SettingOptions, part: FrontPart) -> ToolAnswer:
     """Search the Pareto front of a job, and keep it as a run.
 
     Takes from a second to minutes; reports progress. Cancelled, it keeps what it found, and `resume` goes on with it
@@ -92,9 +92,9 @@ def optimise(call: Call, *, search: Search, settings: SettingOptions, part: Show
 
     with ExitStack() as entered:
         try:
-            opened = entered.enter_context(search.begun(call, entered.enter_context(call.store()), settings))
+            opened = entered.enter_context(search.open_run(call, entered.enter_context(call.store()), settings))
         except InfeasibleError as error:
-            return Answer(unsearched_result(error).record(), str(error), is_error=True)
+            return ToolAnswer(unsearched_result(error).record(), str(error), is_error=True)
         run, problem, claim = opened
         entered.enter_context(kept_alive(claim, again=f"optimise with resume = {claim.job.run}"))
         budget = Budget(Limits(seconds=search.seconds), waited=lambda: claim.waited)
@@ -102,14 +102,14 @@ def optimise(call: Call, *, search: Search, settings: SettingOptions, part: Show
         entered.enter_context(ending_own(problem, engine))
         front = front_of_run(opened, engine, cancelled=lambda: call.cancelled() or budget.spent(), show=call.report)
         result = keep_front(opened, front, budget)
-    shown = result_in(result, part.units, problem)
-    more = {"done": "", "infeasible": ""}.get(result.status, f"; continue it with optimise, resume = {run.path.name}")
-    text = text_of(lambda screen: show_result(screen, shown))
-    record = _record(shown, spread_rows(shown, range(len(shown.designs)), part.rows), part)
-    return Answer(record, f"{text}\nRun: {run.path.name}{more}", is_error=result.status != "done")
+    shown_result = result_in(result, part.units, problem)
+    remedy = {"done": "", "infeasible": ""}.get(result.status, f"; continue it with optimise, resume = {run.path.name}")
+    text = text_of(lambda screen: show_result(screen, shown_result))
+    record = _record(shown_result, spread_rows(shown_result, range(len(shown_result.designs)), part.rows), part)
+    return ToolAnswer(record, f"{text}\nRun: {run.path.name}{remedy}", is_error=result.status != "done")
 
 
-def front(call: Call, *, run: Run, selection: Selection, pick: Pick, part: Shown) -> Answer:
+def front(call: Call, *, run: Run, selection: Selection, pick: Pick, part: FrontPart) -> ToolAnswer:
     """Show the front of a run, a part of it, or one design chosen from it with all its quantities and trade-offs.
 
     numbers are those of the designs; knee and extremes are their places in the answer.
@@ -118,15 +118,19 @@ def front(call: Call, *, run: Run, selection: Selection, pick: Pick, part: Shown
     chosen = selection.rows(result)
     picked = _chosen_number(result, chosen, pick)
     if not chosen:
-        raise InfeasibleError(none_meets(result, selection.where or []))
-    shown = result_in(result, part.units, None if part.units == "metric" else call.problem_of_run(folder, result))
+        raise InfeasibleError(no_match_message(result, selection.where or []))
+    shown_result = result_in(
+        result, part.units, None if part.units == "metric" else call.problem_of_run(folder, result)
+    )
     if picked is None:
-        rows = spread_rows(shown, chosen, part.rows)
-        return Answer(_record(shown, rows, part), text_of(lambda screen: show_front(screen, shown, rows, most=0)))
-    record = _record(shown, [picked], replace(part, columns=part.columns or [ALL]))
+        rows = spread_rows(shown_result, chosen, part.rows)
+        return ToolAnswer(
+            _record(shown_result, rows, part), text_of(lambda screen: show_front(screen, shown_result, rows, limit=0))
+        )
+    record = _record(shown_result, [picked], replace(part, columns=part.columns or [ALL]))
     record["trade_offs"] = record["trade_offs"] or _trade_offs(call, folder, result, picked, part.units)
-    text = text_of(lambda screen: show_design(screen, shown.designs[picked]))
-    return Answer(record, "\n".join((f"design {picked + 1}", text, *record["trade_offs"])))
+    text = text_of(lambda screen: show_design(screen, shown_result.designs[picked]))
+    return ToolAnswer(record, "\n".join((f"design {picked + 1}", text, *record["trade_offs"])))
 
 
 def files(
@@ -141,7 +145,7 @@ def files(
     ],
     design: Number = None,
     units: Units = "metric",
-) -> Answer:
+) -> ToolAnswer:
     """Write files of a run into its folder, and say where they are.
 
     Of the run its designs as CSV or JSON, and figures of its front. Of one design, the knee if none is named: a report
@@ -153,45 +157,45 @@ def files(
     picked = _chosen_number(result, [], Pick(design=design))
     number = 1 + ((result.knee or 0) if picked is None else picked)
     problem = call.problem_of_run(folder, result)
-    found, shown = stored_design(problem, result, number), result_in(result, units, problem)
+    stored, shown_result = stored_design(problem, result, number), result_in(result, units, problem)
     named = {"name": result.name, "design": f"design {number}"}
     written: dict[str, list[str]] = {}
-    for what in dict.fromkeys(write):
+    for kind in dict.fromkeys(write):
         if call.cancelled():
             break
-        if what == "figures":
-            written[what] = _figures(problem, result, folder, units)
+        if kind == "figures":
+            written[kind] = _figures(problem, result, folder, units)
             continue
         content: str | bytes
-        if what == "csv":
-            content = csv_text(numbered(shown.designs))
-        elif what == "json":
-            content = json_text(shown.record())
-        elif what in ENDINGS:
-            content = design_file(what, found, None, units, **named)
+        if kind == "csv":
+            content = csv_text(numbered_rows(shown_result.designs))
+        elif kind == "json":
+            content = json_text(shown_result.record())
+        elif kind in ENDINGS:
+            content = design_file(kind, stored, None, units, **named)
         else:
             from ..report.run_report import run_report
 
-            content = run_report(folder, result, number, pdf=what == "pdf", units=units)
-        file = folder / _NAMES[what].format(number)
+            content = run_report(folder, result, number, pdf=kind == "pdf", units=units)
+        file = folder / _NAMES[kind].format(number)
         file = file if units == "metric" else file.with_stem(f"{file.stem}-{units}")
         write_file(file, content)
-        written[what] = [path_text(file)]
+        written[kind] = [path_text(file)]
     record = {"run": path_text(folder), "number": number, "files": written}
-    return Answer(record, "\n".join(f"{what}: {', '.join(paths)}" for what, paths in written.items()))
+    return ToolAnswer(record, "\n".join(f"{kind}: {', '.join(paths)}" for kind, paths in written.items()))
 
 
-def _record(shown: Result, rows: Sequence[int], part: Shown) -> dict[str, Any]:
+def _record(result: Result, rows: Sequence[int], part: FrontPart) -> dict[str, Any]:
     """Return some designs of a result, with their numbers, for JSON."""
-    names = part.keys(list(shown.designs[0]), usual_keys(shown)) if shown.designs else None
-    return part_of(shown, rows).record(names) | {"numbers": [row + 1 for row in rows]}
+    names = part.keys(list(result.designs[0]), usual_keys(result)) if result.designs else None
+    return result_part(result, rows).record(names) | {"numbers": [row + 1 for row in rows]}
 
 
 def _chosen_number(result: Result, chosen: Sequence[int], pick: Pick) -> int | None:
     """Return which design is named or chosen by its values, None without either."""
     if pick.design is None:
         return pick.row(result, chosen)
-    require_alone(pick.design, result, others=pick.picking)
+    require_single_choice(pick.design, result, has_other_choice=pick.picking)
     return pick.design - 1
 
 

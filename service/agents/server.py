@@ -20,7 +20,7 @@ from ...optimise.search.fingerprint import version_of
 from ..resources.disk import full_places, is_full
 from ..runs.result import json_ready
 from . import questions, runs
-from .call import Answer, Call
+from .call import Call, ToolAnswer
 from .tool import Tool
 
 with NamingExtra("serving agents needs"):
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 _log = logging.getLogger(__name__)
 TOOLS = (
-    Tool("list", questions.list_known),
+    Tool("list", questions.list_contents),
     Tool("describe", questions.describe),
     Tool("check", questions.check),
     Tool("optimise", runs.optimise, writes=True),
@@ -69,24 +69,24 @@ def serve(place: Path, allowed: frozenset[str], *, interrupted: Callable[[], Non
 
 
 async def _serve(place: Path, allowed: frozenset[str], interrupted: Callable[[], None]) -> None:
-    searches, others, stopping = anyio.CapacityLimiter(1), anyio.CapacityLimiter(1), threading.Event()
+    searches, other_calls, stopping = anyio.CapacityLimiter(1), anyio.CapacityLimiter(1), threading.Event()
 
     async def end_on_signal() -> None:
         with anyio.open_signal_receiver(signal.SIGINT, signal.SIGTERM) as signals:
             async for _ in signals:
                 stopping.set()
-                async with searches, others:
+                async with searches, other_calls:
                     interrupted()
 
     async def on_list_tools(_: ServerRequestContext, __: Page | None) -> ListToolsResult:
         return ListToolsResult(tools=[_declaration(tool) for tool in TOOLS])
 
     async def on_call_tool(ctx: ServerRequestContext, params: CallToolRequestParams) -> CallToolResult:
-        limiter = searches if params.name == "optimise" else others
-        answer = await _answer(ctx.session, partial(Call, place, allowed), params, limiter, stopping)
-        content = [TextContent(type="text", text=answer.text)]
-        record = json_ready(answer.record) or None
-        return CallToolResult(content=[*content], structured_content=record, is_error=answer.is_error)
+        limiter = searches if params.name == "optimise" else other_calls
+        tool_answer = await _answer(ctx.session, partial(Call, place, allowed), params, limiter, stopping)
+        content = [TextContent(type="text", text=tool_answer.text)]
+        record = json_ready(tool_answer.record) or None
+        return CallToolResult(content=[*content], structured_content=record, is_error=tool_answer.is_error)
 
     server: Server[Any] = Server(
         "slidercrank",
@@ -108,7 +108,7 @@ async def _answer(
     params: CallToolRequestParams,
     limiter: anyio.CapacityLimiter,
     stopping: threading.Event,
-) -> Answer:
+) -> ToolAnswer:
     """Answer a call in a thread, which hears of a cancellation and reports its progress meanwhile.
 
     make: gives the call by how it hears and reports. stopping: set when the server ends.
@@ -125,9 +125,9 @@ async def _answer(
 
             call = make(lambda: cancelled.is_set() or stopping.is_set(), report)
             run = partial(_run, params.name, params.arguments or {}, call)
-            answer = await anyio.to_thread.run_sync(run, limiter=limiter)
+            tool_answer = await anyio.to_thread.run_sync(run, limiter=limiter)
             group.cancel_scope.cancel()
-    return answer
+    return tool_answer
 
 
 async def _relay(progress: MemoryObjectReceiveStream[Progress], session: ServerSession) -> None:
@@ -143,12 +143,12 @@ async def _set_when_cancelled(cancelled: threading.Event) -> None:
         cancelled.set()
 
 
-def _run(name: str, arguments: Mapping[str, Any], call: Call) -> Answer:
+def _run(name: str, arguments: Mapping[str, Any], call: Call) -> ToolAnswer:
     """Return the answer of a tool, or one sentence on why there is none."""
     try:
         if name not in _BY_NAME:
             return _error_answer(f"there is no tool {name[:60]!r}; choose from {', '.join(_BY_NAME)}")
-        return _BY_NAME[name].answer(call, arguments)
+        return _BY_NAME[name].execute(call, arguments)
     except SlidercrankError as error:
         return _error_answer(str(error))
     except MemoryError:
@@ -163,8 +163,8 @@ def _run(name: str, arguments: Mapping[str, Any], call: Call) -> Answer:
         )
 
 
-def _error_answer(sentence: str) -> Answer:
-    return Answer({}, sentence, is_error=True)
+def _error_answer(sentence: str) -> ToolAnswer:
+    return ToolAnswer({}, sentence, is_error=True)
 
 
 def _declaration(tool: Tool) -> Declared:

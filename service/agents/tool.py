@@ -15,7 +15,7 @@ from ...model.errors import InputError
 from ...objectives.units import closest, quote
 from ...optimise.job.messages import rule_of
 from ...optimise.job.schema import schema_of
-from .call import Answer, Call
+from .call import Call, ToolAnswer
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Tool:
     """
 
     name: str
-    run: Callable[..., Answer]
+    run: Callable[..., ToolAnswer]
     writes: bool = False
 
     @property
@@ -45,38 +45,40 @@ class Tool:
     @cached_property
     def inputs(self) -> type[BaseModel]:
         """Model of the inputs."""
-        hints, found = get_type_hints(self.run, include_extras=True), dict[str, Any]()
+        hints, definitions = get_type_hints(self.run, include_extras=True), dict[str, Any]()
         for name, parameter in inspect.signature(self.run).parameters.items():
             if name in self.groups:
                 types = get_type_hints(self.groups[name], include_extras=True)
-                found |= {one.name: _field(types[one.name], _default_of(one)) for one in fields(self.groups[name])}
+                definitions |= {
+                    item.name: _field(types[item.name], _default_of(item)) for item in fields(self.groups[name])
+                }
             elif parameter.kind is parameter.KEYWORD_ONLY:
-                found[name] = _field(hints[name], parameter.default)
-        return create_model(self.name, __config__=ConfigDict(extra="forbid", strict=True), **found)
+                definitions[name] = _field(hints[name], parameter.default)
+        return create_model(self.name, __config__=ConfigDict(extra="forbid", strict=True), **definitions)
 
     @cached_property
     def schema(self) -> dict[str, Any]:
         """JSON Schema of the inputs."""
         return {key: value for key, value in schema_of(self.inputs).items() if key not in ("$schema", "title")}
 
-    def answer(self, call: Call, given: Mapping[str, Any]) -> Answer:
+    def execute(self, call: Call, arguments: Mapping[str, Any]) -> ToolAnswer:
         """Run the tool. Raises `InputError` for inputs that it does not have."""
         try:
-            inputs = self.inputs.model_validate(dict(given))
+            inputs = self.inputs.model_validate(dict(arguments))
         except ValidationError as error:
             raise InputError("; ".join(map(self._sentence, error.errors(include_url=False)[:5]))) from None
         values = {name: getattr(inputs, name) for name in self.inputs.model_fields}
         for name, group in self.groups.items():
-            values[name] = group(**{one.name: values.pop(one.name) for one in fields(group)})
+            values[name] = group(**{item.name: values.pop(item.name) for item in fields(group)})
         return self.run(call, **values)
 
     def _sentence(self, details: Any) -> str:
         """Return what is wrong with an input: rule, value, remedy."""
-        name, known = str(details["loc"][0]), list(self.inputs.model_fields)
+        name, accepted = str(details["loc"][0]), list(self.inputs.model_fields)
         if details["type"] == "extra_forbidden":
-            near = closest(name, known)
+            near = closest(name, accepted)
             remedy = f"did you mean {near}?" if near else "leave it out"
-            rule = f"accepts only {', '.join(known)}" if known else "has no inputs"
+            rule = f"accepts only {', '.join(accepted)}" if accepted else "has no inputs"
             return f"{self.name} {rule}; got {quote(name)}; {remedy}"
         if details["type"] == "missing":
             return f"{self.name} needs {name}, which is missing; add it"
@@ -84,20 +86,23 @@ class Tool:
         return f"{path} {rule_of(details)}; got {quote(details['input'])}; correct it"
 
 
-def _default_of(one: Any) -> Any:
+def _default_of(item: Any) -> Any:
     """Return the default of a field of a dataclass, as a parameter has it."""
-    if one.default_factory is not MISSING:
-        return one.default_factory()
-    return inspect.Parameter.empty if one.default is MISSING else one.default
+    if item.default_factory is not MISSING:
+        return item.default_factory()
+    return inspect.Parameter.empty if item.default is MISSING else item.default
 
 
 def _field(hint: Any, default: Any) -> tuple[Any, FieldInfo]:
     """Return type and field of a parameter."""
-    kind, *said = get_args(hint)
-    field = next((one for one in said if isinstance(one, FieldInfo)), None)
+    kind, *annotations = get_args(hint)
+    field = next((metadata for metadata in annotations if isinstance(metadata, FieldInfo)), None)
     if field is None:
-        option: Any = next((one for one in said if not isinstance(one, str)), None)
-        text = next((one for one in said if isinstance(one, str)), None) or option.help.partition("  [")[0]
+        option: Any = next((metadata for metadata in annotations if not isinstance(metadata, str)), None)
+        text = (
+            next((metadata for metadata in annotations if isinstance(metadata, str)), None)
+            or option.help.partition("  [")[0]
+        )
         field = Field(description=text, ge=getattr(option, "min", None), le=getattr(option, "max", None))
     if default is not inspect.Parameter.empty:
         field = FieldInfo.merge_field_infos(field, default=default)

@@ -14,19 +14,19 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import unit_text
 from ...objectives.quantity import Quantity
+from ..designs.rotating_crank import require_rotating_crank
 from ..designs.trade_offs import trade_offs_of
-from ..designs.turning import require_turning
 from ..designs.violations import violated_by
-from ..questions.answers import Answering
-from ..questions.design_analysis import analysis_of, numbers_of, numbers_of_swing
+from ..questions.answer_types import AnswerSchema
+from ..questions.design_analysis import analysis_of, quantities_of_design, quantities_of_swing
 from ..questions.discovery import ALL, TOPICS, chosen_topics
 from ..runs.result import json_ready
 from ..text.options import Dimensions, speed_option
 from .blocks import AnswerBlock, sentence_blocks
 from .computing import LongRoute
 from .fronts import OfDesign
-from .job_requests import given_problem
-from .models import UnitsAsked
+from .job_requests import problem_of_tables
+from .models import UnitsParameter
 from .problems import problem_responses
 from .settings import SettingsDep
 from .stored_fronts import DesignNumber, FrontDep
@@ -38,7 +38,7 @@ Show = Annotated[
     list[Annotated[str, Field(max_length=500)]],
     Query(max_length=20, description=f"add a topic, or several: {', '.join(TOPICS)}, or {ALL}; repeatable"),
 ]
-_TOPICS = Answering(lambda: [topic.answer_type for topic in TOPICS.values()], names=TOPICS)
+_TOPICS = AnswerSchema(lambda: [topic.answer_type for topic in TOPICS.values()], names=TOPICS)
 _ALONG = "Next to this design, along the front, with the requirements that are at their limit held:"
 _NOTHING_TO_GAIN = "At this design nothing can be gained in one objective for a loss in the others."
 
@@ -85,53 +85,53 @@ class TradeOffsModel(OfDesign):
 
 
 @router.get("/jobs/{number}/designs/{design}/analysis")
-def analyse_design(found: FrontDep, design: DesignNumber, show: Show = []) -> StoredAnalysisModel:  # noqa: B006
+def analyse_design(stored_front: FrontDep, design: DesignNumber, show: Show = []) -> StoredAnalysisModel:  # noqa: B006
     """Analyse a design of a front anew, for its job, with the choices and the varying numbers that it has."""
     topics = chosen_topics(show, job=True, word="show")
-    stored = found.design(design)
+    stored = stored_front.design(design)
     if stored.part.motion is not None:
         if topics:
-            require_turning(stored.part.motion, f"the topic {', '.join(topics)}")
-        row, undefined = numbers_of_swing(stored)
+            require_rotating_crank(stored.part.motion, f"the topic {', '.join(topics)}")
+        row, undefined = quantities_of_swing(stored)
         record = json_ready(row | {"violated": violated_by(stored.mechanism, row), "undefined": undefined})
-        return StoredAnalysisModel(job=found.job.id, number=design, analysis=record, notes=[])
+        return StoredAnalysisModel(job=stored_front.job.id, number=design, analysis=record, notes=[])
     record, notes = _with_topics(stored.mechanism, stored.linkage, topics, stored.part.own, lenient=ALL in show)
-    return StoredAnalysisModel(job=found.job.id, number=design, analysis=record, notes=notes)
+    return StoredAnalysisModel(job=stored_front.job.id, number=design, analysis=record, notes=notes)
 
 
 @router.post("/analyse")
-def analyse_any(asked: WhatIf, settings: SettingsDep) -> AnalysisModel:
+def analyse_any(request: WhatIf, settings: SettingsDep) -> AnalysisModel:
     """Analyse a design that need not be in any front: what if?"""
-    topics = chosen_topics(asked.show, job=True, word="show")
-    problem = given_problem(asked.job, settings.allowed_quantities, asked.values, require_feasible=False)
-    require_turning(problem.motion, "an analysis")
+    topics = chosen_topics(request.show, job=True, word="show")
+    problem = problem_of_tables(request.job, settings.allowed_quantities, request.values, require_feasible=False)
+    require_rotating_crank(problem.motion, "an analysis")
     mechanism = problem.mechanism.nominal
-    if asked.speed is not None:
-        mechanism = replace(mechanism, speed=speed_option(asked.speed, "speed"))
-    linkage = Dimensions(asked.crank, asked.rod, asked.offset).linkage(problem, str)
-    record, notes = _with_topics(mechanism, linkage, topics, problem.own, lenient=ALL in asked.show)
+    if request.speed is not None:
+        mechanism = replace(mechanism, speed=speed_option(request.speed, "speed"))
+    linkage = Dimensions(request.crank, request.rod, request.offset).linkage(problem, str)
+    record, notes = _with_topics(mechanism, linkage, topics, problem.own, lenient=ALL in request.show)
     return AnalysisModel(analysis=record, notes=notes)
 
 
 @router.get("/jobs/{number}/designs/{design}/trade-offs")
-def show_trade_offs(found: FrontDep, design: DesignNumber, units: UnitsAsked = "metric") -> TradeOffsModel:
+def show_trade_offs(stored_front: FrontDep, design: DesignNumber, units: UnitsParameter = "metric") -> TradeOffsModel:
     """Give what one objective costs in the others at a design, to first order, its active constraints held."""
-    stored = found.design(design)
+    stored = stored_front.design(design)
     try:
-        sentences, note = trade_offs_of(found.front, design - 1, stored, units), ""
+        sentences, note = trade_offs_of(stored_front.front, design - 1, stored, units), ""
     except InputError as error:
         sentences, note = [], str(error)
-    told = [_ALONG, *(unit_text(f"{one}.") for one in sentences)] if sentences else [note or _NOTHING_TO_GAIN]
+    paragraphs = [_ALONG, *(unit_text(f"{text}.") for text in sentences)] if sentences else [note or _NOTHING_TO_GAIN]
     return TradeOffsModel(
-        job=found.job.id, number=design, trade_offs=sentences, note=note, blocks=sentence_blocks(told)
+        job=stored_front.job.id, number=design, trade_offs=sentences, note=note, blocks=sentence_blocks(paragraphs)
     )
 
 
 def _with_topics(
-    mechanism: Mechanism, linkage: Linkage, topics: tuple[str, ...], own: Sequence[Quantity], *, lenient: bool
+    mechanism: Mechanism, linkage: Linkage, topics: tuple[str, ...], custom: Sequence[Quantity], *, lenient: bool
 ) -> tuple[dict[str, Any], list[str]]:
     """Return the record of a design with its topics, ready for JSON, and notes."""
-    row, undefined = numbers_of(mechanism, linkage, own)
+    row, undefined = quantities_of_design(mechanism, linkage, custom)
     analysed = analysis_of(
         row, mechanism, linkage, topics, cancelled=lambda: False, lenient=lenient, undefined=undefined
     )

@@ -34,7 +34,7 @@ from .throttle import RateLimit
 
 PREFIX = "/api/v1"
 _PARTS = (
-    *("jobs", "submissions", "job_files", "preview", "events", "fronts", "binding", "comparison", "what_if"),
+    *("jobs", "submissions", "job_files", "preview", "events", "fronts", "active_limits", "comparison", "what_if"),
     *(
         "analysis",
         "design_questions",
@@ -43,7 +43,7 @@ _PARTS = (
         "topics",
         "certificate",
         "wish",
-        "kept",
+        "bookmarks",
         "design_files",
         "figures",
         "exports",
@@ -114,11 +114,11 @@ def create_app(store: Store, settings: Settings = DEFAULT, computing: Computing 
     app.state.fronts = StoredFronts(store, allowed=settings.allowed_quantities)
     app.state.metrics = Metrics(store)
     answer_problems(app)
-    found = app.openapi
+    make_schema = app.openapi
 
     def described() -> dict[str, Any]:
         if app.openapi_schema is None:
-            app.openapi_schema = _completed(found(), secured=settings.token is not None)
+            app.openapi_schema = _completed(make_schema(), secured=settings.token is not None)
         return app.openapi_schema
 
     app.openapi = described  # type: ignore[method-assign]
@@ -135,9 +135,9 @@ async def _few_threads(_: FastAPI) -> AsyncIterator[None]:
 def computing_app(address: str, settings: Settings, *, most_queued: int, log_format: Format) -> Iterator[FastAPI]:
     """Give the application that answers in a process of `Computing`; what comes there was let in before."""
     set_up_logs(log_format)
-    known = replace(settings, token=None, hosts=("*",), submissions_per_minute=0)
+    trusted = replace(settings, token=None, hosts=("*",), submissions_per_minute=0)
     with Store(address, most_queued=most_queued) as store:
-        app = create_app(store, known)
+        app = create_app(store, trusted)
         app.add_exception_handler(MemoryError, lambda *_: leave(EXHAUSTED))
         yield app
 
@@ -151,11 +151,11 @@ async def _prepare(request: Request) -> None:
 @cache
 def _routes() -> list[BaseRoute]:
     """Return the endpoints for all applications of a process; FastAPI reads signatures anew where it adds them."""
-    whole = APIRouter(generate_unique_id_function=lambda route: route.name)
+    root = APIRouter(generate_unique_id_function=lambda route: route.name)
     for part in _PARTS:
-        whole.include_router(import_module(f"{__package__}.{part}").router, prefix=PREFIX, responses=_COMMON)
-    whole.include_router(page.router, dependencies=[Depends(_prepare)])
-    return whole.routes
+        root.include_router(import_module(f"{__package__}.{part}").router, prefix=PREFIX, responses=_COMMON)
+    root.include_router(page.router, dependencies=[Depends(_prepare)])
+    return root.routes
 
 
 def _version() -> str:

@@ -68,13 +68,13 @@ class AnswerBlock(BaseModel):
 
 def answer_blocks(blocks: Sequence[Block], notes: Sequence[str] = ()) -> list[AnswerBlock]:
     """Return blocks as data. notes: sentences after them, as notes without a capital and a full stop."""
-    said = (note(f"{one[:1].upper()}{one[1:]}.") for one in notes)
-    return [_block(one) for one in (*blocks, *said)]
+    note_blocks = (note(f"{text[:1].upper()}{text[1:]}.") for text in notes)
+    return [_block(text) for text in (*blocks, *note_blocks)]
 
 
 def sentence_blocks(sentences: Sequence[str]) -> list[AnswerBlock]:
     """Return sentences as data, their numbers as they are."""
-    return answer_blocks([sentence("{text}", text=one) for one in sentences])
+    return answer_blocks([sentence("{text}", text=text) for text in sentences])
 
 
 def _block(block: Block) -> AnswerBlock:
@@ -107,11 +107,11 @@ def _unit(kind: Kind) -> PhrasePart:
 
 
 def _number(value: Value, bare: bool) -> NumberPart:
-    def shown(system: System) -> dict[str, Any]:
-        face = value.kind.display_unit(system)
-        number = None if value.number is None else json_ready(face.factor * value.number)
+    def number_in(system: System) -> dict[str, Any]:
+        unit_in_system = value.kind.display_unit(system)
+        number = None if value.number is None else json_ready(unit_in_system.factor * value.number)
         digits, decimals = digits_of(value, system)
-        unit = "" if bare or value.bare else unit_text(face.symbol)
+        unit = "" if bare or value.bare else unit_text(unit_in_system.symbol)
         return {"number": number, "unit": unit, "digits": digits, "decimals": decimals}
 
-    return NumberPart(**{system: shown(system) for system in _SYSTEMS}, sign=value.sign, missing=value.missing)
+    return NumberPart(**{system: number_in(system) for system in _SYSTEMS}, sign=value.sign, missing=value.missing)

@@ -9,8 +9,8 @@ from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 from pydantic_core import to_json
 
-from ..questions.discovery import WIDER
-from ..questions.plain_input import Plain
+from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
+from ..questions.typed_input import TypedInput
 from ..render.formatting import plain_blocks
 from ..runs.result import json_ready
 from .blocks import AnswerBlock, answer_blocks
@@ -23,14 +23,14 @@ router = APIRouter(route_class=LongRoute, tags=["fronts"], responses=problem_res
 
 LONGEST_PROOF = 20.0
 """s, for the search of a proof."""
-QUESTION = WIDER["certify"]
+QUESTION = FRONT_OR_JOB_QUESTIONS["certify"]
 _LIMITED = [
     replace(one, usual="10.0", limits={**one.limits, "le": LONGEST_PROOF})
-    if isinstance(one, Plain) and one.name == "seconds"
+    if isinstance(one, TypedInput) and one.name == "seconds"
     else one
     for one in QUESTION.inputs
 ]
-Given = Annotated[dict[str, Any], inputs_in_address(_LIMITED, map(parameter_of, _LIMITED))]
+CertificateInputs = Annotated[dict[str, Any], inputs_in_address(_LIMITED, map(parameter_of, _LIMITED))]
 _EXAMPLE = {"status": "proven", "epsilon_asked": 0.01, "epsilon": 0.0098, "boxes": 41_210, "open_boxes": 0}
 
 
@@ -49,23 +49,23 @@ class CertificateModel(BaseModel):
 
 
 @router.get("/jobs/{number}/certificate", response_model=CertificateModel)
-def certify_front(found: FrontDep, given: Given) -> Response:
+def certify_front(stored_front: FrontDep, given: CertificateInputs) -> Response:
     """Prove how far a front can be from the true one; without designs, that nothing is feasible."""
     name = " ".join(map(repr, given.values()))
 
     def make() -> tuple[tuple[str], bytes]:
-        return (name,), to_json(_proof(found, given))
+        return (name,), to_json(_proof(stored_front, given))
 
-    return Response(found.made(name, "certificate", make), media_type="application/json")
+    return Response(stored_front.cached(name, "certificate", make), media_type="application/json")
 
 
-def _proof(found: StoredFront, given: dict[str, Any]) -> CertificateModel:
-    answer = QUESTION.ask(found.front, given)
-    sentences = [block.sentence for block in plain_blocks(answer.blocks)]
+def _proof(stored_front: StoredFront, inputs: dict[str, Any]) -> CertificateModel:
+    certificate = QUESTION.ask(stored_front.front, inputs)
+    sentences = [block.sentence for block in plain_blocks(certificate.blocks)]
     return CertificateModel(
-        job=found.job.id,
-        proven=answer.met,
-        sentences=sentences if found.result.designs else [answer.message],
-        certificate=json_ready({"run": found.result.run} | answer.record("metric")),
-        blocks=answer_blocks(answer.blocks),
+        job=stored_front.job.id,
+        proven=certificate.is_satisfied,
+        sentences=sentences if stored_front.result.designs else [certificate.message],
+        certificate=json_ready({"run": stored_front.result.run} | certificate.record("metric")),
+        blocks=answer_blocks(certificate.blocks),
     )

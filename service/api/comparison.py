@@ -9,12 +9,12 @@ from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
 from ...model.errors import InputError
-from ..designs.comparing import compared_in_words
+from ..designs.front_comparison import comparison_sentences
 from ..jobs.differences import differences
 from ..render.blocks import Block, Sentence, Table, column, heading, sentence
 from .blocks import AnswerBlock, answer_blocks
 from .computing import LongRoute
-from .models import LARGEST, PLAIN_DIGITS, UnitsAsked
+from .models import LARGEST, PLAIN_DIGITS, UnitsParameter
 from .problems import problem_responses
 from .settings import StoreDep
 from .stored_fronts import FrontsDep
@@ -46,16 +46,16 @@ def compare_runs(
     job: Annotated[list[_Number], Query(min_length=2, max_length=MOST, description="its number; repeatable")],
     store: StoreDep,
     fronts: FrontsDep,
-    units: UnitsAsked = "metric",
+    units: UnitsParameter = "metric",
 ) -> ComparisonModel:
     """Say what differs between the jobs of runs, and which of their fronts is better where."""
     if len(set(job)) < len(job):
         raise InputError(f"a run may be named only once; got {', '.join(map(str, job))}; leave out repeated ones")
     places = differences([store.tables(number) for number in job])
-    results = [(f"run {number}", fronts.of(number).result) for number in job]
+    results = [(f"run {number}", fronts.get(number).result) for number in job]
     solved = [(name, result) for name, result in results if result.designs]
-    names, known = [name for name, _ in solved], [result for _, result in solved]
-    sentences = compared_in_words(names, known, units) if len(solved) > 1 else []
+    names, results_with_designs = [name for name, _ in solved], [result for _, result in solved]
+    sentences = comparison_sentences(names, results_with_designs, units) if len(solved) > 1 else []
     return ComparisonModel(
         jobs=job,
         differences=[DifferenceModel(place=place, values=list(values)) for place, values in places],
@@ -74,4 +74,7 @@ def _differing(jobs: Sequence[int], places: Sequence[tuple[str, Sequence[str | N
     if not places:
         return [title, sentence("The jobs are the same but for their names.")]
     columns = (column(head, left=True) for head in ("Place in the job", *(f"run {number}" for number in jobs)))
-    return [title, Table(tuple(columns), tuple((place, *(one or "–" for one in values)) for place, values in places))]
+    return [
+        title,
+        Table(tuple(columns), tuple((place, *(value or "–" for value in values)) for place, values in places)),
+    ]

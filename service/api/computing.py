@@ -25,8 +25,8 @@ from ..resources.memory import size_text
 from ..store import Limits
 from ..workers.heartbeat import EXHAUSTED
 from ..workers.supervisor import reason_of
-from .computing_process import OUT_OF_TIME, Make, Question, answer_questions, is_last
-from .throttle import Turns
+from .computing_process import OUT_OF_TIME, ApplicationFactory, Question, answer_questions, is_last
+from .throttle import TurnQueue
 
 MOST = Limits(seconds=60.0, memory=10**9)
 """What an answer may take: time of the processor, and memory beyond that of a process at rest."""
@@ -47,7 +47,7 @@ class QuickRoute(APIRoute):
             async with state.turn_here:
                 await super().handle(scope, receive, send)
         elif scope["method"] in (self.methods or ()):
-            await state.computing.answer(self.turns, scope, receive, send)
+            await state.computing.handle(self.turns, scope, receive, send)
         else:
             await super().handle(scope, receive, send)
 
@@ -61,13 +61,13 @@ class LongRoute(QuickRoute):
 class Computing:
     """Processes that answer requests, each one at a time, started when they are needed; used by one event loop."""
 
-    def __init__(self, make: Make, *, most: Limits = MOST, modules: Iterable[str] = ()) -> None:
+    def __init__(self, make: ApplicationFactory, *, limits: Limits = MOST, modules: Iterable[str] = ()) -> None:
         """Start nothing yet. make: gives the application to a process. modules: that the fork server imports."""
         methods = multiprocessing.get_all_start_methods()
         self._context: Any = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
         self._context.set_forkserver_preload(list(modules))
-        self._make, self._most = make, most
-        self._turns = {"quick": Turns("quick analyses", 2), "long": Turns("long analyses", 2)}
+        self._make, self._most = make, limits
+        self._turns = {"quick": TurnQueue("quick analyses", 2), "long": TurnQueue("long analyses", 2)}
         self._threads = CapacityLimiter(8)  # that wait for processes, apart from those that read
         self._idle: list[_Process] = []
         self._all: set[_Process] = set()
@@ -79,22 +79,22 @@ class Computing:
             self._prepared = True
             asyncio.get_running_loop().run_in_executor(None, self._start)
 
-    async def answer(self, turns: str, scope: Scope, receive: Receive, send: Send) -> None:
+    async def handle(self, turns: str, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request by a process that is free, and end the process if the client goes before."""
         question = {key: scope[key] for key in _SENT if key in scope}, await Request(scope, receive).body()
         messages = asyncio.Queue[Message | None]()  # no process waits for a client that takes nothing
-        answering = asyncio.create_task(self._answer(turns, question, messages.put_nowait))
+        answering = asyncio.create_task(self._compute(turns, question, messages.put_nowait))
         leaving = asyncio.create_task(_left(receive))
         for task in (answering, leaving):
             task.add_done_callback(lambda _: messages.put_nowait(None))
         try:
             while (message := await messages.get()) is not None:
                 await send(message)
-            done, _ = await asyncio.wait((answering,), timeout=_FAREWELL)
+            finished, _ = await asyncio.wait((answering,), timeout=_FAREWELL)
         finally:
             leaving.cancel()
             answering.cancel()
-        for task in done:
+        for task in finished:
             task.result()
 
     def close(self) -> None:
@@ -102,12 +102,12 @@ class Computing:
         for process in list(self._all):
             process.end()
 
-    async def _answer(self, turns: str, question: Question, give: Callable[[Message], None]) -> None:
+    async def _compute(self, turns: str, question: Question, give: Callable[[Message], None]) -> None:
         async with self._turns[turns].turn():
             while (process := self._free()) is None:
                 await run_sync(self._start, limiter=self._threads)
             try:
-                last = await process.answer(question, give)
+                last = await process.stream(question, give)
                 self._idle.append(process)  # before the client can ask again
                 give(last)
             except (EOFError, OSError):
@@ -146,33 +146,33 @@ class Computing:
 class _Process:
     """A process that answers, seen from here."""
 
-    def __init__(self, context: Any, make: Make, most: Limits, threads: CapacityLimiter) -> None:
+    def __init__(self, context: Any, make: ApplicationFactory, limits: Limits, threads: CapacityLimiter) -> None:
         self._threads = threads
-        self._connection, other = context.Pipe()
+        self._connection, child_end = context.Pipe()
         # A daemon is ended with this process, which would wait for others.
-        self._process = context.Process(target=answer_questions, args=(other, make, most), daemon=True)
-        with other, block_interrupts():
+        self._process = context.Process(target=answer_questions, args=(child_end, make, limits), daemon=True)
+        with child_end, block_interrupts():
             self._process.start()
 
-    async def answer(self, question: Question, give: Callable[[Message], None]) -> Message:
+    async def stream(self, question: Question, give: Callable[[Message], None]) -> Message:
         """Pass on the messages of an answer but the last, which is returned.
 
         Raises `EOFError` or `OSError` where the process ends before, and what keeps it from answering.
         """
-        message = await run_sync(self._asked, question, abandon_on_cancel=True, limiter=self._threads)
+        message = await run_sync(self._send_request, question, abandon_on_cancel=True, limiter=self._threads)
         while True:
             if isinstance(message, Exception):
                 raise message
             if is_last(message):
                 return message
             give(message)
-            message = await run_sync(self._next, abandon_on_cancel=True, limiter=self._threads)
+            message = await run_sync(self._receive, abandon_on_cancel=True, limiter=self._threads)
 
-    def _asked(self, question: Question) -> Message | Exception:
+    def _send_request(self, question: Question) -> Message | Exception:
         self._connection.send(question)
-        return self._next()
+        return self._receive()
 
-    def _next(self) -> Message | Exception:
+    def _receive(self) -> Message | Exception:
         message: Message | Exception = self._connection.recv()
         return message
 

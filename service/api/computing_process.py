@@ -18,7 +18,7 @@ from ...model.errors import SlidercrankError
 from ...optimise.engine.processes import follow_parent
 from ..store import Limits
 
-Make = Callable[[], AbstractContextManager[ASGIApp]]
+ApplicationFactory = Callable[[], AbstractContextManager[ASGIApp]]
 Question = tuple[dict[str, Any], bytes]
 """Scope and body of a request."""
 NICENESS = 5
@@ -28,7 +28,7 @@ OUT_OF_TIME = -27 if os.name == "nt" else -signal.SIGPROF
 _IDLE = 600.0  # s without a question after which it ends, and gives back its memory
 
 
-def answer_questions(connection: Connection, make: Make, most: Limits) -> None:
+def answer_questions(connection: Connection, make: ApplicationFactory, limits: Limits) -> None:
     """Answer one request after the other until nobody asks any more.
 
     Sent are the messages of an answer, the last one when all is done; an error where no application can be made.
@@ -40,8 +40,8 @@ def answer_questions(connection: Connection, make: Make, most: Limits) -> None:
         with make() as app, asyncio.Runner() as runner:
             while connection.poll(_IDLE):
                 scope, body = connection.recv()
-                _limit_memory(most.memory)
-                _limit_time(most.seconds)
+                _limit_memory(limits.memory)
+                _limit_time(limits.seconds)
                 last = runner.run(_answer(app, scope, body, connection.send))
                 _limit_time(None)
                 connection.send(last)
@@ -73,15 +73,15 @@ async def _answer(app: ASGIApp, scope: dict[str, Any], body: bytes, give: Callab
     return last.pop()
 
 
-def _limit_memory(most: int | None) -> None:
+def _limit_memory(limit: int | None) -> None:
     """Have memory refused beyond a number of bytes more than this process has now, where the system can."""
     statistics = Path("/proc/self/statm")
-    if most is not None and statistics.exists():
+    if limit is not None and statistics.exists():
         import resource
 
         # Not a limit of the whole: libraries reserve memory for each processor, and wait for ever where they get none.
         has = int(statistics.read_text().split()[5]) * resource.getpagesize()
-        resource.setrlimit(resource.RLIMIT_DATA, (has + most, resource.getrlimit(resource.RLIMIT_DATA)[1]))
+        resource.setrlimit(resource.RLIMIT_DATA, (has + limit, resource.getrlimit(resource.RLIMIT_DATA)[1]))
 
 
 def _limit_time(seconds: float | None) -> None:

@@ -16,7 +16,7 @@ from uvicorn.config import Config
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 from uvicorn.server import ServerState
 
-from .problems import is_news, problem
+from .problems import problem, should_log
 from .security import KNOWN
 
 _log = logging.getLogger(__name__)
@@ -53,10 +53,10 @@ def room_for_connections() -> int:
     except ImportError:  # not on Windows, which has no such limit
         return MOST_CONNECTIONS
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    most = 4 * MOST_CONNECTIONS if hard == resource.RLIM_INFINITY else min(hard, 4 * MOST_CONNECTIONS)
-    if soft != resource.RLIM_INFINITY and soft < most:
-        resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))
-        soft = most
+    limit = 4 * MOST_CONNECTIONS if hard == resource.RLIM_INFINITY else min(hard, 4 * MOST_CONNECTIONS)
+    if soft != resource.RLIM_INFINITY and soft < limit:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (limit, hard))
+        soft = limit
     return MOST_CONNECTIONS if soft == resource.RLIM_INFINITY else min(MOST_CONNECTIONS, soft // 2)
 
 
@@ -67,43 +67,48 @@ class Gate:
     the token first; it is refused where all others have it and take their answers.
     """
 
-    def __init__(self, most: int = MOST_CONNECTIONS) -> None:
-        self.most = most
+    def __init__(self, limit: int = MOST_CONNECTIONS) -> None:
+        self.most = limit
         self._queue: deque[Connection] = deque()
         self._told: dict[str, float] = {}
 
-    def queue(self, one: Connection) -> None:
+    def queue(self, connection: Connection) -> None:
         """Let a connection go on with what was sent ahead, one in each round of the loop, and others in between."""
-        self._queue.append(one)
+        self._queue.append(connection)
         if len(self._queue) == 1:
-            one.loop.call_soon(self._go_on)
+            connection.loop.call_soon(self._go_on)
 
     def _go_on(self) -> None:
-        one = self._queue.popleft()
+        connection = self._queue.popleft()
         if self._queue:
-            one.loop.call_soon(self._go_on)
-        one.flow.resume_reading()
-        one.read()
+            connection.loop.call_soon(self._go_on)
+        connection.flow.resume_reading()
+        connection.read()
 
     def make_room(self, new: Connection) -> bool:
         """Close the connection that is needed least if there are too many; whether the new one may stay."""
         if len(new.connections) <= self.most:
             return True
-        others = [one for one in new.connections if isinstance(one, Connection) and one is not new]
-        waiting = sorted((one for one in others if one.is_dispensable), key=lambda one: (one.is_known, one.since))
+        established = [
+            connection for connection in new.connections if isinstance(connection, Connection) and connection is not new
+        ]
+        waiting = sorted(
+            (connection for connection in established if connection.is_dispensable),
+            key=lambda connection: (connection.is_known, connection.since),
+        )
         if not waiting:
-            self.tell(f"refused: {self.most} connections were being answered")
+            self.log(f"refused: {self.most} connections were being answered")
             return False
         for least in waiting[: 1 + self.most // _SHARE]:  # several, so that a flood is not looked through each time
-            self.tell(f"closed because there were more than {self.most}")
+            self.log(f"closed because there were more than {self.most}")
             least.transport.abort()
             least.connections.discard(least)
         return True
 
-    def tell(self, what: str) -> None:
+    def log(self, event: str) -> None:
         """Log what happened to connections, unless that was logged within the last minute."""
-        if is_news(self._told, what):
-            _log.warning("connections %s", what)
+        if should_log(self._told, event):
+            _log.warning("connections %s", event)
 
 
 class Connection(HttpToolsProtocol):
@@ -159,7 +164,7 @@ class Connection(HttpToolsProtocol):
     def connection_lost(self, exc: Exception | None) -> None:
         """End."""
         if isinstance(exc, TimeoutError):
-            self._gate.tell("closed, answers were not taken")
+            self._gate.log("closed, answers were not taken")
         self._wait(None)
         super().connection_lost(exc)
 
@@ -183,16 +188,16 @@ class Connection(HttpToolsProtocol):
         for _ in range(_PIECES):
             if not begin < min(len(self._backlog), _TURN) or not self._may_read:
                 break
-            most = begin + _PIECE[self._part]
-            end = self._backlog.find(_END, begin, most)
-            piece = self._backlog[begin : most if end < 0 else end + len(_END)]
+            limit = begin + _PIECE[self._part]
+            end = self._backlog.find(_END, begin, limit)
+            piece = self._backlog[begin : limit if end < 0 else end + len(_END)]
             begin += len(piece)
             self._size += len(piece)
             if self._size > MOST_HEAD:
                 long = self._part == "head" and len(self.url) > MOST_HEAD // 2
                 status = HTTPStatus.REQUEST_URI_TOO_LONG if long else HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE
-                what = "a body beside its content" if self._part == "body" else "an address with its headers"
-                self._refuse(status, f"{what} may have at most {MOST_HEAD} bytes; got more; shorten it")
+                part = "a body beside its content" if self._part == "body" else "an address with its headers"
+                self._refuse(status, f"{part} may have at most {MOST_HEAD} bytes; got more; shorten it")
             if self.transport.is_closing():
                 return
             super().data_received(piece)
@@ -258,15 +263,15 @@ class Connection(HttpToolsProtocol):
         if self.transport.is_closing():
             return
         if self._part == "rest":  # nobody waits for an answer
-            self._gate.tell(f"closed: no request within {seconds:g} s")
+            self._gate.log(f"closed: no request within {seconds:g} s")
             self.transport.close()
             return
-        what = "headers" if self._part == "head" else "body"
-        text = f"the {what} must arrive within {seconds:g} s; it is incomplete; send less, or over a faster connection"
+        part = "headers" if self._part == "head" else "body"
+        text = f"the {part} must arrive within {seconds:g} s; it is incomplete; send less, or over a faster connection"
         self._refuse(HTTPStatus.REQUEST_TIMEOUT, text)
 
     def _refuse(self, status: HTTPStatus, text: str, headers: dict[str, str] | None = None) -> None:
-        self._gate.tell(f"refused with {status}")
+        self._gate.log(f"refused with {status}")
         if self.is_at_rest or not (self.pipeline or self.cycle.response_started):  # it would break another answer
             response = problem(status, text, {**(headers or {}), "Connection": "close"})
             lines = b"".join(b"%s: %s\r\n" % header for header in response.raw_headers)

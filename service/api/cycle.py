@@ -82,21 +82,21 @@ class CurvesModel(OfDesign, CycleModel):
     """Curves of a design of a front over its cycle."""
 
 
-def cycle_model(of: StoredDesign, angles: int) -> CycleModel:
+def cycle_model(design: StoredDesign, angles: int) -> CycleModel:
     """Return the curves of a design as JSON has them."""
-    found = design_curves(of, angles)
-    inner, outer = found.centres or (None, None)
-    slow = None if inner is None else str(slow_stroke(of.mechanism, of.linkage))
+    curves = design_curves(design, angles)
+    inner, outer = curves.centres or (None, None)
+    slow = None if inner is None else str(slow_stroke(design.mechanism, design.linkage))
     return CycleModel(
-        turns=found.turns,
-        seconds=found.seconds,
+        turns=curves.turns,
+        seconds=curves.seconds,
         inner_dead_centre_deg=inner,
         outer_dead_centre_deg=outer,
-        slider_ends_mm=found.slider_ends,
+        slider_ends_mm=curves.slider_ends,
         slow_stroke=slow,
-        outlines=outlines_model(of.mechanism, of.linkage, of.part.motion),
-        columns=[ColumnModel(key=column.key, title=column.title, unit=column.unit) for column in found.columns],
-        curves={column.key: json_ready(column.values, gaps=True) for column in found.columns},
+        outlines=outlines_model(design.mechanism, design.linkage, design.part.motion),
+        columns=[ColumnModel(key=column.key, title=column.title, unit=column.unit) for column in curves.columns],
+        curves={column.key: json_ready(column.values, gaps=True) for column in curves.columns},
     )
 
 
@@ -108,9 +108,11 @@ def outlines_model(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) 
         extent_mm=drawn.extent,
         slider_length_mm=drawn.slider[0],
         slider_height_mm=drawn.slider[1],
-        cylinders=[BarrelModel(bore_mm=each.bore, foot_mm=each.foot, head_mm=each.head) for each in drawn.barrels],
+        cylinders=[
+            BarrelModel(bore_mm=barrel.bore, foot_mm=barrel.foot, head_mm=barrel.head) for barrel in drawn.barrels
+        ],
         actuator=None
         if actuator is None
-        else ActuatorModel(face_mm=actuator.face, foot_mm=actuator.foot, width_mm=actuator.width),
+        else ActuatorModel(face_mm=actuator.near_end, foot_mm=actuator.foot, width_mm=actuator.width),
         body=None if body is None else BodyModel(along_mm=body[0], across_mm=body[1], side_mm=drawn.body_side),
     )

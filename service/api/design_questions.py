@@ -10,74 +10,76 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Depends, Response
 from pydantic import BaseModel, Field, create_model
 
+from ..designs.display_units import record_in
 from ..designs.measured_file import read_measured
-from ..designs.shown_units import record_in
-from ..designs.turning import require_turning
-from ..questions.answers import Answering
-from ..questions.discovery import COMMANDS, OF_DESIGNS
+from ..designs.rotating_crank import require_rotating_crank
+from ..questions.answer_types import AnswerSchema
+from ..questions.design_question import BoundQuestion, QuestionCommand
+from ..questions.discovery import DESIGN_QUESTIONS, QUESTION_COMMANDS
 from ..questions.measured import MEASURED
-from ..questions.question import Command, QuestionOfDesign
 from ..runs.result import json_ready
 from .blocks import AnswerBlock, answer_blocks
 from .computing import LongRoute, QuickRoute
-from .exports import SEALED, of_type
+from .exports import SEALED, file_responses
 from .figures import require_figures
 from .fronts import OfDesign
 from .input_parameters import inputs_in_address, parameter_of
-from .models import UnitsAsked
+from .models import UnitsParameter
 from .problems import problem_responses
-from .stored_fronts import DesignNumber, FrontDep, ShownDep, ShownDesign
+from .stored_fronts import DesignNumber, FrontDep, RequestedDesign, RequestedDesignDep
 
 router = APIRouter(
     route_class=QuickRoute, prefix="/jobs/{number}/designs/{design}", tags=["designs"], responses=problem_responses(409)
 )
 
 
-def _add(name: str, says: Command) -> None:
+def _add(name: str, says: QuestionCommand) -> None:
     """Add the endpoints of a question that is a command: its answer, and the figure that it draws."""
-    question = OF_DESIGNS[name]
-    answer: Any = (Annotated[dict[str, Any], Answering(lambda: [question.answer_type])], ...)
-    told = f"What `slidercrank {says.called or name} --json` prints of a design of a front. blocks: its text as data."
-    fields: Any = {name: answer, "blocks": (list[AnswerBlock], ...)}
-    model = create_model(f"{name.capitalize()}Model", __base__=OfDesign, __doc__=told, **fields)
+    question = DESIGN_QUESTIONS[name]
+    answer_field: Any = (Annotated[dict[str, Any], AnswerSchema(lambda: [question.answer_type])], ...)
+    description = (
+        f"What `slidercrank {says.called or name} --json` prints of a design of a front. blocks: its text as data."
+    )
+    fields: Any = {name: answer_field, "blocks": (list[AnswerBlock], ...)}
+    model = create_model(f"{name.capitalize()}Model", __base__=OfDesign, __doc__=description, **fields)
 
-    def asked(shown: ShownDesign, given: dict[str, str]) -> QuestionOfDesign:
-        of, words = shown.design, {one.name: one.key for one in question.inputs}
-        return question.asked(of.mechanism, of.linkage, of.part, given, words)
+    def bind(request: RequestedDesign, inputs: dict[str, str]) -> BoundQuestion:
+        design, words = request.design, {item.name: item.key for item in question.inputs}
+        return question.for_problem(design.mechanism, design.linkage, design.part, inputs, words)
 
-    def tell(shown: ShownDep, given: Any, units: UnitsAsked = "metric") -> OfDesign:
-        of = asked(shown, given)
-        numbers = of.numbers()
-        blocks = answer_blocks(of.blocks(numbers), of.notes(numbers))
+    def show_answer(request: RequestedDesignDep, given: Any, units: UnitsParameter = "metric") -> OfDesign:
+        bound_question = bind(request, given)
+        numbers = bound_question.numbers()
+        blocks = answer_blocks(bound_question.blocks(numbers), bound_question.notes(numbers))
         record = {name: record_in(json_ready(numbers), units)}
-        return model(job=shown.found.job.id, number=shown.number, blocks=blocks, **record)
+        return model(job=request.stored_front.job.id, number=request.number, blocks=blocks, **record)
 
-    def draw(shown: ShownDep, given: Any, units: UnitsAsked = "metric") -> Response:
+    def draw(request: RequestedDesignDep, given: Any, units: UnitsParameter = "metric") -> Response:
         from ..figures.panels import figure_of
-        from ..figures.style import image
+        from ..figures.style import figure_bytes
 
         def make() -> tuple[tuple[str], bytes]:
-            of = asked(shown, given)
-            of.numbers()
-            return (shown.key,), image(figure_of(of.written("figure", units), units), "svg")
+            bound_question = bind(request, given)
+            bound_question.numbers()
+            return (request.key,), figure_bytes(figure_of(bound_question.written("figure", units), units), "svg")
 
-        content = shown.found.made(shown.key, f"{name} svg {units} {sorted(given.items())}", make)
+        content = request.stored_front.cached(request.key, f"{name} svg {units} {sorted(given.items())}", make)
         return Response(content, media_type="image/svg+xml", headers={"Content-Security-Policy": SEALED})
 
     route = LongRoute if says.sizes else QuickRoute
-    tell.__name__, tell.__doc__ = says.endpoint, says.help
+    show_answer.__name__, show_answer.__doc__ = says.endpoint, says.help
     draw.__name__, draw.__doc__ = f"draw_{name}", f"Draw the figure of what `slidercrank {says.called or name}` finds."
     inputs = inputs_in_address(question.inputs, map(parameter_of, question.inputs))
-    for endpoint in (tell, draw):
+    for endpoint in (show_answer, draw):
         endpoint.__annotations__["given"] = Annotated[dict[str, str], inputs]
-    router.add_api_route(f"/{name}", tell, response_model=model, route_class_override=route)
+    router.add_api_route(f"/{name}", show_answer, response_model=model, route_class_override=route)
     if says.figure:
-        svg = of_type("image/svg+xml")
+        svg = file_responses("image/svg+xml")
         needs = [Depends(require_figures)]
         router.add_api_route(f"/{name}.svg", draw, dependencies=needs, route_class_override=route, **svg)
 
 
-for _name, _says in COMMANDS.items():
+for _name, _says in QUESTION_COMMANDS.items():
     _add(_name, _says)
 
 
@@ -97,17 +99,17 @@ class MeasuredModel(OfDesign):
     crank angles and values for the best fit is told, not applied.
     """
 
-    measured: Annotated[dict[str, Any], Answering(lambda: [MEASURED.answer_type])]
+    measured: Annotated[dict[str, Any], AnswerSchema(lambda: [MEASURED.answer_type])]
 
 
 @router.post("/measured")
 def compare_measured(
-    found: FrontDep, design: DesignNumber, given: MeasuredCurves, units: UnitsAsked = "metric"
+    stored_front: FrontDep, design: DesignNumber, measured_curves: MeasuredCurves, units: UnitsParameter = "metric"
 ) -> MeasuredModel:
     """Compare measured curves with those of a design: deviations, and the shifts that fit best."""
-    stored = found.design(design)
-    require_turning(stored.part.motion, "a comparison with measured curves")
-    samples = read_measured(given.csv, stored.mechanism, stored.linkage)
-    topic = MEASURED.of(stored.mechanism, stored.linkage, {"measured": samples})
+    stored = stored_front.design(design)
+    require_rotating_crank(stored.part.motion, "a comparison with measured curves")
+    samples = read_measured(measured_curves.csv, stored.mechanism, stored.linkage)
+    topic = MEASURED.for_design(stored.mechanism, stored.linkage, {"measured": samples})
     record = json_ready(topic.numbers())
-    return MeasuredModel(job=found.job.id, number=design, measured=record_in(record, units))
+    return MeasuredModel(job=stored_front.job.id, number=design, measured=record_in(record, units))

@@ -63,13 +63,13 @@ class Channel:
         self.recent: deque[Event] = deque(maxlen=_RECENT)
         self._changed = asyncio.Event()
 
-    def tell(self, events: list[Event], *, over: bool) -> None:
+    def publish(self, events: list[Event], *, ended: bool) -> None:
         """Take in what is new and wake all streams."""
         self.recent.extend(events)
         if events:
             self.last = events[-1].number
-        self.over = self.over or over
-        if events or over:
+        self.over = self.over or ended
+        if events or ended:
             self._changed.set()
             self._changed = asyncio.Event()
 
@@ -105,9 +105,9 @@ class Feed:
         """End all streams after what is known: the service stops. To be called in the loop that serves them."""
         self._closed = True
         for channel in self._channels.values():
-            channel.tell([], over=True)
+            channel.publish([], ended=True)
 
-    async def follow(self, number: int, after: int, *, last: int, heartbeat: float) -> AsyncIterator[Event | None]:
+    async def stream(self, number: int, after: int, *, last: int, heartbeat: float) -> AsyncIterator[Event | None]:
         """Yield the events of a job after a given one as they come, up to its last one.
 
         last: an event that it has already. Yields None when nothing came for `heartbeat` seconds. Also ends when the
@@ -116,17 +116,17 @@ class Feed:
         with self._following(number, last) as channel:
             position = after
             while True:
-                found = channel.since(position)
-                if found is None:
+                events = channel.since(position)
+                if events is None:
                     try:
-                        found = await run_sync(partial(self.store.events, number, after=position, limit=_PAGE))
+                        events = await run_sync(partial(self.store.events, number, after=position, limit=_PAGE))
                     except (StoreError, NotFound) as error:
                         _log.warning("job %d: its stream ends: %s", number, error)
                         return
-                for event in found:
+                for event in events:
                     position = event.number
                     yield event
-                if position >= channel.last or not found:
+                if position >= channel.last or not events:
                     if channel.over:
                         return
                     if not await channel.news(heartbeat):
@@ -166,9 +166,9 @@ class Feed:
                 if channel is None or channel.last != last:
                     continue  # it was left meanwhile, and perhaps followed anew
                 if number in news:
-                    channel.tell(news[number].events, over=news[number].over)
+                    channel.publish(news[number].events, ended=news[number].over)
                 else:
-                    channel.tell([], over=True)
+                    channel.publish([], ended=True)
             await asyncio.sleep(POLL)
 
 
@@ -194,14 +194,14 @@ async def list_events(
     if job.state in ENDED and last_event_id is not None and position == job.events:
         return Response(status_code=204)
     feed: Feed = request.app.state.feed
-    followed = feed.follow(number, position, last=job.events, heartbeat=HEARTBEAT)
-    return StreamingResponse(_lines(followed), headers=STREAM_HEADERS, media_type=STREAM)
+    stream = feed.stream(number, position, last=job.events, heartbeat=HEARTBEAT)
+    return StreamingResponse(_lines(stream), headers=STREAM_HEADERS, media_type=STREAM)
 
 
 def _page(store: Store, number: int, after: int, limit: int) -> dict[str, Any]:
     position = min(after, store.job(number).events)
-    found = store.events(number, after=position, limit=limit)
-    return {"events": [event.record() for event in found], "last": found[-1].number if found else position}
+    events = store.events(number, after=position, limit=limit)
+    return {"events": [event.record() for event in events], "last": events[-1].number if events else position}
 
 
 async def _lines(events: AsyncIterator[Event | None]) -> AsyncIterator[bytes]:

@@ -9,12 +9,12 @@ from fastapi import APIRouter, Response
 from pydantic_core import to_json
 
 from ...model.extras import is_installed, required
-from ..designs.selection import numbered
-from ..designs.shown_units import result_in, rows_in
+from ..designs.display_units import result_in, rows_in
+from ..designs.selection import numbered_rows
 from ..runs.result import csv_text
 from ..runs.run_folder import slug
 from .computing import QuickRoute
-from .models import UnitsAsked
+from .models import UnitsParameter
 from .problems import problem_responses
 from .stored_fronts import FrontDep, StoredFront
 
@@ -30,7 +30,7 @@ def formats() -> list[str]:
     return ["csv", "json", *(["parquet"] if is_installed("pyarrow") else [])]
 
 
-def of_type(media_type: str, *refusals: int) -> dict[str, Any]:
+def file_responses(media_type: str, *refusals: int) -> dict[str, Any]:
     """Return the options of an endpoint that gives a file, and may refuse with further statuses."""
     responses = {200: {"content": {media_type: {}}}, **problem_responses(*refusals)}
     return {"response_class": Response, "responses": responses}
@@ -44,35 +44,35 @@ def download(content: str | bytes, media_type: str, name: str, *, policy: str = 
     return Response(content, media_type=media_type, headers=headers)
 
 
-def _file(found: StoredFront, ending: str, media_type: str, content: str | bytes) -> Response:
-    return download(content, media_type, f"{slug(found.result.name)}-{found.job.id}.{ending}")
+def _file(stored_front: StoredFront, ending: str, media_type: str, content: str | bytes) -> Response:
+    return download(content, media_type, f"{slug(stored_front.result.name)}-{stored_front.job.id}.{ending}")
 
 
-@router.get("/jobs/{number}/export.csv", **of_type("text/csv"))
-def export_csv(found: FrontDep, units: UnitsAsked = "metric") -> Response:
+@router.get("/jobs/{number}/export.csv", **file_responses("text/csv"))
+def export_csv(stored_front: FrontDep, units: UnitsParameter = "metric") -> Response:
     """Give every design with its number and all its quantities at full precision.
 
     A text cell that a spreadsheet would take for a formula has an apostrophe before it. Infinity is written inf.
     """
-    content = csv_text(numbered(rows_in(found.result.designs, units)), spreadsheet=True)
-    return _file(found, "csv", "text/csv; charset=utf-8", content)
+    content = csv_text(numbered_rows(rows_in(stored_front.result.designs, units)), spreadsheet=True)
+    return _file(stored_front, "csv", "text/csv; charset=utf-8", content)
 
 
-@router.get("/jobs/{number}/export.json", **of_type("application/json"))
-def export_json(found: FrontDep, units: UnitsAsked = "metric") -> Response:
+@router.get("/jobs/{number}/export.json", **file_responses("application/json"))
+def export_json(stored_front: FrontDep, units: UnitsParameter = "metric") -> Response:
     """Give the whole front, as `slidercrank export --json` does but in one line."""
-    result = result_in(found.result, units, None if units == "metric" else found.problem)
+    result = result_in(stored_front.result, units, None if units == "metric" else stored_front.problem)
     content = to_json(result.record(), inf_nan_mode="null")  # a tenth of the time of json's
-    return _file(found, "json", "application/json", content)
+    return _file(stored_front, "json", "application/json", content)
 
 
-@router.get("/jobs/{number}/export.parquet", **of_type("application/vnd.apache.parquet", 501))
-def export_parquet(found: FrontDep, units: UnitsAsked = "metric") -> Response:
+@router.get("/jobs/{number}/export.parquet", **file_responses("application/vnd.apache.parquet", 501))
+def export_parquet(stored_front: FrontDep, units: UnitsParameter = "metric") -> Response:
     """Give every design with all its quantities as a table of columns; needs pyarrow where the service runs."""
     import pandas as pd
 
     required("pyarrow", "fronts as Parquet need")
 
     out = io.BytesIO()
-    pd.DataFrame(rows_in(found.result.designs, units)).to_parquet(out, engine="pyarrow", index=False)
-    return _file(found, "parquet", "application/vnd.apache.parquet", out.getvalue())
+    pd.DataFrame(rows_in(stored_front.result.designs, units)).to_parquet(out, engine="pyarrow", index=False)
+    return _file(stored_front, "parquet", "application/vnd.apache.parquet", out.getvalue())

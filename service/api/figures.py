@@ -13,11 +13,11 @@ from ...model.errors import InputError, NotFound
 from ...objectives.kinds import System
 from ..runs.run_folder import slug
 from .computing import LongRoute
-from .exports import SEALED, of_type
-from .models import UnitsAsked
+from .exports import SEALED, file_responses
+from .models import UnitsParameter
 from .problems import problem_responses
 from .settings import SettingsDep
-from .stored_fronts import FrontDep, Numbers, NumbersDep, ShownDesign, StoredFront, shown_design
+from .stored_fronts import FrontDep, Numbers, NumbersDep, RequestedDesign, StoredFront, requested_design
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -65,58 +65,58 @@ class FiguresModel(BaseModel):
 
 
 @router.get("/jobs/{number}/figures")
-def list_figures(found: FrontDep) -> FiguresModel:
+def list_figures(stored_front: FrontDep) -> FiguresModel:
     """List the figures of the whole front; the sheet of every design is at `figures/design_{number}.png` or `.svg`."""
     from ..figures.front import front_figures
 
-    drawn = front_figures(found.front) if found.result.designs else []
+    drawn = front_figures(stored_front.front) if stored_front.result.designs else []
     listed = [FigureModel(name=name, title=item.title) for item in drawn for name in item.names]
-    return FiguresModel(job=found.job.id, figures=listed)
+    return FiguresModel(job=stored_front.job.id, figures=listed)
 
 
-@router.get("/jobs/{number}/figures/{name}.png", **of_type("image/png"))
-def draw_png(found: FrontDep, name: Name, numbers: NumbersDep, units: UnitsAsked = "metric") -> Response:
+@router.get("/jobs/{number}/figures/{name}.png", **file_responses("image/png"))
+def draw_png(stored_front: FrontDep, name: Name, numbers: NumbersDep, units: UnitsParameter = "metric") -> Response:
     """Draw a figure; the sheet of a design also with other numbers."""
-    return _image(found, name, "png", numbers, units)
+    return _image(stored_front, name, "png", numbers, units)
 
 
-@router.get("/jobs/{number}/figures/{name}.svg", **of_type("image/svg+xml"))
-def draw_svg(found: FrontDep, name: Name, numbers: NumbersDep, units: UnitsAsked = "metric") -> Response:
+@router.get("/jobs/{number}/figures/{name}.svg", **file_responses("image/svg+xml"))
+def draw_svg(stored_front: FrontDep, name: Name, numbers: NumbersDep, units: UnitsParameter = "metric") -> Response:
     """Draw a figure; the sheet of a design also with other numbers."""
-    return _image(found, name, "svg", numbers, units)
+    return _image(stored_front, name, "svg", numbers, units)
 
 
-def _image(found: StoredFront, name: str, kind: Kind, numbers: Numbers | None, units: System) -> Response:
+def _image(stored_front: StoredFront, name: str, kind: Kind, numbers: Numbers | None, units: System) -> Response:
     """Return a figure; the sheet of a design has the name of its file. Drawn ones are kept."""
-    from ..figures.style import image
+    from ..figures.style import figure_bytes
 
     single = _DESIGN.fullmatch(name)
     if single is None and numbers is not None:
         rule = "other lengths and values only apply to a single design"
         raise InputError(f"{rule}; got figure {name!r}; ask for design_1 and so on")
-    shown = None if single is None else shown_design(found, int(single[1]), numbers)
-    key, headers = shown.key if shown else name, dict[str, str]()
+    request = None if single is None else requested_design(stored_front, int(single[1]), numbers)
+    key, headers = request.key if request else name, dict[str, str]()
 
     def draw() -> tuple[Sequence[str], bytes]:
-        if shown:
-            return (key,), image(_sheet(shown, units), kind)
-        figure = _of_front(found, name, units)
-        return figure.names, image(figure.draw(), kind)
+        if request:
+            return (key,), figure_bytes(_sheet(request, units), kind)
+        figure = _of_front(stored_front, name, units)
+        return figure.names, figure_bytes(figure.draw(), kind)
 
-    drawn = found.made(key, f"{kind} {units}", draw)
-    if shown:
-        file = f"{slug(found.result.name)}-{found.job.id}-{shown.stem}-sheet.{kind}"
+    drawn = stored_front.cached(key, f"{kind} {units}", draw)
+    if request:
+        file = f"{slug(stored_front.result.name)}-{stored_front.job.id}-{request.stem}-sheet.{kind}"
         headers = {"Content-Disposition": f'inline; filename="{file}"'}
     if kind == "svg":
         headers["Content-Security-Policy"] = SEALED
     return Response(drawn, media_type=_MEDIA[kind], headers=headers)
 
 
-def _of_front(found: StoredFront, name: str, units: System) -> FrontFigure:
+def _of_front(stored_front: StoredFront, name: str, units: System) -> FrontFigure:
     """Return a figure of a whole front. Raises `NotFound` with those that there are."""
     from ..figures.front import front_figures
 
-    listed = front_figures(found.front, units) if found.result.designs else []
+    listed = front_figures(stored_front.front, units) if stored_front.result.designs else []
     named = next((item for item in listed if name in item.names), None)
     if named is None:
         names = [name for item in listed for name in item.names]
@@ -125,7 +125,7 @@ def _of_front(found: StoredFront, name: str, units: System) -> FrontFigure:
     return named
 
 
-def _sheet(shown: ShownDesign, units: System) -> Figure:
-    from ..figures.front import sheet_of
+def _sheet(request: RequestedDesign, units: System) -> Figure:
+    from ..figures.front import datasheet_of
 
-    return sheet_of(shown.found.front, shown.number - 1, shown.words, units, shown.variation())
+    return datasheet_of(request.stored_front.front, request.number - 1, request.words, units, request.variation())

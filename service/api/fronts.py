@@ -17,9 +17,9 @@ from pydantic_core import to_json
 from ...model.errors import InfeasibleError, InputError
 from ..designs.columns import Column, all_columns, find_columns
 from ..designs.picking_options import picked_row
-from ..designs.selection import chosen_rows, none_meets, part_of
+from ..designs.selection import chosen_rows, no_match_message, result_part
 from ..designs.violations import front_violations_in_words, violations_in_words
-from ..page.router import tagged
+from ..page.router import response_with_etag
 from ..runs.result import json_ready
 from .models import PLAIN_DIGITS, JobNumber
 from .problems import problem_responses, tagged_json
@@ -183,13 +183,13 @@ def show_front(number: JobNumber, store: StoreDep, fronts: FrontsDep) -> FrontMo
     """Give how a front was found and what is marked in it; its designs are at `/jobs/{number}/designs`."""
     record = json_ready(store.record(number))
     columns = column_models(all_columns(record.pop("columns")))
-    said = front_violations_in_words(fronts.of(number).result) if record.get("violated") else []
-    return FrontModel(**record, job=number, columns=columns, violations=said)
+    sentences = front_violations_in_words(fronts.get(number).result) if record.get("violated") else []
+    return FrontModel(**record, job=number, columns=columns, violations=sentences)
 
 
 @router.get("/jobs/{number}/pick")
 def pick_design(
-    found: FrontDep,
+    stored_front: FrontDep,
     knee: Annotated[
         bool,
         BeforeValidator(lambda given: given == "" or given),
@@ -210,7 +210,7 @@ def pick_design(
     where: Where = [],  # noqa: B006 - the framework copies it
 ) -> PickedModel:
     """Choose among the designs that meet all conditions, in one of three ways."""
-    result = found.result
+    result = stored_front.result
     if not (knee or topsis is not None or lexicographic is not None):
         raise InputError("a design must be chosen by knee, topsis or lexicographic; got none; give one")
     if not result.designs:
@@ -218,13 +218,13 @@ def pick_design(
     rows = chosen_rows(result, where)
     row = picked_row(result, rows, knee=knee, topsis=topsis, lexicographic=lexicographic)
     if row is None:
-        raise InfeasibleError(none_meets(result, where))
-    return PickedModel(job=found.job.id, number=row + 1, design=json_ready(result.designs[row]))
+        raise InfeasibleError(no_match_message(result, where))
+    return PickedModel(job=stored_front.job.id, number=row + 1, design=json_ready(result.designs[row]))
 
 
 @router.get("/jobs/{number}/designs")
 def list_designs(
-    found: FrontDep,
+    stored_front: FrontDep,
     where: Where = [],  # noqa: B006 - the framework copies it
     sort: Annotated[
         str | None,
@@ -236,31 +236,33 @@ def list_designs(
     limit: Annotated[int, Query(ge=1, le=MOST_ROWS, description="at most this many designs"), PLAIN_DIGITS] = 100,
 ) -> DesignsModel:
     """Give the designs that meet all conditions, in the order of the front unless sorted."""
-    result = found.result
-    shown = _asked(found, columns)
+    result = stored_front.result
+    chosen_columns = _asked(stored_front, columns)
     chosen = chosen_rows(result, where, sort=sort, reverse=reverse)
     page = chosen[offset : offset + limit]
     return DesignsModel(
-        job=found.job.id,
+        job=stored_front.job.id,
         count=len(result.designs),
         chosen=len(chosen),
         offset=offset,
-        columns=column_models(shown),
+        columns=column_models(chosen_columns),
         numbers=[row + 1 for row in page],
-        designs=[{column.key: json_ready(result.designs[row][column.key]) for column in shown} for row in page],
-        violated=json_ready(part_of(result, page).violated),
+        designs=[
+            {column.key: json_ready(result.designs[row][column.key]) for column in chosen_columns} for row in page
+        ],
+        violated=json_ready(result_part(result, page).violated),
     )
 
 
 @router.get("/jobs/{number}/designs/{design}")
-def show_design(found: FrontDep, design: DesignNumber) -> DesignModel:
+def show_design(stored_front: FrontDep, design: DesignNumber) -> DesignModel:
     """Give all numbers of a design, by its number in the front."""
-    row = found.row(design)
-    violated = {key: by for key, [by] in part_of(found.result, [design - 1]).violated.items()}
+    row = stored_front.row(design)
+    violated = {key: excess for key, [excess] in result_part(stored_front.result, [design - 1]).violated.items()}
     return DesignModel(
-        job=found.job.id,
+        job=stored_front.job.id,
         number=design,
-        columns=column_models(found.columns),
+        columns=column_models(stored_front.columns),
         design=json_ready(row),
         violated=json_ready(violated),
         violations=violations_in_words(violated, row),
@@ -270,45 +272,47 @@ def show_design(found: FrontDep, design: DesignNumber) -> DesignModel:
 @router.get("/jobs/{number}/columns", **tagged_json(ColumnsModel, "The values of every design"))
 def list_columns(
     request: Request,
-    found: FrontDep,
+    stored_front: FrontDep,
     columns: Columns = None,
     accept_encoding: Annotated[str, Header(include_in_schema=False)] = "",
 ) -> Response:
     """Give columns of the designs, each as one array of all designs: a front of 10,000 in one small answer."""
-    shown = _asked(found, columns)
+    chosen_columns = _asked(stored_front, columns)
 
-    def answer() -> Response:
+    def respond() -> Response:
         compressed = "gzip" in accept_encoding and "gzip;q=0" not in accept_encoding.replace(" ", "")
-        name, kind = ",".join(column.key for column in shown), "gzip" if compressed else "plain"
-        content = found.made(name, kind, lambda: ([name], _content(found, shown, compressed=compressed)))
+        name, kind = ",".join(column.key for column in chosen_columns), "gzip" if compressed else "plain"
+        content = stored_front.cached(
+            name, kind, lambda: ([name], _content(stored_front, chosen_columns, compressed=compressed))
+        )
         headers = {"Content-Encoding": "gzip"} if content.startswith(b"\x1f\x8b") else None
         return Response(content, media_type="application/json", headers=headers)
 
     # What a job found does not change, unless it goes on: then it ends at another time.
-    tag = None if found.job.finished is None else f'"{found.job.id}-{found.job.finished}"'
-    return tagged(request, tag, answer, {"Vary": "Accept-Encoding"})
+    tag = None if stored_front.job.finished is None else f'"{stored_front.job.id}-{stored_front.job.finished}"'
+    return response_with_etag(request, tag, respond, {"Vary": "Accept-Encoding"})
 
 
-def _asked(found: StoredFront, columns: str | None) -> Sequence[Column]:
+def _asked(stored_front: StoredFront, columns: str | None) -> Sequence[Column]:
     """Return the columns of a list of names, each once; all without a list."""
-    if columns is None or not found.result.designs:
-        return found.columns
-    return list({column.key: column for column in find_columns(columns, list(found.result.designs[0]))}.values())
+    if columns is None or not stored_front.result.designs:
+        return stored_front.columns
+    return list({column.key: column for column in find_columns(columns, list(stored_front.result.designs[0]))}.values())
 
 
-def _content(found: StoredFront, shown: Sequence[Column], *, compressed: bool) -> bytes:
-    rows = found.result.designs
-    values = {column.key: [row[column.key] for row in rows] for column in shown}
+def _content(stored_front: StoredFront, chosen_columns: Sequence[Column], *, compressed: bool) -> bytes:
+    rows = stored_front.result.designs
+    values = {column.key: [row[column.key] for row in rows] for column in chosen_columns}
     for key, cells in values.items():
         if math.inf in cells or -math.inf in cells:
             values[key] = json_ready(cells)
-    answer = {
-        "job": found.job.id,
+    record = {
+        "job": stored_front.job.id,
         "count": len(rows),
-        "columns": [column.model_dump() for column in column_models(shown)],
+        "columns": [column.model_dump() for column in column_models(chosen_columns)],
         "values": values,
     }
-    content = to_json(answer, inf_nan_mode="null")
+    content = to_json(record, inf_nan_mode="null")
     return gzip.compress(content, compresslevel=1, mtime=0) if compressed and len(content) > _WORTHWHILE else content
 
 

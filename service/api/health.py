@@ -14,20 +14,20 @@ from prometheus_client.registry import Collector
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from ..store import State, Store
-from .models import Count, Shown
+from .models import Count, ResponseModel
 from .settings import StoreDep, part_of_app
 
 router = APIRouter(tags=["service"])
 _BOUNDS = (0.005, 0.01, 0.025, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0)
 
 
-class Live(Shown):
+class Live(ResponseModel):
     """The service answers."""
 
     status: Literal["live"] = "live"
 
 
-class Ready(Shown):
+class Ready(ResponseModel):
     """The service has its database. takes_jobs: whether a worker was heard of lately, be it busy.
 
     busy: how many of the workers have a job. waiting: how many jobs have none.

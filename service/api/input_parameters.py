@@ -10,32 +10,32 @@ from fastapi import Depends, Query, Request
 from pydantic import ConfigDict, Field, create_model
 
 from ...model.errors import InputError
+from ..questions.front_or_job_question import FrontOrJobQuestion
 from ..questions.inputs import Input
-from ..questions.plain_input import Plain
-from ..questions.wider import WiderQuestion
+from ..questions.typed_input import TypedInput
 
 _REQUEST = inspect.Parameter("request", inspect.Parameter.KEYWORD_ONLY, annotation=Request)
 
 
-def parameter_of(one: Input, before: str = "") -> inspect.Parameter:
-    """Return the parameter of an input. before: what its description begins with."""
-    kind = float if one.words is None else one.words
-    examples = [round(one.unit.factor * one.read(one.example, one.name), 9)] if one.example else None
-    query = Query(**_limits(one), description=f"{before}{one.help}", examples=examples)
-    default = one.value if isinstance(one, Plain) else None
+def parameter_of(item: Input, prefix: str = "") -> inspect.Parameter:
+    """Return the parameter of an input. prefix: what its description begins with."""
+    kind = float if item.words is None else item.words
+    examples = [round(item.unit.factor * item.read(item.example, item.name), 9)] if item.example else None
+    query = Query(**_limits(item), description=f"{prefix}{item.help}", examples=examples)
+    default = item.value if isinstance(item, TypedInput) else None
     return inspect.Parameter(
-        one.key,
+        item.key,
         inspect.Parameter.KEYWORD_ONLY,
-        default=inspect.Parameter.empty if one.required else default,
-        annotation=Annotated[kind | None if default is None and not one.required else kind, query],
+        default=inspect.Parameter.empty if item.required else default,
+        annotation=Annotated[kind | None if default is None and not item.required else kind, query],
     )
 
 
-def body_of(question: WiderQuestion, name: str, **more: Any) -> Any:
+def body_of(question: FrontOrJobQuestion, name: str, **more: Any) -> Any:
     """Return the model of a body with the inputs of a question. more: further fields, as `create_model` takes them."""
-    fields: dict[str, Any] = {one.name: _field(one) for one in question.inputs if isinstance(one, Plain)}
-    told = f"What `{question.name}` is asked with. {question.help.partition(chr(10))[0]}"
-    return create_model(name, __config__=ConfigDict(extra="forbid", strict=True), __doc__=told, **fields, **more)
+    fields: dict[str, Any] = {item.name: _field(item) for item in question.inputs if isinstance(item, TypedInput)}
+    description = f"What `{question.name}` is asked with. {question.help.partition(chr(10))[0]}"
+    return create_model(name, __config__=ConfigDict(extra="forbid", strict=True), __doc__=description, **fields, **more)
 
 
 _Text = Annotated[str, Field(max_length=500)]
@@ -43,23 +43,25 @@ _Value = Annotated[str, Field(max_length=200)]
 _TYPES: dict[Any, Any] = {list: list[_Text], dict: dict[_Text, _Value]}
 
 
-def _field(one: Plain) -> tuple[Any, Any]:
+def _field(item: TypedInput) -> tuple[Any, Any]:
     """Return type and field of an input in a body."""
-    default = ... if one.required else one.value if get_origin(one.type) is None else []
-    examples = None if one.sent is None else [one.sent]
-    field = Field(default, description=one.help, examples=examples, **_limits(one))
-    return _TYPES.get(get_origin(one.type), one.type), field
+    default = ... if item.required else item.value if get_origin(item.type) is None else []
+    examples = None if item.sent is None else [item.sent]
+    field = Field(default, description=item.help, examples=examples, **_limits(item))
+    return _TYPES.get(get_origin(item.type), item.type), field
 
 
-def _limits(one: Input) -> dict[str, Any]:
-    if isinstance(one, Plain):
-        return dict(one.limits)
-    if one.kind is None:
+def _limits(item: Input) -> dict[str, Any]:
+    if isinstance(item, TypedInput):
+        return dict(item.limits)
+    if item.kind is None:
         return {}
-    most = one.unit.factor * one.kind.limit
-    least: dict[str, Any] = {"any": {"ge": -most}, "positive": {"gt": 0.0}, "zero or more": {"ge": 0.0}}[one.sign]
+    largest = item.unit.factor * item.kind.limit
+    least: dict[str, Any] = {"any": {"ge": -largest}, "positive": {"gt": 0.0}, "zero or more": {"ge": 0.0}}[item.sign]
     return (
-        least | ({"le": most} if one.below is None else {"lt": one.unit.factor * one.below}) | {"allow_inf_nan": False}
+        least
+        | ({"le": largest} if item.upper_limit is None else {"lt": item.unit.factor * item.upper_limit})
+        | {"allow_inf_nan": False}
     )
 
 
@@ -70,11 +72,13 @@ def inputs_in_address(inputs: Collection[Input], parameters: Iterable[inspect.Pa
     """
 
     def named(request: Request, **given: float | str | None) -> dict[str, str]:
-        for one in inputs:
-            if one.name != one.key and one.name in request.query_params:
-                raise InputError(f"{one.name} must have its unit in its name here; got {one.name}; call it {one.key}")
-        typed = ((one, given[one.key]) for one in inputs)
-        return {one.name: one.typed(value) for one, value in typed if value is not None}
+        for item in inputs:
+            if item.name != item.key and item.name in request.query_params:
+                raise InputError(
+                    f"{item.name} must have its unit in its name here; got {item.name}; call it {item.key}"
+                )
+        typed = ((item, given[item.key]) for item in inputs)
+        return {item.name: item.with_unit(value) for item, value in typed if value is not None}
 
     named.__signature__ = inspect.Signature([_REQUEST, *parameters])  # type: ignore[attr-defined]
     return Depends(named)

@@ -18,7 +18,7 @@ from ..presets.designs import DESIGNS, Design
 from ..presets.jobs import shipped_jobs
 from .computing import QuickRoute
 from .cycle import OutlinesModel, outlines_model
-from .job_requests import EXAMPLE, TOML, Asked, asked_for, given_problem
+from .job_requests import EXAMPLE, TOML, RequestedJob, problem_of_tables, requested_job
 from .problems import problem_responses
 from .settings import SettingsDep
 
@@ -145,18 +145,18 @@ def _drawn(job: dict[str, Any], design: Design) -> PresetDesign:
 
 
 @router.post("/parse", responses=problem_responses(415))
-def parse_file(asked: Annotated[Asked, Depends(asked_for)]) -> Tables:
+def parse_file(request: Annotated[RequestedJob, Depends(requested_job)]) -> Tables:
     """Give the tables of a job file, which is sent as for a submission. Whether the job is valid is not checked."""
-    return Tables(job=dict(asked.tables))
+    return Tables(job=dict(request.tables))
 
 
 @router.post("/catalogue")
-def read_catalogue(given: CatalogueText) -> CatalogueModel:
+def read_catalogue(catalogue_text: CatalogueText) -> CatalogueModel:
     """Give the options of a catalogue that is sent as a table, without rows that no design can need."""
     from ...optimise.job.catalogue import read_catalogue
 
-    found = read_catalogue(given.table, "the table", frozenset(given.own))
-    return CatalogueModel(option=found.options, rows=found.rows)
+    catalogue = read_catalogue(catalogue_text.table, "the table", frozenset(catalogue_text.own))
+    return CatalogueModel(option=catalogue.options, rows=catalogue.rows)
 
 
 @router.post(
@@ -164,13 +164,13 @@ def read_catalogue(given: CatalogueText) -> CatalogueModel:
     response_class=Response,
     responses={200: {"description": "A job file", "content": {TOML: {"schema": {"type": "string"}}}}},
 )
-def write_file(given: Tables) -> Response:
+def write_file(tables: Tables) -> Response:
     """Give the tables of a job as a job file in TOML; reading it gives the same tables."""
     from ...optimise.job.file import require_few
     from ..jobs.job_toml import job_toml
 
-    require_few(given.job)
-    return Response(job_toml(given.job), media_type=TOML)
+    require_few(tables.job)
+    return Response(job_toml(tables.job), media_type=TOML)
 
 
 @router.get("/schema")
@@ -182,9 +182,9 @@ def show_schema() -> dict[str, Any]:
 
 
 @router.post("/check", responses=problem_responses(415))
-def check_job(asked: Annotated[Asked, Depends(asked_for)], settings: SettingsDep) -> Understood:
+def check_job(request: Annotated[RequestedJob, Depends(requested_job)], settings: SettingsDep) -> Understood:
     """Check a job and say in words what was understood; nothing is queued. It comes as for a submission."""
-    return understood(given_problem(asked.tables, settings.allowed_quantities), asked.tables)
+    return understood(problem_of_tables(request.tables, settings.allowed_quantities), request.tables)
 
 
 def understood(problem: Problem, tables: Mapping[str, Any]) -> Understood:

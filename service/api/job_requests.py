@@ -19,7 +19,7 @@ from ..jobs.submission import LONGEST_ANSWER, bounded, parse_allowed
 from ..store import NO_LIMITS, Artefact, Limits
 from .models import LARGEST
 from .settings import Settings
-from .strict_input import GIVEN, in_turn, read_json, require_moderate
+from .strict_input import PARSED_BODY, read_in_turn, read_json, require_moderate
 
 JSON, TOML = "application/json", "application/toml"
 EXAMPLE = {
@@ -50,7 +50,7 @@ IdempotencyKey = Annotated[
 """The header of a submission."""
 
 
-class AskedLimits(BaseModel, extra="forbid", strict=True):
+class RequestedLimits(BaseModel, extra="forbid", strict=True):
     """Limits that a client asks for a job; the service's own hold where one is left out."""
 
     seconds: float | None = Field(None, gt=0, le=LARGEST, description="of its search, s", examples=[600])
@@ -69,7 +69,7 @@ class Submission(BaseModel, extra="forbid", strict=True):
         examples=[{"trace.csv": "crank angle (deg),force (N)\n0,-200\n180,0\n"}],
     )
     priority: Priority = 0
-    limits: AskedLimits = AskedLimits()
+    limits: RequestedLimits = RequestedLimits()
     origin: int | None = Field(
         None,
         ge=1,
@@ -88,11 +88,11 @@ class Clone(BaseModel, extra="forbid", strict=True):
         examples=[{"name": "Feeder, heavier", "mechanism": {"slider": {"mass": "2.5 kg"}}}],
     )
     priority: Priority | None = Field(None, description="that of the job if left out")
-    limits: AskedLimits | None = Field(None, description="those of the job if left out")
+    limits: RequestedLimits | None = Field(None, description="those of the job if left out")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Asked:
+class RequestedJob:
     """A submission that was read. source: the job file, if one was sent. origin: the job that it is a copy of."""
 
     tables: Mapping[str, Any]
@@ -102,29 +102,31 @@ class Asked:
     origin: int | None = None
 
 
-async def asked_for(request: Request) -> Asked:
+async def requested_job(request: Request) -> RequestedJob:
     """Return the submission that a request contains; a dependency. Raises the errors that become 400, 415 or 422."""
     body = await request.body()
     settings: Settings = request.app.state.settings
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if kind == TOML:
         source = Artefact(name="job.toml", media_type=TOML, content=body)
-        tables = await in_turn(request.app, body, tables_of, body, settings.most_depth)
-        return Asked(tables=tables, limits=settings.limits, source=source)
+        tables = await read_in_turn(request.app, body, tables_of, body, settings.most_depth)
+        return RequestedJob(tables=tables, limits=settings.limits, source=source)
     if kind != JSON:
         raise HTTPException(
             HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
             f"a job must be sent as {JSON} or {TOML}; got {kind[:100] or 'no type'!r}; use one of these content types",
         )
     try:
-        given = request.scope[GIVEN] if GIVEN in request.scope else read_json(body, settings.most_depth)  # of no body
-        stated = Submission.model_validate(given)
+        content = (
+            request.scope[PARSED_BODY] if PARSED_BODY in request.scope else read_json(body, settings.most_depth)
+        )  # of no body
+        stated = Submission.model_validate(content)
     except ValidationError as error:
-        found = error.errors(include_url=False)
-        raise RequestValidationError([{**one, "loc": ("body", *one["loc"])} for one in found]) from None
-    limits = within(stated.limits, settings.limits)
-    tables = await in_turn(request.app, body, filled, stated) if stated.files else stated.job
-    return Asked(tables=tables, priority=stated.priority, limits=limits, origin=stated.origin)
+        errors = error.errors(include_url=False)
+        raise RequestValidationError([{**details, "loc": ("body", *details["loc"])} for details in errors]) from None
+    limits = limits_within(stated.limits, settings.limits)
+    tables = await read_in_turn(request.app, body, insert_files, stated) if stated.files else stated.job
+    return RequestedJob(tables=tables, priority=stated.priority, limits=limits, origin=stated.origin)
 
 
 def tables_of(body: bytes, most_depth: int) -> dict[str, Any]:
@@ -143,7 +145,7 @@ def tables_of(body: bytes, most_depth: int) -> dict[str, Any]:
     return tables
 
 
-def filled(stated: Submission) -> dict[str, Any]:
+def insert_files(stated: Submission) -> dict[str, Any]:
     """Return the tables of a job with the contents of the files that were sent in their place. Raises `JobError`."""
     from ...optimise.job import with_files
 
@@ -157,18 +159,20 @@ def filled(stated: Submission) -> dict[str, Any]:
     return with_files(stated.job, contents)
 
 
-def within(asked: AskedLimits, most: Limits) -> Limits:
+def limits_within(requested: RequestedLimits, allowed: Limits) -> Limits:
     """Return limits of a job: those asked for, else the highest of the service. Raises `InputError` for higher ones."""
-    limits = Limits(seconds=asked.seconds, evaluations=asked.evaluations, memory=asked.memory_bytes)
-    for name, wanted, highest in zip(AskedLimits.model_fields, astuple(limits), astuple(most), strict=True):
-        if wanted is not None and highest is not None and wanted > highest:
+    limits = Limits(seconds=requested.seconds, evaluations=requested.evaluations, memory=requested.memory_bytes)
+    for name, requested_value, highest in zip(
+        RequestedLimits.model_fields, astuple(limits), astuple(allowed), strict=True
+    ):
+        if requested_value is not None and highest is not None and requested_value > highest:
             raise InputError(
-                f"limits.{name}: must be at most {highest} here; got {wanted}; ask for less, or leave it out"
+                f"limits.{name}: must be at most {highest} here; got {requested_value}; ask for less, or leave it out"
             )
-    return limits.within(most)
+    return limits.within(allowed)
 
 
-def given_problem(
+def problem_of_tables(
     tables: Mapping[str, Any],
     allowed: Collection[str],
     values: Mapping[str, Any] | None = None,
@@ -184,14 +188,14 @@ def given_problem(
     return bounded(parse_allowed(tables, allowed, values, require_feasible=require_feasible), LONGEST_ANSWER)
 
 
-def merged(value: Any, changes: Any) -> Any:
+def merge_patch(value: Any, changes: Any) -> Any:
     """Return a value with changes applied (RFC 7396): tables key by key; null removes a key; all else replaces it."""
     if not isinstance(changes, Mapping):
         return changes
-    kept = dict(value) if isinstance(value, Mapping) else {}
+    table = dict(value) if isinstance(value, Mapping) else {}
     for key, change in changes.items():
         if change is None:
-            kept.pop(key, None)
+            table.pop(key, None)
         else:
-            kept[key] = merged(kept.get(key), change)
-    return kept
+            table[key] = merge_patch(table.get(key), change)
+    return table

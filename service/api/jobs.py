@@ -15,7 +15,7 @@ from pydantic_core import to_json
 from starlette.exceptions import HTTPException
 
 from ...model.errors import InputError, NotFound
-from ..page.router import tag_of, tagged
+from ..page.router import content_tag, response_with_etag
 from ..store import State
 from .exports import download, formats
 from .models import LARGEST, PLAIN_DIGITS, FrontPointsList, JobFiles, JobNumber, JobPage, JobShown
@@ -42,10 +42,10 @@ def list_jobs(
     limit: Annotated[int, Query(ge=1, le=1000, description="at most this many jobs"), PLAIN_DIGITS] = 100,
 ) -> dict[str, Any]:
     """Return jobs, latest first, as a list shows them: `/jobs/{number}` has all of one, `/front-points` pictures."""
-    found = store.jobs(states=state, name=name, before=before, limit=limit + 1)
-    page = found[:limit]
+    jobs = store.jobs(states=state, name=name, before=before, limit=limit + 1)
+    page = jobs[:limit]
     rows = [job.record() if job.state == "running" else {**job.record(), "progress": None} for job in page]
-    return {"jobs": rows, "next": page[-1].id if len(found) > limit else None}
+    return {"jobs": rows, "next": page[-1].id if len(jobs) > limit else None}
 
 
 @router.get("/front-points", **tagged_json(FrontPointsList, "The points"))
@@ -57,9 +57,13 @@ def list_front_points(
     ],
 ) -> Response:
     """Return some designs of the fronts of jobs, of those that run of their fronts so far."""
-    found = store.jobs(numbers=set(job), limit=_MOST_FRONTS)
-    content = to_json({"fronts": [{"job": one.id, **one.front_points()} for one in reversed(found)]})
-    return tagged(request, f'"{tag_of(content)}"', lambda: Response(content, media_type="application/json"))
+    jobs = store.jobs(numbers=set(job), limit=_MOST_FRONTS)
+    content = to_json(
+        {"fronts": [{"job": stored_job.id, **stored_job.front_points()} for stored_job in reversed(jobs)]}
+    )
+    return response_with_etag(
+        request, f'"{content_tag(content)}"', lambda: Response(content, media_type="application/json")
+    )
 
 
 @router.get("/jobs/{number}", response_model=JobShown)

@@ -7,17 +7,17 @@ from typing import Any
 from fastapi import APIRouter
 from pydantic import Field
 
-from ..questions.discovery import WIDER
+from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..runs.result import json_ready
 from .computing import LongRoute
 from .fronts import OfDesign
 from .input_parameters import body_of
-from .models import UnitsAsked
+from .models import UnitsParameter
 from .problems import problem_responses
 from .stored_fronts import DesignNumber, FrontDep
 
 router = APIRouter(route_class=LongRoute, tags=["designs"], responses=problem_responses(409))
-QUESTION = WIDER["like"]
+QUESTION = FRONT_OR_JOB_QUESTIONS["like"]
 _EXAMPLE = {"status": "done", "message": "1 design, 4120 evaluated", "distance": 0.21, "moved": {"rod_mm": -12.5}}
 
 
@@ -27,11 +27,11 @@ class LikeModel(OfDesign):
     like: dict[str, Any] = Field(examples=[_EXAMPLE])
 
 
-def find_like(found: FrontDep, design: DesignNumber, given: Any, units: UnitsAsked = "metric") -> LikeModel:
+def find_like(stored_front: FrontDep, design: DesignNumber, given: Any, units: UnitsParameter = "metric") -> LikeModel:
     """Find the design most like one of a front that also meets further conditions; nothing is saved."""
-    found.row(design)
-    answer = QUESTION.ask(found.front, given.model_dump(), row=design - 1)
-    return LikeModel(job=found.job.id, number=design, like=json_ready(answer.record(units)))
+    stored_front.row(design)
+    nearest = QUESTION.ask(stored_front.front, given.model_dump(), row=design - 1)
+    return LikeModel(job=stored_front.job.id, number=design, like=json_ready(nearest.record(units)))
 
 
 find_like.__annotations__["given"] = body_of(QUESTION, "LikeWhere")

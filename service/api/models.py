@@ -16,10 +16,10 @@ LARGEST = 2**53 - 1
 _WHOLE = re.compile(r"-?(0|[1-9][0-9]*)")
 
 
-def _plain(given: Any) -> Any:
-    if isinstance(given, str) and not _WHOLE.fullmatch(given):
+def _plain(text: Any) -> Any:
+    if isinstance(text, str) and not _WHOLE.fullmatch(text):
         raise PydanticKnownError("int_parsing")
-    return given
+    return text
 
 
 PLAIN_DIGITS = BeforeValidator(_plain)
@@ -30,17 +30,17 @@ It must follow the limits of the number; otherwise the schema lists them under n
 JobNumber = Annotated[int, Path(ge=1, le=LARGEST, description="the number of a job", examples=[1]), PLAIN_DIGITS]
 """A path parameter."""
 Count = Annotated[int, Field(ge=0)]
-UnitsAsked = Annotated[
+UnitsParameter = Annotated[
     System, Query(description="of what is given; in the inch system keys such as crank_mm become crank_in")
 ]
 """A query parameter."""
 
 
-class Shown(BaseModel, frozen=True):
+class ResponseModel(BaseModel, frozen=True):
     """Part of an answer."""
 
 
-class JobLimits(Shown):
+class JobLimits(ResponseModel):
     """Limits of a job on time, evaluations and memory; null is no limit."""
 
     seconds: float | None = Field(description="of its search, s")
@@ -48,7 +48,7 @@ class JobLimits(Shown):
     memory_bytes: int | None = Field(description="of its worker")
 
 
-class FrontSoFar(Shown):
+class FrontSoFar(ResponseModel):
     """Some designs of the front that a search has by now, objectives only."""
 
     columns: list[str] = Field(description="of the objectives, as the designs will have them")
@@ -57,7 +57,7 @@ class FrontSoFar(Shown):
     )
 
 
-class RowProgress(Shown):
+class RowProgress(ResponseModel):
     """Progress of a search in a list."""
 
     stage: str
@@ -80,7 +80,7 @@ class JobProgress(RowProgress):
     front: FrontSoFar | None = Field(default=None, description="after the latest round; null where none is known")
 
 
-class RowSummary(Shown):
+class RowSummary(ResponseModel):
     """Summary of the result of a job in a list."""
 
     designs: Count
@@ -97,7 +97,7 @@ class JobSummary(RowSummary):
     points: list[list[float | str | None]] = Field(description="at most 64 designs of the front")
 
 
-class JobRow(Shown):
+class JobRow(ResponseModel):
     """State of a job in a list. Times are seconds since 1970, UTC."""
 
     id: int = Field(ge=1, description="its number", examples=[1])
@@ -131,14 +131,14 @@ class JobShown(JobRow, title="Job"):
     origin: int | None = Field(None, description="the job that it is a changed copy of, which may be gone")
 
 
-class JobPage(Shown):
+class JobPage(ResponseModel):
     """Some jobs, latest first."""
 
     jobs: list[JobRow]
     next: int | None = Field(description="`before` of the next page; null on the last one")
 
 
-class FrontPoints(Shown):
+class FrontPoints(ResponseModel):
     """Some designs of the front of a job, for a small picture; no points where no front is known."""
 
     job: int = Field(examples=[1])
@@ -148,13 +148,13 @@ class FrontPoints(Shown):
     )
 
 
-class FrontPointsList(Shown):
+class FrontPointsList(ResponseModel):
     """Points of the fronts of jobs, in the order of their numbers; jobs that are gone are left out."""
 
     fronts: list[FrontPoints]
 
 
-class EventShown(Shown, title="Event"):
+class EventShown(ResponseModel, title="Event"):
     """Something that happened to a job."""
 
     number: int = Field(ge=1, description="1, 2, 3, ... without gaps")
@@ -163,14 +163,14 @@ class EventShown(Shown, title="Event"):
     data: dict[str, Any] = Field(examples=[{"state": "queued", "reason": ""}])
 
 
-class EventPage(Shown):
+class EventPage(ResponseModel):
     """Some events of a job, in order."""
 
     events: list[EventShown]
     last: Count = Field(description="`after` of the next page")
 
 
-class JobFiles(Shown):
+class JobFiles(ResponseModel):
     """The files of a job."""
 
     files: list[str] = Field(examples=[["job.toml", "versions.json"]])

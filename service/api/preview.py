@@ -15,7 +15,7 @@ from ...objectives.kinds import Kind
 from ...objectives.needs import ONE_TIMING
 from .computing import QuickRoute
 from .job_files import Understood, understood
-from .job_requests import Submission, given_problem
+from .job_requests import Submission, problem_of_tables
 from .problems import rule_and_value
 from .settings import SettingsDep
 
@@ -180,7 +180,7 @@ def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
     """Look at a job that may be incomplete: what is wrong, and where; what its ranges allow; an example."""
     from ..preview.preview import look_at
 
-    look = look_at(draft.job, lambda tables: given_problem(tables, settings.allowed_quantities))
+    look = look_at(draft.job, lambda tables: problem_of_tables(tables, settings.allowed_quantities))
     return PreviewModel(
         wrong=[
             WrongModel(path=wrong.path[:500], sentence=wrong.sentence[:2000], infeasible=wrong.infeasible)
@@ -198,11 +198,11 @@ def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
     )
 
 
-def _wrong_submission(given: dict[str, Any]) -> list[WrongModel]:
-    own = {"priority": given["priority"]} if "priority" in given else {}
-    limits = {key: value for key, value in given.items() if key != "priority"}
+def _wrong_submission(submission: dict[str, Any]) -> list[WrongModel]:
+    priority = {"priority": submission["priority"]} if "priority" in submission else {}
+    limits = {key: value for key, value in submission.items() if key != "priority"}
     try:
-        Submission.model_validate({"job": {}, "limits": limits, **own})
+        Submission.model_validate({"job": {}, "limits": limits, **priority})
     except ValidationError as error:
         return [
             WrongModel(path=f"submission.{details['loc'][-1]}"[:500], sentence=rule_and_value(details)[:2000])
@@ -216,19 +216,19 @@ def _unit(kind: Kind | None) -> str | None:
 
 
 def _allowed(look: Look) -> AllowedModel | None:
-    found = look.possible
-    if found is None:
+    possible = look.possible
+    if possible is None:
         return None
     return AllowedModel(
-        turning_share=found.turning,
-        stroke_mm=_in(1e3, found.stroke),
-        time_ratio=_in(1.0, found.time_ratio),
-        transmission_angle_deg=_in(180.0 / math.pi, found.transmission_angle),
-        slow_strokes=list(found.slow_strokes),
-        feasible_share=found.feasible,
-        sampled=found.sampled,
-        hardest=found.hardest[0] if found.hardest else None,
-        hardest_share=found.hardest[1] if found.hardest else None,
+        turning_share=possible.turning,
+        stroke_mm=_in(1e3, possible.stroke),
+        time_ratio=_in(1.0, possible.time_ratio),
+        transmission_angle_deg=_in(180.0 / math.pi, possible.transmission_angle),
+        slow_strokes=list(possible.slow_strokes),
+        feasible_share=possible.feasible,
+        sampled=possible.sampled,
+        hardest=possible.hardest[0] if possible.hardest else None,
+        hardest_share=possible.hardest[1] if possible.hardest else None,
         unchecked=look.unchecked,
         said=look.said,
     )
@@ -258,40 +258,41 @@ def _example(look: Look) -> ExampleModel | None:
     )
 
 
-def _swing(found: PossibleSwing | None) -> SwingPreview | None:
-    if found is None:
+def _swing(possible: PossibleSwing | None) -> SwingPreview | None:
+    if possible is None:
         return None
     return SwingPreview(
-        from_deg=None if found.shown is None else math.degrees(found.shown.start),
-        to_deg=None if found.shown is None else math.degrees(found.shown.end),
-        closing_share=found.closing,
-        travel_mm=_in(1e3, found.travel),
-        feasible_share=found.feasible,
-        sampled=found.sampled,
-        unchecked=list(found.unchecked),
-        example=None if found.example is None else _swing_example(found, found.example),
+        from_deg=None if possible.shown is None else math.degrees(possible.shown.start),
+        to_deg=None if possible.shown is None else math.degrees(possible.shown.end),
+        closing_share=possible.closing,
+        travel_mm=_in(1e3, possible.travel),
+        feasible_share=possible.feasible,
+        sampled=possible.sampled,
+        unchecked=list(possible.unchecked),
+        example=None if possible.example is None else _swing_example(possible, possible.example),
     )
 
 
-def _swing_example(found: PossibleSwing, lengths: tuple[float, float, float]) -> SwingExample:
+def _swing_example(possible: PossibleSwing, lengths: tuple[float, float, float]) -> SwingExample:
     from ..preview.swinging import positions
 
-    swing, design = found.shown or found.swing, np.array([lengths])
+    swing, design = possible.shown or possible.swing, np.array([lengths])
     low, high = sorted((math.degrees(swing.start), math.degrees(swing.end)))
     # One point a degree; of a whole turn those of the swing, and one beyond each end with the place at that end.
     angles = range(math.floor(low), math.floor(high) + 2)
-    inside = np.radians(np.clip(angles, low, high))
+    clipped_angles = np.radians(np.clip(angles, low, high))
     places = {
-        angle % 360: float(positions(at, found.branch, design)[0]) for angle, at in zip(angles, inside, strict=True)
+        angle % 360: float(positions(at, possible.branch, design)[0])
+        for angle, at in zip(angles, clipped_angles, strict=True)
     }
     curve = [places.get(angle, math.nan) for angle in range(360)]
-    ends = [float(positions(end, found.branch, design)[0]) for end in (swing.start, swing.end)]
+    ends = [float(positions(end, possible.branch, design)[0]) for end in (swing.start, swing.end)]
     crank, rod, offset = (1e3 * length for length in lengths)
     return SwingExample(
         crank_mm=crank,
         rod_mm=rod,
         offset_mm=offset,
-        feasible=found.example_feasible,
+        feasible=possible.example_feasible,
         travel_mm=1e3 * abs(ends[1] - ends[0]),
         slider_ends_mm=(1e3 * ends[0], 1e3 * ends[1]),
         motion=SwingCurve(
@@ -303,9 +304,9 @@ def _swing_example(found: PossibleSwing, lengths: tuple[float, float, float]) ->
 
 def _motion(linkage: Linkage) -> MotionModel:
     theta = np.arange(_ANGLES) * (2.0 * np.pi / _ANGLES)
-    found = linkage.at(theta)
+    positions = linkage.at(theta)
     return MotionModel(
         crank_angle_deg=np.degrees(theta).tolist(),
-        slider_position_mm=(1e3 * found.slider_position).tolist(),
-        transmission_angle_deg=np.degrees(found.transmission_angle).tolist(),
+        slider_position_mm=(1e3 * positions.slider_position).tolist(),
+        transmission_angle_deg=np.degrees(positions.transmission_angle).tolist(),
     )

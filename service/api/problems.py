@@ -91,34 +91,34 @@ def answer_problems(app: FastAPI) -> None:
 async def _refused(request: Request, error: Exception) -> Response:
     assert isinstance(error, SlidercrankError)
     status = next((status for kind, status in _STATUS if isinstance(error, kind)), HTTPStatus.INTERNAL_SERVER_ERROR)
-    if status >= HTTPStatus.INTERNAL_SERVER_ERROR and is_news(request.app.state.told, str(error)):
+    if status >= HTTPStatus.INTERNAL_SERVER_ERROR and should_log(request.app.state.told, str(error)):
         _log.warning("%s: %s", type(error).__name__, error)
     kind: Literal["about:blank", "infeasible"] = "infeasible" if isinstance(error, InfeasibleError) else "about:blank"
     return problem(status, str(error), _RETRY if status == HTTPStatus.SERVICE_UNAVAILABLE else None, kind)
 
 
-def is_news(told: dict[str, float], sentence: str) -> bool:
+def should_log(last_logged: dict[str, float], sentence: str) -> bool:
     """Whether a sentence was not logged within the last minute: what one request meets, others meet as well."""
     now = time.monotonic()
-    if now - told.get(sentence, -_QUIET) < _QUIET:
+    if now - last_logged.get(sentence, -_QUIET) < _QUIET:
         return False
-    for old in [one for one, at in told.items() if now - at >= _QUIET]:
-        del told[old]
-    told[sentence] = now
+    for old in [logged for logged, at in last_logged.items() if now - at >= _QUIET]:
+        del last_logged[old]
+    last_logged[sentence] = now
     return True
 
 
 async def _not_valid(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
-    found = error.errors()
-    if any(isinstance(one["input"], bytes) for one in found):  # what is not JSON by its type stays as it came
+    errors = error.errors()
+    if any(isinstance(details["input"], bytes) for details in errors):  # what is not JSON by its type stays as it came
         kind = request.headers.get("content-type", "no type")[:100]
         turned = ", see POST /api/v1/parse for a job file as JSON" if "toml" in kind else ""
         sentence = f"body: must be a JSON object of type application/json; got {kind}; send it as such{turned}"
         return problem(HTTPStatus.UNPROCESSABLE_ENTITY, sentence)
-    sentences = [f"{_place(one['loc'])}: {rule_and_value(one)}" for one in found[:_MOST]]
-    more = ["... and more"] if len(found) > _MOST else []
-    return problem(HTTPStatus.UNPROCESSABLE_ENTITY, "\n  ".join([*sentences, *more]))
+    sentences = [f"{_place(details['loc'])}: {rule_and_value(details)}" for details in errors[:_MOST]]
+    ellipsis = ["... and more"] if len(errors) > _MOST else []
+    return problem(HTTPStatus.UNPROCESSABLE_ENTITY, "\n  ".join([*sentences, *ellipsis]))
 
 
 async def _http(request: Request, error: Exception) -> Response:
@@ -135,11 +135,11 @@ async def _http(request: Request, error: Exception) -> Response:
 def _methods(request: Request) -> list[str]:
     """Return the methods that a place knows: the framework names those of the first endpoint there only."""
 
-    def known(method: str) -> bool:
+    def is_known(method: str) -> bool:
         scope = {**request.scope, "method": method}
         return any(route.matches(scope)[0] is Match.FULL for route in request.app.routes)
 
-    return [method for method in ("GET", "POST", "PUT", "PATCH", "DELETE") if known(method)]
+    return [method for method in ("GET", "POST", "PUT", "PATCH", "DELETE") if is_known(method)]
 
 
 def rule_and_value(details: Mapping[str, Any]) -> str:

@@ -10,8 +10,8 @@ from pydantic import BaseModel, Field
 from ...objectives.formula.expression import ARGUMENTS
 from ...objectives.kinds import KINDS, SHOWN, shown_in
 from ..designs.quantity_facts import facts_of_all
-from ..questions.discovery import COMMANDS, OF_DESIGNS, TOPICS
-from ..questions.question import Question
+from ..questions.design_question import DesignQuestion
+from ..questions.discovery import DESIGN_QUESTIONS, QUESTION_COMMANDS, TOPICS
 
 router = APIRouter(tags=["designs"])
 
@@ -144,7 +144,7 @@ def list_units() -> UnitTable:
     from ...objectives.registry import FACTS
     from ...objectives.units import per_si
 
-    told = [(kind.metric.symbol, shown_in(kind.metric.symbol, "inch")) for kind in SHOWN if kind.inch]
+    inch_units = [(kind.metric.symbol, shown_in(kind.metric.symbol, "inch")) for kind in SHOWN if kind.inch]
     kinds = [
         KindModel(
             name=kind.plain,
@@ -158,9 +158,13 @@ def list_units() -> UnitTable:
     ]
     return UnitTable(
         kinds=kinds,
-        inch={symbol: ShownUnit(unit=unit, factor=factor) for symbol, (unit, factor) in told},
+        inch={symbol: ShownUnit(unit=unit, factor=factor) for symbol, (unit, factor) in inch_units},
         suffixes={kind.metric.symbol: kind.metric.suffix for kind in SHOWN},
-        titles={of.field: of.title for of in FACTS.values() if of.title != split_unit(of.field)[0].replace("_", " ")},
+        titles={
+            quantity.field: quantity.title
+            for quantity in FACTS.values()
+            if quantity.title != split_unit(quantity.field)[0].replace("_", " ")
+        },
     )
 
 
@@ -169,39 +173,43 @@ def list_quantities() -> QuantityList:
     """Explain every quantity in a sentence, with its formula and contributions."""
     return QuantityList(
         quantities=[QuantityModel(**facts) for facts in facts_of_all()],
-        functions=[FunctionModel(name=name, least=least, most=most) for name, (least, most) in ARGUMENTS.items()],
+        functions=[
+            FunctionModel(name=name, least=least, most=greatest) for name, (least, greatest) in ARGUMENTS.items()
+        ],
     )
 
 
 @router.get("/topics")
 def list_topics() -> TopicList:
     """List the topics that a design may have, and the questions that are commands of their own."""
-    topics = [_topic(of, f"topics/{of.name}", f"analyse --show {of.name}") for of in TOPICS.values()]
-    questions = [_topic(OF_DESIGNS[name], name, says.called or name) for name, says in COMMANDS.items()]
+    topics = [
+        _topic(question, f"topics/{question.name}", f"analyse --show {question.name}") for question in TOPICS.values()
+    ]
+    questions = [_topic(DESIGN_QUESTIONS[name], name, says.called or name) for name, says in QUESTION_COMMANDS.items()]
     return TopicList(topics=topics, questions=questions)
 
 
-def _topic(of: Question, path: str, command: str) -> TopicModel:
+def _topic(question: DesignQuestion, path: str, command: str) -> TopicModel:
     inputs = [
         InputModel(
-            key=one.key,
-            title=one.title or one.name.replace("_", " ").capitalize(),
-            help=one.help,
-            unit=one.unit.symbol,
-            usual=one.usual,
-            words=get_args(one.words),
-            required=one.required,
-            example=one.example,
+            key=item.key,
+            title=item.title or item.name.replace("_", " ").capitalize(),
+            help=item.help,
+            unit=item.unit.symbol,
+            usual=item.usual,
+            words=get_args(item.words),
+            required=item.required,
+            example=item.example,
         )
-        for one in of.inputs
+        for item in question.inputs
     ]
-    title = of.name.replace("_", " ").capitalize()
+    title = question.name.replace("_", " ").capitalize()
     return TopicModel(
-        name=of.name,
+        name=question.name,
         path=path,
         command=command,
-        figure=of.command is None or of.command.figure is not None,
+        figure=question.command is None or question.command.figure is not None,
         title=title,
-        shows=of.shows,
+        shows=question.shows,
         inputs=inputs,
     )

@@ -14,20 +14,20 @@ from fastapi.responses import StreamingResponse
 from fastapi.sse import format_sse_event
 from pydantic import Field
 
-from ..questions.discovery import WIDER
-from ..questions.wider import Answer
+from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
+from ..questions.front_or_job_question import Answer
 from ..runs.result import json_ready
 from .computing import LongRoute
 from .events import STREAM, STREAM_HEADERS
 from .fronts import OfDesign
 from .input_parameters import body_of
-from .models import UnitsAsked
+from .models import UnitsParameter
 from .problems import problem_responses
 from .stored_fronts import DesignNumber, FrontDep
 
 router = APIRouter(route_class=LongRoute, tags=["designs"], responses=problem_responses(409))
 
-QUESTION = WIDER["round"]
+QUESTION = FRONT_OR_JOB_QUESTIONS["round"]
 _ROUNDED_EXAMPLE = {
     "met": True,
     "message": "311 of 2016 rounded designs within 16 steps keep every requirement within 0.1 mm of stroke",
@@ -87,26 +87,26 @@ _ROUNDED_RESPONSES: dict[int | str, dict[str, Any]] = {
 
 
 def round_design(
-    request: Request, found: FrontDep, design: DesignNumber, given: Any, units: UnitsAsked = "metric"
+    request: Request, stored_front: FrontDep, design: DesignNumber, given: Any, units: UnitsParameter = "metric"
 ) -> Response:
     """Find the best designs of round numbers near a design that meet every requirement, and what each costs.
 
     Where none meets all within what is allowed, the nearest are listed, with each miss as a number; `met` is then
     false. With `Accept: text/event-stream` the progress is streamed; closing the connection then ends the search.
     """
-    found.row(design)
+    stored_front.row(design)
 
     def search() -> _Events:
         """Yield kind and data of the events."""
         from ..questions.round.analysis import search
 
-        words = {one.name: one.name for one in QUESTION.inputs}
-        for at in search(found.front, design - 1, words, **QUESTION.read(given.model_dump(), design)):
+        words = {item.name: item.name for item in QUESTION.inputs}
+        for at in search(stored_front.front, design - 1, words, **QUESTION.read(given.model_dump(), design)):
             if isinstance(at, Answer):
                 record = json_ready(at.record(units))
             else:
                 yield "progress", json.dumps(vars(at))
-        yield "rounded", RoundedModel(job=found.job.id, number=design, rounded=record).model_dump_json()
+        yield "rounded", RoundedModel(job=stored_front.job.id, number=design, rounded=record).model_dump_json()
 
     events = search()
     first = next(events)  # a wrong request is refused before anything is sent

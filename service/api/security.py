@@ -70,8 +70,8 @@ class Guard:
             await send(message)
 
         try:
-            answer = self._answer(HTTPConnection(scope)) or self.app
-            await answer(scope, receive, protected)
+            response = self._rejection(HTTPConnection(scope)) or self.app
+            await response(scope, receive, protected)
         except Exception as error:
             _log.exception("%s %s", scope["method"], scope["path"])
             if started:
@@ -79,7 +79,7 @@ class Guard:
             fault = problem(HTTPStatus.INTERNAL_SERVER_ERROR, f"unexpected {type(error).__name__}; {FAULT}")
             await fault(scope, receive, protected)
 
-    def _answer(self, connection: HTTPConnection) -> Response | None:
+    def _rejection(self, connection: HTTPConnection) -> Response | None:
         """Return the answer to a request that is not passed on; None for one that is."""
         scope, headers = connection.scope, connection.headers
         host = headers.getlist("host")
@@ -115,8 +115,8 @@ class Guard:
     def _let_in(self, connection: HTTPConnection) -> Response:
         """Return the answer to an address with a token: a cookie, and the same address without it."""
         scope = connection.scope
-        given = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])
-        if len(given) != 1 or not self._right(given[0]):
+        tokens = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])
+        if len(tokens) != 1 or not self._is_token(tokens[0]):
             if "text/html" in connection.headers.get("accept", ""):
                 return locked_page(connection, wrong=True)
             return _unauthorised(
@@ -130,13 +130,13 @@ class Guard:
 
     def _knows(self, connection: HTTPConnection) -> bool:
         scheme, _, token = connection.headers.get("authorization", "").partition(" ")
-        if scheme.lower() == "bearer" and self._right(token.strip()):
+        if scheme.lower() == "bearer" and self._is_token(token.strip()):
             return True
         return hmac.compare_digest(
             connection.cookies.get(self.cookie, "").encode(errors="replace"), self.session.encode()
         )
 
-    def _right(self, token: str) -> bool:
+    def _is_token(self, token: str) -> bool:
         """Whether it is the token, found out in a time that tells nothing about it."""
         return self.token is not None and hmac.compare_digest(token.encode(errors="replace"), self.token)
 

@@ -41,8 +41,8 @@ def names_of(host: str) -> tuple[str, ...]:
     """Return the names by which a service that listens on an address is called."""
     from .settings import LOOPBACK
 
-    own = socket.gethostname() if host in _ANY else host
-    return tuple(dict.fromkeys((*LOOPBACK, _bracketed(own))))
+    host_name = socket.gethostname() if host in _ANY else host
+    return tuple(dict.fromkeys((*LOOPBACK, _bracketed(host_name))))
 
 
 def listen(host: str, port: int) -> socket.socket:
@@ -67,8 +67,8 @@ def listen(host: str, port: int) -> socket.socket:
 def _why(error: OSError | UnicodeError) -> str:
     if isinstance(error, UnicodeError):
         return str(error)
-    known = error.errno is not None and error.errno > 0  # those of a name that is not found are negative
-    return os.strerror(error.errno or 0) if known else error.strerror or str(error)
+    has_number = error.errno is not None and error.errno > 0  # those of a name that is not found are negative
+    return os.strerror(error.errno or 0) if has_number else error.strerror or str(error)
 
 
 def url_of(host: str, listening: socket.socket, token: str | None) -> str:
@@ -106,13 +106,13 @@ def run_server(
     app: FastAPI,
     listening: socket.socket,
     *,
-    asked: Callable[[], bool] = lambda: False,
+    stop_requested: Callable[[], bool] = lambda: False,
     stopping: Callable[[], None] = lambda: None,
 ) -> None:
     """Serve an application until SIGTERM or Ctrl-C, which are passed on to the handlers that were there before.
 
-    asked: whether one of them came before the server had handlers of its own. stopping: called when that is to end,
-    before the requests under way have their time to.
+    stop_requested: whether a signal came before the server installed its own handlers. stopping: called when the server
+    begins to stop, before the grace period of the requests under way.
     """
     import uvicorn
 
@@ -120,7 +120,7 @@ def run_server(
         """Ends the streams of events first: they would wait until they are cut."""
 
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-            self.should_exit = self.should_exit or asked()
+            self.should_exit = self.should_exit or stop_requested()
             await super().startup(sockets)
 
         async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:

@@ -80,7 +80,7 @@ class StoredFront:
         """The objectives of the designs (n, m), as they are minimised, in the units that are shown."""
         return minimised_values(self.result)
 
-    def made(self, name: str, kind: str, make: Callable[[], tuple[Sequence[str], bytes]]) -> bytes:
+    def cached(self, name: str, kind: str, make: Callable[[], tuple[Sequence[str], bytes]]) -> bytes:
         """Return a thing made of the front lately under a name, or make and keep it.
 
         make: gives all names of what it made, and the content.
@@ -89,7 +89,7 @@ class StoredFront:
         if content is None:
             names, content = make()
             with self._keeping:
-                self._kept.update({(one, kind): content for one in names})
+                self._kept.update({(other_name, kind): content for other_name in names})
                 while len(self._kept) > 1 and sum(map(len, self._kept.values())) > _MOST_KEPT:
                     self._kept.popitem(last=False)
         return content
@@ -119,7 +119,7 @@ class StoredFronts:
         self._kept: OrderedDict[tuple[int, float | None], StoredFront] = OrderedDict()
         self._reading = threading.Lock()
 
-    def of(self, number: int) -> StoredFront:
+    def get(self, number: int) -> StoredFront:
         """Return the front of a job. Raises `NotFound` for a job that is not there, `RunError` without a result."""
         job = self._store.job(number)
         key = (job.id, job.finished)
@@ -139,7 +139,10 @@ class StoredFronts:
 
     def _keep(self, key: tuple[int, float | None], front: StoredFront) -> None:
         self._kept[key] = front
-        while len(self._kept) > 1 and sum(len(kept.result.designs) for kept in self._kept.values()) > self._most:
+        while (
+            len(self._kept) > 1
+            and sum(len(front_in_memory.result.designs) for front_in_memory in self._kept.values()) > self._most
+        ):
             self._kept.popitem(last=False)
 
 
@@ -148,7 +151,7 @@ FrontsDep = Annotated[StoredFronts, part_of_app("fronts")]
 
 
 def _front(number: JobNumber, fronts: FrontsDep) -> StoredFront:
-    return fronts.of(number)
+    return fronts.get(number)
 
 
 FrontDep = Annotated[StoredFront, Depends(_front)]
@@ -177,10 +180,10 @@ def _numbers(
     value: Annotated[list[Annotated[str, Field(max_length=500)]], Query(max_length=200, description=_VALUE)] = [],  # noqa: B006
 ) -> Numbers | None:
     lengths = dict(zip(_LENGTHS, (crank_mm, rod_mm, offset_mm), strict=True))
-    given = {name: length for name, length in lengths.items() if length is not None}
-    missing = [name for name in lengths if name not in given]
+    numbers = {name: length for name, length in lengths.items() if length is not None}
+    missing = [name for name in lengths if name not in numbers]
     if len(missing) in (0, 3):
-        return given | dict(map(_value, value)) or None
+        return numbers | dict(map(_value, value)) or None
     raise InputError(
         f"other lengths must be given together, crank_mm, rod_mm and offset_mm; got none for {' and '.join(missing)}; "
         "give all three, or none for the design as it is"
@@ -204,10 +207,10 @@ NumbersDep = Annotated[Numbers | None, Depends(_numbers)]
 
 
 @dataclass(frozen=True)
-class ShownDesign:
+class RequestedDesign:
     """A design of a front, or what became of it. changed: whether its numbers are others than its own."""
 
-    found: StoredFront
+    stored_front: StoredFront
     number: int
     design: StoredDesign
     changed: bool
@@ -229,27 +232,32 @@ class ShownDesign:
 
     def variation(self) -> Variation | None:
         """Return all about other numbers; None for the design as it is."""
-        return variation_of(self.design, self.found.result, self.found.minimised) if self.changed else None
+        return (
+            variation_of(self.design, self.stored_front.result, self.stored_front.minimised) if self.changed else None
+        )
 
 
-def shown_design(found: StoredFront, number: int, numbers: Numbers | None) -> ShownDesign:
+def requested_design(stored_front: StoredFront, number: int, numbers: Numbers | None) -> RequestedDesign:
     """Return a design of a front with numbers. Raises `NotFound`; `InputError` if it does not turn fully."""
-    stored, row = found.design(number), found.row(number)
+    stored, row = stored_front.design(number), stored_front.row(number)
     cells = {column: row.get(column) for column in numbers or ()}
-    own = {column: cell if isinstance(cell, float) else math.nan for column, cell in cells.items()}
-    if all(abs(value - own[column]) <= _SAME * abs(own[column]) for column, value in (numbers or {}).items()):
-        return ShownDesign(found, number, stored, changed=False)
-    given = dict(numbers or {})
+    stored_numbers = {column: cell if isinstance(cell, float) else math.nan for column, cell in cells.items()}
+    if all(
+        abs(value - stored_numbers[column]) <= _SAME * abs(stored_numbers[column])
+        for column, value in (numbers or {}).items()
+    ):
+        return RequestedDesign(stored_front, number, stored, changed=False)
+    values = dict(numbers or {})
     lengths = [
-        given.pop(name) / 1e3 if name in given else value
+        values.pop(name) / 1e3 if name in values else value
         for name, value in zip(_LENGTHS, stored.values[:3], strict=True)
     ]
-    return ShownDesign(found, number, with_numbers(stored, lengths, given), changed=True)
+    return RequestedDesign(stored_front, number, with_numbers(stored, lengths, values), changed=True)
 
 
-def _shown(found: FrontDep, design: DesignNumber, numbers: NumbersDep) -> ShownDesign:
-    return shown_design(found, design, numbers)
+def _shown(stored_front: FrontDep, design: DesignNumber, numbers: NumbersDep) -> RequestedDesign:
+    return requested_design(stored_front, design, numbers)
 
 
-ShownDep = Annotated[ShownDesign, Depends(_shown)]
+RequestedDesignDep = Annotated[RequestedDesign, Depends(_shown)]
 """The design in the path, with the numbers in the query."""

@@ -26,7 +26,7 @@ _LARGEST = 2**53
 """Whole numbers beyond it change on their way through the numbers of other languages (RFC 8259, 6)."""
 _DIGITS = 4 * len(str(_LARGEST))
 _LARGE = 16_384  # bytes; longer bodies are read in a thread, one at a time, so that other requests go on meanwhile
-GIVEN = "slidercrank.json"
+PARSED_BODY = "slidercrank.json"
 """Key of a request's scope with what its body says, if that is JSON."""
 
 
@@ -58,7 +58,7 @@ class StrictInput:
             return
         if body and _JSON.fullmatch(headers.get("content-type", "")):
             try:
-                scope[GIVEN] = await in_turn(scope["app"], body, read_json, body, self.most_depth)
+                scope[PARSED_BODY] = await read_in_turn(scope["app"], body, read_json, body, self.most_depth)
             except InputError as error:
                 await problem(HTTPStatus.BAD_REQUEST, str(error))(scope, receive, send)
                 return
@@ -69,8 +69,8 @@ class StrictInput:
         length = headers.get("content-length", "0")
         if not length.isdecimal() or len(length) > 15 or int(length) > self.most_body:
             return None
-        parts, size, more = list[bytes](), 0, True
-        while more:
+        parts, size, is_incomplete = list[bytes](), 0, True
+        while is_incomplete:
             message = await receive()
             if message["type"] != "http.request":
                 break  # the client has gone: what follows finds out
@@ -78,11 +78,11 @@ class StrictInput:
             size += len(parts[-1])
             if size > self.most_body:
                 return None
-            more = message.get("more_body", False)
+            is_incomplete = message.get("more_body", False)
         return b"".join(parts)
 
 
-async def in_turn(app: Any, body: bytes, read: Callable[..., T], *of: Any) -> T:
+async def read_in_turn(app: Any, body: bytes, read: Callable[..., T], *of: Any) -> T:
     """Return the content of a body; large ones are read in turn, as each holds the interpreter for long."""
     if len(body) <= _LARGE:
         return read(*of)
@@ -131,15 +131,15 @@ def require_moderate(value: Any, most_depth: int) -> None:
     level, depth = [value], 0
     while level:
         depth += 1
-        below = list[Any]()
+        next_level = list[Any]()
         for item in level:
             if not isinstance(item, dict | list):
                 _require_plain(item)
             elif depth > most_depth:
                 raise InputError(f"a body must be nested at most {most_depth} deep; got more; flatten it")
             else:
-                below += [*item, *item.values()] if isinstance(item, dict) else item
-        level = below
+                next_level += [*item, *item.values()] if isinstance(item, dict) else item
+        level = next_level
 
 
 def _require_plain(item: object) -> None:

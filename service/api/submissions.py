@@ -11,13 +11,21 @@ from fastapi import APIRouter, Depends, Response
 from pydantic import BaseModel, Field
 from starlette.types import Receive, Scope, Send
 
-from ..designs.binding import widened
-from ..designs.nearby import SHARE, nearby
+from ..designs.active_limits import widen_limits
+from ..designs.nearby_job import SHARE, job_near_lengths
 from ..jobs.submission import job_json
 from ..store import Job
-from .binding import OF, Side
+from .active_limits import LIMIT_PATH, Side
 from .computing import QuickRoute
-from .job_requests import Asked, Clone, IdempotencyKey, asked_for, given_problem, merged, within
+from .job_requests import (
+    Clone,
+    IdempotencyKey,
+    RequestedJob,
+    limits_within,
+    merge_patch,
+    problem_of_tables,
+    requested_job,
+)
 from .models import JobNumber, JobShown
 from .problems import problem_responses
 from .settings import SettingsDep, StoreDep
@@ -44,7 +52,7 @@ _COPIED = {**_SUBMITTED, "tags": ["fronts"], "responses": problem_responses(409,
 class OtherLimit(BaseModel, extra="forbid", strict=True):
     """Another value for a limit of a job, in the unit of the limit."""
 
-    of: OF
+    of: LIMIT_PATH
     side: Side = Field(examples=["upper"])
     value: float = Field(allow_inf_nan=False, examples=[490.0])
 
@@ -73,52 +81,56 @@ class Queue:
     response: Response
     idempotency_key: IdempotencyKey = None
 
-    def put(self, asked: Asked, *, origin: int | None = None) -> dict[str, Any]:
+    def submit(self, request: RequestedJob, *, origin: int | None = None) -> dict[str, Any]:
         """Queue a job and return its record. origin: the job that it is a changed copy of."""
-        problem = given_problem(asked.tables, self.settings.allowed_quantities)
-        files = [asked.source or job_json(asked.tables)]
-        of: dict[str, Any] = {"priority": asked.priority, "key": self.idempotency_key, "limits": asked.limits}
-        job = self.store.submit(asked.tables, name=problem.name, files=files, origin=origin, **of)
+        problem = problem_of_tables(request.tables, self.settings.allowed_quantities)
+        files = [request.source or job_json(request.tables)]
+        options: dict[str, Any] = {"priority": request.priority, "key": self.idempotency_key, "limits": request.limits}
+        job = self.store.submit(request.tables, name=problem.name, files=files, origin=origin, **options)
         self.response.headers["Location"] = f"/api/v1/jobs/{job.id}"
         return job.record()
 
-    def put_copy(self, job: Job, tables: Mapping[str, Any]) -> dict[str, Any]:
+    def submit_copy(self, job: Job, tables: Mapping[str, Any]) -> dict[str, Any]:
         """Queue a copy of a job with other tables, and return its record."""
-        return self.put(Asked(tables=tables, priority=job.priority, limits=job.limits), origin=job.id)
+        return self.submit(RequestedJob(tables=tables, priority=job.priority, limits=job.limits), origin=job.id)
 
 
 QueueDep = Annotated[Queue, Depends()]
 
 
 @router.post("/jobs", **_SENT)
-def submit_job(asked: Annotated[Asked, Depends(asked_for)], queue: QueueDep) -> dict[str, Any]:
+def submit_job(request: Annotated[RequestedJob, Depends(requested_job)], queue: QueueDep) -> dict[str, Any]:
     """Queue a job: JSON with priority and limits, or a job file as application/toml. Workers solve it."""
-    known = asked.origin is not None and queue.store.jobs(numbers={asked.origin}, limit=1)
-    return queue.put(asked, origin=asked.origin if known else None)
+    origin_exists = request.origin is not None and queue.store.jobs(numbers={request.origin}, limit=1)
+    return queue.submit(request, origin=request.origin if origin_exists else None)
 
 
 @router.post("/jobs/{number}/clone", **_SENT)
 def clone_job(number: JobNumber, clone: Clone, queue: QueueDep) -> dict[str, Any]:
     """Queue a copy of a job, with changes."""
     job = queue.store.job(number)
-    asked = Asked(
-        tables=merged(queue.store.tables(number), clone.changes),
+    copy = RequestedJob(
+        tables=merge_patch(queue.store.tables(number), clone.changes),
         priority=job.priority if clone.priority is None else clone.priority,
-        limits=job.limits if clone.limits is None else within(clone.limits, queue.settings.limits),
+        limits=job.limits if clone.limits is None else limits_within(clone.limits, queue.settings.limits),
     )
-    return queue.put(asked, origin=number)
+    return queue.submit(copy, origin=number)
 
 
 @router.post("/jobs/{number}/widened", **_COPIED)
-def run_widened(found: FrontDep, asked: Widening, queue: QueueDep) -> dict[str, Any]:
+def run_widened(stored_front: FrontDep, request: Widening, queue: QueueDep) -> dict[str, Any]:
     """Queue a copy of a job with wider limits; the copy knows the job that it came from."""
-    wider = [(one.of, one.side, one.value) for one in asked.limits]
-    return queue.put_copy(found.job, widened(found.problem, queue.store.tables(found.job.id), wider))
+    wider = [(limit.of, limit.side, limit.value) for limit in request.limits]
+    return queue.submit_copy(
+        stored_front.job, widen_limits(stored_front.problem, queue.store.tables(stored_front.job.id), wider)
+    )
 
 
 @router.post("/jobs/{number}/nearby", **_COPIED)
-def run_nearby(found: FrontDep, asked: Nearby, queue: QueueDep) -> dict[str, Any]:
+def run_nearby(stored_front: FrontDep, request: Nearby, queue: QueueDep) -> dict[str, Any]:
     """Queue a copy of a job that searches around given lengths, also outside of its ranges."""
-    lengths = (asked.crank_mm, asked.rod_mm, asked.offset_mm)
-    tables = nearby(found.problem, queue.store.tables(found.job.id), lengths, share=asked.share)
-    return queue.put_copy(found.job, tables)
+    lengths = (request.crank_mm, request.rod_mm, request.offset_mm)
+    tables = job_near_lengths(
+        stored_front.problem, queue.store.tables(stored_front.job.id), lengths, share=request.share
+    )
+    return queue.submit_copy(stored_front.job, tables)

@@ -16,13 +16,13 @@ _PATIENCE = 30.0  # s
 _MOST = 200  # requests that wait
 
 
-class Turns:
+class TurnQueue:
     """A kind of request of which some are answered at a time, while others wait. For one event loop."""
 
-    def __init__(self, name: str, most: int) -> None:
-        """Begin. name: of these requests, in the plural. most: at a time."""
-        self.name, self.most = name, most
-        self._free = asyncio.Semaphore(most)
+    def __init__(self, name: str, limit: int) -> None:
+        """Begin. name: of these requests, in the plural. limit: at a time."""
+        self.name, self.most = name, limit
+        self._free = asyncio.Semaphore(limit)
         self._waiting = 0
 
     @contextlib.asynccontextmanager

@@ -11,19 +11,19 @@ from pydantic_core import to_json
 
 from ...model.errors import NotFound
 from ...objectives.kinds import System
-from ..questions.answers import Answering
-from ..questions.discovery import INPUTS, TOPIC_OF, TOPICS
-from ..questions.question import Question, QuestionOfDesign
+from ..questions.answer_types import AnswerSchema
+from ..questions.design_question import BoundQuestion, DesignQuestion
+from ..questions.discovery import INPUTS, TOPIC_OF_INPUT, TOPICS
 from ..runs.result import json_ready
 from .blocks import AnswerBlock, answer_blocks
 from .computing import LongRoute
-from .exports import SEALED, of_type
+from .exports import SEALED, file_responses
 from .figures import require_figures
 from .fronts import OfDesign
 from .input_parameters import inputs_in_address, parameter_of
-from .models import UnitsAsked
+from .models import UnitsParameter
 from .problems import problem_responses
-from .stored_fronts import ShownDep, ShownDesign
+from .stored_fronts import RequestedDesign, RequestedDesignDep
 
 router = APIRouter(route_class=LongRoute, tags=["designs"], responses=problem_responses(409))
 
@@ -46,100 +46,102 @@ class BlockModel(BaseModel):
     rows: list[list[str]] = Field(examples=[[]])
 
 
-class ToldTopic(OfDesign):
+class TopicAnswer(OfDesign):
     """A topic of a design. numbers: what `analyse --json` has under its name. told: its text. blocks: that as data."""
 
     name: str = Field(examples=["balance"])
-    numbers: Annotated[dict[str, Any], Answering(lambda: [topic.answer_type for topic in TOPICS.values()])]
+    numbers: Annotated[dict[str, Any], AnswerSchema(lambda: [topic.answer_type for topic in TOPICS.values()])]
     told: list[BlockModel]
     blocks: list[AnswerBlock]
 
 
 @dataclass(frozen=True)
-class Asked:
+class TopicRequest:
     """How a topic is asked for. given: inputs by name, as text with their units."""
 
     units: System
-    given: dict[str, str]
+    inputs: dict[str, str]
 
-    def of(self, topic: Question, shown: ShownDesign) -> QuestionOfDesign:
+    def bind(self, topic: DesignQuestion, request: RequestedDesign) -> BoundQuestion:
         """Return the topic of a design. Raises `InputError` for a swing, and for an input of another topic."""
-        return topic.asked(shown.design.mechanism, shown.design.linkage, shown.design.part, self.given)
+        return topic.for_problem(request.design.mechanism, request.design.linkage, request.design.part, self.inputs)
 
-    def kind(self, topic: Question, what: str) -> str:
+    def cache_kind(self, topic: DesignQuestion, content: str) -> str:
         """Return the name under which what is made of a topic is kept."""
-        return f"topic {topic.name} {what} {self.units} {sorted(self.given.items())}"
+        return f"topic {topic.name} {content} {self.units} {sorted(self.inputs.items())}"
 
 
-_PARAMETERS = (parameter_of(one, f"for the topic {TOPIC_OF[name]}: ") for name, one in INPUTS.items())
-GivenDep = Annotated[dict[str, str], inputs_in_address(INPUTS.values(), _PARAMETERS)]
+_PARAMETERS = (parameter_of(one, f"for the topic {TOPIC_OF_INPUT[name]}: ") for name, one in INPUTS.items())
+TopicInputsDep = Annotated[dict[str, str], inputs_in_address(INPUTS.values(), _PARAMETERS)]
 
 
-def _asked(given: GivenDep, units: UnitsAsked = "metric") -> Asked:
-    return Asked(units, given)
+def _asked(inputs: TopicInputsDep, units: UnitsParameter = "metric") -> TopicRequest:
+    return TopicRequest(units, inputs)
 
 
-AskedDep = Annotated[Asked, Depends(_asked)]
+TopicRequestDep = Annotated[TopicRequest, Depends(_asked)]
 
 
 @router.get(
     "/jobs/{number}/designs/{design}/topics/{topic}.svg",
     dependencies=[Depends(require_figures)],
-    **of_type("image/svg+xml"),
+    **file_responses("image/svg+xml"),
 )
-def draw_topic_svg(shown: ShownDep, topic: Name, asked: AskedDep) -> Response:
+def draw_topic_svg(request: RequestedDesignDep, topic: Name, topic_request: TopicRequestDep) -> Response:
     """Draw the figure of one topic of a design, as found or with other numbers."""
     headers = {"Content-Security-Policy": SEALED}
-    return Response(_drawn(shown, topic, "svg", asked), media_type="image/svg+xml", headers=headers)
+    return Response(_drawn(request, topic, "svg", topic_request), media_type="image/svg+xml", headers=headers)
 
 
 @router.get(
     "/jobs/{number}/designs/{design}/topics/{topic}.png",
     dependencies=[Depends(require_figures)],
-    **of_type("image/png"),
+    **file_responses("image/png"),
 )
-def draw_topic_png(shown: ShownDep, topic: Name, asked: AskedDep) -> Response:
+def draw_topic_png(request: RequestedDesignDep, topic: Name, topic_request: TopicRequestDep) -> Response:
     """Draw the figure of one topic of a design, as found or with other numbers."""
-    return Response(_drawn(shown, topic, "png", asked), media_type="image/png")
+    return Response(_drawn(request, topic, "png", topic_request), media_type="image/png")
 
 
-@router.get("/jobs/{number}/designs/{design}/topics/{topic}", response_model=ToldTopic)
-def tell_topic(shown: ShownDep, topic: Name, asked: AskedDep) -> Response:
+@router.get("/jobs/{number}/designs/{design}/topics/{topic}", response_model=TopicAnswer)
+def show_topic(request: RequestedDesignDep, topic: Name, topic_request: TopicRequestDep) -> Response:
     """Give the numbers of one topic of a design, as found or with other numbers, and its text."""
-    of = _topic(topic)
+    question = _topic(topic)
 
     def make() -> tuple[tuple[str], bytes]:
         from ..render.formatting import plain_blocks
 
-        found = asked.of(of, shown)
-        numbers = found.numbers()
-        blocks = found.blocks(numbers)
-        answer = ToldTopic(
-            job=shown.found.job.id,
-            number=shown.number,
+        bound_question = topic_request.bind(question, request)
+        numbers = bound_question.numbers()
+        blocks = bound_question.blocks(numbers)
+        topic_answer = TopicAnswer(
+            job=request.stored_front.job.id,
+            number=request.number,
             name=topic,
-            numbers=found.numbers_in(json_ready(numbers), asked.units),
-            told=[BlockModel(**vars(block)) for block in plain_blocks(blocks, asked.units)],
+            numbers=bound_question.numbers_in(json_ready(numbers), topic_request.units),
+            told=[BlockModel(**vars(block)) for block in plain_blocks(blocks, topic_request.units)],
             blocks=answer_blocks(blocks),
         )
-        return (shown.key,), to_json(answer)
+        return (request.key,), to_json(topic_answer)
 
-    content = shown.found.made(shown.key, asked.kind(of, "told"), make)
+    content = request.stored_front.cached(request.key, topic_request.cache_kind(question, "told"), make)
     return Response(content, media_type="application/json")
 
 
-def _drawn(shown: ShownDesign, name: str, kind: Literal["png", "svg"], asked: Asked) -> bytes:
+def _drawn(request: RequestedDesign, name: str, kind: Literal["png", "svg"], topic_request: TopicRequest) -> bytes:
     topic = _topic(name)
 
     def make() -> tuple[tuple[str], bytes]:
-        from ..figures.style import image
+        from ..figures.style import figure_bytes
 
-        return (shown.key,), image(asked.of(topic, shown).figure(lambda: False, asked.units), kind)
+        return (request.key,), figure_bytes(
+            topic_request.bind(topic, request).figure(lambda: False, topic_request.units), kind
+        )
 
-    return shown.found.made(shown.key, asked.kind(topic, kind), make)
+    return request.stored_front.cached(request.key, topic_request.cache_kind(topic, kind), make)
 
 
-def _topic(name: str) -> Question:
+def _topic(name: str) -> DesignQuestion:
     """Return a topic by its name. Raises `NotFound` with those that there are."""
     if name not in TOPICS:
         raise NotFound(f"there is no topic {name!r}; choose from {', '.join(TOPICS)}")

@@ -10,11 +10,11 @@ from pydantic import BaseModel, Field
 from ...model.errors import InputError
 from ..designs.columns import all_columns
 from ..designs.cycle_table import LEAST, MOST
-from ..designs.holding import held
-from ..designs.requirements import names_of, ranges_of, requirements_of, speed_rpm
+from ..designs.hold_equalities import hold_equalities
+from ..designs.requirements import quantity_names, ranges_of, requirements_of, speed_rpm
 from ..designs.variation import variation_of, with_numbers
 from ..designs.violations import violated_by, violations_in_words
-from ..questions.design_analysis import determined
+from ..questions.design_analysis import with_undefined_values
 from ..runs.result import json_ready
 from .computing import QuickRoute
 from .cycle import CurvesModel, CycleModel, cycle_model
@@ -104,7 +104,7 @@ class WhatIfModel(OfDesign):
 
 @router.get("/jobs/{number}/designs/{design}/curves")
 def show_curves(
-    found: FrontDep,
+    stored_front: FrontDep,
     design: DesignNumber,
     angles: Annotated[
         int,
@@ -113,44 +113,46 @@ def show_curves(
     ] = 360,
 ) -> CurvesModel:
     """Give slider motion, drive, transmission angle and joint forces over the cycle: see the answer's description."""
-    return CurvesModel(job=found.job.id, number=design, **dict(cycle_model(found.design(design), angles)))
+    return CurvesModel(job=stored_front.job.id, number=design, **dict(cycle_model(stored_front.design(design), angles)))
 
 
 @router.get("/jobs/{number}/designs/{design}/requirements")
-def show_requirements(found: FrontDep, design: DesignNumber) -> RequirementsModel:
+def show_requirements(stored_front: FrontDep, design: DesignNumber) -> RequirementsModel:
     """Give the ranges and the constraints that hold for a design, the floors that hold without being asked included."""
-    stored = found.design(design)
-    asked = [RequirementModel(**vars(item), slack=item.slack) for item in requirements_of(stored.part)]
+    stored = stored_front.design(design)
+    requirements = [RequirementModel(**vars(item), slack=item.slack) for item in requirements_of(stored.part)]
     return RequirementsModel(
-        job=found.job.id,
+        job=stored_front.job.id,
         number=design,
-        ranges={of.column: (of.lower, of.upper) for of in ranges_of(stored.part)},
-        requirements=asked,
+        ranges={bounds.column: (bounds.lower, bounds.upper) for bounds in ranges_of(stored.part)},
+        requirements=requirements,
         slow_stroke=stored.part.slow_stroke,
         speed_rpm=speed_rpm(stored.mechanism),
-        names=names_of(stored.part),
+        names=quantity_names(stored.part),
         tolerances=stored.mechanism.tolerances.given,
     )
 
 
 @router.post("/jobs/{number}/designs/{design}/what-if")
-def change_lengths(found: FrontDep, design: DesignNumber, asked: OtherLengths) -> WhatIfModel:
+def change_lengths(stored_front: FrontDep, design: DesignNumber, request: OtherLengths) -> WhatIfModel:
     """Analyse a design with other lengths and varying numbers, its choices kept; what if?"""
-    if 0 < asked.angles < LEAST:
+    if 0 < request.angles < LEAST:
         raise InputError(
-            f"curves must have {LEAST} to {MOST} crank angles, or 0 for none; got {asked.angles}; ask for a number in "
-            "this range"
+            f"curves must have {LEAST} to {MOST} crank angles, or 0 for none; got {request.angles}; ask for a number "
+            "in this range"
         )
-    lengths = (asked.crank_mm / 1e3, asked.rod_mm / 1e3, asked.offset_mm / 1e3)
-    stored = found.design(design)
-    stored = with_numbers(stored, stored.values[:3], asked.values)
-    stored = with_numbers(stored, lengths if asked.hold is None else held(stored, lengths, asked.hold))
-    changed = variation_of(stored, found.result, found.minimised)
-    row, undefined = determined(changed.row, stored.mechanism, stored.linkage, stored.part.own, stored.part.motion)
-    cycle = cycle_model(stored, asked.angles) if asked.angles else None
+    lengths = (request.crank_mm / 1e3, request.rod_mm / 1e3, request.offset_mm / 1e3)
+    stored = stored_front.design(design)
+    stored = with_numbers(stored, stored.values[:3], request.values)
+    stored = with_numbers(stored, lengths if request.hold is None else hold_equalities(stored, lengths, request.hold))
+    changed = variation_of(stored, stored_front.result, stored_front.minimised)
+    row, undefined = with_undefined_values(
+        changed.row, stored.mechanism, stored.linkage, stored.part.own, stored.part.motion
+    )
+    cycle = cycle_model(stored, request.angles) if request.angles else None
     violated = violated_by(stored.mechanism, row)
     return WhatIfModel(
-        job=found.job.id,
+        job=stored_front.job.id,
         number=design,
         columns=column_models(all_columns(changed.row)),
         design=json_ready(row),

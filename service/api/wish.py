@@ -9,20 +9,20 @@ from pydantic import BaseModel, Field
 
 from ..designs.columns import all_columns
 from ..jobs.wish_history import told_wishes
-from ..questions.discovery import WIDER
+from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..questions.wish.analysis import answered
 from ..store.wishes import note_wish, wishes_of
 from .computing import LongRoute
 from .fronts import Cells, ColumnModel, column_models
 from .input_parameters import body_of
-from .models import UnitsAsked
+from .models import UnitsParameter
 from .problems import problem_responses
 from .settings import StoreDep
 from .stored_fronts import FrontDep
 
 router = APIRouter(route_class=LongRoute, tags=["fronts"], responses=problem_responses(409))
 
-QUESTION = WIDER["wish"]
+QUESTION = FRONT_OR_JOB_QUESTIONS["wish"]
 _DESIGN = Field(None, ge=1, le=2**31, description="that improve, keep and worsen speak of, by its number")
 WishesGiven = body_of(QUESTION, "WishesGiven", design=(int | None, _DESIGN))
 
@@ -34,7 +34,7 @@ class WishModel(BaseModel):
     value: float | None = Field(examples=[45.0])
 
 
-class MadeWishModel(BaseModel):
+class WishRecordModel(BaseModel):
     """A wish that somebody made of a front. wishes: by objective. design: that classes speak of. at: s since 1970."""
 
     number: int = Field(examples=[3])
@@ -47,7 +47,7 @@ class WishesModel(BaseModel):
     """The wishes that were made of the front of a job, the latest first."""
 
     job: int = Field(examples=[7])
-    made: list[MadeWishModel]
+    made: list[WishRecordModel]
 
 
 class OutcomeModel(BaseModel):
@@ -88,18 +88,20 @@ class WishedModel(BaseModel):
     design: Cells | None = Field(examples=[{"crank_mm": 40.0, "rod_mm": 64.0, "offset_mm": 20.0, "time_ratio": 1.2}])
 
 
-def make_wish(found: FrontDep, given: Any, store: StoreDep, units: UnitsAsked = "metric") -> WishedModel:
+def make_wish(stored_front: FrontDep, given: Any, store: StoreDep, units: UnitsParameter = "metric") -> WishedModel:
     """Find the optimal design that comes nearest to wished values of the objectives, or from a design as asked.
 
     The wish is noted among those of the job.
     """
     if given.design is not None:
-        found.row(given.design)
-    answer = answered(found.wishes.wish(given.at, row=None if given.design is None else given.design - 1), given.at)
-    record: dict[str, Any] = answer.record(units)
-    note_wish(store, found.job.id, told_wishes(found.front, answer.found.wishes), given.design)
+        stored_front.row(given.design)
+    solved = answered(
+        stored_front.wishes.wish(given.at, row=None if given.design is None else given.design - 1), given.at
+    )
+    record: dict[str, Any] = solved.record(units)
+    note_wish(store, stored_front.job.id, told_wishes(stored_front.front, solved.search_result.wishes), given.design)
     columns = column_models(all_columns(record["design"] or ()))
-    return WishedModel(job=found.job.id, columns=columns, **record)
+    return WishedModel(job=stored_front.job.id, columns=columns, **record)
 
 
 make_wish.__annotations__["given"] = WishesGiven
@@ -107,18 +109,18 @@ router.add_api_route("/jobs/{number}/wish", make_wish, methods=["POST"])
 
 
 @router.get("/jobs/{number}/wishes")
-def list_wishes(found: FrontDep, store: StoreDep) -> WishesModel:
+def list_wishes(stored_front: FrontDep, store: StoreDep) -> WishesModel:
     """List the wishes that were made of the front of a job, the latest first."""
-    made = [
-        MadeWishModel(
-            number=one.number,
+    records = [
+        WishRecordModel(
+            number=record.number,
             wishes={
-                name: WishModel.model_validate(dict(zip(("wish", "value"), of, strict=True)))
-                for name, of in one.wishes.items()
+                name: WishModel.model_validate(dict(zip(("wish", "value"), wish, strict=True)))
+                for name, wish in record.wishes.items()
             },
-            design=one.design,
-            at=one.at,
+            design=record.design,
+            at=record.at,
         )
-        for one in wishes_of(store, found.job.id)
+        for record in wishes_of(store, stored_front.job.id)
     ]
-    return WishesModel(job=found.job.id, made=made)
+    return WishesModel(job=stored_front.job.id, made=records)

@@ -11,10 +11,10 @@ import numpy as np
 
 from ...model.classical.series import series_acceleration, series_torque
 from ...model.classical.static_forces import static_forces
-from ..figures.panels import save_sheet
-from ..figures.sheets import CRANK_ANGLE, Array, Line, Panel, Sheet, over_turn
+from ..figures.panel_figure import CRANK_ANGLE, Array, Line, Panel, PanelFigure, crank_angle_panel
+from ..figures.panels import save_figure
 from ..questions.clearance.figure import speed_runs, speeds_figure
-from ..questions.polygons.analysis import both_branches, polygon_sheet
+from ..questions.polygons.analysis import both_branches, polygon_panels
 from . import case_1, case_2, case_3, case_4, case_5
 
 _TURN = np.linspace(0.0, 2.0 * math.pi, 721)
@@ -27,14 +27,14 @@ def draw_cases(numbers: Sequence[int], folder: Path) -> Iterator[Path]:
     for number in numbers:
         for name, make in FIGURES[number].items():
             path = folder / f"case_{number}_{name}.png"
-            save_sheet(make(), path)
+            save_figure(make(), path)
             yield path
 
 
-def polygon_figure() -> Sheet:
+def polygon_figure() -> PanelFigure:
     """Return the polygons of case 1 (its Fig. 2)."""
     found = both_branches(case_1.linkage(), case_1.ANGLE, speed=case_1.SPEED, acceleration=case_1.ACCELERATION)
-    return polygon_sheet(
+    return polygon_panels(
         found,
         title="Case 1: position, velocity and acceleration polygons (Boyle and Liu, Fig. 2)",
         subtitle="crank 3, rod 8, offset 2 (no dimension); crank angle −30°, −15 rad/s, −10 rad/s²",
@@ -48,10 +48,10 @@ def over_turns(
     """Return a panel of named curves over the crank angle, each in a line style of its own."""
     degrees = np.degrees(theta)
     lines = (Line(label, degrees, y, style) for style, (label, y) in zip(styles, curves, strict=False))
-    return over_turn(title, *lines)
+    return crank_angle_panel(title, *lines)
 
 
-def sieve_figure() -> Sheet:
+def sieve_figure() -> PanelFigure:
     """Return rod and slider motion of the sieve over the cycle (case 2, its Figs. 4 to 6 and 19)."""
     at = case_2.SIEVE.at(_TURN, speed=case_2.SPEED)
     panels = (
@@ -62,12 +62,12 @@ def sieve_figure() -> Sheet:
         over_turns("slider acceleration, m/s²", ("", at.slider_acceleration)),
         over_turns("rod angular acceleration, rad/s²", ("", at.rod_acceleration)),
     )
-    return Sheet(
+    return PanelFigure(
         "Case 2: vibrating sieve over the cycle (ME748 report, Figs. 4 to 6 and 19)", _SIEVE, panels, columns=2
     )
 
 
-def sensitivity_figure() -> Sheet:
+def sensitivity_figure() -> PanelFigure:
     """Return slider motion with a longer crank and with a longer rod, one at a time (case 2, its Figs. 7 to 12)."""
     designs = (("as designed", case_2.SIEVE), ("crank 150 mm", case_2.LONGER_CRANK), ("rod 320 mm", case_2.LONGER_ROD))
     designed, *changed = ((name, linkage.at(_TURN, speed=case_2.SPEED)) for name, linkage in designs)
@@ -80,10 +80,12 @@ def sensitivity_figure() -> Sheet:
         )
         for other in changed
     )
-    return Sheet("Case 2: one dimension changed at a time (ME748 report, Figs. 7 to 12)", _SIEVE, panels, columns=2)
+    return PanelFigure(
+        "Case 2: one dimension changed at a time (ME748 report, Figs. 7 to 12)", _SIEVE, panels, columns=2
+    )
 
 
-def in_line_figure() -> Sheet:
+def in_line_figure() -> PanelFigure:
     """Return paths, velocities and static forces of the in-line example (case 3)."""
     linkage = case_3.LINKAGE
     at = linkage.at(_TURN, speed=case_3.SPEED)
@@ -99,7 +101,7 @@ def in_line_figure() -> Sheet:
         over_turns("static forces, N", ("rod, compression", forces.rod_force), ("guide", forces.guide_reaction)),
         over_turns("crank torque, N m", ("", forces.crank_torque)),
     )
-    return Sheet(
+    return PanelFigure(
         "Case 3: in-line slider-crank, motion and static forces (its formulas for one example)",
         "crank 50, rod 150 mm, no offset, 10 rad/s; 100 N on the slider towards the crank",
         panels,
@@ -107,7 +109,7 @@ def in_line_figure() -> Sheet:
     )
 
 
-def position_error_figure() -> Sheet:
+def position_error_figure() -> PanelFigure:
     """Return the contributions to the position error, exact and as printed (case 4, its Figs. 3 to 7)."""
     printed = case_4.printed_table()
     at = printed["crank_angle_deg"]
@@ -129,7 +131,7 @@ def position_error_figure() -> Sheet:
         )
         for name in case_4.COLUMNS
     )
-    return Sheet(
+    return PanelFigure(
         "Case 4: position error (Chetana and Vineeth Kumar, Figs. 3 to 7)",
         "crank 1400, rod 1800, offset −50 mm, which fit Table 1; the printed crank-angle column is a misprint",
         panels,
@@ -137,7 +139,7 @@ def position_error_figure() -> Sheet:
     )
 
 
-def offset_figure() -> Sheet:
+def offset_figure() -> PanelFigure:
     """Return acceleration and inertia torque over two cycles for the three offsets (case 5, its Figs. 15 to 18)."""
     theta = np.linspace(0.0, 4.0 * math.pi, 2881)
     exact, formula = (partial(of, crank_angle=theta) for of in (case_5.exact_torque, case_5.formula_torque))
@@ -174,7 +176,7 @@ def offset_figure() -> Sheet:
             styles=(0, 2),  # as in the panel before
         ),
     )
-    return Sheet(
+    return PanelFigure(
         "Case 5: effect of the offset over two cycles (Obaseki and Alfred, Figs. 15 to 18)",
         "crank 40, rod 64 mm, 251 rad/s; 1.05 kg with the slider, 0.35 kg at the crank pin; offset −e",
         panels,
@@ -183,12 +185,12 @@ def offset_figure() -> Sheet:
     )
 
 
-def clearance_figure() -> Sheet:
+def clearance_figure() -> PanelFigure:
     """Return slider motion with a loose joint at three speeds (case 2); simulated, which takes some 20 s."""
     return speeds_figure(speed_runs(case_2.LOOSE, case_2.SIEVE))
 
 
-FIGURES: dict[int, dict[str, Callable[[], Sheet]]] = {
+FIGURES: dict[int, dict[str, Callable[[], PanelFigure]]] = {
     1: {"polygons": polygon_figure},
     2: {"motion": sieve_figure, "sensitivity": sensitivity_figure, "clearance": clearance_figure},
     3: {"motion_and_forces": in_line_figure},

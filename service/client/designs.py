@@ -10,13 +10,13 @@ from urllib.parse import quote
 
 from ...model.errors import InputError
 from ...objectives.kinds import System
-from ..questions.discovery import COMMANDS, WIDER
+from ..questions.discovery import FRONT_OR_JOB_QUESTIONS, QUESTION_COMMANDS
 from .connection import Connection, Record, given
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from ..questions.wider import WiderQuestion
+    from ..questions.front_or_job_question import FrontOrJobQuestion
 
 
 class Designs:
@@ -35,13 +35,13 @@ class Designs:
         design: that is asked; None for the whole front: `client.ask(7, None, "certify", epsilon=0.02)`. inputs: those
         of the question by their names in the API, which end with their metric unit, touch_distance_mm=12.
         """
-        if question in WIDER:
-            if not WIDER[question].path:
+        if question in FRONT_OR_JOB_QUESTIONS:
+            if not FRONT_OR_JOB_QUESTIONS[question].path:
                 raise InputError(f"a service is not asked {question}; use the command of that name, or problem.ask")
-            return self._ask_wider(WIDER[question], number, design, inputs)
+            return self._ask_wider(FRONT_OR_JOB_QUESTIONS[question], number, design, inputs)
         if design is None:
             raise InputError(f"{question} needs a design; got none; give its number")
-        if question in COMMANDS:
+        if question in QUESTION_COMMANDS:
             return self._asked(number, design, question, given(**inputs))
         path = f"jobs/{number}/designs/{design}/topics/{quote(question, safe='')}"
         found: Record = self._connection.ask(path, given(**inputs))["numbers"]
@@ -134,7 +134,9 @@ class Designs:
         to: a step of all lengths, "0.5 mm", or steps, also by name: ["0.5 mm", "rod=1 mm"]. allow: by how much designs
         may miss requirements, "stroke=0.1 mm".
         """
-        return self._ask_wider(WIDER["round"], number, design, {"to": to, "allow": allow, "count": count}, units)
+        return self._ask_wider(
+            FRONT_OR_JOB_QUESTIONS["round"], number, design, {"to": to, "allow": allow, "count": count}, units
+        )
 
     def curves(self, number: int, design: int, *, angles: int = 360) -> pd.DataFrame:
         """Return slider motion, torque, transmission angle and joint forces of a design over a turn of the crank."""
@@ -144,7 +146,7 @@ class Designs:
         return pd.DataFrame(found).set_index("crank_angle_deg")
 
     def _ask_wider(
-        self, of: WiderQuestion, number: int, design: int | None, inputs: Record, units: System = "metric"
+        self, of: FrontOrJobQuestion, number: int, design: int | None, inputs: Record, units: System = "metric"
     ) -> Record:
         """Return the answer of a front, or of what it knows of one of its designs."""
         asked = of.read(inputs, design) | (given(design=design) if of.row == "may" else {})

@@ -11,10 +11,10 @@ import typer
 
 from ...model.errors import InputError
 from ...objectives.kinds import System
-from ..designs.requirements import judged
-from ..questions.design_analysis import analysis_of, numbers_of
-from ..questions.discovery import ALL, INPUTS, TOPIC_OF, TOPICS, chosen_topics
-from ..questions.question import QuestionOfDesign
+from ..designs.requirements import judge_rules
+from ..questions.design_analysis import analysis_of, quantities_of_design
+from ..questions.design_question import BoundQuestion
+from ..questions.discovery import ALL, INPUTS, TOPIC_OF_INPUT, TOPICS, chosen_topics
 from ..runs.result import Row, json_text
 from ..runs.run_folder import disk, write_file
 from ..text.options import (
@@ -30,7 +30,7 @@ from ..text.options import (
     require_ending,
     speed_option,
 )
-from ..text.screen import console, give, say, waiting
+from ..text.screen import console, print_message, print_output, show_activity
 from .ending import INTERRUPTED, Interruption
 from .input_options import option_of
 from .job_or_run import machine_of
@@ -49,7 +49,7 @@ class Setting(Dimensions):
     """A design as it is given, and what its machine has other than JOB says."""
 
     speed: Annotated[Speed, 'Crank speed, such as "300 rpm"; negative is clockwise.'] = None
-    put: Annotated[
+    replaced_values: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="PATH=VALUE"),
         'Another value for a number in JOB, such as "mechanism.slider.mass=1.2 kg". May be repeated.',
@@ -94,63 +94,65 @@ def analyse(
     topics = chosen_topics(show or (), job=job is not None)
     options = _topic_options(inputs, topics)
     mechanism, linkage, problem = machine_of(
-        "analyse", job, setting, setting.design, runs, put=setting.put or (), turning=True
+        "analyse", job, setting, setting.design, runs, replaced_values=setting.replaced_values or (), turning=True
     )
     if setting.speed is not None:
         mechanism = replace(mechanism, speed=speed_option(setting.speed))
-    own = () if problem is None else problem.own
-    row, undefined = numbers_of(mechanism, linkage, own)
+    custom = () if problem is None else problem.own
+    row, undefined = quantities_of_design(mechanism, linkage, custom)
     notes = _leave_out(row, mechanism, alone=problem is None)
     with Interruption() as interruption:
-        found = analysis_of(
+        analysis = analysis_of(
             row,
             mechanism,
             linkage,
             topics,
-            more=() if files.measured is None else (_measured(files.measured, mechanism, linkage),),
+            further_topics=() if files.measured is None else (_measured(files.measured, mechanism, linkage),),
             options=options,
             notes=notes,
-            cancelled=interruption.asked,
+            cancelled=interruption.requested,
             lenient=True,
             undefined=None if problem is None else undefined,
         )
     if files.cycle is not None:
         _write_cycle(mechanism, linkage, files.cycle, units, machine=problem is not None)
-    rules = [] if problem is None else judged(problem, row, units)
+    rules = [] if problem is None else judge_rules(problem, row, units)
     if json:
-        give(json_text(found.record(units, None if problem is None else rules)))
+        print_output(json_text(analysis.record(units, None if problem is None else rules)))
     else:
         from ..questions.analysis_text import show_analysis
 
         screen = console()
-        more = f"\nMore about this design with --show: {', '.join(TOPICS)}, or {ALL}."
-        show_analysis(screen, found, rules, units, own=own, more="" if problem is None or topics else more)
-    for note in found.notes + (found.refused if ALL in (show or ()) else []):
-        say(note)
-    if files.figures is not None and not interruption.asked():
-        _draw(problem, mechanism, linkage, row, found.topics, files.figures, units)
-    if interruption.asked():
+        hint = f"\nMore about this design with --show: {', '.join(TOPICS)}, or {ALL}."
+        show_analysis(screen, analysis, rules, units, custom=custom, hint="" if problem is None or topics else hint)
+    for note in analysis.notes + (analysis.refused if ALL in (show or ()) else []):
+        print_message(note)
+    if files.figures is not None and not interruption.requested():
+        _draw(problem, mechanism, linkage, row, analysis.topics, files.figures, units)
+    if interruption.requested():
         raise typer.Exit(INTERRUPTED)
-    if found.refused and ALL not in (show or ()):
-        raise InputError("; ".join(found.refused))
+    if analysis.refused and ALL not in (show or ()):
+        raise InputError("; ".join(analysis.refused))
 
 
-def _measured(file: Path, mechanism: Mechanism, linkage: Linkage) -> QuestionOfDesign:
+def _measured(file: Path, mechanism: Mechanism, linkage: Linkage) -> BoundQuestion:
     from ..designs.measured_file import measured_text, read_measured
     from ..questions.measured import MEASURED
 
-    return MEASURED.of(mechanism, linkage, {"measured": read_measured(measured_text(file), mechanism, linkage)})
+    return MEASURED.for_design(mechanism, linkage, {"measured": read_measured(measured_text(file), mechanism, linkage)})
 
 
-def _topic_options(given: Mapping[str, str | None], topics: tuple[str, ...]) -> dict[str, dict[str, Any]]:
+def _topic_options(texts: Mapping[str, str | None], topics: tuple[str, ...]) -> dict[str, dict[str, Any]]:
     """Return the options of each topic. Raises `InputError` for one whose topic is not shown."""
     options: dict[str, dict[str, Any]] = {topic: {} for topic in topics}
-    for name, text in given.items():
+    for name, text in texts.items():
         if text is not None:
-            one, topic = INPUTS[name], TOPIC_OF[name]
+            item, topic = INPUTS[name], TOPIC_OF_INPUT[name]
             if topic not in topics:
-                raise InputError(f"{one.flag} needs --show {topic}, which is missing; add it, or leave {one.flag} out")
-            options[topic][name] = one.read(text, one.flag)
+                raise InputError(
+                    f"{item.flag} needs --show {topic}, which is missing; add it, or leave {item.flag} out"
+                )
+            options[topic][name] = item.read(text, item.flag)
     return options
 
 
@@ -159,21 +161,21 @@ def _draw(
     mechanism: Mechanism,
     linkage: Linkage,
     row: Row,
-    topics: Sequence[QuestionOfDesign],
+    topics: Sequence[BoundQuestion],
     folder: Path,
     units: System,
 ) -> None:
-    from ..figures.sheet import design_sheet
+    from ..figures.datasheet import design_datasheet
     from ..figures.style import save
 
     title = "Design" if problem is None else problem.name
-    with disk(folder), waiting("drawing the figures"):
+    with disk(folder), show_activity("drawing the figures"):
         folder.mkdir(parents=True, exist_ok=True)
-        sheet = design_sheet(mechanism, linkage, row, title=title, torque=problem is not None, system=units)
-        save(sheet, folder / "design.png")
+        datasheet = design_datasheet(mechanism, linkage, row, title=title, torque=problem is not None, system=units)
+        save(datasheet, folder / "design.png")
         files = [folder / "design.png", *(topic.draw(folder, units) for topic in topics)]
     for file in files:
-        say(f"figure: {file}")
+        print_message(f"figure: {file}")
 
 
 def _write_cycle(mechanism: Mechanism, linkage: Linkage, file: Path, units: System, *, machine: bool) -> None:
@@ -181,7 +183,7 @@ def _write_cycle(mechanism: Mechanism, linkage: Linkage, file: Path, units: Syst
 
     text = cycle_csv(mechanism, linkage, units, machine=machine)
     write_file(file, text)
-    say(f"{file}: the cycle at {len(text.splitlines()) - 1} crank angles")
+    print_message(f"{file}: the cycle at {len(text.splitlines()) - 1} crank angles")
 
 
 def _leave_out(row: Row, mechanism: Mechanism, *, alone: bool) -> list[str]:
@@ -191,9 +193,11 @@ def _leave_out(row: Row, mechanism: Mechanism, *, alone: bool) -> list[str]:
 
     if not alone:
         return []
-    missing = [of for of in QUANTITIES.values() if any(not need.is_met(mechanism) for need in of.needs)]
-    more = ("loaded_stroke", f"{PEAK_TORQUE.name}_angle_deg")
-    row.update(dict.fromkeys((*more, *(of.field for of in missing))))
+    missing = [
+        quantity for quantity in QUANTITIES.values() if any(not need.is_met(mechanism) for need in quantity.needs)
+    ]
+    undefined_columns = ("loaded_stroke", f"{PEAK_TORQUE.name}_angle_deg")
+    row.update(dict.fromkeys((*undefined_columns, *(quantity.field for quantity in missing))))
     notes = ["torque, forces and position error need masses, loads and tolerances; give a JOB"]
     if not mechanism.speed:
         notes.append("slider speed and acceleration need a crank speed; give --speed")

@@ -9,7 +9,7 @@ import typer
 from ..runs.result import json_text
 from ..runs.run_folder import disk
 from ..text.options import Figures, Json
-from ..text.screen import console, give, say
+from ..text.screen import console, print_message, print_output
 
 
 def cases(
@@ -30,18 +30,18 @@ def cases(
     from ..cases.table import collect, counted, show_case
 
     chosen = CASES if case is None else (case,)
-    found = collect(chosen)
-    rows = [row for one in found for row in one.rows]
+    tables = collect(chosen)
+    rows = [row for case_table in tables for row in case_table.rows]
     if json:
-        give(json_text({"cases": [asdict(one) for one in found]}))
+        print_output(json_text({"cases": [asdict(case_table) for case_table in tables]}))
     else:
         screen = console()
-        for one in found:
-            show_case(screen, one, full=case is not None)
+        for case_table in tables:
+            show_case(screen, case_table, full=case is not None)
         screen.print(f"{len(rows)} numbers: {counted(rows)}", style="bold", soft_wrap=True)
     if figures is not None:
         from ..cases.figures import draw_cases
 
         with disk(figures):
             for path in draw_cases(chosen, figures):
-                say(f"figure: {path}")
+                print_message(f"figure: {path}")

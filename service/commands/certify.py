@@ -7,23 +7,23 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.file_names import path_text
-from ..questions.discovery import WIDER
+from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..render.terminal import print_blocks
 from ..runs.result import csv_text, json_text
 from ..runs.run_folder import write_file
 from ..text.options import Json, Run, Runs, Units
-from ..text.screen import answer
+from ..text.screen import print_answer
 from .ending import INTERRUPTED, NOT_PROVEN, Interruption
-from .input_options import helped, options_of, watching
+from .input_options import options_of, search_listener, with_question_help
 from .run_choice import front_of_run
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-QUESTION = WIDER["certify"]
+QUESTION = FRONT_OR_JOB_QUESTIONS["certify"]
 
 
-@helped(
+@with_question_help(
     QUESTION,
     "Keeps certificate.json, and the added designs as certificate.csv, in the run's folder. Exit code 4 if the budget "
     "does not suffice; Ctrl-C gives what is proven so far.",
@@ -37,23 +37,23 @@ def certify(
 ) -> None:
     """Answer the question, keep the certificate, and tell by the exit code whether it is proven."""
     folder, front = front_of_run(run, runs, empty=True)
-    with Interruption() as interruption, watching("bounding the design box", interruption.asked) as watch:
-        found = QUESTION.ask(front, inputs, words=QUESTION.flags, watch=watch)
-    place, kept = {"run": path_text(folder)}, list[str]()
+    with Interruption() as interruption, search_listener("bounding the design box", interruption.requested) as watch:
+        certificate = QUESTION.ask(front, inputs, words=QUESTION.flags, watch=watch)
+    place, file_lines = {"run": path_text(folder)}, list[str]()
     if len(front):
-        record = place | found.record("metric")
+        record = place | certificate.record("metric")
         write_file(folder / "certificate.json", json_text(record))
         write_file(folder / "certificate.csv", csv_text(record["added"]))
         added = len(record["added"])
-        kept = [f"Files: {folder / 'certificate.json'}"]
-        kept += [f"       {folder / 'certificate.csv'} ({added} added designs)"] if added else []
+        file_lines = [f"Files: {folder / 'certificate.json'}"]
+        file_lines += [f"       {folder / 'certificate.csv'} ({added} added designs)"] if added else []
 
     def show(screen: Console) -> None:
-        print_blocks(screen, found.blocks, units)
-        for line in kept:
+        print_blocks(screen, certificate.blocks, units)
+        for line in file_lines:
             screen.print(line, soft_wrap=True)
 
-    answer(json, place | found.record(units), show)
-    if interruption.asked() and len(front):
+    print_answer(json, place | certificate.record(units), show)
+    if interruption.requested() and len(front):
         raise typer.Exit(INTERRUPTED)
-    raise typer.Exit(0 if found.met else NOT_PROVEN)
+    raise typer.Exit(0 if certificate.is_satisfied else NOT_PROVEN)

@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import InputError, SlidercrankError
+from ..designs.display_units import result_in
 from ..designs.picking_options import minimised_values
-from ..designs.shown_units import result_in
 from ..jobs.find_run import find_run
 from ..render.terminal import print_table, table
 from ..runs.result import Result, wanted_record
 from ..runs.run_folder import disk, runs_place
 from ..runs.stored_runs import job_file, read_run
 from ..text.options import Figures, Json, Runs, Units
-from ..text.screen import answer, say
+from ..text.screen import print_answer, print_message
 from .ending import NoDesigns
 
 if TYPE_CHECKING:
@@ -66,18 +66,18 @@ def compare(
     from ...optimise.decisions import compare as comparison
 
     compared = _read(run, runs_place(runs))
-    found = comparison.compare([minimised_values(item.result) for item in compared], tolerance=tolerance)
+    measures = comparison.compare([minimised_values(item.result) for item in compared], tolerance=tolerance)
     compared = [replace(item, result=result_in(item.result, units)) for item in compared]
     pictures = [] if figures is None else [_draw(compared, figures)]
-    answer(json, _record(compared, found), lambda screen: _show(screen, compared, found))
+    print_answer(json, _record(compared, measures), lambda screen: _show(screen, compared, measures))
     for picture in pictures:
-        say(f"{picture}")
+        print_message(f"{picture}")
 
 
 def _read(names: Sequence[str], place: Path) -> list[_ComparedRun]:
     if len(names) < 2:
         raise InputError("a comparison needs at least two runs; got one; name another")
-    found: list[_ComparedRun] = []
+    compared: list[_ComparedRun] = []
     folders: list[Path] = []
     for name in names:
         folder = find_run(name, place)
@@ -87,22 +87,22 @@ def _read(names: Sequence[str], place: Path) -> list[_ComparedRun]:
         result = read_run(folder)
         if not result.designs:
             raise NoDesigns(replace(result, message=f"{folder.name}: {result.message}; leave it out"))
-        if found:
-            result = _align_objectives(result, folder.name, found[0])
-        found.append(_ComparedRun(folder.resolve().name, _method(folder), result))
-    return found
+        if compared:
+            result = _align_objectives(result, folder.name, compared[0])
+        compared.append(_ComparedRun(folder.resolve().name, _method(folder), result))
+    return compared
 
 
 def _align_objectives(result: Result, name: str, first: _ComparedRun) -> Result:
     """Return a result with its objectives in the order of the first one. Raises `InputError` where they differ."""
-    own = {(item.quantity, item.sense, item.target): item for item in result.objectives}
-    asked = [(item.quantity, item.sense, item.target) for item in first.result.objectives]
-    if set(own) != set(asked):
+    by_key = {(item.quantity, item.sense, item.target): item for item in result.objectives}
+    order = [(item.quantity, item.sense, item.target) for item in first.result.objectives]
+    if set(by_key) != set(order):
         raise InputError(
             f"the runs must have the same objectives; {first.name} has {_words(first.result)}, {name} has "
             f"{_words(result)}"
         )
-    return replace(result, objectives=tuple(own[key] for key in asked))
+    return replace(result, objectives=tuple(by_key[key] for key in order))
 
 
 def _words(result: Result) -> str:
@@ -129,18 +129,20 @@ def _method(folder: Path) -> str:
 def _draw(compared: Sequence[_ComparedRun], folder: Path) -> Path:
     import numpy as np
 
-    from ..figures.comparison import GREATEST, Drawn, comparison_matrix
+    from ..figures.comparison import MOST_RUNS, PlottedRun, comparison_matrix
     from ..figures.style import save
 
     objectives = compared[0].result.objectives
     if len(objectives) < 2:
         raise InputError("a figure needs at least two objectives; these runs have one; leave out --figures")
-    if len(compared) > GREATEST:
-        raise InputError(f"a figure may show at most {GREATEST} runs; got {len(compared)}; leave out some")
+    if len(compared) > MOST_RUNS:
+        raise InputError(f"a figure may show at most {MOST_RUNS} runs; got {len(compared)}; leave out some")
     drawn = [
-        Drawn(
+        PlottedRun(
             f"{item.name} ({item.method})",
-            np.array([[row[wanted.column] for wanted in objectives] for row in item.result.designs], dtype=np.float64),
+            np.array(
+                [[row[objective.column] for objective in objectives] for row in item.result.designs], dtype=np.float64
+            ),
         )
         for item in compared
     ]
@@ -150,11 +152,11 @@ def _draw(compared: Sequence[_ComparedRun], folder: Path) -> Path:
     return folder / "comparison.png"
 
 
-def _record(compared: Sequence[_ComparedRun], found: Comparison) -> dict[str, Any]:
+def _record(compared: Sequence[_ComparedRun], comparison: Comparison) -> dict[str, Any]:
     return {
-        "objectives": [wanted_record(wanted) for wanted in compared[0].result.objectives],
-        "tolerance": found.tolerance,
-        "union_hypervolume": found.union,
+        "objectives": [wanted_record(objective) for objective in compared[0].result.objectives],
+        "tolerance": comparison.tolerance,
+        "union_hypervolume": comparison.union,
         "runs": [
             {
                 "run": item.name,
@@ -162,22 +164,22 @@ def _record(compared: Sequence[_ComparedRun], found: Comparison) -> dict[str, An
                 "method": item.method,
                 "seed": item.result.seed,
                 "status": item.result.status,
-                "designs": int(found.sizes[index]),
-                "in_union": int(found.in_union[index]),
-                "hypervolume": float(found.hypervolumes[index]),
-                "share_of_union": float(found.shares[index]),
+                "designs": int(comparison.sizes[index]),
+                "in_union": int(comparison.in_union[index]),
+                "hypervolume": float(comparison.hypervolumes[index]),
+                "share_of_union": float(comparison.shares[index]),
                 "evaluations": item.result.evaluations,
                 "seconds": item.result.seconds,
             }
             for index, item in enumerate(compared)
         ],
-        "coverage": found.coverage.tolist(),
-        "epsilon": found.epsilon.tolist(),
-        "dominates": found.dominates.tolist(),
+        "coverage": comparison.coverage.tolist(),
+        "epsilon": comparison.epsilon.tolist(),
+        "dominates": comparison.dominates.tolist(),
     }
 
 
-def _show(screen: Console, compared: Sequence[_ComparedRun], found: Comparison) -> None:
+def _show(screen: Console, compared: Sequence[_ComparedRun], comparison: Comparison) -> None:
     screen.print(f"{len(compared)} runs: {_words(compared[0].result)}", style="bold", soft_wrap=True)
     screen.print(
         "Objectives are scaled by their ranges over the combined front. Hypervolume is a fraction of the box that "
@@ -187,13 +189,17 @@ def _show(screen: Console, compared: Sequence[_ComparedRun], found: Comparison) 
     )
     rows = [
         [form.format(place=place, percent=100.0 * run["share_of_union"], **run) for form in _COLUMNS.values()]
-        for place, run in enumerate(_record(compared, found)["runs"], 1)
+        for place, run in enumerate(_record(compared, comparison)["runs"], 1)
     ]
     _print(screen, list(_COLUMNS), rows)
     numbers = [str(place) for place in range(1, len(compared) + 1)]
     for title, values, form in (
-        ("Coverage: % of the column's designs that the row's designs weakly dominate", 100.0 * found.coverage, ".1f"),
-        ("Additive epsilon: largest shortfall of the row against the column, in ranges", found.epsilon, ".2e"),
+        (
+            "Coverage: % of the column's designs that the row's designs weakly dominate",
+            100.0 * comparison.coverage,
+            ".1f",
+        ),
+        ("Additive epsilon: largest shortfall of the row against the column, in ranges", comparison.epsilon, ".2e"),
     ):
         screen.print(f"\n{title}", soft_wrap=True)
         cells = [
@@ -202,34 +208,34 @@ def _show(screen: Console, compared: Sequence[_ComparedRun], found: Comparison) 
         ]
         _print(screen, ["", *numbers], cells)
     screen.print()
-    for sentence in _verdict(compared, found):
+    for sentence in _verdict(compared, comparison):
         screen.print(sentence, soft_wrap=True)
 
 
-def _verdict(compared: Sequence[_ComparedRun], found: Comparison) -> list[str]:
+def _verdict(compared: Sequence[_ComparedRun], comparison: Comparison) -> list[str]:
     names = [item.name for item in compared]
     sentences = []
     open_pairs = 0
     for a in range(len(names)):
         for b in range(a + 1, len(names)):
-            first, second = (a, b) if found.dominates[a, b] else (b, a)
-            if found.dominates[first, second]:
+            first, second = (a, b) if comparison.dominates[a, b] else (b, a)
+            if comparison.dominates[first, second]:
                 sentences.append(f"{names[first]} dominates {names[second]}: it matches or beats all its designs.")
-            elif found.coverage[a, b] == found.coverage[b, a] == 1.0:
+            elif comparison.coverage[a, b] == comparison.coverage[b, a] == 1.0:
                 sentences.append(f"{names[a]} and {names[b]} have the same front, within the tolerance.")
             else:
                 open_pairs += 1
     if open_pairs:
-        which = "the two" if len(names) == 2 else "all other pairs" if sentences else "any two"
-        sentences.append(f"Neither of {which} dominates: each has designs that the other does not match.")
+        pairs = "the two" if len(names) == 2 else "all other pairs" if sentences else "any two"
+        sentences.append(f"Neither of {pairs} dominates: each has designs that the other does not match.")
     return sentences
 
 
 def _print(screen: Console, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    first, *others = heads
-    shown = table(first, *(f">{head}" for head in others), ruled=True, padding=(0, 1, 0, 0), pad_edge=True)
-    for column in shown.columns:
+    first, *other_heads = heads
+    printed = table(first, *(f">{head}" for head in other_heads), ruled=True, padding=(0, 1, 0, 0), pad_edge=True)
+    for column in printed.columns:
         column.vertical = "bottom"
     for row in rows:
-        shown.add_row(*row)
-    print_table(screen, shown)
+        printed.add_row(*row)
+    print_table(screen, printed)

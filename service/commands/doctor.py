@@ -21,7 +21,7 @@ from ..resources.memory import size_text
 from ..runs.result import json_text
 from ..runs.run_folder import runs_place
 from ..text.options import File, Json, Runs
-from ..text.screen import console, give, say
+from ..text.screen import console, print_message, print_output
 
 if TYPE_CHECKING:
     from ..store.database import Database
@@ -53,7 +53,7 @@ def doctor(
     checks = diagnose(address, runs_place(runs), named=is_named(store))
     healthy = all(check.grade != "problem" for check in checks)
     if json:
-        give(json_text({"healthy": healthy, "checks": [check._asdict() for check in checks]}))
+        print_output(json_text({"healthy": healthy, "checks": [check._asdict() for check in checks]}))
     else:
         screen = console()
         for check in checks:
@@ -71,7 +71,7 @@ def _back_up(store: str | None, runs: Path | None, target: Path) -> None:
         raise NotFound(f"there is no store at {shown_store(store, runs)}; name the store to copy with --store")
     with contextlib.closing(Database(store_address(store, runs))) as database:
         back_up(database, target)
-    say(f"{target}: a copy of {database.name}")
+    print_message(f"{target}: a copy of {database.name}")
 
 
 class Check(NamedTuple):
@@ -143,8 +143,8 @@ def _database(address: str, database: Database) -> Iterator[Check]:
         text = f"they belong to another program ({foreign}); name another store with --store"
         yield Check("tables", "problem", text)
         return
-    version, latest, known = versions(database)
-    if not known:
+    version, latest, is_known = versions(database)
+    if not is_known:
         text = f"their version is {version}, but this release supports {latest}; install the release that created them"
         yield Check("tables", "problem", text)
         return
@@ -169,19 +169,19 @@ def _check_workers(address: str, now: float) -> Iterator[Check]:
     from ..store.records import SILENT
 
     with Store(address) as store:
-        counts, heard = store.counts(), store.workers_at_work()
-        silent = max(0, len(store.workers()) - heard)
+        counts, active = store.counts(), store.workers_at_work()
+        silent = max(0, len(store.workers()) - active)
         running = store.jobs(states=["running"], limit=10_000)
     expired = [job for job in running if job.lease_until is not None and job.lease_until < now]
     text = ", ".join(f"{count} {state}" for state, count in sorted(counts.items())) or "none yet"
     yield Check("jobs", "ok", text)
-    text = f"{heard} running"
+    text = f"{active} running"
     if silent:
         text += f"; {silent} not heard from for more than {SILENT:g} s: stopped or disconnected"
     waiting = counts.get("queued", 0) + len(expired)
-    if waiting and not heard:
+    if waiting and not active:
         text += f"; {counted(waiting, 'job')} waiting without a worker; start slidercrank serve or slidercrank worker"
-    yield Check("workers", "problem" if waiting and not heard else "note" if silent else "ok", text)
+    yield Check("workers", "problem" if waiting and not active else "note" if silent else "ok", text)
     names = ", ".join(str(job.id) for job in expired[:5])
     text = (
         f"the leases of jobs {names} have expired; the next free worker continues them"
@@ -214,25 +214,25 @@ def _room(name: str, folder: Path) -> Check:
 
 
 def _check_compiled_model() -> Check:
-    """Look at where the compiled model is kept: without a place for it every process would compile anew for minutes."""
+    """Check the folder of the compiled model; without one, every process compiles it for minutes."""
     from ...model.kernel.folder import choose_folder
 
-    folder, _, refused, others = choose_folder()
+    folder, _, refused, other_folders = choose_folder()
     if not refused:
         return Check("compiled model", "ok", f"{folder} is writable")
     grade: Grade = "problem" if folder is None or os.environ.get("NUMBA_CACHE_DIR") else "note"
-    kept = [f"read from {place}" for place in others] + ([f"kept in {folder}"] if folder else [])
-    text = f"{refused}; it is {', else '.join(kept) or 'compiled at every start'}"
+    places = [f"read from {place}" for place in other_folders] + ([f"kept in {folder}"] if folder else [])
+    text = f"{refused}; it is {', else '.join(places) or 'compiled at every start'}"
     return Check("compiled model", grade, f"{text}; name a folder in NUMBA_CACHE_DIR")
 
 
 def _versions() -> Check:
     from importlib.metadata import PackageNotFoundError, version
 
-    found = [f"Python {platform.python_version()}"]
+    lines = [f"Python {platform.python_version()}"]
     for name in (*_PACKAGES, *_OPTIONAL):
         try:
-            found.append(f"{name} {version(name)}")
+            lines.append(f"{name} {version(name)}")
         except PackageNotFoundError:
-            found.append(f"{name} not installed")
-    return Check("versions", "ok", ", ".join(found))
+            lines.append(f"{name} not installed")
+    return Check("versions", "ok", ", ".join(lines))

@@ -13,7 +13,7 @@ import typer
 
 from ...model.errors import InfeasibleError
 from ..runs.result import Result, json_text, unsearched_result
-from ..text.screen import give, say
+from ..text.screen import print_message, print_output
 
 FAULT, WRONG_INPUT, NOTHING_FEASIBLE, NOT_PROVEN, INTERRUPTED = 1, 2, 3, 4, 130
 EXIT_CODES = {"done": 0, "infeasible": NOTHING_FEASIBLE, "cancelled": INTERRUPTED, "failed": WRONG_INPUT}
@@ -37,8 +37,8 @@ def with_infeasible_json(command: Callable[..., None]) -> Callable[..., None]:
             command(**given)
         except InfeasibleError as error:
             if given.get("json") is True:
-                found = error.result if isinstance(error, NoDesigns) else unsearched_result(error)
-                give(json_text(found.record()))
+                result = error.result if isinstance(error, NoDesigns) else unsearched_result(error)
+                print_output(json_text(result.record()))
             raise
 
     return run
@@ -46,7 +46,7 @@ def with_infeasible_json(command: Callable[..., None]) -> Callable[..., None]:
 
 def end_without_design(message: str) -> NoReturn:
     """End a command whose search found no design, or that has no design that meets the conditions."""
-    say(f"slidercrank: {message}")
+    print_message(f"slidercrank: {message}")
     raise typer.Exit(NOTHING_FEASIBLE)
 
 
@@ -58,26 +58,26 @@ class Interruption:
 
     def __init__(self, *, service: bool = False) -> None:
         self._service = service
-        self._asked = False
+        self._requested = False
         self._before: dict[int, Any] = {}
 
-    def asked(self) -> bool:
+    def requested(self) -> bool:
         """Whether to stop."""
-        return self._asked
+        return self._requested
 
     def __enter__(self) -> Interruption:
         if threading.current_thread() is threading.main_thread():
             for number in (signal.SIGTERM, signal.SIGINT) if self._service else (signal.SIGINT,):
-                self._before[number] = signal.signal(number, self._heard)
+                self._before[number] = signal.signal(number, self._on_signal)
         return self
 
     def __exit__(self, *_: object) -> None:
         for number, handler in self._before.items():
             signal.signal(number, handler)
 
-    def _heard(self, number: int, _frame: FrameType | None) -> None:
-        if number == signal.SIGINT and self._asked:
+    def _on_signal(self, number: int, _frame: FrameType | None) -> None:
+        if number == signal.SIGINT and self._requested:
             raise KeyboardInterrupt
-        self._asked = True
+        self._requested = True
         if not self._service:
-            say("stopping after this step; press Ctrl-C again to stop immediately")
+            print_message("stopping after this step; press Ctrl-C again to stop immediately")

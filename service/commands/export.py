@@ -11,14 +11,14 @@ import typer
 from ...model.errors import InputError
 from ...objectives.counted import counted
 from ...objectives.kinds import ANGLE
-from ..designs.selection import none_meets, numbered, part_of
+from ..designs.selection import no_match_message, numbered_rows, result_part
 from ..motion.design_file import ENDINGS, design_file
 from ..runs.result import csv_text, json_text
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import problem_of
 from ..text.design_options import Selection
-from ..text.options import Angle, File, Output, Run, Runs, Units, given_value, require_ending
-from ..text.screen import give, say, waiting
+from ..text.options import Angle, File, Output, Run, Runs, Units, option_value, require_ending
+from ..text.screen import print_message, print_output, show_activity
 from .ending import end_without_design
 from .run_choice import Choice, Where, run_of, shown_result
 
@@ -34,7 +34,7 @@ class Tables:
     json: Annotated[Output, "Write the whole run as JSON; - is standard output."] = None
 
     @property
-    def asked(self) -> bool:
+    def requested(self) -> bool:
         """Whether there is one."""
         return self.csv is not None or self.json is not None
 
@@ -79,10 +79,10 @@ def export(
     from ..designs.stored_designs import stored_design
 
     files = {f"--{name}": file for name, file in vars(of_design).items() if file is not None}
-    csv, json, where = tables.csv, tables.json, selection.where
+    csv, json, conditions = tables.csv, tables.json, selection.where
     if (choice.design is not None or choice.picking) and not files:
         raise InputError(f"one design needs at least one of {', '.join(_FILES)}; got none; add one")
-    if not tables.asked and not files:
+    if not tables.requested and not files:
         raise InputError(
             f"nothing to export; give --csv FILE, --json FILE, or for one design {', '.join(_FILES)}, each with a FILE"
         )
@@ -90,36 +90,36 @@ def export(
         raise InputError("only one of --csv and --json may go to standard output; name a file for the other")
     if at is not None and not files.keys() & {"--dxf", "--svg"}:
         raise InputError("--at needs --dxf or --svg; got neither; add one, or leave --at out")
-    if selection.sorts and not tables.asked:
+    if selection.sorts and not tables.requested:
         raise InputError("--sort and --reverse need --csv or --json; got neither; add one, or leave them out")
-    angle = given_value("--at", at, ANGLE)
+    angle = option_value("--at", at, ANGLE)
     for option, file in files.items():
         require_ending(option, file, *_FILES[option])
     for option, name in (("--csv", csv), ("--json", json)):
         require_ending(option, None if name in (None, "-") else Path(str(name)), option.replace("--", "."))
     folder, result = run_of(run, runs)
-    made: dict[Path, bytes] = {}
+    contents: dict[Path, bytes] = {}
     if files:
-        of_table = choice.design is not None and tables.asked
-        number = choice.number(result, run, None if of_table else where)
-        found = stored_design(problem_of(folder, result), result, number)
+        of_table = choice.design is not None and tables.requested
+        number = choice.number(result, run, None if of_table else conditions)
+        stored = stored_design(problem_of(folder, result), result, number)
         named = {"name": result.name, "design": f"design {number}"}
-        with waiting("drawing"):
-            made = {file: design_file(option[2:], found, angle, units, **named) for option, file in files.items()}
+        with show_activity("drawing"):
+            contents = {file: design_file(option[2:], stored, angle, units, **named) for option, file in files.items()}
     chosen = selection.rows(result) if result.designs else []
-    if where and not chosen:
-        end_without_design(none_meets(result, where))
-    shown = shown_result(result, units, None if json is None else folder)
-    whole = chosen == list(range(len(result.designs)))
-    record = (shown if whole else part_of(shown, chosen)).record()
-    if not whole:
+    if conditions and not chosen:
+        end_without_design(no_match_message(result, conditions))
+    shown_run = shown_result(result, units, None if json is None else folder)
+    is_whole = chosen == list(range(len(result.designs)))
+    record = (shown_run if is_whole else result_part(shown_run, chosen)).record()
+    if not is_whole:
         record["numbers"] = [row + 1 for row in chosen]
-    for target, text in ((csv, csv_text(numbered(shown.designs, chosen))), (json, json_text(record))):
+    for target, text in ((csv, csv_text(numbered_rows(shown_run.designs, chosen))), (json, json_text(record))):
         if target == "-":
-            give(text)
+            print_output(text)
         elif target is not None:
             write_file(Path(target), text)
-            say(f"{target}: {counted(len(chosen), 'design')}")
-    for file, content in made.items():
+            print_message(f"{target}: {counted(len(chosen), 'design')}")
+    for file, content in contents.items():
         write_file(file, content)
-        say(f"{file}: design {number}")
+        print_message(f"{file}: design {number}")

@@ -9,17 +9,17 @@ from typing import Annotated, Any, get_origin
 
 import typer
 
+from ..questions.front_or_job_question import FrontOrJobQuestion, SearchListener
 from ..questions.inputs import Input
-from ..questions.plain_input import Plain
-from ..questions.wider import Watch, WiderQuestion
-from ..text.screen import waiting
+from ..questions.typed_input import TypedInput
+from ..text.screen import show_activity
 
 _Command = Callable[..., None]
 
 
 def option_of(one: Input) -> inspect.Parameter:
     """Return the option of an input, a text or a word that typer knows."""
-    if isinstance(one, Plain):
+    if isinstance(one, TypedInput):
         return _plain_option(one)
     metavar = one.name.upper() if one.loose else None
     if one.kind is not None:
@@ -35,7 +35,7 @@ def option_of(one: Input) -> inspect.Parameter:
     )
 
 
-def _plain_option(one: Plain) -> inspect.Parameter:
+def _plain_option(one: TypedInput) -> inspect.Parameter:
     """Return the option of a number, or of texts, of which it may be repeated."""
     kind: Any = one.type if get_origin(one.type) is None else list[str]
     optional = not (one.required or one.usual)
@@ -50,24 +50,24 @@ def _plain_option(one: Plain) -> inspect.Parameter:
     )
 
 
-def options_of(question: WiderQuestion, *, optional: bool = False) -> tuple[inspect.Parameter, ...]:
+def options_of(question: FrontOrJobQuestion, *, optional: bool = False) -> tuple[inspect.Parameter, ...]:
     """Return the options of all inputs. optional: whether the command has another way of being asked."""
-    found = tuple(map(option_of, question.inputs))
-    return tuple(one.replace(default=None) for one in found) if optional else found
+    options = tuple(map(option_of, question.inputs))
+    return tuple(option.replace(default=None) for option in options) if optional else options
 
 
-def helped(question: WiderQuestion, more: str = "") -> Callable[[_Command], _Command]:
+def with_question_help(question: FrontOrJobQuestion, addition: str = "") -> Callable[[_Command], _Command]:
     """Return a decorator that gives a command the help of its question, and more of what the command itself does."""
 
     def with_help(command: _Command) -> _Command:
-        command.__doc__ = f"{question.help} {more}".rstrip()
+        command.__doc__ = f"{question.help} {addition}".rstrip()
         return command
 
     return with_help
 
 
 @contextmanager
-def watching(text: str, cancelled: Callable[[], bool] = lambda: False) -> Iterator[Watch]:
+def search_listener(text: str, cancelled: Callable[[], bool] = lambda: False) -> Iterator[SearchListener]:
     """Enter a context that shows an activity while an answer is searched, and where the search is."""
-    with waiting(text) as status:
-        yield Watch(cancelled=cancelled, tell=lambda words: None if status is None else status.update(words))
+    with show_activity(text) as status:
+        yield SearchListener(cancelled=cancelled, report=lambda words: None if status is None else status.update(words))

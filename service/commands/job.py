@@ -8,7 +8,7 @@ from typing import Annotated
 from ...model.errors import InputWarning
 from ..runs.result import json_text
 from ..text.options import JobFile, Json
-from ..text.screen import console, give
+from ..text.screen import console, print_output
 
 
 def check(
@@ -23,12 +23,12 @@ def check(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", InputWarning)  # among the answer
         problem = load_job(job)
-    for own in problem.own:
-        if isinstance(own, OwnQuantity):
-            own.require_function()
+    for quantity in problem.own:
+        if isinstance(quantity, OwnQuantity):
+            quantity.require_function()
     summary = job_in_words(problem, read_job(job))
     if json:
-        give(json_text(summary))
+        print_output(json_text(summary))
         return
     screen = console()
     screen.print(f"{job} is a valid job: {summary['name']}", style="bold", soft_wrap=True)
@@ -51,4 +51,4 @@ def schema() -> None:
     """Print the JSON Schema of job files."""
     from ...optimise.job import job_schema
 
-    give(json_text(job_schema()))
+    print_output(json_text(job_schema()))

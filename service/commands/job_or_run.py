@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
-from ..designs.picking_options import require_alone
+from ..designs.picking_options import require_single_choice
+from ..designs.rotating_crank import require_rotating_crank
 from ..designs.selection import plain_number
-from ..designs.turning import require_turning
 from ..runs.stored_runs import problem_of
 from ..text.options import Dimensions
 from .ending import NoDesigns
@@ -38,26 +38,26 @@ def machine_of(
     design: int | None,
     runs: Path | None,
     *,
-    put: Sequence[str] = (),
+    replaced_values: Sequence[str] = (),
     turning: bool = False,
 ) -> Machine:
     """Return the machine of dimensions, with a job if there is one, or of a design of a run.
 
-    command: that asks, for messages. put: numbers of the job at other values. turning: whether a crank that swings is
-    refused. Without a job nothing has mass.
+    command: its name in messages. replaced_values: "PATH=VALUE" for numbers of the job. turning: whether to refuse a
+    crank that swings. Without a job nothing has mass.
     """
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
 
     if design is not None:
         lengths = {name: getattr(size, name) for name in DIMENSIONS}
-        stored = design_of_run(command, job, design, runs, {**lengths, "set": put or None})
+        stored = design_of_run(command, job, design, runs, {**lengths, "set": replaced_values or None})
         if turning:
-            require_turning(stored.part.motion, command)
+            require_rotating_crank(stored.part.motion, command)
         return Machine(stored.mechanism, stored.linkage, stored.part)
-    problem = problem_of_job(job, put)
+    problem = problem_of_job(job, replaced_values)
     if turning and problem is not None:
-        require_turning(problem.motion, command)
+        require_rotating_crank(problem.motion, command)
     mechanism = Mechanism() if problem is None else problem.mechanism.nominal
     crank, rod, offset = size.lengths(problem)
     return Machine(mechanism, Linkage(crank, rod, offset, mechanism.branch), problem)
@@ -71,17 +71,17 @@ def turning_problem(job: Path, command: str) -> Problem:
     from ...optimise.job import load_job
 
     problem = load_job(job, require_feasible=False)
-    require_turning(problem.motion, command)
+    require_rotating_crank(problem.motion, command)
     return problem
 
 
-def problem_of_job(job: Path | None, put: Sequence[str] = ()) -> Problem | None:
+def problem_of_job(job: Path | None, replaced_values: Sequence[str] = ()) -> Problem | None:
     """Return the problem of a job file with numbers at other values, "PATH=VALUE"; None without a job.
 
     A given design is looked at, so that some design need not be able to meet the job.
     """
     if job is None:
-        if put:
+        if replaced_values:
             raise InputError("--set changes a number in a job; got no job; give a JOB")
         return None
     if not job.suffix and not job.is_file():
@@ -89,7 +89,7 @@ def problem_of_job(job: Path | None, put: Sequence[str] = ()) -> Problem | None:
     from ...optimise.job import load_job
 
     values: dict[str, str | float] = {}
-    for text in put:
+    for text in replaced_values:
         path, sign, value = (part.strip() for part in text.partition("="))
         if not (path and sign and value):
             raise InputError(f'--set must look like "mechanism.slider.mass=1.2 kg"; got {text!r}; correct it')
@@ -99,17 +99,17 @@ def problem_of_job(job: Path | None, put: Sequence[str] = ()) -> Problem | None:
 
 
 def design_of_run(
-    command: str, run: Path | None, design: int, place: Path | None, given: Mapping[str, object]
+    command: str, run: Path | None, design: int, place: Path | None, options: Mapping[str, object]
 ) -> StoredDesign:
     """Return a design of a run. Raises `InputError` without a run, and for dimensions given besides.
 
-    command: that asks, for messages. place: of runs. given: options that the design answers itself.
+    command: that asks, for messages. place: of runs. options: options that the design answers itself.
     """
     from ..designs.stored_designs import stored_design
 
     if run is None:
         raise InputError(f"--design needs a run; got none; name it: slidercrank {command} RUN --design NO")
-    besides = [f"--{name}" for name, value in given.items() if value is not None]
+    besides = [f"--{name}" for name, value in options.items() if value is not None]
     if besides:
         raise InputError(
             f"dimensions must not be given with --design, whose design has its own; got --design and {besides[0]}; "
@@ -118,5 +118,5 @@ def design_of_run(
     folder, result = run_of(str(run), place)
     if not result.designs:
         raise NoDesigns(result)
-    require_alone(design, result, others=False)
+    require_single_choice(design, result, has_other_choice=False)
     return stored_design(problem_of(folder, result), result, design)

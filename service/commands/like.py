@@ -5,19 +5,19 @@ from __future__ import annotations
 from typing import Annotated, Any
 
 from ...model.file_names import path_text
-from ..questions.discovery import WIDER
+from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..render.terminal import print_blocks
 from ..runs.result import json_text
 from ..text.options import Json, Number, Run, Runs, Units
-from ..text.screen import console, give, waiting
+from ..text.screen import console, print_output, show_activity
 from .ending import end_without_design
-from .input_options import helped, options_of
+from .input_options import options_of, with_question_help
 from .run_choice import front_of_run
 
-QUESTION = WIDER["like"]
+QUESTION = FRONT_OR_JOB_QUESTIONS["like"]
 
 
-@helped(QUESTION)
+@with_question_help(QUESTION)
 def like(
     run: Run,
     number: Number,
@@ -28,11 +28,11 @@ def like(
 ) -> None:
     """Answer the question; end without a design where none meets the conditions."""
     folder, front = front_of_run(run, runs, number)
-    with waiting("searching"):
-        found = QUESTION.ask(front, inputs, row=number - 1, words=QUESTION.flags)
+    with show_activity("searching"):
+        nearest = QUESTION.ask(front, inputs, row=number - 1, words=QUESTION.flags)
     if json:
-        give(json_text({"run": path_text(folder), "number": number} | found.record(units)))
-    elif found.met:
-        print_blocks(console(), found.blocks, units)
-    if not found.met:
-        end_without_design(found.message)
+        print_output(json_text({"run": path_text(folder), "number": number} | nearest.record(units)))
+    elif nearest.is_satisfied:
+        print_blocks(console(), nearest.blocks, units)
+    if not nearest.is_satisfied:
+        end_without_design(nearest.message)

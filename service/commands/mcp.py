@@ -8,7 +8,7 @@ from ...model.extras import required
 from ..jobs.stores import STORE_VARIABLE
 from ..runs.run_folder import runs_place
 from ..text.options import AllowQuantity, Runs
-from ..text.screen import say
+from ..text.screen import print_message
 from .ending import INTERRUPTED
 from .optimise import SEARCH
 
@@ -30,5 +30,5 @@ def mcp(runs: Runs = None, allow_quantity: AllowQuantity = None) -> None:
 
 def _leave() -> None:
     """End at once: a thread still reads standard input."""
-    say("slidercrank: interrupted")
+    print_message("slidercrank: interrupted")
     os._exit(INTERRUPTED)

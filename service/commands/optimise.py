@@ -17,13 +17,13 @@ from ...model.errors import InputError, OutputLost, StoreError
 from ...model.extras import is_installed, required
 from ...model.file_names import path_text
 from ...objectives.kinds import System
-from ..designs.shown_units import result_in
+from ..designs.display_units import result_in
 from ..jobs.stores import FILE, Address, open_store
 from ..runs.result import json_text
 from ..runs.run_folder import RunFolder, disk, runs_place
 from ..text.design_options import SettingOptions
 from ..text.options import Json, Runs, Units
-from ..text.screen import console, give, progress_bar, say, waiting
+from ..text.screen import console, print_message, print_output, progress_bar, show_activity
 from ..text.tables import show_result
 from ..workers.engines import EngineOptions, engine_of
 from .ending import EXIT_CODES, INTERRUPTED, Interruption
@@ -50,9 +50,9 @@ class Places:
         """Return the command that resumes a run, with the places that were named but without passwords."""
         from ..store.address import without_secrets
 
-        given = ["--runs", str(self.runs)] if self.runs else []
-        given += ["--store", without_secrets(self.store)] if self.store else []
-        return shlex.join(["slidercrank", "optimise", "--resume", run, *given])
+        options = ["--runs", str(self.runs)] if self.runs else []
+        options += ["--store", without_secrets(self.store)] if self.store else []
+        return shlex.join(["slidercrank", "optimise", "--resume", run, *options])
 
 
 def optimise(
@@ -88,7 +88,7 @@ def optimise(
         raise InputError(
             "give either a job, or a run with --resume; got both; leave one out" if job else _NOTHING_GIVEN
         )
-    if resume is not None and settings.given:
+    if resume is not None and settings.overrides:
         raise InputError("a run must continue with its original number of designs and seed; leave them out")
     if figures:
         required("matplotlib", "figures need")
@@ -103,22 +103,24 @@ def optimise(
             jobs = opened.enter_context(open_store(places.store, places.runs))
             begin = resumed_run(jobs, place, resume or "", _problem_again)
         interruption = opened.enter_context(Interruption())
-        run, problem, claim = found = opened.enter_context(begin)
+        run, problem, claim = opened_run = opened.enter_context(begin)
         again = places.command_again(claim.job.run) if listed else ""
         opened.enter_context(kept_alive(claim, again=again))
         run.log(f"command: {' '.join(map(without_secrets, sys.argv[1:]))}")
         run.log(f"job {claim.job.id} in store {jobs.name}" if listed else "in a temporary store")
         with progress_bar() as show:
-            front = search(found, opened.enter_context(engine_of(options)), cancelled=interruption.asked, show=show)
-        with waiting("writing the designs"):
-            result = keep_front(found, front)
+            front = search(
+                opened_run, opened.enter_context(engine_of(options)), cancelled=interruption.requested, show=show
+            )
+        with show_activity("writing the designs"):
+            result = keep_front(opened_run, front)
         drawn = figures is not False and result.status == "done" and is_installed("matplotlib")
-        shown, lost = result_in(result, units, problem), None
+        shown_result, lost = result_in(result, units, problem), None
         try:
             if json:
-                give(json_text(shown.record()))
+                print_output(json_text(shown_result.record()))
             else:
-                show_result(console(), shown)
+                show_result(console(), shown_result)
                 sys.stdout.flush()
         except OutputLost as error:
             lost = error
@@ -129,12 +131,12 @@ def optimise(
     if not json:
         show_files(run.path)
     elif result.status != "done":
-        say(f"slidercrank: {result.message}")
+        print_message(f"slidercrank: {result.message}")
     if figures is None and result.status == "done" and not drawn:
-        say('no figures drawn: they need the extra "figures": pip install "slidercrank[figures]"')
+        print_message('no figures drawn: they need the extra "figures": pip install "slidercrank[figures]"')
     if result.status == "cancelled" and again:
-        say(f"continue with: {again}")
-    raise typer.Exit(INTERRUPTED if interruption.asked() else EXIT_CODES[result.status])
+        print_message(f"continue with: {again}")
+    raise typer.Exit(INTERRUPTED if interruption.requested() else EXIT_CODES[result.status])
 
 
 @contextlib.contextmanager
@@ -148,12 +150,12 @@ def _store_or_own(places: Places) -> Iterator[tuple[Store, bool]]:
             store.require_writable()
             listed = True
         except StoreError as error:
-            say(
+            print_message(
                 f"slidercrank: {error}\nwithout a store, `jobs` does not list this run, and it cannot be continued "
                 "once stopped"
             )
-            own = opened.enter_context(tempfile.TemporaryDirectory(prefix="slidercrank-"))
-            store, listed = opened.enter_context(Store(Path(own) / FILE)), False
+            folder = opened.enter_context(tempfile.TemporaryDirectory(prefix="slidercrank-"))
+            store, listed = opened.enter_context(Store(Path(folder) / FILE)), False
         yield store, listed
 
 
@@ -168,7 +170,7 @@ def show_files(run: Path) -> None:
         screen.print(f"  {', '.join(listed)}", soft_wrap=True)
 
 
-def _problem(job: Path, given: SettingOptions) -> tuple[Problem, dict[str, Any], list[Artefact]]:
+def _problem(job: Path, settings: SettingOptions) -> tuple[Problem, dict[str, Any], list[Artefact]]:
     """Return the problem of a job file and its tables, both with the options that were given, and its files."""
     from ...optimise.job import files_beside, load_job, read_job
     from ...optimise.job.notes import notes_of
@@ -177,10 +179,10 @@ def _problem(job: Path, given: SettingOptions) -> tuple[Problem, dict[str, Any],
 
     problem, tables = load_job(job), read_job(job)
     for note in notes_of(tables):
-        say(f"note: {note}")
+        print_message(f"note: {note}")
     with disk(job.parent):
         files = files_of(job, files_beside(job))
-    return *with_settings(problem, tables, given.given), files
+    return *with_settings(problem, tables, settings.overrides), files
 
 
 def _problem_again(tables: Mapping[str, Any], folder: Path) -> Problem:
@@ -192,9 +194,9 @@ def _problem_again(tables: Mapping[str, Any], folder: Path) -> Problem:
 def _draw(front: ParetoFront, run: RunFolder, interruption: Interruption, units: System) -> None:
     from ..figures.front import draw_front
 
-    with waiting("drawing the figures"), disk(run.figures):
+    with show_activity("drawing the figures"), disk(run.figures):
         for file in draw_front(front, run.figures, units):
             run.log(f"figures/{file.name}")
-            if interruption.asked():
+            if interruption.requested():
                 run.log("interrupted; the remaining figures are not drawn")
                 return

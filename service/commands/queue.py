@@ -15,7 +15,7 @@ from ..jobs.stores import Address, Name, find_job, has_store, shown_store, store
 from ..render.terminal import table
 from ..runs.result import json_text
 from ..text.options import Json
-from ..text.screen import console, give, say
+from ..text.screen import console, print_message, print_output
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -35,23 +35,26 @@ def jobs(
     """List the jobs in a store, newest first, with their results."""
     from ..store import State
 
-    known = get_args(State)
-    for one in state or []:
-        if one not in known:
-            raise InputError(f"--state must be {', '.join(known[:-1])} or {known[-1]}; got {one[:80]!r}; choose one")
-    found: list[Job] = []
+    states_known = get_args(State)
+    for name_of_state in state or []:
+        if name_of_state not in states_known:
+            raise InputError(
+                f"--state must be {', '.join(states_known[:-1])} or {states_known[-1]}; got {name_of_state[:80]!r}; "
+                "choose one"
+            )
+    matching: list[Job] = []
     if has_store(store):
         with store_that_is_there(store) as opened:
             states: list[State] = state or []  # type: ignore[assignment] # looked at above
-            found = opened.jobs(states=states, name=name, limit=limit)
-            if any(job.state == "queued" for job in found):
+            matching = opened.jobs(states=states, name=name, limit=limit)
+            if any(job.state == "queued" for job in matching):
                 tell_idle(opened)
     if json:
-        give(json_text([job.record() for job in found]))
-    elif found:
-        _show(console(), found)
+        print_output(json_text([job.record() for job in matching]))
+    elif matching:
+        _show(console(), matching)
     else:
-        say(
+        print_message(
             f"slidercrank: no matching job in {shown_store(store)}"
             if state or name
             else f"slidercrank: no job in {shown_store(store)} yet; add one with: slidercrank submit JOB"
@@ -77,21 +80,21 @@ def resume(job: Name, store: Address = None, json: Json = False) -> None:
 def delete(job: Name, store: Address = None, json: Json = False) -> None:
     """Permanently delete a job that has ended, with all its data."""
     with store_that_is_there(store) as opened:
-        found = find_job(opened, job)
-        opened.delete(found.id)
-    give(json_text({"deleted": found.id}) if json else f"job {found.id}: {found.name}, deleted\n")
+        deleted = find_job(opened, job)
+        opened.delete(deleted.id)
+    print_output(json_text({"deleted": deleted.id}) if json else f"job {deleted.id}: {deleted.name}, deleted\n")
 
 
-def _print_job(job: Job, json: bool, what: str = "") -> None:
-    text = what or (f"{job.state}: {job.reason}" if job.reason else job.state)
-    give(json_text(job.record()) if json else f"job {job.id}: {job.name}, {text}\n")
+def _print_job(job: Job, json: bool, state_text: str = "") -> None:
+    text = state_text or (f"{job.state}: {job.reason}" if job.reason else job.state)
+    print_output(json_text(job.record()) if json else f"job {job.id}: {job.name}, {text}\n")
 
 
-def _show(screen: Console, found: list[Job]) -> None:
+def _show(screen: Console, listed: list[Job]) -> None:
     rows = table(">no.", "submitted", "job", "state", "progress or result", ruled=True, pad_edge=True)
     for column in rows.columns[:-1]:
         column.no_wrap = True
-    for job in found:
+    for job in listed:
         submitted = time.strftime("%Y-%m-%d %H:%M", time.localtime(job.submitted))
         state = "stopping" if job.state == "running" and job.cancel_asked else job.state
         rows.add_row(str(job.id), submitted, _short(job.name, 32), state, _short(_standing(job), 120))
@@ -113,6 +116,6 @@ def _standing(job: Job) -> str:
     return job.reason
 
 
-def _short(text: str, most: int) -> str:
+def _short(text: str, limit: int) -> str:
     text = " ".join(text.split())
-    return text if len(text) <= most else f"{text[: most - 3]}..."
+    return text if len(text) <= limit else f"{text[: limit - 3]}..."

@@ -8,7 +8,7 @@ from typing import Annotated
 from ...model.errors import InputError
 from ..runs.run_folder import slug, write_file
 from ..text.options import File, Run, Runs, Units, require_ending
-from ..text.screen import say, waiting
+from ..text.screen import print_message, show_activity
 from .run_choice import Choice, Where, run_of
 
 
@@ -38,11 +38,11 @@ def report(
     pdf = pdf or (out is not None and out.suffix.lower() == ".pdf")
     ending = "pdf" if pdf else "html"
     file = out if out is not None else Path(f"{slug(folder.name)}-design-{number}.{ending}")
-    with waiting("writing the report"):
+    with show_activity("writing the report"):
         from ..designs.measured_file import measured_text
         from ..report.run_report import run_report
 
         text = None if measured is None else measured_text(measured)
         content = run_report(folder, result, number, pdf=pdf, units=units, measured=text)
     write_file(file, content)
-    say(f"report: {file}")
+    print_message(f"report: {file}")

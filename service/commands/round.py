@@ -6,19 +6,19 @@ import math
 from typing import Annotated, Any
 
 from ...model.file_names import path_text
-from ..questions.discovery import WIDER
+from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..render.terminal import print_blocks
 from ..runs.result import json_text
 from ..text.options import Json, Number, Run, Runs, Units
-from ..text.screen import console, give, say
+from ..text.screen import console, print_message, print_output
 from .ending import end_without_design
-from .input_options import helped, options_of, watching
+from .input_options import options_of, search_listener, with_question_help
 from .run_choice import front_of_run
 
-QUESTION = WIDER["round"]
+QUESTION = FRONT_OR_JOB_QUESTIONS["round"]
 
 
-@helped(QUESTION, "The exit code is then 3. Ctrl-C ends the search.")
+@with_question_help(QUESTION, "The exit code is then 3. Ctrl-C ends the search.")
 def round(
     run: Run,
     number: Number,
@@ -29,26 +29,29 @@ def round(
 ) -> None:
     """Answer the question; where no design meets all, tell which options would do."""
     folder, front = front_of_run(run, runs, number)
-    with watching("rounding") as watch:
-        found = QUESTION.ask(front, inputs, row=number - 1, words=QUESTION.flags, watch=watch)
-    record: dict[str, Any] = {"run": path_text(folder), "number": number} | found.record(units)
+    with search_listener("rounding") as watch:
+        rounded = QUESTION.ask(front, inputs, row=number - 1, words=QUESTION.flags, watch=watch)
+    record: dict[str, Any] = {"run": path_text(folder), "number": number} | rounded.record(units)
     if json:
-        give(json_text(record))
-    elif found.blocks:
-        print_blocks(console(), found.blocks, units)
-        for note in found.notes:
-            say(f"note: {note}")
-    if not found.met:
+        print_output(json_text(record))
+    elif rounded.blocks:
+        print_blocks(console(), rounded.blocks, units)
+        for note in rounded.notes:
+            print_message(f"note: {note}")
+    if not rounded.is_satisfied:
         end_without_design(record["message"] + _remedy(record["designs"]))
 
 
 def _remedy(designs: list[dict[str, Any]]) -> str:
     """Return the options with which the designs would do, amounts rounded up; nothing without designs."""
-    most: dict[str, tuple[float, str]] = {}
+    largest_miss: dict[str, tuple[float, str]] = {}
     for miss in (miss for row in designs for miss in row["misses"] if miss["amount"] > miss["allowed"]):
-        most[miss["quantity"]] = max(most.get(miss["quantity"], (0.0, "")), (miss["amount"], miss["unit"]))
+        largest_miss[miss["quantity"]] = max(
+            largest_miss.get(miss["quantity"], (0.0, "")), (miss["amount"], miss["unit"])
+        )
     options = [
-        f'--allow "{name}={f"{_rounded_up(amount):g} {unit}".rstrip()}"' for name, (amount, unit) in most.items()
+        f'--allow "{name}={f"{_rounded_up(amount):g} {unit}".rstrip()}"'
+        for name, (amount, unit) in largest_miss.items()
     ]
     return f", such as {' '.join(options)}" if options else ""
 

@@ -12,9 +12,9 @@ import typer
 
 from ...model.errors import InputError, SlidercrankError
 from ...objectives.kinds import System
-from ..designs.picking_options import require_alone
-from ..designs.selection import chosen_rows, none_meets
-from ..designs.shown_units import result_in
+from ..designs.display_units import result_in
+from ..designs.picking_options import require_single_choice
+from ..designs.selection import chosen_rows, no_match_message
 from ..jobs.find_run import find_run
 from ..runs.result import Result
 from ..runs.run_folder import runs_place
@@ -45,7 +45,7 @@ def front_of_run(
     if not (result.designs or empty):
         raise NoDesigns(result)
     if number is not None:
-        require_alone(number, result, others=False)
+        require_single_choice(number, result, has_other_choice=False)
     return folder, front_of(problem_of(folder, result), result)
 
 
@@ -73,7 +73,7 @@ Where = Annotated[
 class Choice(Pick):
     """Options that name one design of a run."""
 
-    def number(self, result: Result, run: str, where: Sequence[str] | None) -> int:
+    def number(self, result: Result, run: str, conditions: Sequence[str] | None) -> int:
         """Return the number of the design that the options name, counted from 1.
 
         Exits with 3 if the conditions leave none. Raises `NoDesigns` for an empty front, `InputError` for a number that
@@ -82,11 +82,11 @@ class Choice(Pick):
         if not result.designs:
             raise NoDesigns(result)
         if self.design is not None:
-            require_alone(self.design, result, others=bool(self.picking or where))
+            require_single_choice(self.design, result, has_other_choice=bool(self.picking or conditions))
             return self.design
         if not self.picking:
             raise InputError("choose one design with --design NO, --knee, --topsis or --lexicographic; got none")
-        row = self.row(result, chosen_rows(result, where or []))
+        row = self.row(result, chosen_rows(result, conditions or []))
         if row is None:
-            end_without_design(none_meets(result, where or []))
+            end_without_design(no_match_message(result, conditions or []))
         return row + 1

@@ -9,11 +9,11 @@ import typer
 from ...objectives.counted import counted
 from ...objectives.keys import key_in
 from ..designs.columns import find_columns
-from ..designs.selection import none_meets, part_of
+from ..designs.selection import no_match_message, result_part
 from ..runs.result import json_text
 from ..text.design_options import Selection
 from ..text.options import Json, Rows, Run, Runs, Units
-from ..text.screen import console, give
+from ..text.screen import console, print_output
 from ..text.tables import ROWS, show_design, show_front, show_result, show_violated
 from .ending import NoDesigns, end_without_design
 from .optimise import show_files
@@ -40,33 +40,37 @@ def front(
     folder, result = run_of(run, runs)
     if not result.designs:
         raise NoDesigns(result)
-    wanted = find_columns(columns, list(result.designs[0])) if columns else None
-    chosen, where = selection.rows(result), selection.where
-    one = choice.row(result, chosen) if choice.design is None else choice.number(result, run, where) - 1
-    if one is not None:
-        chosen = [one]
-    told = not where and (json or not (selection.sorts or columns or one is not None or rows != ROWS))
-    result = shown_result(result, units, folder if told else None)
-    shown = names = None
-    if wanted is not None:
-        shown = find_columns(",".join(key_in(column.key, units)[0] for column in wanted), list(result.designs[0]))
-        names = [column.key for column in shown]
+    chosen_columns = find_columns(columns, list(result.designs[0])) if columns else None
+    chosen, conditions = selection.rows(result), selection.where
+    picked = choice.row(result, chosen) if choice.design is None else choice.number(result, run, conditions) - 1
+    if picked is not None:
+        chosen = [picked]
+    shows_trade_offs = not conditions and (
+        json or not (selection.sorts or columns or picked is not None or rows != ROWS)
+    )
+    result = shown_result(result, units, folder if shows_trade_offs else None)
+    shown_columns = names = None
+    if chosen_columns is not None:
+        shown_columns = find_columns(
+            ",".join(key_in(column.key, units)[0] for column in chosen_columns), list(result.designs[0])
+        )
+        names = [column.key for column in shown_columns]
     if json:
-        record = part_of(result, chosen).record(names)
-        give(json_text(record if one is None else {**record, "number": one + 1}))
-    elif one is not None:
+        record = result_part(result, chosen).record(names)
+        print_output(json_text(record if picked is None else {**record, "number": picked + 1}))
+    elif picked is not None:
         screen = console()
-        screen.print(f"{result.name}: design {one + 1} of {len(result.designs)}", style="bold", soft_wrap=True)
-        show_design(screen, result.designs[one], only=names)
-        of_one = {key: by[one] for key, by in result.violated.items() if by[one] > 0.0}
-        show_violated(screen, of_one, result.designs[one])
-    elif not (where or selection.sorts or columns or rows != ROWS):
+        screen.print(f"{result.name}: design {picked + 1} of {len(result.designs)}", style="bold", soft_wrap=True)
+        show_design(screen, result.designs[picked], only=names)
+        of_one = {key: excess[picked] for key, excess in result.violated.items() if excess[picked] > 0.0}
+        show_violated(screen, of_one, result.designs[picked])
+    elif not (conditions or selection.sorts or columns or rows != ROWS):
         show_result(console(), result)
         show_files(folder)
     elif chosen:
         screen = console()
         count = "" if len(chosen) == len(result.designs) else f"{len(chosen)} of "
         screen.print(f"{result.name}: {count}{counted(len(result.designs), 'design')}", style="bold", soft_wrap=True)
-        show_front(screen, result, chosen, columns=shown, most=rows)
+        show_front(screen, result, chosen, columns=shown_columns, limit=rows)
     if not chosen:
-        end_without_design(none_meets(result, where or []))
+        end_without_design(no_match_message(result, conditions or []))

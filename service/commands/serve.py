@@ -15,7 +15,7 @@ import typer
 
 from ...model.errors import InputError
 from ..jobs.stores import Address, open_store, store_address
-from ..text.screen import give
+from ..text.screen import print_output
 from ..workers.engines import EngineOptions
 from ..workers.logs import set_up_logs
 from .ending import Interruption
@@ -72,7 +72,7 @@ def serve(
     from ..workers.heartbeat import end_children
     from ..workers.supervisor import Supervisor
 
-    secret, made = _token(access.token, access.no_token, host)
+    secret, is_generated = _token(access.token, access.no_token, host)
     processes = min(os.cpu_count() or 1, 4) if workers is None else workers
     work = options.settings(store_address(store), engine, processes)
     settings = Settings(
@@ -89,10 +89,13 @@ def serve(
         )
         computing = Computing(analysing, modules=MODULES)
         app = create_app(opened, settings, computing)
-        give(f"slidercrank serves the jobs of {opened.name} at\n  {url_of(host, socket, secret if made else None)}\n")
+        print_output(
+            f"slidercrank serves the jobs of {opened.name} at\n"
+            f"  {url_of(host, socket, secret if is_generated else None)}\n"
+        )
         set_up_logs(work.log_format)
         with closing(computing), Supervisor(work, processes) as supervisor:
-            run_server(app, socket, asked=termination.asked, stopping=supervisor.leave)
+            run_server(app, socket, stop_requested=termination.requested, stopping=supervisor.leave)
     end_children()  # the fork server, which takes half a second to end by itself
     _leave_requests()
 
@@ -107,14 +110,14 @@ def _leave_requests() -> None:
         leave(0)
 
 
-def _token(given: str | None, none: bool, host: str) -> tuple[str | None, bool]:
+def _token(token: str | None, without_token: bool, host: str) -> tuple[str | None, bool]:
     """Return the token, and whether it was made here. Raises `InputError` for one that protects nothing."""
     import secrets
 
     from ..api.server import is_loopback
 
-    if none:
-        if given is not None:
+    if without_token:
+        if token is not None:
             raise InputError("--token and --no-token exclude each other; got both; leave one out")
         if not is_loopback(host):
             raise InputError(
@@ -122,12 +125,12 @@ def _token(given: str | None, none: bool, host: str) -> tuple[str | None, bool]:
                 "leave --no-token out, or listen on 127.0.0.1"
             )
         return None, False
-    given = given if given is not None else os.environ.get(TOKEN_VARIABLE)
-    if given is None:
+    token = token if token is not None else os.environ.get(TOKEN_VARIABLE)
+    if token is None:
         return secrets.token_urlsafe(32), True
-    if len(given) < _SHORTEST or not (given.isascii() and given.isprintable()) or " " in given:
+    if len(token) < _SHORTEST or not (token.isascii() and token.isprintable()) or " " in token:
         raise InputError(
-            f"a token must have at least {_SHORTEST} printable ASCII characters and no spaces; got {len(given)} "
+            f"a token must have at least {_SHORTEST} printable ASCII characters and no spaces; got {len(token)} "
             "characters; leave it out for a random one"
         )
-    return given, False
+    return token, False

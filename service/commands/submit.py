@@ -17,7 +17,7 @@ from ..jobs.stores import Address, Name, find_job, open_store, store_that_is_the
 from ..resources.memory import size_of
 from ..runs.result import json_text
 from ..text.options import JobFile, Json
-from ..text.screen import console, error_console, give, progress_bar, say
+from ..text.screen import console, error_console, print_message, print_output, progress_bar
 from ..text.streams import reader_left
 from .ending import EXIT_CODES
 
@@ -82,7 +82,7 @@ def submit(
             allowed_quantities=functions,
         )
         if not (watch and json):
-            give(json_text(queued.record()) if json else f"job {queued.id}: {queued.name}, {queued.state}\n")
+            print_output(json_text(queued.record()) if json else f"job {queued.id}: {queued.name}, {queued.state}\n")
         if queued.state == "queued":
             _tell_of(functions, job)
             tell_idle(opened)
@@ -96,17 +96,17 @@ def watch(job: Name, store: Address = None, json: Json = False) -> None:
     The exit code is that of the job, as for optimise; 2 if it failed. Ctrl-C stops watching; the job continues.
     """
     with store_that_is_there(store) as opened:
-        found = find_job(opened, job)
-        if found.state == "queued":
+        watched = find_job(opened, job)
+        if watched.state == "queued":
             tell_idle(opened)
-        raise typer.Exit(_follow(opened, found, json=json))
+        raise typer.Exit(_follow(opened, watched, json=json))
 
 
 def _tell_of(functions: Sequence[str], job: Path) -> None:
     """Say what workers need for a job that names functions of its own."""
     if functions:
         options = " ".join(f"--allow-quantity {function}" for function in functions)
-        say(
+        print_message(
             f"slidercrank: workers may call {', '.join(functions)} only if allowed, and import its module from the "
             f"folder where they were started: slidercrank serve {options}; or solve the job here: slidercrank "
             f"optimise {job}"
@@ -136,7 +136,7 @@ def _follow(store: Store, job: Job, *, json: bool) -> int:
         if not json:
             _close(store, ended)
     except KeyboardInterrupt:
-        say(f"job {job.id} continues; stop it with: slidercrank cancel {job.id}")
+        print_message(f"job {job.id} continues; stop it with: slidercrank cancel {job.id}")
         raise
     return EXIT_CODES[ended.state]
 
@@ -153,20 +153,20 @@ def events_until_end(store: Store, number: int) -> Iterator[Event]:
     while True:
         try:
             ended = store.job(number).state in ENDED  # asked first: an ended job has all its events
-            found = store.events(number, after=last)
+            events = store.events(number, after=last)
         except Unavailable as error:
             if not away:
-                say(f"slidercrank: {error}; trying again")
+                print_message(f"slidercrank: {error}; trying again")
             away = True
             time.sleep(_AWAY)
             continue
         away = False
-        for event in found:
+        for event in events:
             last = event.number
             yield event
-        if ended and not found:
+        if ended and not events:
             return
-        if not found:
+        if not events:
             time.sleep(_LOOK)
 
 
@@ -176,7 +176,7 @@ def _event_writer(json: bool) -> Iterator[Callable[[Event], None]]:
     if json:
         from ..store.serialisation import text_of
 
-        yield lambda event: give(f"{text_of(event.record())}\n")
+        yield lambda event: print_output(f"{text_of(event.record())}\n")
         return
 
     live, last = error_console().is_terminal, 0.0
@@ -188,7 +188,7 @@ def _event_writer(json: bool) -> Iterator[Callable[[Event], None]]:
                 bar(Progress(**event.data))
             elif not event.data.get("steps") or event.at - last >= _SELDOM:
                 last = event.at if event.data.get("steps") else 0.0
-                give(f"{time.strftime('%H:%M:%S', time.localtime(event.at))}  {in_words(event)}\n")
+                print_output(f"{time.strftime('%H:%M:%S', time.localtime(event.at))}  {in_words(event)}\n")
 
         yield show
 

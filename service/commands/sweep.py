@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from ..questions.discovery import WIDER
+from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..render.terminal import print_blocks
 from ..text.options import Figures, JobFile, Json, Units
-from ..text.screen import answer, say, write_figure
-from .input_options import helped, options_of
+from ..text.screen import print_answer, print_message, write_figure
+from .input_options import options_of, with_question_help
 from .job_or_run import turning_problem
 
-QUESTION = WIDER["sweep"]
+QUESTION = FRONT_OR_JOB_QUESTIONS["sweep"]
 
 
-@helped(QUESTION)
+@with_question_help(QUESTION)
 def sweep(
     job: Annotated[JobFile, "Job file, .toml or .json."],
     *,
@@ -25,11 +25,13 @@ def sweep(
 ) -> None:
     """Answer the question, and draw the answer."""
     problem = turning_problem(job, "sweep")
-    found = QUESTION.ask(problem, inputs, words=QUESTION.flags)
-    answer(json, found.record(units)["rows"], lambda screen: print_blocks(screen, found.blocks, units))
-    for note in () if json else found.notes:
-        say(note)
+    swept = QUESTION.ask(problem, inputs, words=QUESTION.flags)
+    print_answer(json, swept.record(units)["rows"], lambda screen: print_blocks(screen, swept.blocks, units))
+    for note in () if json else swept.notes:
+        print_message(note)
     if figures is not None:
         from ..questions.sweep.figure import sweep_figure
 
-        write_figure(figures / "sweep.png", lambda: sweep_figure(*found.found, title=problem.name, system=units))
+        write_figure(
+            figures / "sweep.png", lambda: sweep_figure(*swept.search_result, title=problem.name, system=units)
+        )

@@ -13,23 +13,23 @@ from ...model.errors import InputError, StoreError
 from ...model.file_names import path_text
 from ...objectives.kinds import System
 from ..jobs.wish_history import keep_wish, told_wishes, wishes_of_run, words_of
-from ..questions.discovery import WIDER
+from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..render.terminal import print_blocks
 from ..runs.result import json_text
 from ..text.options import Json, Run, Runs, Units
-from ..text.screen import console, give, waiting
+from ..text.screen import console, print_output, show_activity
 from .ending import end_without_design
-from .input_options import helped, options_of
+from .input_options import options_of, with_question_help
 from .run_choice import front_of_run
 
 if TYPE_CHECKING:
     from ...optimise.front.front import ParetoFront
 
-QUESTION = WIDER["wish"]
+QUESTION = FRONT_OR_JOB_QUESTIONS["wish"]
 _EXAMPLE = f"--at {QUESTION.inputs[0].example}"
 
 
-@helped(
+@with_question_help(
     QUESTION,
     "The exit code is 3 where no design stays within what may worsen. The wish is noted among those of the run, which "
     "--list shows.",
@@ -54,24 +54,24 @@ def wish(
 ) -> None:
     """Answer the question and note the wish, or list those that were noted."""
     if earlier == bool(inputs["at"]):
-        got = "both" if earlier else "neither"
-        raise InputError(f"give either a wish or --list; got {got}; write it like {_EXAMPLE}")
+        received = "both" if earlier else "neither"
+        raise InputError(f"give either a wish or --list; got {received}; write it like {_EXAMPLE}")
     folder, front = front_of_run(run, runs, number)
     if earlier:
         _list(folder, front, units, json=json)
         return
-    with waiting("wishing"):
+    with show_activity("wishing"):
         row = None if number is None else number - 1
-        found = QUESTION.ask(front, inputs, row=row, words=QUESTION.flags)
+        solved = QUESTION.ask(front, inputs, row=row, words=QUESTION.flags)
     with contextlib.suppress(StoreError):  # a store that cannot be written keeps nobody from the answer
-        keep_wish(folder, told_wishes(front, found.found.wishes), number)
+        keep_wish(folder, told_wishes(front, solved.search_result.wishes), number)
     if json:
         wishes = QUESTION.read(inputs, row, QUESTION.flags)["at"]
-        give(json_text({"run": path_text(folder), "wishes": wishes} | found.record(units)))
-    elif found.met:
-        print_blocks(console(), found.blocks, units)
-    if not found.met:
-        end_without_design(found.message)
+        print_output(json_text({"run": path_text(folder), "wishes": wishes} | solved.record(units)))
+    elif solved.is_satisfied:
+        print_blocks(console(), solved.blocks, units)
+    if not solved.is_satisfied:
+        end_without_design(solved.message)
 
 
 def _list(folder: Path, front: ParetoFront, units: System, *, json: bool) -> None:
@@ -79,26 +79,26 @@ def _list(folder: Path, front: ParetoFront, units: System, *, json: bool) -> Non
     from ...optimise.decisions.wish import Wishes
     from ..questions.wish.analysis import answered, told_wish
 
-    made = wishes_of_run(folder)
-    with waiting("wishing"):
-        solver = Wishes(front) if made else None
-        found = []
-        for one in made:
+    wishes = wishes_of_run(folder)
+    with show_activity("wishing"):
+        solver = Wishes(front) if wishes else None
+        solved_wishes = []
+        for made_wish in wishes:
             assert solver is not None
-            words = words_of(front, one.wishes)
-            row = None if one.design is None else one.design - 1
-            found.append((one.at, words, answered(solver.wish(words, row=row), words)))
+            words = words_of(front, made_wish.wishes)
+            row = None if made_wish.design is None else made_wish.design - 1
+            solved_wishes.append((made_wish.at, words, answered(solver.wish(words, row=row), words)))
     if json:
-        records = [{"at": at, "wishes": words} | each.record(units) for at, words, each in found]
-        give(json_text({"run": path_text(folder), "made": records}))
+        records = [{"at": at, "wishes": words} | solved.record(units) for at, words, solved in solved_wishes]
+        print_output(json_text({"run": path_text(folder), "made": records}))
         return
     screen = console()
-    if not made:
+    if not wishes:
         screen.print(f"{front.problem.name}: no wishes yet; make one with {_EXAMPLE}", soft_wrap=True)
-    for place, (at, words, each) in enumerate(found):
+    for place, (at, words, solved) in enumerate(solved_wishes):
         when = time.strftime("%Y-%m-%d %H:%M", time.localtime(at))
-        screen.print(f"{when}  {told_wish(words, each.found.row)}", style="bold", soft_wrap=True)
-        for sentence in each.found.sentences(units):
+        screen.print(f"{when}  {told_wish(words, solved.search_result.row)}", style="bold", soft_wrap=True)
+        for sentence in solved.search_result.sentences(units):
             screen.print(f"  {sentence}", soft_wrap=True)
-        if place < len(found) - 1:
+        if place < len(solved_wishes) - 1:
             screen.print()

@@ -92,5 +92,5 @@ def worker(
             opened.require_writable()
         set_up_logs(options.log_format)
         with Supervisor(settings, processes) as supervisor:
-            while not (termination.asked() or supervisor.finished()):
+            while not (termination.requested() or supervisor.finished()):
                 time.sleep(0.1)

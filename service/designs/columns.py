@@ -71,18 +71,20 @@ def _group(key: str) -> Group:
     from ...objectives.quantity import Group
     from ...objectives.registry import FACTS
 
-    others = {f"{dimension}_mm": Group.DIMENSIONS for dimension in DIMENSIONS}
-    others |= {f"{PEAK_TORQUE.name}_angle_deg": PEAK_TORQUE.group, "slow_stroke": Group.MOTION}
-    others |= {"loaded_stroke": Group.MOTION}
+    groups = {f"{dimension}_mm": Group.DIMENSIONS for dimension in DIMENSIONS}
+    groups |= {f"{PEAK_TORQUE.name}_angle_deg": PEAK_TORQUE.group, "slow_stroke": Group.MOTION}
+    groups |= {"loaded_stroke": Group.MOTION}
     if "_dead_centre" in key:
         return Group.MOTION
-    return ({of.field: of.group for of in FACTS.values()} | others).get(key, Group.FURTHER)
+    return ({quantity.field: quantity.group for quantity in FACTS.values()} | groups).get(key, Group.FURTHER)
 
 
 def chosen_columns(keys: Iterable[str]) -> list[str]:
     """Return the columns of what was chosen besides the dimensions: those between the offset and the quantities."""
-    behind = itertools.dropwhile(lambda key: metric_key(key) != "offset_mm", keys)
-    return list(itertools.takewhile(lambda key: metric_key(key) not in _titles(), itertools.islice(behind, 1, None)))
+    from_offset = itertools.dropwhile(lambda key: metric_key(key) != "offset_mm", keys)
+    return list(
+        itertools.takewhile(lambda key: metric_key(key) not in _titles(), itertools.islice(from_offset, 1, None))
+    )
 
 
 @functools.cache
@@ -107,9 +109,9 @@ def _meant(name: str, keys: Collection[str]) -> str:
                 aliases[quantity.name + plain.removeprefix(stem)] = key
     aliases |= {split_unit(key)[0]: key for key in keys if split_unit(key)[0] not in aliases}
     aliases |= {f"slack_{alias}": f"slack_{key}" for alias, key in aliases.items()}
-    meant = {alias: key for alias, key in aliases.items() if key in keys}
-    if name in meant:
-        return meant[name]
+    names = {alias: key for alias, key in aliases.items() if key in keys}
+    if name in names:
+        return names[name]
     # An own quantity's key has its unit after its name.
     longer = [key for key in keys if name and key.startswith(f"{name}_") and metric_key(key) not in _titles()]
     if len(longer) == 1:
@@ -117,14 +119,14 @@ def _meant(name: str, keys: Collection[str]) -> str:
 
     from ...objectives.units import closest
 
-    near = closest(name, [*keys, *meant]) if name else None
+    near = closest(name, [*keys, *names]) if name else None
     hint = f"did you mean {near}?" if near else f"choose from {_listed(keys)}"
     raise InputError(f"there is no quantity or column {name!r}; {hint}")
 
 
 def _listed(keys: Collection[str]) -> str:
-    more = len(keys) - _MOST
-    return ", ".join(list(keys)[:_MOST]) + (f" and {more} more, the columns of front.csv" if more > 0 else "")
+    remaining = len(keys) - _MOST
+    return ", ".join(list(keys)[:_MOST]) + (f" and {remaining} more, the columns of front.csv" if remaining > 0 else "")
 
 
 def all_columns(keys: Collection[str]) -> list[Column]:

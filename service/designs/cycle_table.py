@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ...objectives.kinds import System
 from ..runs.result import csv_text, rows_of
-from .shown_units import rows_in
+from .display_units import rows_in
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage

@@ -14,9 +14,9 @@ from ...model.swing.swing import placed, require_swing
 from ...objectives.kinds import System
 from ..runs.result import csv_text
 from .cycle_table import LEAST, MOST, CurveColumn, cycle_csv, cycle_table
-from .shown_units import rows_in
+from .display_units import rows_in
 from .stored_designs import StoredDesign
-from .swing_curves import at_even_times, force_components, motion_and_drive, swing_rows, tolerated
+from .swing_curves import curves_at_even_times, force_components, has_position_error, motion_and_drive, swing_rows
 
 
 @dataclass(frozen=True)
@@ -34,27 +34,27 @@ class DesignCurves:
     columns: list[CurveColumn]
 
 
-def design_curves(of: StoredDesign, count: int) -> DesignCurves:
+def design_curves(design: StoredDesign, count: int) -> DesignCurves:
     """Return the curves at so many places: crank angles from 0 deg on, or even times forth and back.
 
     A cycle of 720 deg has both turns. Of a swing the first place is its start, the middle one its end, and the number
     is even. Raises `InputError` for too few or too many places, and what the design's motion raises.
     """
-    if of.part.motion is None:
-        turns = cycle_turns(of.mechanism)
-        inner, outer = (math.degrees(float(angle)) for angle in of.linkage.dead_centre_angles)
-        seconds = turns * turn_time(of.mechanism) if of.mechanism.speed else None
-        columns = cycle_table(of.mechanism, of.linkage, angles=count, turns=turns)
-        at_inner, at_outer = (1e3 * float(x) for x in of.linkage.dead_centres)
+    if design.part.motion is None:
+        turns = cycle_turns(design.mechanism)
+        inner, outer = (math.degrees(float(angle)) for angle in design.linkage.dead_centre_angles)
+        seconds = turns * turn_time(design.mechanism) if design.mechanism.speed else None
+        columns = cycle_table(design.mechanism, design.linkage, angles=count, turns=turns)
+        at_inner, at_outer = (1e3 * float(x) for x in design.linkage.dead_centres)
         return DesignCurves(turns, seconds, (inner, outer), (at_inner, at_outer), columns)
     if not LEAST <= count <= MOST or count % 2:
         raise InputError(
             f"curves of a swing must have {LEAST} to {MOST} points, the same number in both strokes; got {count}; ask "
             "for an even number"
         )
-    own = require_swing(of.mechanism, of.linkage, of.part.motion)
-    swing = placed(of.mechanism, own, of.part.motion)
-    ways = at_even_times(of.mechanism, own, swing, count)
+    linkage = require_swing(design.mechanism, design.linkage, design.part.motion)
+    swing = placed(design.mechanism, linkage, design.part.motion)
+    ways = curves_at_even_times(design.mechanism, linkage, swing, count)
     start, end = (1e3 * float(way.slider_position[0]) for way in ways)
     return DesignCurves(
         0,
@@ -66,16 +66,16 @@ def design_curves(of: StoredDesign, count: int) -> DesignCurves:
                 curve.field,
                 curve.title,
                 curve.kind.metric.symbol,
-                np.concatenate([curve.of(way) for way in ways]).tolist(),
+                np.concatenate([curve.values_in(way) for way in ways]).tolist(),
             )
             for curve in (*motion_and_drive(swing), *force_components())
-            if tolerated(of.mechanism, swing) or curve.attribute != "driven_error"
+            if has_position_error(design.mechanism, swing) or curve.attribute != "driven_error"
         ],
     )
 
 
-def design_csv(of: StoredDesign, system: System = "metric") -> str:
+def design_csv(design: StoredDesign, system: System = "metric") -> str:
     """Return the curves as CSV: those of `cycle_csv`, or of both ways of a swing."""
-    if of.part.motion is None:
-        return cycle_csv(of.mechanism, of.linkage, system)
-    return csv_text(rows_in(swing_rows(of.mechanism, of.linkage, of.part.motion), system))
+    if design.part.motion is None:
+        return cycle_csv(design.mechanism, design.linkage, system)
+    return csv_text(rows_in(swing_rows(design.mechanism, design.linkage, design.part.motion), system))

@@ -31,8 +31,8 @@ def read_measured(text: str, mechanism: Mechanism, linkage: Linkage) -> Measured
 
     table = read_table(text, _NAME, ragged=True)
     names = [name for name in table.heads if name]
-    meant = columns_of(names, mechanism, linkage, _any_unit)
-    places = [place for place, name in enumerate(table.heads) if name in meant]
+    curve_names = columns_of(names, mechanism, linkage, _any_unit)
+    places = [place for place, name in enumerate(table.heads) if name in curve_names]
     columns = dict(zip((table.heads[place] for place in places), table.numbers(places, missing=places), strict=True))
     nothing = np.full(len(table), np.nan)
     measured = measured_from({name: columns.get(name, nothing) for name in names}, mechanism, linkage, _any_unit)

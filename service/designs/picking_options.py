@@ -19,9 +19,9 @@ _TOPSIS = '"peak_torque=2, transmission_angle=1"'
 _LEXICOGRAPHIC = '"peak_torque: 5 %, transmission_angle"'
 
 
-def require_alone(design: int, result: Result, *, others: bool) -> None:
+def require_single_choice(design: int, result: Result, *, has_other_choice: bool) -> None:
     """Raise `InputError` for a number that the run does not have, and for one given with another way of choosing."""
-    if others:
+    if has_other_choice:
         raise InputError("a design must be chosen in one way; got its number and another way; keep one of them")
     if not 1 <= design <= len(result.designs):
         count = len(result.designs)
@@ -34,20 +34,20 @@ def picked_row(
     """Return which of the rows the options choose, None without such an option. Raises `InputError` for two."""
     from ...optimise.front import picking
 
-    asked = [
+    ways = [
         name
-        for name, given in (("knee", knee), ("topsis", topsis), ("lexicographic", lexicographic))
-        if given not in (None, False)
+        for name, option in (("knee", knee), ("topsis", topsis), ("lexicographic", lexicographic))
+        if option not in (None, False)
     ]
-    if len(asked) > 1:
-        raise InputError(f"a design must be chosen in one way; got {' and '.join(asked)}; keep one of them")
-    if not asked:
+    if len(ways) > 1:
+        raise InputError(f"a design must be chosen in one way; got {' and '.join(ways)}; keep one of them")
+    if not ways:
         return None
     weights = None if topsis is None else _weights(topsis, result.objectives)
     order = None if lexicographic is None else _order(lexicographic, result.objectives)
     if not rows:
         return None
-    values, sizes = minimised_values(result)[list(rows)], sizes_of(result)
+    values, sizes = minimised_values(result)[list(rows)], target_sizes(result)
     if weights is not None:
         return rows[picking.topsis(values, weights, size=sizes)]
     if order is not None:
@@ -59,13 +59,13 @@ def minimised_values(result: Result) -> Array:
     """Return the objectives (n, m) of a stored run as they are minimised, in shown units."""
     import numpy as np
 
-    values = [[wanted.rank(row) for wanted in result.objectives] for row in result.designs]
+    values = [[objective.rank(row) for objective in result.objectives] for row in result.designs]
     return np.array(values, dtype=np.float64).reshape(len(result.designs), len(result.objectives))
 
 
-def sizes_of(result: Result) -> list[float]:
+def target_sizes(result: Result) -> list[float]:
     """Return the targets of objectives, in shown units, 0 without: what distances from them are rounded against."""
-    return [abs(wanted.target or 0.0) for wanted in result.objectives]
+    return [abs(objective.target or 0.0) for objective in result.objectives]
 
 
 def _weights(text: str, objectives: Sequence[Wanted]) -> list[float]:
@@ -97,16 +97,16 @@ def _order(text: str, objectives: Sequence[Wanted]) -> list[tuple[int, float, fl
     return order
 
 
-def _tolerance(part: str, value: str, wanted: Wanted) -> tuple[float, float]:
+def _tolerance(part: str, value: str, objective: Wanted) -> tuple[float, float]:
     from ...objectives.units import kind_for, per_si, to_si
 
     try:
         if value.endswith("%"):
             return 0.0, to_si(value[:-1], RATIO, sign="zero or more") / 100.0
-        kind = kind_for(wanted.unit)
+        kind = kind_for(objective.unit)
         if kind.unit and plain_number(value) is not None:
             raise InputError(f"must be {kind.name} with its unit, or a percentage of the range; got {value}")
-        return to_si(value, kind, sign="zero or more", plain=False) * per_si(wanted.unit), 0.0
+        return to_si(value, kind, sign="zero or more", plain=False) * per_si(objective.unit), 0.0
     except InputError as error:
         raise InputError(f"the tolerance in {part!r} {error}; write it like {_LEXICOGRAPHIC}") from None
 
@@ -121,8 +121,8 @@ def _parts(text: str, example: str) -> list[str]:
 def _column(name: str, objectives: Sequence[Wanted]) -> int:
     """Return the position of an objective called by its name, or by its column."""
     name = name.strip()
-    for column, wanted in enumerate(objectives):
-        if name == wanted.column or "".join(name.split()) == "".join(wanted.quantity.split()):
+    for column, objective in enumerate(objectives):
+        if name == objective.column or "".join(name.split()) == "".join(objective.quantity.split()):
             return column
-    names = ", ".join(wanted.quantity for wanted in objectives)
+    names = ", ".join(objective.quantity for objective in objectives)
     raise InputError(f"a design must be chosen by the objectives of its run: {names}; got {name!r}; name one of them")

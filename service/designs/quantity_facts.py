@@ -18,15 +18,15 @@ def facts_of_all() -> list[dict[str, Any]]:
     return [*map(_dimension, _DIMENSIONS), *map(_quantity, FACTS.values())]
 
 
-def _quantity(of: Quantity) -> dict[str, Any]:
+def _quantity(quantity: Quantity) -> dict[str, Any]:
     return {
-        **{fact: getattr(of, fact) for fact in _STATED},
-        "offered": list(of.offered),
-        "column": of.field,
-        "unit": of.unit.symbol,
-        "kind": of.kind.plain,
-        "group": of.group.value,
-        "motion": "swing" if of.table == "motion" else "turn" if of.turning else "",
+        **{fact: getattr(quantity, fact) for fact in _STATED},
+        "offered": list(quantity.offered),
+        "column": quantity.field,
+        "unit": quantity.unit.symbol,
+        "kind": quantity.kind.plain,
+        "group": quantity.group.value,
+        "motion": "swing" if quantity.table == "motion" else "turn" if quantity.turning else "",
     }
 
 
@@ -38,8 +38,8 @@ _LENGTH: dict[str, Any] = {
 
 
 def _dimension(name: str) -> dict[str, Any]:
-    told: dict[str, Any] = dict(zip(_TOLD, _DIMENSIONS[name], strict=True))
-    return {"name": name, "picture": name, "column": name + LENGTH.metric.suffix, **told, **_LENGTH}
+    texts: dict[str, Any] = dict(zip(_TOLD, _DIMENSIONS[name], strict=True))
+    return {"name": name, "picture": name, "column": name + LENGTH.metric.suffix, **texts, **_LENGTH}
 
 
 _TOLD = ("title", "section", "sentence", "advice", "formula")

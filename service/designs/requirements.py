@@ -42,9 +42,9 @@ class Requirement:
         value = _number(row.get(self.column))
         if value is None:
             return None
-        below = 0.0 if self.lower is None else self.lower - value
-        above = 0.0 if self.upper is None else value - self.upper
-        missed = max(0.0, below, above)
+        shortfall = 0.0 if self.lower is None else self.lower - value
+        excess = 0.0 if self.upper is None else value - self.upper
+        missed = max(0.0, shortfall, excess)
         return 0.0 if missed <= MET * max(abs(self.lower or 0.0), abs(self.upper or 0.0)) else missed
 
 
@@ -70,12 +70,12 @@ def requirements_of(part: Problem) -> list[Requirement]:
     """Return the constraints of a problem without choices, with the floors that hold where it sets none."""
     from ...optimise.problem.violation import constraints_of
 
-    found = []
+    requirements = []
     for constraint in constraints_of(part):
-        of = part.quantity(constraint.quantity)
-        ends = (None if end is None else end * of.unit.factor for end in (constraint.lower, constraint.upper))
-        found.append(Requirement(of.name, of.field, of.title, of.unit.symbol, *ends))
-    return found
+        quantity = part.quantity(constraint.quantity)
+        ends = (None if end is None else end * quantity.unit.factor for end in (constraint.lower, constraint.upper))
+        requirements.append(Requirement(quantity.name, quantity.field, quantity.title, quantity.unit.symbol, *ends))
+    return requirements
 
 
 def ranges_of(part: Problem) -> list[Requirement]:
@@ -83,22 +83,24 @@ def ranges_of(part: Problem) -> list[Requirement]:
     from ...objectives.tables.varying_column import columns_of_numbers
 
     columns = columns_of_numbers(part.mechanism.varying)
-    found = []
-    for name, of in part.ranges.items():
+    ranges = []
+    for name, bounds in part.ranges.items():
         column, unit = columns[name]
         title = find_column(column, (column,)).title
-        found.append(Requirement(name, column, title, unit.symbol, of.lower * unit.factor, of.upper * unit.factor))
-    return found
+        ranges.append(
+            Requirement(name, column, title, unit.symbol, bounds.lower * unit.factor, bounds.upper * unit.factor)
+        )
+    return ranges
 
 
-def names_of(part: Problem) -> dict[str, str]:
+def quantity_names(part: Problem) -> dict[str, str]:
     """Return the names of all quantities of a problem, its own ones included, by column."""
     from ...objectives.registry import QUANTITIES
 
-    return {of.field: of.name for of in (*QUANTITIES.values(), *part.own)}
+    return {quantity.field: quantity.name for quantity in (*QUANTITIES.values(), *part.own)}
 
 
-def unmet(rules: Iterable[Requirement], row: Row) -> list[str]:
+def unmet_columns(rules: Iterable[Requirement], row: Row) -> list[str]:
     """Return the columns of the rules that a design does not meet."""
     return [rule.column for rule in rules if rule.missed_by(row) != 0.0]
 
@@ -108,14 +110,14 @@ def speed_rpm(mechanism: Mechanism) -> float:
     return _RPM * float(mechanism.speed)
 
 
-def judged(problem: Problem, row: Row, system: System = "metric") -> list[JudgedRule]:
+def judge_rules(problem: Problem, row: Row, system: System = "metric") -> list[JudgedRule]:
     """Return the ranges of crank, rod and offset and the constraints of a job, judged at a design's metric row.
 
     system: of the units of the answer.
     """
     lengths = ([rule for rule in ranges_of(part) if rule.quantity in DIMENSIONS] for part in problem.parts())
-    each = zip(*lengths, strict=True)  # of several, where it is chosen
-    ranges = [min(of, key=lambda rule: rule.missed_by(row) or 0.0) for of in each]
+    alternatives = zip(*lengths, strict=True)  # of several, where it is chosen
+    ranges = [min(same_length, key=lambda rule: rule.missed_by(row) or 0.0) for same_length in alternatives]
     return [_judged(rule, row, system) for rule in (*ranges, *requirements_of(problem))]
 
 
@@ -126,6 +128,6 @@ def _number(cell: Cell) -> float | None:
 def _judged(rule: Requirement, row: Row, system: System) -> JudgedRule:
     missed = rule.missed_by(row)
     unit, factor = shown_in(rule.unit, system)
-    told = {"lower": rule.lower, "upper": rule.upper, "value": _number(row.get(rule.column)), "missed_by": missed}
-    shown = {name: None if item is None else item * factor for name, item in told.items()}
-    return JudgedRule(quantity=rule.quantity, title=rule.title, unit=unit, met=missed == 0.0, **shown)
+    numbers = {"lower": rule.lower, "upper": rule.upper, "value": _number(row.get(rule.column)), "missed_by": missed}
+    converted = {name: None if item is None else item * factor for name, item in numbers.items()}
+    return JudgedRule(quantity=rule.quantity, title=rule.title, unit=unit, met=missed == 0.0, **converted)

@@ -33,13 +33,13 @@ class RowFormula:
     columns: tuple[tuple[str, Column], ...]
     kind: Kind
 
-    def of(self, row: Row) -> float:
+    def evaluate(self, row: Row) -> float:
         """Return its value at a design, SI; NaN where that is not defined, as where it divides by zero."""
         leaves = {name: Values(_si(row, column), None) for name, column in self.columns}
         with np.errstate(all="ignore"):
-            found = float(fold(self.node, Slopes(leaves, 1, 0, False)).values[0])
+            value = float(fold(self.node, Slopes(leaves, 1, 0, False)).values[0])
         endless = any(np.isinf(leaf.values[0]) for leaf in leaves.values())
-        return found if endless or not math.isinf(found) else math.nan
+        return value if endless or not math.isinf(value) else math.nan
 
 
 def find_formula(text: str, keys: Collection[str]) -> Column | RowFormula:
@@ -51,8 +51,10 @@ def find_formula(text: str, keys: Collection[str]) -> Column | RowFormula:
     written = text_of(node)
     for key in keys:
         if split_unit(key)[0] == key_of(written) or key == key_of(written):
-            found = find_column(key, keys)
-            return replace(found, plain=None if found.unit else 1.0)  # it was called by a name without its unit
+            stored_column = find_column(key, keys)
+            return replace(
+                stored_column, plain=None if stored_column.unit else 1.0
+            )  # it was called by a name without its unit
     columns = {name: _column(name, keys) for name in names_in(node)}
     if not columns:
         raise InputError(

@@ -50,7 +50,7 @@ class Condition:
 
     def cell(self, row: Row) -> Cell:
         """Return the cell or value of a design that the condition compares."""
-        return row[self.column.key] if self.formula is None else self.formula.of(row)
+        return row[self.column.key] if self.formula is None else self.formula.evaluate(row)
 
     def holds(self, row: Row) -> bool:
         """Return whether a design meets it; one without a value does not. Equal means equal to 1e-8 relative."""
@@ -110,11 +110,11 @@ def _meant(name: str, keys: Collection[str]) -> tuple[Column, RowFormula | None]
 
     from .row_formulas import find_formula  # brings what computes
 
-    found = find_formula(name, keys)
-    if isinstance(found, Column):
-        return found, None
-    plain = None if found.kind.unit else 1.0
-    return Column(found.text, found.text, found.kind.unit, 1.0, plain), found
+    formula = find_formula(name, keys)
+    if isinstance(formula, Column):
+        return formula, None
+    plain = None if formula.kind.unit else 1.0
+    return Column(formula.text, formula.text, formula.kind.unit, 1.0, plain), formula
 
 
 def plain_number(text: str) -> float | None:
@@ -125,18 +125,18 @@ def plain_number(text: str) -> float | None:
         return None
 
 
-def value_of(key: str, given: object, kind: Kind, *, sign: Any = "any") -> float:
+def parse_value(key: str, value: object, kind: Kind, *, sign: Any = "any") -> float:
     """Return the value in SI of a text, which needs a unit unless the kind has none, or of a number in SI.
 
     Raises `InputError` that begins with the key.
     """
     from ...objectives.units import quote, to_si
 
-    text = isinstance(given, str)
-    if text and kind.unit and plain_number(str(given)) is not None:
-        raise InputError(f'{key} must be {kind.name} with its unit; got {quote(given)}; write it like "{kind.example}"')
+    text = isinstance(value, str)
+    if text and kind.unit and plain_number(str(value)) is not None:
+        raise InputError(f'{key} must be {kind.name} with its unit; got {quote(value)}; write it like "{kind.example}"')
     try:
-        return to_si(given, kind, sign=sign, plain=not text)
+        return to_si(value, kind, sign=sign, plain=not text)
     except InputError as error:
         raise InputError(f"{key} {error}") from None
 
@@ -149,8 +149,10 @@ def _number(match: re.Match[str], column: Column) -> float:
 
     name, comparison, value = match.groups()
     if is_formula(value):
-        less = f"{name.strip()} - ({value}) {comparison} 0 {column.unit}".rstrip()
-        raise InputError(f'a condition must end with a number; got {match[0]!r}; compare the difference, like "{less}"')
+        difference = f"{name.strip()} - ({value}) {comparison} 0 {column.unit}".rstrip()
+        raise InputError(
+            f'a condition must end with a number; got {match[0]!r}; compare the difference, like "{difference}"'
+        )
     number = plain_number(value)
     if column.plain is not None and number is not None and math.isfinite(number):
         return number * column.plain
@@ -188,22 +190,22 @@ def chosen_rows(result: Result, where: Collection[str], *, sort: str | None = No
     if sort is not None and result.designs:
         column, formula = _meant(sort, list(result.designs[0]))
         key = column.key
-        wanted = next((item for item in result.objectives if item.column == key), None)
+        objective = next((item for item in result.objectives if item.column == key), None)
         if formula is not None:
-            chosen.sort(key=lambda row: order_key(formula.of(result.designs[row])))
-        elif wanted is not None:
-            chosen.sort(key=lambda row: wanted.rank(result.designs[row]))
+            chosen.sort(key=lambda row: order_key(formula.evaluate(result.designs[row])))
+        elif objective is not None:
+            chosen.sort(key=lambda row: objective.rank(result.designs[row]))
         else:
             chosen.sort(key=lambda row: order_key(result.designs[row][key]))
     return chosen[::-1] if reverse else chosen
 
 
-def numbered(rows: Sequence[Row], chosen: Sequence[int] | None = None) -> list[Row]:
+def numbered_rows(rows: Sequence[Row], chosen: Sequence[int] | None = None) -> list[Row]:
     """Return the rows, each with the number of its design first, counted from 1; of all, or of those chosen."""
     return [{"number": row + 1, **rows[row]} for row in (range(len(rows)) if chosen is None else chosen)]
 
 
-def part_of(result: Result, rows: Sequence[int]) -> Result:
+def result_part(result: Result, rows: Sequence[int]) -> Result:
     """Return the result with only these designs, and only those marks that are among them."""
     place = {row: index for index, row in enumerate(rows)}
     knee = place.get(result.knee) if result.knee is not None else None
@@ -214,11 +216,11 @@ def part_of(result: Result, rows: Sequence[int]) -> Result:
         extremes={name: place[row] for name, row in result.extremes.items() if row in place},
         knee=knee,
         trade_offs=[] if knee is None else result.trade_offs,
-        violated={key: part for key, by in result.violated.items() if any(part := [by[row] for row in rows])},
+        violated={key: part for key, excess in result.violated.items() if any(part := [excess[row] for row in rows])},
     )
 
 
-def none_meets(result: Result, where: Collection[str]) -> str:
+def no_match_message(result: Result, where: Collection[str]) -> str:
     """Return the message for a front where no design meets the conditions."""
     rows = result.designs
     conditions = " and ".join(text.strip() for text in where)

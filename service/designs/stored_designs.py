@@ -75,7 +75,7 @@ def front_of(problem: Problem, result: Result) -> ParetoFront:
 
     rows = [{name: math.nan if cell is None else cell for name, cell in row.items()} for row in result.designs]
     exact = result.exact or _reconstructed(problem, result.designs)
-    factors = np.array([problem.quantity(wanted.quantity).unit.factor for wanted in result.objectives])
+    factors = np.array([problem.quantity(objective.quantity).unit.factor for objective in result.objectives])
     return ParetoFront(
         problem=problem,
         status="done" if rows else "infeasible",
@@ -98,7 +98,7 @@ def _reconstructed(problem: Problem, rows: Sequence[Row]) -> Exact:
     """Return the designs as their shown rows tell them: everything but slopes, which have no piece and no unknown."""
     sizes = _factors(problem.mechanism)
     dimensions = [_values(row, sizes) for row in rows]
-    variants = [_variant(problem, *of) for of in zip(rows, dimensions, strict=True)]
+    variants = [_variant(problem, *row_and_values) for row_and_values in zip(rows, dimensions, strict=True)]
     nothing = np.zeros((0, 0))
     return Exact(
         np.array(dimensions).reshape(len(dimensions), len(sizes)),
@@ -113,18 +113,18 @@ def _variant(problem: Problem, row: Row, values: Sequence[float]) -> int:
     if not problem.variants:
         return 0
     labels = tuple(_cell(row, choice_field(name)) for name in problem.choices)
-    own = [index for index, variant in enumerate(problem.variants) if variant.labels == labels]
-    if not own:
+    matching = [index for index, variant in enumerate(problem.variants) if variant.labels == labels]
+    if not matching:
         raise _foreign(f"its job has nothing called {' with '.join(map(str, labels))}")
-    return min(own, key=lambda index: _outside(problem.variants[index], values))
+    return min(matching, key=lambda index: _outside(problem.variants[index], values))
 
 
 def _outside(variant: Variant, values: Sequence[float]) -> float:
     """Return how far values are out of the ranges of a variant, as a share of each."""
     ranges: tuple[Range | Varying, ...] = (variant.crank, variant.rod, variant.offset, *variant.mechanism.varying)
     return max(
-        max(of.lower - value, value - of.upper, 0.0) / max(abs(of.lower), abs(of.upper), 1e-300)
-        for of, value in zip(ranges, values, strict=True)
+        max(bounds.lower - value, value - bounds.upper, 0.0) / max(abs(bounds.lower), abs(bounds.upper), 1e-300)
+        for bounds, value in zip(ranges, values, strict=True)
     )
 
 
@@ -140,12 +140,12 @@ def _values(row: Row, factors: Mapping[str, float]) -> tuple[float, ...]:
 
 def _si(row: Row, key: str, factor: float) -> float:
     """Return the number that, times the factor, is exactly what the table shows."""
-    shown = _cell(row, key)
-    if not isinstance(shown, float) or not math.isfinite(shown):
-        raise _foreign(f"its {key} is {shown}")
-    value = shown / factor
+    displayed = _cell(row, key)
+    if not isinstance(displayed, float) or not math.isfinite(displayed):
+        raise _foreign(f"its {key} is {displayed}")
+    value = displayed / factor
     near = (value, math.nextafter(value, -math.inf), math.nextafter(value, math.inf))
-    return next((item for item in near if factor * item == shown), value)
+    return next((item for item in near if factor * item == displayed), value)
 
 
 def _cell(row: Mapping[str, Cell], key: str) -> Cell:

@@ -45,7 +45,7 @@ class SwingCurve:
         """Key of the curve in metric tables and JSON."""
         return self.name + self.kind.metric.suffix
 
-    def of(self, curves: SwingCurves) -> Array:
+    def values_in(self, curves: SwingCurves) -> Array:
         """Return the values, metric."""
         return np.asarray(self.kind.metric.factor * getattr(curves, self.attribute))
 
@@ -53,7 +53,7 @@ class SwingCurve:
 def motion_and_drive(swing: Swing) -> tuple[SwingCurve, ...]:
     """Return the curves of a swing but the forces of the joints; without time, none that needs it."""
     drive = "force on the slider" if swing.driver == "slider" else "torque on the crank"
-    between = "transmission angle" if swing.driver == "crank" else "angle between rod and crank"
+    angle_title = "transmission angle" if swing.driver == "crank" else "angle between rod and crank"
     error = "slider position error" if swing.driver == "crank" else "crank angle error"
     every = (
         SwingCurve("crank_angle", "crank_angle", "crank angle", ANGLE),
@@ -65,8 +65,8 @@ def motion_and_drive(swing: Swing) -> tuple[SwingCurve, ...]:
         SwingCurve("drive", "drive", drive, drive_kind(swing)),
         SwingCurve("power", "power", "power of the drive", POWER, timed=True),
         SwingCurve("load", "load", "load on the slider", FORCE),
-        SwingCurve("transmission_angle", "driven_angle", between, ANGLE),
-        SwingCurve(f"{driven(swing)}_position_error", "driven_error", error, error_kind(swing)),
+        SwingCurve("transmission_angle", "driven_angle", angle_title, ANGLE),
+        SwingCurve(f"{driven_side(swing)}_position_error", "driven_error", error, error_kind(swing)),
     )
     return tuple(curve for curve in every if not curve.timed or swing.duration is not None)
 
@@ -82,7 +82,7 @@ def force_components() -> tuple[SwingCurve, ...]:
     return (*components, SwingCurve("guide", "guide", "guide force", FORCE))
 
 
-def sizes_of_forces() -> tuple[SwingCurve, ...]:
+def force_magnitudes() -> tuple[SwingCurve, ...]:
     """Return the curves of the sizes of the joint forces, and of the guide's force with its sign."""
     return (
         SwingCurve("pivot", "pivot", "crank pivot force", FORCE),
@@ -102,22 +102,24 @@ def error_kind(swing: Swing) -> Kind:
     return LENGTH if swing.driver == "crank" else ANGLE
 
 
-def driven(swing: Swing) -> str:
+def driven_side(swing: Swing) -> str:
     """Return the side that is not the driver's."""
     return "slider" if swing.driver == "crank" else "crank"
 
 
-def both_ways(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> tuple[SwingCurves, SwingCurves]:
+def curves_of_both_strokes(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> tuple[SwingCurves, SwingCurves]:
     """Return the curves of the way forth and of the way back, at even shares of the time."""
-    own, share = require_swing(mechanism, linkage, swing), np.linspace(0.0, 1.0, POINTS)
-    swing = placed(mechanism, own, swing)
+    checked, share = require_swing(mechanism, linkage, swing), np.linspace(0.0, 1.0, POINTS)
+    swing = placed(mechanism, checked, swing)
     return (
-        swing_curves(mechanism, own, swing, share),
-        swing_curves(mechanism, own, swing, share, back=True),
+        swing_curves(mechanism, checked, swing, share),
+        swing_curves(mechanism, checked, swing, share, back=True),
     )
 
 
-def at_even_times(mechanism: Mechanism, linkage: Linkage, swing: Swing, count: int) -> tuple[SwingCurves, SwingCurves]:
+def curves_at_even_times(
+    mechanism: Mechanism, linkage: Linkage, swing: Swing, count: int
+) -> tuple[SwingCurves, SwingCurves]:
     """Return the curves at even times of a swing, of the way forth and of the way back.
 
     swing: between two crank angles, of a linkage that can make it. count: of all times, an even number; the first one
@@ -130,18 +132,18 @@ def at_even_times(mechanism: Mechanism, linkage: Linkage, swing: Swing, count: i
     )
 
 
-def tolerated(mechanism: Mechanism, swing: Swing) -> bool:
+def has_position_error(mechanism: Mechanism, swing: Swing) -> bool:
     """Return whether the driven side has an error."""
     return mechanism.tolerances.given or swing.actuator_tolerance > 0.0
 
 
 def swing_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> list[dict[str, Any]]:
     """Return a row for each place of both ways, metric: time, motion, drive, power, joint forces, errors."""
-    shown = (*motion_and_drive(swing), *force_components())
+    all_curves = (*motion_and_drive(swing), *force_components())
     rows = []
-    for way, curves in zip(("forth", "back"), both_ways(mechanism, linkage, swing), strict=True):
+    for way, curves in zip(("forth", "back"), curves_of_both_strokes(mechanism, linkage, swing), strict=True):
         time = {} if swing.duration is None else {"time_s": swing.duration * curves.share}
-        columns = time | {curve.field: curve.of(curves) for curve in shown}
+        columns = time | {curve.field: curve.values_in(curves) for curve in all_curves}
         plain = {name: json_ready(values.tolist(), gaps=True) for name, values in columns.items()}
         rows += [{"way": way} | {name: values[i] for name, values in plain.items()} for i in range(POINTS)]
     return rows

@@ -14,8 +14,8 @@ _DIGITS = 2
 
 def tolerances_of(mechanism: Mechanism, linkage: Linkage) -> dict[str, float]:
     """Return the tolerance of each dimension that has one, mm, shares of a length included."""
-    given = {name: getattr(mechanism.tolerances, name).limit(float(getattr(linkage, name))) for name in DIMENSIONS}
-    return {name: 1e3 * limit for name, limit in given.items() if limit > 0.0}
+    limits = {name: getattr(mechanism.tolerances, name).limit(float(getattr(linkage, name))) for name in DIMENSIONS}
+    return {name: 1e3 * limit for name, limit in limits.items() if limit > 0.0}
 
 
 def decimals_of(tolerance: float) -> int:
@@ -24,9 +24,9 @@ def decimals_of(tolerance: float) -> int:
     return max(0, -exponent) if isinstance(exponent, int) else 0
 
 
-def toleranced(length: float, tolerance: float) -> str:
+def format_toleranced(length: float, tolerance: float) -> str:
     """Return a length with as many decimals as its tolerance, and that."""
     decimals = decimals_of(tolerance)
-    shown = f"{length:.{decimals}f}"
-    shown = shown if float(shown) else f"{0.0:.{decimals}f}"  # no minus before zero
-    return f"{shown} ± {Decimal(f'{tolerance:.{_DIGITS}g}').normalize():f}"
+    text = f"{length:.{decimals}f}"
+    text = text if float(text) else f"{0.0:.{decimals}f}"  # no minus before zero
+    return f"{text} ± {Decimal(f'{tolerance:.{_DIGITS}g}').normalize():f}"

@@ -48,11 +48,11 @@ def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: Sy
         if point is None:
             continue
         span = scaling(front.values)[1]
-        found = polish(Evaluator(design.part, branch), point[None], span, iterations=0)
-        owner, slopes = found.goals[0]
+        polished = polish(Evaluator(design.part, branch), point[None], span, iterations=0)
+        owner, slopes = polished.goals[0]
         nothing = (np.zeros(0), np.zeros((0, 0)))
         goals, active = [nothing] * len(front), [nothing[1]] * len(front)
-        goals[row], active[row] = (owner, slopes * span[owner.astype(int)][:, None]), found.active[0]
+        goals[row], active[row] = (owner, slopes * span[owner.astype(int)][:, None]), polished.active[0]
         return replace(front, goals=tuple(goals), active=tuple(active)).trade_offs(row, system)
     raise InputError(
         "trade-off rates need a design that meets the rules of its job; this one does not; run the job again"

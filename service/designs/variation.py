@@ -13,8 +13,8 @@ from ...model.errors import InputError
 from ...model.swing.swing import require_swing
 from ...objectives.tables.varying_column import varying_column
 from ..runs.result import Result, Row, rows_of
-from .picking_options import minimised_values, sizes_of
-from .requirements import ranges_of, requirements_of, unmet
+from .picking_options import minimised_values, target_sizes
+from .requirements import ranges_of, requirements_of, unmet_columns
 from .stored_designs import StoredDesign
 
 _SAME = 1e-9  # of an objective's range over the front, or of a number: a difference below is rounding
@@ -55,8 +55,8 @@ def with_numbers(
             )
         item, unit = design.part.mechanism.varying[places[column]], columns[places[column]][1]
         numbers[places[column]] = number = value / unit.factor
-        room = _SAME * max(abs(item.lower), abs(item.upper))
-        if not item.lower - room <= number <= item.upper + room:
+        margin = _SAME * max(abs(item.lower), abs(item.upper))
+        if not item.lower - margin <= number <= item.upper + margin:
             ends = f"{item.lower * unit.factor:.6g} to {item.upper * unit.factor:.6g} {unit.symbol}".rstrip()
             raise InputError(f"{item.name} must be within its range, {ends}; got {value:.6g}; correct it")
     changed = replace(design, values=(*lengths, *numbers))
@@ -79,9 +79,9 @@ def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Vari
     return Variation(
         row=row,
         design=design,
-        broken=unmet(requirements_of(design.part), row)
+        broken=unmet_columns(requirements_of(design.part), row)
         + (["slow_stroke"] if design.part.slow_stroke not in (None, row.get("slow_stroke")) else []),
-        outside=unmet(ranges_of(design.part), row),
+        outside=unmet_columns(ranges_of(design.part), row),
         **_beside(result, row, minimised),
     )
 
@@ -90,15 +90,15 @@ def _beside(result: Result, row: Row, minimised: Array) -> dict[str, list[int]]:
     """Return the positions of designs that dominate a row, and of those that it dominates."""
     from ...optimise.front.constant import spread
 
-    own = minimised_values(replace(result, designs=[row], exact=None))[0]
+    values = minimised_values(replace(result, designs=[row], exact=None))[0]
     finite = np.where(np.isfinite(minimised), minimised, math.inf)
     bounded = np.isfinite(finite).all(axis=1)
-    if not bounded.any() or not np.isfinite(own).all():
+    if not bounded.any() or not np.isfinite(values).all():
         return {"dominated_by": [], "dominates": []}
-    span = spread(finite[bounded], size=sizes_of(result))
-    gain = (own - finite) / np.where(span > 0.0, span, 1.0)  # positive where the design of the front is better
-    found = {}
+    span = spread(finite[bounded], size=target_sizes(result))
+    gain = (values - finite) / np.where(span > 0.0, span, 1.0)  # positive where the design of the front is better
+    positions = {}
     for name, way in (("dominated_by", gain), ("dominates", -gain)):
         rows = np.flatnonzero(bounded & (way >= -_SAME).all(axis=1) & (way > _SAME).any(axis=1))
-        found[name] = rows[np.argsort(-way[rows].sum(axis=1), kind="stable")].tolist()
-    return found
+        positions[name] = rows[np.argsort(-way[rows].sum(axis=1), kind="stable")].tolist()
+    return positions

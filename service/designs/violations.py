@@ -25,40 +25,40 @@ def violated_by(mechanism: Mechanism, row: Row) -> dict[str, float]:
         value = row.get(QUANTITIES[name].field)
         return value / QUANTITIES[name].unit.factor if isinstance(value, float) else None
 
-    known = ((QUANTITIES[name], beyond) for name, beyond in violations(mechanism, value_of).items())
-    return {of.field: of.unit.factor * float(beyond[0]) for of, beyond in known}
+    excess_by_quantity = ((QUANTITIES[name], excess) for name, excess in violations(mechanism, value_of).items())
+    return {quantity.field: quantity.unit.factor * float(excess[0]) for quantity, excess in excess_by_quantity}
 
 
 def violations_in_words(violated: Mapping[str, float], row: Row) -> list[str]:
     """Return a sentence on each allowable value that a design violates. Both are of one system of units."""
-    return [_sentence(key, row, by, "is") for key, by in violated.items()]
+    return [_sentence(key, row, excess, "is") for key, excess in violated.items()]
 
 
 def front_violations_in_words(result: Result) -> list[str]:
     """Return a sentence on each allowable value that designs of a front violate, in the units of the result."""
-    count, found = len(result.designs), []
+    count, sentences = len(result.designs), []
     for key, violated in result.violated.items():
         worst = max(range(count), key=violated.__getitem__)
-        broken = sum(by > 0.0 for by in violated)
+        broken = sum(excess > 0.0 for excess in violated)
         verb = f"in {broken} of {count} designs, at worst" if count > 1 else "is"
-        found.append(_sentence(key, result.designs[worst], violated[worst], verb))
-    return found
+        sentences.append(_sentence(key, result.designs[worst], violated[worst], verb))
+    return sentences
 
 
-def _sentence(key: str, row: Row, by: float, verb: str) -> str:
+def _sentence(key: str, row: Row, excess: float, verb: str) -> str:
     """Return a violated allowable value in words: "shear of the crank pin is 642 MPa, 440 MPa more than ..."."""
     from ...objectives.registry import QUANTITIES
 
-    of = next(of for of in QUANTITIES.values() if of.field == metric_key(key))
+    quantity = next(quantity for quantity in QUANTITIES.values() if quantity.field == metric_key(key))
     value, unit = row[key], split_unit(key)[1]
     assert isinstance(value, float)
-    low = of.better == "low"
-    allowed = value - by if low else value + by
+    low = quantity.better == "low"
+    allowed = value - excess if low else value + excess
     limit = f" the allowed {_with_unit(allowed, unit)}" if math.isfinite(allowed) else " what is allowed"
-    more = "more" if low else "less"
+    comparison = "more" if low else "less"
     cause = "" if low or value > 0.0 else ": a pin as wide as its bar, or wider, leaves no material in the bar"
-    found = f"{of.title} {verb} {_with_unit(value, unit)}, {_with_unit(by, unit)} {more} than{limit} ({of.allowed_by})"
-    return found + cause
+    sizes = f"{_with_unit(value, unit)}, {_with_unit(excess, unit)} {comparison} than{limit}"
+    return f"{quantity.title} {verb} {sizes} ({quantity.allowed_by}){cause}"
 
 
 def _with_unit(value: float, unit: str) -> str:

@@ -12,14 +12,14 @@ from .swing_drawing import swing_drawing
 
 
 def design_drawing(
-    of: StoredDesign, *, name: str, design: str = "", crank_angle: float | None = None, system: System = "metric"
+    stored: StoredDesign, *, name: str, design: str = "", crank_angle: float | None = None, system: System = "metric"
 ) -> Drawing:
     """Return a design at true scale: see `linkage_drawing`, and `swing_drawing` where its crank swings.
 
     crank_angle: where it is drawn, rad; where these draw it if None. system: of the units of texts.
     """
-    told: dict[str, Any] = {"name": name, "design": design, "system": system}
-    if of.part.motion is not None:
-        return swing_drawing(of.mechanism, of.linkage, of.part.motion, **told, crank_angle=crank_angle)
+    texts: dict[str, Any] = {"name": name, "design": design, "system": system}
+    if stored.part.motion is not None:
+        return swing_drawing(stored.mechanism, stored.linkage, stored.part.motion, **texts, crank_angle=crank_angle)
     angle = CRANK_ANGLE if crank_angle is None else crank_angle
-    return linkage_drawing(of.mechanism, of.linkage, **told, crank_angle=angle)
+    return linkage_drawing(stored.mechanism, stored.linkage, **texts, crank_angle=angle)

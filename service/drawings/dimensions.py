@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from ...objectives.kinds import System, shown_in
-from ..designs.toleranced import toleranced
+from ..designs.toleranced import format_toleranced
 from .layers import DIMENSIONS
 from .shapes import WIDE, Dimension, Label, Line, Point, Wedge
 
@@ -43,35 +43,37 @@ def dimension(
     Where arrows and text do not fit between the points they come from outside, the text beyond the end.
     """
     turn, height = math.radians(angle), look.height
-    along, across = (math.cos(turn), math.sin(turn)), (-math.sin(turn), math.cos(turn))
-    feet = [_at(through, along, _dot(_less(point, through), along)) for point in (start, end)]
-    if _dot(feet[1], along) < _dot(feet[0], along):
+    direction, normal = (math.cos(turn), math.sin(turn)), (-math.sin(turn), math.cos(turn))
+    feet = [_at(through, direction, _dot(_less(point, through), direction)) for point in (start, end)]
+    if _dot(feet[1], direction) < _dot(feet[0], direction):
         feet.reverse()
         start, end = end, start
-    length = _dot(_less(feet[1], feet[0]), along)
-    told, off = look.factor * length, look.factor * tolerance
-    text = toleranced(told, off) if tolerance else f"{told:.7g}"
+    length = _dot(_less(feet[1], feet[0]), direction)
+    displayed, off = look.factor * length, look.factor * tolerance
+    text = format_toleranced(displayed, off) if tolerance else f"{displayed:.7g}"
     wide, arrow = WIDE * height * len(text), _ARROW * height
-    inside = length > wide + 2.6 * arrow
+    fits = length > wide + 2.6 * arrow
     parts: list[Line | Wedge | Label] = []
     for point, foot in zip((start, end), feet, strict=True):
-        reach = math.dist(point, foot)
-        if reach > _GAP * height:
-            unit = ((foot[0] - point[0]) / reach, (foot[1] - point[1]) / reach)
+        distance = math.dist(point, foot)
+        if distance > _GAP * height:
+            unit = ((foot[0] - point[0]) / distance, (foot[1] - point[1]) / distance)
             first, last = _at(point, unit, _GAP * height), _at(foot, unit, _BEYOND * height)
             parts.append(Line(DIMENSIONS, first, last))
-    side = 1.0 if inside else -1.0
+    side = 1.0 if fits else -1.0
     for foot, out in ((feet[0], side), (feet[1], -side)):
-        base = _at(foot, along, out * arrow)
-        corners = (foot, _at(base, across, arrow / 6.0), _at(base, across, -arrow / 6.0))
+        base = _at(foot, direction, out * arrow)
+        corners = (foot, _at(base, normal, arrow / 6.0), _at(base, normal, -arrow / 6.0))
         parts.append(Wedge(DIMENSIONS, corners))
-    if inside:
+    if fits:
         parts.append(Line(DIMENSIONS, *feet))
-        middle = _at(feet[0], along, 0.5 * length)
+        middle = _at(feet[0], direction, 0.5 * length)
     else:
-        parts.append(Line(DIMENSIONS, _at(feet[0], along, -2.0 * arrow), _at(feet[1], along, 2.4 * arrow + wide)))
-        middle = _at(feet[1], along, 2.2 * arrow + 0.5 * wide)
-    parts.append(Label(DIMENSIONS, text, _at(middle, across, 0.4 * height), height, angle, "middle"))
+        parts.append(
+            Line(DIMENSIONS, _at(feet[0], direction, -2.0 * arrow), _at(feet[1], direction, 2.4 * arrow + wide))
+        )
+        middle = _at(feet[1], direction, 2.2 * arrow + 0.5 * wide)
+    parts.append(Label(DIMENSIONS, text, _at(middle, normal, 0.4 * height), height, angle, "middle"))
     return Dimension(DIMENSIONS, name, start, end, through, angle, text, height, tuple(parts), tolerance)
 
 
@@ -89,9 +91,9 @@ def _at(point: Point, unit: Point, length: float) -> Point:
     return point[0] + length * unit[0], point[1] + length * unit[1]
 
 
-def _less(one: Point, other: Point) -> Point:
-    return one[0] - other[0], one[1] - other[1]
+def _less(point: Point, origin: Point) -> Point:
+    return point[0] - origin[0], point[1] - origin[1]
 
 
-def _dot(one: Point, other: Point) -> float:
-    return one[0] * other[0] + one[1] * other[1]
+def _dot(u: Point, v: Point) -> float:
+    return u[0] * v[0] + u[1] * v[1]

@@ -39,33 +39,33 @@ def document(drawing: Drawing) -> Document:
     with NamingExtra("DXF files need"):
         from ezdxf.filemanagement import new
 
-    found = new(_VERSION, units=_MILLIMETRES)
+    dxf = new(_VERSION, units=_MILLIMETRES)
     left, bottom, right, top = drawing.bounds
-    found.header["$MEASUREMENT"] = 1  # metric line types
-    found.header["$LUNITS"] = 2  # decimal
+    dxf.header["$MEASUREMENT"] = 1  # metric line types
+    dxf.header["$LUNITS"] = 2  # decimal
     for name, description, pattern in _DASHES.values():
         if pattern:
-            found.linetypes.add(name, [drawing.size * part for part in pattern], description=description)
+            dxf.linetypes.add(name, [drawing.size * part for part in pattern], description=description)
     for layer in drawing.layers:
-        made = found.layers.add(
+        dxf_layer = dxf.layers.add(
             layer.name,
             color=layer.number,
             linetype=_DASHES[layer.dashes][0],
             lineweight=round(100.0 * layer.weight),
         )
-        made.description = layer.title
-    _dimension_style(found, drawing)
-    space = found.modelspace()
+        dxf_layer.description = layer.title
+    _dimension_style(dxf, drawing)
+    space = dxf.modelspace()
     for shape in drawing.shapes:
-        _add(found, space, shape)
+        _add(dxf, space, shape)
     space.reset_extents((left, bottom, 0.0), (right, top, 0.0))
     space.reset_limits((left, bottom), (right, top))
     height = 1.05 * max(top - bottom, 0.6 * (right - left))
-    found.set_modelspace_vport(height, (0.5 * (left + right), 0.5 * (bottom + top)))
-    return found
+    dxf.set_modelspace_vport(height, (0.5 * (left + right), 0.5 * (bottom + top)))
+    return dxf
 
 
-def _dimension_style(found: Document, drawing: Drawing) -> None:
+def _dimension_style(document: Document, drawing: Drawing) -> None:
     """Make the style by which CAD draws dimensions anew: as they are drawn here."""
     height = next((shape.height for shape in drawing.shapes if isinstance(shape, Dimension)), 2.5)
     # As many decimals as make seven digits of the size; DXF knows eight at most.
@@ -75,42 +75,42 @@ def _dimension_style(found: Document, drawing: Drawing) -> None:
         "dimgap": 0.4 * height, "dimscale": 1.0, "dimtad": 1, "dimtih": 0, "dimtoh": 0, "dimdec": decimals,
         "dimzin": 8, "dimdsep": ord("."), "dimlunit": 2,
     }  # fmt: skip
-    found.dimstyles.new(_STYLE, dxfattribs=values)
+    document.dimstyles.new(_STYLE, dxfattribs=values)
 
 
-def _add(found: Document, space: BaseLayout, shape: Shape) -> None:
-    on: dict[str, Any] = {"layer": shape.layer.name}
+def _add(document: Document, space: BaseLayout, shape: Shape) -> None:
+    attributes: dict[str, Any] = {"layer": shape.layer.name}
     if isinstance(shape, Line):
-        space.add_line(shape.start, shape.end, dxfattribs=on)
+        space.add_line(shape.start, shape.end, dxfattribs=attributes)
     elif isinstance(shape, Circle):
-        space.add_circle(shape.centre, shape.radius, dxfattribs=on)
+        space.add_circle(shape.centre, shape.radius, dxfattribs=attributes)
     elif isinstance(shape, Arc):
-        space.add_arc(shape.centre, shape.radius, shape.start, shape.end, dxfattribs=on)
+        space.add_arc(shape.centre, shape.radius, shape.start, shape.end, dxfattribs=attributes)
     elif isinstance(shape, Outline):
         corners = [(x, y, bulge) for (x, y), bulge in zip(shape.corners, shape.bulges, strict=True)]
-        space.add_lwpolyline(corners, format="xyb", close=True, dxfattribs=on)
+        space.add_lwpolyline(corners, format="xyb", close=True, dxfattribs=attributes)
     elif isinstance(shape, Wedge):
-        space.add_solid(shape.corners, dxfattribs=on)
+        space.add_solid(shape.corners, dxfattribs=attributes)
     elif isinstance(shape, Label):
-        _label(space, shape, on)
+        _label(space, shape, attributes)
     else:
-        _dimension(found, space, shape, on)
+        _dimension(document, space, shape, attributes)
 
 
-def _label(space: BaseLayout, shape: Label, on: dict[str, Any]) -> None:
+def _label(space: BaseLayout, shape: Label, attributes: dict[str, Any]) -> None:
     # Without what would end its line or be taken for a code.
     plain = " ".join(shape.text.replace("%%", "% %").split()).replace("^", "^ ")
-    text = space.add_text(plain, height=shape.height, rotation=shape.angle, dxfattribs=on)
-    text.dxf.insert = shape.at
+    text = space.add_text(plain, height=shape.height, rotation=shape.angle, dxfattribs=attributes)
+    text.dxf.insert = shape.position
     if shape.anchor != "start":
-        text.dxf.halign, text.dxf.align_point = _ANCHORS[shape.anchor], shape.at
+        text.dxf.halign, text.dxf.align_point = _ANCHORS[shape.anchor], shape.position
 
 
-def _dimension(found: Document, space: BaseLayout, shape: Dimension, on: dict[str, Any]) -> None:
+def _dimension(document: Document, space: BaseLayout, shape: Dimension, attributes: dict[str, Any]) -> None:
     """Add a dimension with the picture that it has here: ezdxf's own needs the fonts of the machine for it."""
-    block = found.blocks.new_anonymous_block(type_char="D")
+    block = document.blocks.new_anonymous_block(type_char="D")
     for part in shape.parts:
-        _add(found, block, part)
+        _add(document, block, part)
     label = next(part for part in shape.parts if isinstance(part, Label))
     styled = space.add_linear_dim(
         base=shape.through,
@@ -119,13 +119,13 @@ def _dimension(found: Document, space: BaseLayout, shape: Dimension, on: dict[st
         angle=shape.angle,
         dimstyle=_STYLE,
         override=_deviations(shape),
-        dxfattribs=on,
+        dxfattribs=attributes,
     )
     styled.commit()
-    made = styled.dimension
-    made.dxf.geometry = block.name
-    made.dxf.text_midpoint = label.at
-    made.dxf.actual_measurement = shape.length
+    entity = styled.dimension
+    entity.dxf.geometry = block.name
+    entity.dxf.text_midpoint = label.position
+    entity.dxf.actual_measurement = shape.length
 
 
 def _deviations(shape: Dimension) -> dict[str, Any]:

@@ -11,9 +11,9 @@ from ...objectives.kinds import System
 from ..designs.toleranced import tolerances_of
 from . import layers as on
 from .dimensions import Lettering, aligned, dimension
-from .parts import Look, lengths_in_words, look_of, moving, pins_at, scenery
+from .parts import Look, fixed_shapes, lengths_in_words, look_of, moving_shapes, pin_positions
 from .shapes import Drawing, Line, Point, Shape
-from .titles import TEXT, TRUE_SCALE, titled
+from .titles import TEXT, TRUE_SCALE, with_title
 
 CRANK_ANGLE = math.radians(60.0)
 """Crank angle at which a linkage is drawn unless asked otherwise, rad."""
@@ -37,17 +37,17 @@ def linkage_drawing(
     """
     look = look_of(mechanism, linkage)
     size = look.size
-    pin, slider = pins_at(linkage, crank_angle)
+    pin, slider = pin_positions(linkage, crank_angle)
     shapes: list[Shape] = [
-        *scenery(linkage, look, below=pin[1] >= 0.0),
-        *moving(pin, slider, look),
+        *fixed_shapes(linkage, look, bearing_below=pin[1] >= 0.0),
+        *moving_shapes(pin, slider, look),
         Line(on.SKELETON, (0.0, 0.0), pin),
         Line(on.SKELETON, pin, slider),
         *_dimensions(pin, slider, look, tolerances_of(mechanism, linkage), Lettering(TEXT * size, system)),
     ]
     title = f"{name}, {design}" if design else name
     layers = on.GAS_LAYERS if look.barrels else on.LAYERS
-    return titled(layers, shapes, look.extent, size, title, _notes(linkage, crank_angle, look, system))
+    return with_title(layers, shapes, look.extent, size, title, _notes(linkage, crank_angle, look, system))
 
 
 def _dimensions(
@@ -61,15 +61,17 @@ def _dimensions(
     bend = -1.0 if pin[0] * rod[1] - pin[1] * rod[0] > 0.0 else 1.0
     y = side * (max(look.crank + 0.5 * look.crank_width, side * e + 0.72 * look.block) + 3.0 * height)
     off = {name: tolerances.get(name, 0.0) for name in ("crank", "rod", "offset")}
-    found: list[Shape] = [
+    shapes: list[Shape] = [
         aligned("crank", (0.0, 0.0), pin, bend * (0.5 * look.crank_width + 2.2 * height), letters, off["crank"]),
         aligned("rod", pin, slider, bend * (0.5 * look.rod_width + 2.2 * height), letters, off["rod"]),
         dimension("stroke", look.inner, look.outer, (look.inner[0], y), 0.0, look=letters),
     ]
     if e:
         x = left - 3.0 * height
-        found.append(dimension("offset", (left, 0.0), (left, e), (x, 0.0), 90.0, look=letters, tolerance=off["offset"]))
-    return found
+        shapes.append(
+            dimension("offset", (left, 0.0), (left, e), (x, 0.0), 90.0, look=letters, tolerance=off["offset"])
+        )
+    return shapes
 
 
 def _notes(linkage: Linkage, angle: float, look: Look, system: System) -> tuple[str, ...]:
@@ -80,6 +82,6 @@ def _notes(linkage: Linkage, angle: float, look: Look, system: System) -> tuple[
         f"Drawn at crank angle {math.degrees(angle):.6g} deg; "
         f"dead centres at {inner} deg (inner) and {outer} deg (outer).",
         f"{TRUE_SCALE[system]}; pivots are exact.",
-        widths if look.own else "Link widths, slider and pins are schematic.",
+        widths if look.has_sections else "Link widths, slider and pins are schematic.",
         *(["Bore and clearance of the cylinder are those of the job."] if look.barrels else []),
     )

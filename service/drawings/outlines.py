@@ -33,7 +33,7 @@ def outlines(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) -> Out
     """Return the parts of a design that turns through, or swings. Raises as `look_of` and `swing_look` do."""
     if swing is None:
         look = look_of(mechanism, linkage)
-        return Outlines(look.extent, (1.5 * look.along, look.block), look.barrels, None, None, 0.0)
-    of = swing_look(mechanism, linkage, swing)
-    slider = (1.5 * of.look.along, of.look.block)
-    return Outlines(of.extent, slider, of.look.barrels, of.cylinder, of.body, 2.0 * half_body(of.look))
+        return Outlines(look.extent, (1.5 * look.slider_size, look.block), look.barrels, None, None, 0.0)
+    drawn = swing_look(mechanism, linkage, swing)
+    slider = (1.5 * drawn.look.slider_size, drawn.look.block)
+    return Outlines(drawn.extent, slider, drawn.look.barrels, drawn.cylinder, drawn.body, 2.0 * half_body(drawn.look))

@@ -44,14 +44,14 @@ class Look:
     offset: float
     inner: Point
     outer: Point
-    reach: tuple[float, float]
+    slider_range: tuple[float, float]
     extent: tuple[float, float, float, float]
     crank_width: float
     rod_width: float
     block: float
-    along: float
+    slider_size: float
     pin: float
-    own: bool
+    has_sections: bool
     barrels: tuple[Barrel, ...] = ()
 
     @property
@@ -77,18 +77,18 @@ def _with_cylinders(mechanism: Mechanism, look: Look) -> Look:
     gas = [load for _, load in cylinders(mechanism)]
     if not gas:
         return look
-    half, barrels = 0.75 * look.along, []
+    half, barrels = 0.75 * look.slider_size, []
     for load in gas:
         ends = (look.inner[0], look.outer[0])
         foot, top = ends if load.head == "outer dead centre" else ends[::-1]
         way = math.copysign(1.0, top - foot)
         height = load.clearance * abs(top - foot) + _MM * load.clearance_volume / load.area
         barrels.append(Barrel(_MM * load.bore, foot - way * half, top + way * (half + height)))
-    bore, (left, low, right, high) = max(of.bore for of in barrels), look.extent
+    bore, (left, low, right, high) = max(barrel.bore for barrel in barrels), look.extent
     extent = (
-        min(left, *(of.head for of in barrels)),
+        min(left, *(barrel.head for barrel in barrels)),
         min(low, look.offset - 0.72 * bore),
-        max(right, *(of.head for of in barrels)),
+        max(right, *(barrel.head for barrel in barrels)),
         max(high, look.offset + 0.72 * bore),
     )
     return replace(look, block=bore, barrels=tuple(barrels), extent=extent)
@@ -98,7 +98,7 @@ def look_between(
     mechanism: Mechanism,
     linkage: Linkage,
     ends: tuple[float, float],
-    reach: tuple[float, float],
+    slider_range: tuple[float, float],
     swept: tuple[float, float, float, float],
 ) -> Look:
     """Return how a linkage is drawn whose slider goes between two places, mm; see `Look`.
@@ -109,56 +109,59 @@ def look_between(
     described = (mechanism.crank, mechanism.rod)
     usual = min(0.05 * (l + r), 0.5 * r)
     crank, rod = (_MM * link.width if isinstance(link, Bar) else usual for link in described)
-    block = max(0.16 * (r + max(r, abs(e))), 0.05 * (max(map(abs, reach)) + r))
+    block = max(0.16 * (r + max(r, abs(e))), 0.05 * (max(map(abs, slider_range)) + r))
     pin = min(0.28 * min(crank, rod), 0.25 * block, 0.25 * r)
     half = 0.5 * crank
     extent = (
-        min(swept[0] - half, reach[0] - 0.95 * block),
+        min(swept[0] - half, slider_range[0] - 0.95 * block),
         min(swept[1] - half, e - 0.72 * block),
-        max(swept[2] + half, reach[1] + 0.95 * block),
+        max(swept[2] + half, slider_range[1] + 0.95 * block),
         max(swept[3] + half, e + 0.72 * block),
     )
-    own = any(isinstance(link, Bar) for link in described)
-    return Look(r, l, e, (ends[0], e), (ends[1], e), reach, extent, crank, rod, block, block, pin, own)
+    has_sections = any(isinstance(link, Bar) for link in described)
+    return Look(r, l, e, (ends[0], e), (ends[1], e), slider_range, extent, crank, rod, block, block, pin, has_sections)
 
 
 def lengths_in_words(linkage: Linkage, system: System = "metric", *, digits: int = 7, stroke: bool = False) -> str:
     """Return the dimensions of a linkage, with its stroke where that is asked, and its branch."""
-    names, face = (*DIMENSIONS, *(["stroke"] if stroke else [])), LENGTH.display_unit(system)
-    lengths = (f"{name} {face.factor * float(getattr(linkage, name)):.{digits}g} {face.symbol}" for name in names)
+    names, unit = (*DIMENSIONS, *(["stroke"] if stroke else [])), LENGTH.display_unit(system)
+    lengths = (f"{name} {unit.factor * float(getattr(linkage, name)):.{digits}g} {unit.symbol}" for name in names)
     return f"{', '.join(lengths)}; {linkage.branch} branch"
 
 
-def pins_at(linkage: Linkage, angle: float) -> tuple[Point, Point]:
+def pin_positions(linkage: Linkage, angle: float) -> tuple[Point, Point]:
     """Return crank pin and slider pin at a crank angle, rad."""
     r, x = _MM * float(linkage.crank), _MM * float(linkage.at(angle).slider_position)
     return (r * math.cos(angle), r * math.sin(angle)), (x, _MM * float(linkage.offset))
 
 
-def moving(pin: Point, slider: Point, look: Look) -> list[Shape]:
+def moving_shapes(pin: Point, slider: Point, look: Look) -> list[Shape]:
     """Return slider, rod and crank with their pins where crank pin and slider pin are."""
-    drawn = links((on.SLIDER, on.ROD, on.CRANK), pin, slider, look)
+    drawn = link_shapes((on.SLIDER, on.ROD, on.CRANK), pin, slider, look)
     return [*drawn, *(Circle(on.PINS, point, look.pin) for point in ((0.0, 0.0), pin, slider))]
 
 
-def scenery(linkage: Linkage, look: Look, *, below: bool) -> list[Shape]:
-    """Return axes, paths, both dead centres, guide and bearing. below: whether the bearing stands below the pivot."""
+def fixed_shapes(linkage: Linkage, look: Look, *, bearing_below: bool) -> list[Shape]:
+    """Return axes, paths, both dead centres, guide and bearing.
+
+    bearing_below: whether the bearing stands below the pivot.
+    """
     paths = (Circle(on.PATHS, (0.0, 0.0), look.crank), Line(on.PATHS, look.inner, look.outer))
     ghosts: list[Shape] = []
     for layer, angle, end in zip(
         (on.INNER, on.OUTER), linkage.dead_centre_angles, (look.inner, look.outer), strict=True
     ):
         pin = (look.crank * math.cos(angle), look.crank * math.sin(angle))
-        ghosts += links((layer,) * 3, pin, end, look)
+        ghosts += link_shapes((layer,) * 3, pin, end, look)
         ghosts += [Circle(layer, point, 0.6 * look.pin) for point in (pin, end)]
-    walls = [line for of in look.barrels for line in _barrel(of, look.offset)]
-    return [*axes(look), *paths, *ghosts, *rails(look), *bearing(look, below=below), *walls]
+    walls = [line for barrel in look.barrels for line in _barrel(barrel, look.offset)]
+    return [*axes(look), *paths, *ghosts, *rails(look), *bearing(look, is_below=bearing_below), *walls]
 
 
-def _barrel(of: Barrel, offset: float) -> list[Shape]:
+def _barrel(barrel: Barrel, offset: float) -> list[Shape]:
     """Return bore and head of a cylinder."""
-    low, high = offset - 0.5 * of.bore, offset + 0.5 * of.bore
-    corners = ((of.foot, low), (of.head, low), (of.head, high), (of.foot, high))
+    low, high = offset - 0.5 * barrel.bore, offset + 0.5 * barrel.bore
+    corners = ((barrel.foot, low), (barrel.head, low), (barrel.head, high), (barrel.foot, high))
     return [Line(on.CYLINDER, start, end) for start, end in itertools.pairwise(corners)]
 
 
@@ -184,12 +187,12 @@ def bar(layer: Layer, start: Point, end: Point, width: float) -> Outline:
 
 def block(layer: Layer, pin: Point, look: Look) -> Outline:
     """Return the outline of a slider about its pin."""
-    x, y = 0.75 * look.along, 0.5 * look.block
+    x, y = 0.75 * look.slider_size, 0.5 * look.block
     corners = tuple((pin[0] + u * x, pin[1] + v * y) for u, v in ((-1, -1), (1, -1), (1, 1), (-1, 1)))
     return Outline(layer, corners, (0.0, 0.0, 0.0, 0.0))
 
 
-def links(layers: tuple[Layer, Layer, Layer], pin: Point, slider: Point, look: Look) -> list[Shape]:
+def link_shapes(layers: tuple[Layer, Layer, Layer], pin: Point, slider: Point, look: Look) -> list[Shape]:
     """Return slider, rod and crank, each on its layer."""
     return [
         block(layers[0], slider, look),
@@ -201,11 +204,11 @@ def links(layers: tuple[Layer, Layer, Layer], pin: Point, slider: Point, look: L
 def rails(look: Look) -> list[Shape]:
     """Return the guide of the slider, hatched."""
     shapes: list[Shape] = []
-    start, end = look.reach[0] - 0.95 * look.along, look.reach[1] + 0.95 * look.along
+    start, end = look.slider_range[0] - 0.95 * look.slider_size, look.slider_range[1] + 0.95 * look.slider_size
     for side in (-1.0, 1.0):
         y = look.offset + side * 0.52 * look.block
         shapes.append(Line(on.FRAME, (start, y), (end, y)))
-        pitch = max(0.2 * look.along, (end - start) / _FEET)
+        pitch = max(0.2 * look.slider_size, (end - start) / _FEET)
         shapes += [
             Line(on.FRAME, (start + k * pitch, y), (start + (k - 1) * pitch, y + side * pitch))
             for k in range(1, int((end - start) / pitch) + 1)
@@ -213,9 +216,9 @@ def rails(look: Look) -> list[Shape]:
     return shapes
 
 
-def bearing(look: Look, *, below: bool) -> list[Shape]:
-    """Return the bearing of the crank pivot. below: whether it stands below it."""
+def bearing(look: Look, *, is_below: bool) -> list[Shape]:
+    """Return the bearing of the crank pivot. is_below: whether it stands below it."""
     foot = 1.5 * max(look.pin, 0.3 * look.crank_width)
-    y = -2.0 * foot if below else 2.0 * foot
+    y = -2.0 * foot if is_below else 2.0 * foot
     legs = [Line(on.FRAME, (0.0, 0.0), (x, y)) for x in (-foot, foot)]
     return [*legs, Line(on.FRAME, (-1.8 * foot, y), (1.8 * foot, y))]

@@ -55,7 +55,7 @@ class Arc:
     start: float
     end: float
 
-    def at(self, angle: float) -> Point:
+    def point_at(self, angle: float) -> Point:
         """Return the point at an angle, deg."""
         turn = math.radians(angle)
         return self.centre[0] + self.radius * math.cos(turn), self.centre[1] + self.radius * math.sin(turn)
@@ -64,7 +64,7 @@ class Arc:
     def points(self) -> list[Point]:
         """Points along it, a degree apart or less."""
         count = max(1, math.ceil(self.end - self.start))
-        return [self.at(self.start + (self.end - self.start) * k / count) for k in range(count + 1)]
+        return [self.point_at(self.start + (self.end - self.start) * k / count) for k in range(count + 1)]
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class Label:
 
     layer: Layer
     text: str
-    at: Point
+    position: Point
     height: float
     angle: float = 0.0
     anchor: Anchor = "start"
@@ -118,8 +118,8 @@ class Dimension:
     @property
     def length(self) -> float:
         """The measured distance, mm."""
-        along = (math.cos(math.radians(self.angle)), math.sin(math.radians(self.angle)))
-        return abs((self.end[0] - self.start[0]) * along[0] + (self.end[1] - self.start[1]) * along[1])
+        direction = (math.cos(math.radians(self.angle)), math.sin(math.radians(self.angle)))
+        return abs((self.end[0] - self.start[0]) * direction[0] + (self.end[1] - self.start[1]) * direction[1])
 
 
 Shape = Line | Circle | Arc | Outline | Wedge | Label | Dimension
@@ -135,7 +135,7 @@ class Drawing:
     title: str
     notes: tuple[str, ...]
 
-    def on(self, name: str) -> list[Shape]:
+    def shapes_on(self, name: str) -> list[Shape]:
         """Return the shapes on a layer."""
         return [shape for shape in self.shapes if shape.layer.name == name]
 
@@ -170,7 +170,10 @@ def _reach(shape: Shape) -> Iterable[Point]:
     back = {"start": 0.0, "middle": 0.5, "end": 1.0}[shape.anchor] * long
     corners = [(u - back, v) for u in (0.0, long) for v in (-0.3 * shape.height, shape.height)]
     return [
-        (shape.at[0] + u * math.cos(turn) - v * math.sin(turn), shape.at[1] + u * math.sin(turn) + v * math.cos(turn))
+        (
+            shape.position[0] + u * math.cos(turn) - v * math.sin(turn),
+            shape.position[1] + u * math.sin(turn) + v * math.cos(turn),
+        )
         for u, v in corners
     ]
 

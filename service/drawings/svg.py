@@ -38,7 +38,7 @@ def svg_text(drawing: Drawing) -> str:
     ]
     for layer in drawing.layers:
         lines.append(group(layer, drawing.size))
-        lines += [f"  {line}" for shape in drawing.on(layer.name) for line in elements(shape)]
+        lines += [f"  {line}" for shape in drawing.shapes_on(layer.name) for line in elements(shape)]
         lines.append("</g>")
     return "\n".join([*lines, "</svg>", ""])
 
@@ -68,7 +68,7 @@ def elements(shape: Shape) -> list[str]:
         return [f'<circle cx="{_number(x)}" cy="{_number(-y)}" r="{_number(shape.radius)}"/>']
     if isinstance(shape, Arc):
         # Counter-clockwise here, where y points downward, is against the sense of the flag.
-        start, end = _point(shape.at(shape.start)), _point(shape.at(shape.end))
+        start, end = _point(shape.point_at(shape.start)), _point(shape.point_at(shape.end))
         radius, large = _number(shape.radius), int(shape.end - shape.start > 180.0)
         return [f'<path d="M{start}A{radius} {radius} 0 {large} 0 {end}"/>']
     if isinstance(shape, Outline):
@@ -97,7 +97,7 @@ def _outline(shape: Outline) -> str:
 
 
 def _label(shape: Label) -> str:
-    x, y = _number(shape.at[0]), _number(-shape.at[1])
+    x, y = _number(shape.position[0]), _number(-shape.position[1])
     turned = f' transform="rotate({_number(-shape.angle)} {x} {y})"' if shape.angle else ""
     # Capitals are 0.716 of the size of the font.
     size = _number(shape.height / 0.716)

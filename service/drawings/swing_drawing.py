@@ -12,10 +12,10 @@ from ...objectives.kinds import System, shown_in
 from ..designs.toleranced import tolerances_of
 from . import layers as on
 from .dimensions import Lettering, aligned, dimension
-from .parts import lengths_in_words, pins_at
+from .parts import lengths_in_words, pin_positions
 from .shapes import Anchor, Arc, Drawing, Label, Line, Shape
 from .swing_parts import SwingLook, half_body, swing_look, swing_moving, swing_scenery
-from .titles import TEXT, TRUE_SCALE, titled
+from .titles import TEXT, TRUE_SCALE, with_title
 
 
 def swing_drawing(
@@ -34,75 +34,77 @@ def swing_drawing(
     swing but for whole turns; half-way if None. name, design: as for `linkage_drawing`. Raises `InputError` for a crank
     angle outside, and what `require_swing` raises.
     """
-    of = swing_look(mechanism, linkage, swing)
-    angle = _within(of.swing, crank_angle)
-    pin, slider = pins_at(of.linkage, angle)
-    letters = Lettering(TEXT * of.look.size, system)
+    drawn = swing_look(mechanism, linkage, swing)
+    angle = _within(drawn.swing, crank_angle)
+    pin, slider = pin_positions(drawn.linkage, angle)
+    letters = Lettering(TEXT * drawn.look.size, system)
     shapes: list[Shape] = [
-        *swing_scenery(of),
-        *swing_moving(of, angle),
+        *swing_scenery(drawn),
+        *swing_moving(drawn, angle),
         Line(on.SKELETON, (0.0, 0.0), pin),
         Line(on.SKELETON, pin, slider),
-        *_dimensions(of, angle, mechanism, letters),
+        *_dimensions(drawn, angle, mechanism, letters),
     ]
-    notes = _notes(of, angle, system)
-    return titled(on.SWING_LAYERS, shapes, of.extent, of.look.size, f"{name}, {design}" if design else name, notes)
+    notes = _notes(drawn, angle, system)
+    return with_title(
+        on.SWING_LAYERS, shapes, drawn.extent, drawn.look.size, f"{name}, {design}" if design else name, notes
+    )
 
 
 def _within(swing: Swing, angle: float | None) -> float:
     """Return a crank angle turned by whole turns into a swing."""
     if angle is None:
         return 0.5 * (swing.start + swing.end)
-    found = [at for near in (0.0, 1e-9, -1e-9) for at in swing.inside(angle + near)]
-    if not found:
-        start, end, asked = (math.degrees(at) for at in (swing.start, swing.end, angle))
+    angles = [at for near in (0.0, 1e-9, -1e-9) for at in swing.inside(angle + near)]
+    if not angles:
+        start, end, requested = (math.degrees(at) for at in (swing.start, swing.end, angle))
         raise InputError(
             f"the crank angle of a drawing must be within the swing, from {start:.6g} to {end:.6g} deg; got "
-            f"{asked:.6g} deg; give one in between, or none for the middle"
+            f"{requested:.6g} deg; give one in between, or none for the middle"
         )
-    return found[0]
+    return angles[0]
 
 
-def _dimensions(of: SwingLook, angle: float, mechanism: Mechanism, letters: Lettering) -> list[Shape]:
+def _dimensions(drawn: SwingLook, angle: float, mechanism: Mechanism, letters: Lettering) -> list[Shape]:
     """Return the dimension lines: of crank and rod beside them, offset at the left, travel outside, angle within."""
-    look, swing, height = of.look, of.swing, letters.height
-    (left, low, _, high), (pin, slider) = of.extent, pins_at(of.linkage, angle)
-    given = tolerances_of(mechanism, of.linkage)
+    look, swing, height = drawn.look, drawn.swing, letters.height
+    (left, low, _, high), (pin, slider) = drawn.extent, pin_positions(drawn.linkage, angle)
+    tolerances = tolerances_of(mechanism, drawn.linkage)
     rod = (slider[0] - pin[0], slider[1] - pin[1])
     bend = -1.0 if pin[0] * rod[1] - pin[1] * rod[0] > 0.0 else 1.0  # on the outside, as of a linkage that turns
-    y = low - 3.0 * height if of.below else high + 3.0 * height
-    beside = 0.5 * look.crank_width
-    if of.body is not None:
-        beside = max(beside, bend * of.body[1] + half_body(look))
-    found: list[Shape] = [
-        aligned("crank", (0.0, 0.0), pin, bend * (beside + 2.2 * height), letters, given.get("crank", 0.0)),
-        aligned("rod", pin, slider, bend * (0.5 * look.rod_width + 2.2 * height), letters, given.get("rod", 0.0)),
+    y = low - 3.0 * height if drawn.bearing_below else high + 3.0 * height
+    half_width = 0.5 * look.crank_width
+    if drawn.body is not None:
+        half_width = max(half_width, bend * drawn.body[1] + half_body(look))
+    shapes: list[Shape] = [
+        aligned("crank", (0.0, 0.0), pin, bend * (half_width + 2.2 * height), letters, tolerances.get("crank", 0.0)),
+        aligned("rod", pin, slider, bend * (0.5 * look.rod_width + 2.2 * height), letters, tolerances.get("rod", 0.0)),
         dimension("travel", look.inner, look.outer, (look.inner[0], y), 0.0, look=letters),
     ]
     if look.offset:
-        x, tolerance = left - 3.0 * height, given.get("offset", 0.0)
+        x, tolerance = left - 3.0 * height, tolerances.get("offset", 0.0)
         ends = ((left, 0.0), (left, look.offset))
-        found.append(dimension("offset", *ends, (x, 0.0), 90.0, look=letters, tolerance=tolerance))
+        shapes.append(dimension("offset", *ends, (x, 0.0), 90.0, look=letters, tolerance=tolerance))
     first, last = sorted(math.degrees(at) for at in (swing.start, swing.end))
     arc = Arc(on.DIMENSIONS, (0.0, 0.0), 0.45 * look.crank, first, last)
     share = 0.25 if bend > 0.0 else 0.75  # on the side of the crank that its own dimension is not on
-    place, beside_it = arc.at(first + share * (last - first)), arc.at(math.degrees(angle))
+    place, beside_it = arc.point_at(first + share * (last - first)), arc.point_at(math.degrees(angle))
     anchor: Anchor = "start" if place[0] > beside_it[0] else "end"  # the words run away from the crank
     text = Label(on.DIMENSIONS, f"{last - first:.6g} deg", place, height, anchor=anchor)
-    return [*found, arc, text]
+    return [*shapes, arc, text]
 
 
-def _notes(of: SwingLook, angle: float, system: System) -> tuple[str, ...]:
-    look, swing = of.look, of.swing
+def _notes(drawn: SwingLook, angle: float, system: System) -> tuple[str, ...]:
+    look, swing = drawn.look, drawn.swing
     unit, factor = shown_in("mm", system)
-    start, end, drawn = (f"{math.degrees(at):.6g}" for at in (swing.start, swing.end, angle))
+    start, end, drawn_angle = (f"{math.degrees(at):.6g}" for at in (swing.start, swing.end, angle))
     widths = "Link widths are to scale; slider and pins are schematic."
-    driven = "The crank is driven." if of.cylinder is None else "It is driven; the cylinder is schematic."
+    driven = "The crank is driven." if drawn.cylinder is None else "It is driven; the cylinder is schematic."
     return (
-        f"{lengths_in_words(of.linkage, system)}.",
-        f"Swings from {start} to {end} deg; drawn at {drawn} deg, both ends dashed.",
+        f"{lengths_in_words(drawn.linkage, system)}.",
+        f"Swings from {start} to {end} deg; drawn at {drawn_angle} deg, both ends dashed.",
         f"The slider goes from {factor * look.inner[0]:.7g} to {factor * look.outer[0]:.7g} {unit}. {driven}",
         f"{TRUE_SCALE[system]}; pivots are exact.",
-        widths if look.own else "Link widths, slider and pins are schematic.",
-        *(() if of.body is None else ("The schematic square on the crank is centred on its mass centre.",)),
+        widths if look.has_sections else "Link widths, slider and pins are schematic.",
+        *(() if drawn.body is None else ("The schematic square on the crank is centred on its mass centre.",)),
     )

@@ -12,7 +12,7 @@ from ...model.machine.links import Bar
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing, dead_points, placed, require_swing
 from . import layers as on
-from .parts import Look, axes, bearing, links, look_between, moving, pins_at, rails
+from .parts import Look, axes, bearing, link_shapes, look_between, moving_shapes, pin_positions, rails
 from .shapes import Arc, Circle, Layer, Line, Outline, Point, Shape
 
 _MM = 1e3
@@ -28,7 +28,7 @@ class Cylinder:
     """
 
     side: float
-    face: float
+    near_end: float
     foot: float
     width: float
 
@@ -51,36 +51,36 @@ class SwingLook:
         """Left, bottom, right and top of everything that stands or moves, about."""
         left, low, right, high = self.look.extent
         if self.cylinder is not None:
-            ends = (self.cylinder.face, self.cylinder.foot)
+            ends = (self.cylinder.near_end, self.cylinder.foot)
             left, right = min(left, *ends), max(right, *ends)
         return left, low, right, high
 
     @property
-    def below(self) -> bool:
+    def bearing_below(self) -> bool:
         """Whether the bearing stands below the pivot: away from the crank in the middle of the swing."""
         return math.sin(0.5 * (self.swing.start + self.swing.end)) >= 0.0
 
 
 def swing_look(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingLook:
     """Return how a linkage that swings is drawn. Raises what `require_swing` raises."""
-    own = require_swing(mechanism, linkage, swing)
-    swing = placed(mechanism, own, swing)
-    turning = [inside for dead in dead_points(own) for inside in swing.inside(dead)]
-    ways = [pins_at(own, angle)[1][0] for angle in (swing.start, swing.end, *turning)]
-    reach = (min(ways), max(ways))
-    body = _body(mechanism, own)
-    swept = _swept(own, swing, body)
-    look = look_between(mechanism, own, (ways[0], ways[1]), reach, swept)
+    checked = require_swing(mechanism, linkage, swing)
+    swing = placed(mechanism, checked, swing)
+    turning = [dead_angle for dead in dead_points(checked) for dead_angle in swing.inside(dead)]
+    ways = [pin_positions(checked, angle)[1][0] for angle in (swing.start, swing.end, *turning)]
+    slider_range = (min(ways), max(ways))
+    body = _body(mechanism, checked)
+    swept = _swept(checked, swing, body)
+    look = look_between(mechanism, checked, (ways[0], ways[1]), slider_range, swept)
     cylinder = _cylinder(look) if swing.driver == "slider" else None
-    return SwingLook(own, swing, look, cylinder, body)
+    return SwingLook(checked, swing, look, cylinder, body)
 
 
 def _body(mechanism: Mechanism, linkage: Linkage) -> Point | None:
     crank = mechanism.crank
     if isinstance(crank, Bar) or not crank.mass:
         return None
-    along = 0.5 * float(linkage.crank) if crank.centre is None else crank.centre
-    return _MM * along, _MM * crank.centre_across
+    centre_along = 0.5 * float(linkage.crank) if crank.centre is None else crank.centre
+    return _MM * centre_along, _MM * crank.centre_across
 
 
 def half_body(look: Look) -> float:
@@ -97,45 +97,48 @@ def _swept(linkage: Linkage, swing: Swing, body: Point | None) -> tuple[float, f
     x, y = [np.zeros(1), r * np.cos(angles)], [np.zeros(1), r * np.sin(angles)]
     if body is not None:
         half = math.sqrt(2.0) * _BODY * r
-        across = body[0] * np.cos(angles) - body[1] * np.sin(angles)
-        up = body[0] * np.sin(angles) + body[1] * np.cos(angles)
-        x += [across - half, across + half]
-        y += [up - half, up + half]
+        x_centre = body[0] * np.cos(angles) - body[1] * np.sin(angles)
+        y_centre = body[0] * np.sin(angles) + body[1] * np.cos(angles)
+        x += [x_centre - half, x_centre + half]
+        y += [y_centre - half, y_centre + half]
     every = np.concatenate(x), np.concatenate(y)
     return float(every[0].min()), float(every[1].min()), float(every[0].max()), float(every[1].max())
 
 
 def _cylinder(look: Look) -> Cylinder:
     """Return a cylinder as long as it must be, on the far side of the slider."""
-    side = 1.0 if sum(look.reach) >= 0.0 else -1.0
-    far = side * look.reach[1 if side > 0.0 else 0]
-    face = far + 1.3 * look.block
-    long = look.reach[1] - look.reach[0] + 0.6 * look.block
-    return Cylinder(side, side * face, side * (face + long), 0.5 * look.block)
+    side = 1.0 if sum(look.slider_range) >= 0.0 else -1.0
+    far = side * look.slider_range[1 if side > 0.0 else 0]
+    near_end = far + 1.3 * look.block
+    long = look.slider_range[1] - look.slider_range[0] + 0.6 * look.block
+    return Cylinder(side, side * near_end, side * (near_end + long), 0.5 * look.block)
 
 
-def swing_scenery(of: SwingLook) -> list[Shape]:
+def swing_scenery(drawn: SwingLook) -> list[Shape]:
     """Return axes, ways of the pins, both ends, guide, bearing and the barrel of the cylinder."""
-    look, swing = of.look, of.swing
+    look, swing = drawn.look, drawn.swing
     first, last = sorted(math.degrees(angle) for angle in (swing.start, swing.end))
-    ways = (Arc(on.PATHS, (0.0, 0.0), look.crank, first, last), Line(on.PATHS, *((x, look.offset) for x in look.reach)))
+    ways = (
+        Arc(on.PATHS, (0.0, 0.0), look.crank, first, last),
+        Line(on.PATHS, *((x, look.offset) for x in look.slider_range)),
+    )
     ghosts: list[Shape] = []
     for layer, angle in ((on.START, swing.start), (on.END, swing.end)):
-        pin, slider = pins_at(of.linkage, angle)
-        ghosts += links((layer,) * 3, pin, slider, look)
+        pin, slider = pin_positions(drawn.linkage, angle)
+        ghosts += link_shapes((layer,) * 3, pin, slider, look)
         ghosts += [Circle(layer, point, 0.6 * look.pin) for point in (pin, slider)]
-        if of.cylinder is not None:
-            ghosts.append(_push(layer, slider, of.cylinder, look))
-    barrel = [] if of.cylinder is None else _barrel(of.cylinder, look)
-    return [*axes(look), *ways, *ghosts, *rails(look), *bearing(look, below=of.below), *barrel]
+        if drawn.cylinder is not None:
+            ghosts.append(_push(layer, slider, drawn.cylinder, look))
+    barrel = [] if drawn.cylinder is None else _barrel(drawn.cylinder, look)
+    return [*axes(look), *ways, *ghosts, *rails(look), *bearing(look, is_below=drawn.bearing_below), *barrel]
 
 
-def swing_moving(of: SwingLook, angle: float) -> list[Shape]:
+def swing_moving(drawn: SwingLook, angle: float) -> list[Shape]:
     """Return the cylinder's rod, the links with their pins and the body at a crank angle, rad."""
-    pin, slider = pins_at(of.linkage, angle)
-    pushed = [] if of.cylinder is None else [_push(on.ACTUATOR, slider, of.cylinder, of.look)]
-    turned = [] if of.body is None else body_shapes(of.body, of.look, angle)
-    return [*pushed, *moving(pin, slider, of.look), *turned]
+    pin, slider = pin_positions(drawn.linkage, angle)
+    pushed = [] if drawn.cylinder is None else [_push(on.ACTUATOR, slider, drawn.cylinder, drawn.look)]
+    turned = [] if drawn.body is None else body_shapes(drawn.body, drawn.look, angle)
+    return [*pushed, *moving_shapes(pin, slider, drawn.look), *turned]
 
 
 def body_shapes(body: Point, look: Look, angle: float) -> list[Shape]:
@@ -143,29 +146,36 @@ def body_shapes(body: Point, look: Look, angle: float) -> list[Shape]:
     half, mark = half_body(look), 0.5 * half_body(look)
     cosine, sine = math.cos(angle), math.sin(angle)
 
-    def at(along: float, across: float) -> Point:
-        u, v = body[0] + along, body[1] + across
+    def rotated(dx: float, dy: float) -> Point:
+        u, v = body[0] + dx, body[1] + dy
         return u * cosine - v * sine, u * sine + v * cosine
 
-    corners = tuple(at(u * half, v * half) for u, v in ((-1, -1), (1, -1), (1, 1), (-1, 1)))
+    corners = tuple(rotated(u * half, v * half) for u, v in ((-1, -1), (1, -1), (1, 1), (-1, 1)))
     return [
         Outline(on.BODY, corners, (0.0, 0.0, 0.0, 0.0)),
-        Circle(on.BODY, at(0.0, 0.0), 0.6 * mark),
-        Line(on.BODY, at(-mark, 0.0), at(mark, 0.0)),
-        Line(on.BODY, at(0.0, -mark), at(0.0, mark)),
+        Circle(on.BODY, rotated(0.0, 0.0), 0.6 * mark),
+        Line(on.BODY, rotated(-mark, 0.0), rotated(mark, 0.0)),
+        Line(on.BODY, rotated(0.0, -mark), rotated(0.0, mark)),
     ]
 
 
-def _push(layer: Layer, slider: Point, of: Cylinder, look: Look) -> Outline:
+def _push(layer: Layer, slider: Point, cylinder: Cylinder, look: Look) -> Outline:
     """Return the rod of the cylinder, from the slider to the barrel."""
-    return box(layer, (slider[0] + of.side * 0.75 * look.block, slider[1]), (of.face, slider[1]), 0.3 * of.width)
+    return box(
+        layer,
+        (slider[0] + cylinder.side * 0.75 * look.block, slider[1]),
+        (cylinder.near_end, slider[1]),
+        0.3 * cylinder.width,
+    )
 
 
-def cylinder_parts(of: Cylinder, look: Look) -> tuple[Outline, Outline]:
+def cylinder_parts(cylinder: Cylinder, look: Look) -> tuple[Outline, Outline]:
     """Return the cylinder's rod about the slider pin, whole, and its barrel."""
-    near = look.reach[0] if of.side > 0.0 else look.reach[1]
-    rod = box(on.ACTUATOR, (of.side * 0.75 * look.block, 0.0), (of.face - near, 0.0), 0.3 * of.width)
-    return rod, box(on.ACTUATOR, (of.face, look.offset), (of.foot, look.offset), of.width)
+    near = look.slider_range[0] if cylinder.side > 0.0 else look.slider_range[1]
+    rod = box(
+        on.ACTUATOR, (cylinder.side * 0.75 * look.block, 0.0), (cylinder.near_end - near, 0.0), 0.3 * cylinder.width
+    )
+    return rod, box(on.ACTUATOR, (cylinder.near_end, look.offset), (cylinder.foot, look.offset), cylinder.width)
 
 
 def box(layer: Layer, start: Point, end: Point, width: float) -> Outline:
@@ -180,12 +190,16 @@ def box(layer: Layer, start: Point, end: Point, width: float) -> Outline:
     return Outline(layer, corners, (0.0, 0.0, 0.0, 0.0))
 
 
-def _barrel(of: Cylinder, look: Look) -> list[Shape]:
+def _barrel(cylinder: Cylinder, look: Look) -> list[Shape]:
     """Return the barrel of the cylinder, and where it is held."""
-    y, half = look.offset, 0.8 * of.width
+    y, half = look.offset, 0.8 * cylinder.width
     hatch = [
-        Line(on.FRAME, (of.foot, y + k * half), (of.foot + of.side * 0.35 * half, y + (k - 0.35) * half))
+        Line(
+            on.FRAME,
+            (cylinder.foot, y + k * half),
+            (cylinder.foot + cylinder.side * 0.35 * half, y + (k - 0.35) * half),
+        )
         for k in (-0.6, -0.2, 0.2, 0.6, 1.0)
     ]
-    wall = Line(on.FRAME, (of.foot, y - half), (of.foot, y + half))
-    return [box(on.ACTUATOR, (of.face, y), (of.foot, y), of.width), wall, *hatch]
+    wall = Line(on.FRAME, (cylinder.foot, y - half), (cylinder.foot, y + half))
+    return [box(on.ACTUATOR, (cylinder.near_end, y), (cylinder.foot, y), cylinder.width), wall, *hatch]

@@ -16,7 +16,7 @@ TRUE_SCALE: dict[System, str] = {
 }
 
 
-def titled(
+def with_title(
     layers: tuple[Layer, ...],
     shapes: Sequence[Shape],
     extent: tuple[float, float, float, float],

@@ -19,9 +19,9 @@ from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust import robust_quantities
 from ..render.numerals import with_unit
 from ..runs.result import Wanted, wanted_of
-from .marks import BETTER, arrowed
+from .marks import BETTER, with_better_arrow
 from .scatter import MOST, triangle
-from .style import INK, SMALL, dress, heading, legend_at, limits, new_figure, write
+from .style import INK, SMALL, heading, legend_at, new_figure, padded_limits, style_axes, write_text
 
 # Fill, edge and marker: neighbours far apart in grey, colours of Okabe and Ito (see `style`).
 _STYLES = (
@@ -34,13 +34,13 @@ _STYLES = (
     ("#56b4e9", INK, "*"),
     ("#f0e442", INK, "^"),
 )
-GREATEST = len(_STYLES)
+MOST_RUNS = len(_STYLES)
 """Runs that can be told apart in one figure."""
 _LEFT, _BOTTOM, _TOP, _RIGHT, _GAP, _KEY, _NOTE = 0.95, 0.75, 0.55, 0.3, 0.18, 0.24, 0.18  # inches
 
 
 @dataclass(frozen=True)
-class Drawn:
+class PlottedRun:
     """A run in the figure. label: for the legend. values: (n, m), its objectives in shown units."""
 
     label: str
@@ -48,24 +48,28 @@ class Drawn:
 
 
 def comparison_matrix(
-    runs: Sequence[Drawn], objectives: Sequence[Wanted], *, title: str = "Fronts compared", notes: Sequence[str] = ()
+    runs: Sequence[PlottedRun],
+    objectives: Sequence[Wanted],
+    *,
+    title: str = "Fronts compared",
+    notes: Sequence[str] = (),
 ) -> Figure:
     """Return the scatter matrix of the fronts of several runs, of two objectives or more. notes: lines below it."""
     count = min(len(objectives), MOST) - 1
     side = max(1.6, min(4.2 if count == 1 else 2.6, 8.4 / count))
     width = max(_LEFT + count * (side + _GAP) + _RIGHT, 6.4)
     key = _KEY * len(runs) + 0.2
-    below = _NOTE * len(notes) + 0.2 if notes else 0.0
-    bottom = _BOTTOM + below
+    notes_height = _NOTE * len(notes) + 0.2 if notes else 0.0
+    bottom = _BOTTOM + notes_height
     figure = new_figure(width, bottom + count * (side + _GAP) + _TOP + key)
     labels = [_label(objective) for objective in objectives[:MOST]]
-    for panel, across, up in triangle(figure, labels, left=_LEFT, bottom=bottom, side=side, gap=_GAP):
-        _panel(panel, runs, across, up)
+    for panel, x_column, y_column in triangle(figure, labels, left=_LEFT, bottom=bottom, side=side, gap=_GAP):
+        _panel(panel, runs, x_column, y_column)
     height = figure.get_size_inches()[1]
-    more = f"the first {MOST} of {len(objectives)} objectives" if len(objectives) > MOST else ""
-    heading(figure, title, more, left=0.2)
+    subtitle = f"the first {MOST} of {len(objectives)} objectives" if len(objectives) > MOST else ""
+    heading(figure, title, subtitle, left=0.2)
     for line, note in enumerate(notes):
-        write(figure, 0.2, below - 0.1 - _NOTE * line, note, fontsize=SMALL, va="center")
+        write_text(figure, 0.2, notes_height - 0.1 - _NOTE * line, note, fontsize=SMALL, va="center")
     handles = [Line2D([], [], **_style(index)) for index in range(len(runs))]
     labels = [f"{run.label}, {counted(len(run.values), 'design')}" for run in runs]
     legend_at(figure, 0.2, height - _TOP, handles, labels)
@@ -77,19 +81,19 @@ def robustness_figure(front: ParetoFront) -> Figure | None:
 
     None without a nominal front to compare with.
     """
-    found = robust_cost(front)
-    if found is None:
+    comparison = robust_cost(front)
+    if comparison is None:
         return None
     first = robust_quantities(front.problem)[0]
     kind = first.case if first.case == "worst case" else f"{100.0 * first.share:.6g} % of machines"
     inner = {quantity.name: quantity.inner.title for quantity in robust_quantities(front.problem)}
     axes = [replace(item, title=inner.get(item.quantity, item.title)) for item in wanted_of(front.problem)]
     runs = [
-        Drawn("nominal front, without errors", found.nominal),
-        Drawn(f"robust front, within tolerances ({kind})", found.robust),
-        Drawn(
-            f"nominal front's designs within tolerances, {found.keeps} keep all requirements",
-            np.where(np.isfinite(found.within), found.within, np.nan),
+        PlottedRun("nominal front, without errors", comparison.nominal),
+        PlottedRun(f"robust front, within tolerances ({kind})", comparison.robust),
+        PlottedRun(
+            f"nominal front's designs within tolerances, {comparison.keeps} keep all requirements",
+            np.where(np.isfinite(comparison.within), comparison.within, np.nan),
         ),
     ]
     notes = ["Cost of robustness, best design of each front:"]
@@ -98,21 +102,21 @@ def robustness_figure(front: ParetoFront) -> Figure | None:
             continue
         best = np.max if item.sense == "maximise" else np.min
         unit = unit_text(item.unit)
-        before, after = float(best(found.nominal[:, column])), float(best(found.robust[:, column]))
-        cost = found.cost(column, maximised=item.sense == "maximise")
+        before, after = float(best(comparison.nominal[:, column])), float(best(comparison.robust[:, column]))
+        cost = comparison.cost(column, maximised=item.sense == "maximise")
         title = item.title.removesuffix(", worst case")
         change = f"{before:.5g} → {after:.5g} {unit}".rstrip()
         notes.append(f"   {title}: {change}, cost {cost:.2g} {unit}".rstrip())
     return comparison_matrix(runs, axes, title=f"{front.problem.name}: nominal and robust front", notes=notes)
 
 
-def _panel(panel: Axes, runs: Sequence[Drawn], across: int, up: int) -> None:
-    dress(panel)
+def _panel(panel: Axes, runs: Sequence[PlottedRun], x_column: int, y_column: int) -> None:
+    style_axes(panel)
     for index, run in enumerate(runs):
-        panel.plot(run.values[:, across], run.values[:, up], **_style(index), zorder=2 + 0.01 * index)
-    for column, set_limits in ((across, panel.set_xlim), (up, panel.set_ylim)):
+        panel.plot(run.values[:, x_column], run.values[:, y_column], **_style(index), zorder=2 + 0.01 * index)
+    for column, set_limits in ((x_column, panel.set_xlim), (y_column, panel.set_ylim)):
         values = np.concatenate([run.values[:, column] for run in runs])
-        set_limits(limits(values.min(), values.max()))
+        set_limits(padded_limits(values.min(), values.max()))
 
 
 def _style(index: int) -> dict[str, Any]:
@@ -127,6 +131,6 @@ def _style(index: int) -> dict[str, Any]:
     }
 
 
-def _label(wanted: Wanted) -> str:
-    title = with_unit(wanted.title.removesuffix(", worst case"), wanted.unit, wanted.target)
-    return arrowed(title, BETTER[wanted.sense])
+def _label(objective: Wanted) -> str:
+    title = with_unit(objective.title.removesuffix(", worst case"), objective.unit, objective.target)
+    return with_better_arrow(title, BETTER[objective.sense])

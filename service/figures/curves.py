@@ -21,8 +21,8 @@ from ...objectives.tables.cycle_curves import cycle_curves as all_curves
 from ..render.blocks import Value, joined, words
 from ..render.numerals import shown
 from .drawing import least_transmission_crank_angle
+from .panel_figure import CRANK_ANGLE, Line, Panel, crank_angle_panel
 from .panels import draw_panel
-from .sheets import CRANK_ANGLE, Line, Panel, over_turn
 from .style import MUTED, SMALL
 
 Array = NDArray[np.float64]
@@ -43,7 +43,7 @@ class Curves:
     outer: float
 
     @property
-    def last(self) -> float:
+    def last_turn_end(self) -> float:
         """End of the last turn, deg."""
         return 360.0 * round(float(self.angles[-1]) / 360.0)
 
@@ -57,8 +57,8 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True)
     moving = mechanism if mechanism.speed else replace(mechanism, speed=1.0)
     inner, outer = (float(angle) for angle in linkage.dead_centre_angles)
 
-    def peak(of: Mechanism, signal: Signal) -> float:
-        return float(first_peaks(of, signal, dimensions)[1][0])
+    def peak(machine: Mechanism, signal: Signal) -> float:
+        return float(first_peaks(machine, signal, dimensions)[1][0])
 
     extremes: dict[str, tuple[str, float] | None] = {
         **({"torque": ("peak", peak(mechanism, Signal.TORQUE))} if torque else {}),
@@ -71,39 +71,45 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True)
     crowded = [uncrowded(tau, kappa) for tau in np.linspace(0.0, 2.0 * np.pi, SAMPLES // 2)]
     marked = [inner, outer, *(extreme[1] for extreme in extremes.values() if extreme)]
     even, turns = np.linspace(0.0, _TURN, SAMPLES + 1), cycle_turns(mechanism)
-    once = [*np.mod(crowded, _TURN), *even, inner, outer]
-    angles = np.unique(np.concatenate([*(np.add(once, number * _TURN) for number in range(turns)), marked]))
+    turn_angles = [*np.mod(crowded, _TURN), *even, inner, outer]
+    angles = np.unique(np.concatenate([*(np.add(turn_angles, number * _TURN) for number in range(turns)), marked]))
     degrees = np.degrees(angles)
     ends = joined([Value(x, LENGTH, 4, bare=True) for x in sorted(map(float, linkage.dead_centres))], " and ")
     computed = {curve.name: curve for curve in all_curves(mechanism, linkage, angles)}
     dead = float(np.degrees(inner)), float(np.degrees(outer))
     slow = str(slow_stroke(mechanism, linkage))
-    across, shaded = CRANK_ANGLE, tuple[tuple[float, float], ...]()
+    x_title, shaded = CRANK_ANGLE, tuple[tuple[float, float], ...]()
     if slow in ("outward", "inward"):
-        across += f" (shaded: {slow} stroke, the slow one)"
+        x_title += f" (shaded: {slow} stroke, the slow one)"
         # Counter-clockwise, the outward stroke runs from the inner to the outer dead centre.
         start, end = dead if (slow == "outward") == (mechanism.direction > 0.0) else dead[::-1]
         shaded = ((start, end),) if start < end else ((0.0, end), (start, 360.0))
     panels = []
     for name, extreme in extremes.items():
-        found = computed[name]
-        lines, note = [Line("", degrees, found.values)], words("dead centres at {ends}", ends=ends)
+        computed_curve = computed[name]
+        lines, note = [Line("", degrees, computed_curve.values)], words("dead centres at {ends}", ends=ends)
         if extreme is not None:
             word, angle = extreme
             at = int(np.searchsorted(angles, angle))
-            lines.append(Line("", degrees[at : at + 1], found.values[at : at + 1], points=True))
-            peaked = Value(float(found.values[at]), found.kind, 4, bare=True)
+            lines.append(Line("", degrees[at : at + 1], computed_curve.values[at : at + 1], points=True))
+            peaked = Value(float(computed_curve.values[at]), computed_curve.kind, 4, bare=True)
             note = words(f"{word} {{value}} at {shown(degrees[at])}°", value=peaked)
-        panels.append(replace(over_turn(found.title, *lines, kind=found.kind, note=note), across=across, shaded=shaded))
+        panels.append(
+            replace(
+                crank_angle_panel(computed_curve.title, *lines, kind=computed_curve.kind, note=note),
+                x_title=x_title,
+                shaded=shaded,
+            )
+        )
     return Curves(degrees, tuple(panels), *dead)
 
 
 def draw_curves(panels: Sequence[Axes], curves: Curves, system: System = "metric") -> None:
     """Draw each curve into one of the panels, given from top to bottom, in a system of units."""
     for axes, panel in zip(panels, curves.panels, strict=True):
-        draw_panel(axes, panel, system, across=axes is panels[-1])
+        draw_panel(axes, panel, system, has_x_title=axes is panels[-1])
         ends = (curves.inner, curves.outer)
-        for angle in (end + turn for turn in np.arange(0.0, curves.last, 360.0) for end in ends):
+        for angle in (end + turn for turn in np.arange(0.0, curves.last_turn_end, 360.0) for end in ends):
             axes.axvline(angle, color=MUTED, linewidth=0.9, linestyle=(0, (4, 2)), zorder=1)
     _name_dead_centres(panels[0], curves)
 
@@ -111,17 +117,19 @@ def draw_curves(panels: Sequence[Axes], curves: Curves, system: System = "metric
 def _name_dead_centres(top: Axes, curves: Curves) -> None:
     """Write the dead centres over the uppermost panel, within its width and clear of each other."""
     named = sorted([(curves.inner, "inner"), (curves.outer, "outer")])
-    turns = curves.last / 360.0
+    turns = curves.last_turn_end / 360.0
     close = named[1][0] - named[0][0] < 110.0 * turns
-    for (angle, name), apart in zip(named, ("right", "left"), strict=True):
-        within = "left" if angle < 70.0 * turns else "right" if angle > curves.last - 70.0 * turns else "center"
+    for (angle, name), alignment in zip(named, ("right", "left"), strict=True):
+        edge_alignment = (
+            "left" if angle < 70.0 * turns else "right" if angle > curves.last_turn_end - 70.0 * turns else "center"
+        )
         top.annotate(
             f"{name} dead centre {shown(angle)}°",
             xy=(angle, 1.0),
             xycoords=top.get_xaxis_transform(),
             xytext=(0, 17),
             textcoords="offset points",
-            ha=apart if close and within == "center" else within,
+            ha=alignment if close and edge_alignment == "center" else edge_alignment,
             fontsize=SMALL,
             color=MUTED,
         )

@@ -12,7 +12,7 @@ from matplotlib.patches import Arc
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System, shown_in
-from ..drawings.parts import Look, look_of, moving, pins_at, scenery
+from ..drawings.parts import Look, fixed_shapes, look_of, moving_shapes, pin_positions
 from ..drawings.shapes import Point
 from ..render.numerals import length, shown
 from .painting import paint, show_rectangle
@@ -26,8 +26,8 @@ def draw_mechanism(axes: Axes, mechanism: Mechanism, linkage: Linkage, system: S
     """
     look = look_of(mechanism, linkage)
     (left, low, right, high), size = look.extent, look.size
-    pin, slider = pins_at(linkage, least_transmission_crank_angle(linkage))
-    paint(axes, [*scenery(linkage, look, below=pin[1] > 0.0), *moving(pin, slider, look)])
+    pin, slider = pin_positions(linkage, least_transmission_crank_angle(linkage))
+    paint(axes, [*fixed_shapes(linkage, look, bearing_below=pin[1] > 0.0), *moving_shapes(pin, slider, look)])
     _rotation(axes, look.crank * linkage.sign, mechanism.speed * linkage.sign)
     _transmission_angle(axes, pin, slider, math.degrees(float(linkage.least_transmission_angle)))
     _stroke(axes, look, size, system)
@@ -63,13 +63,13 @@ def _rotation(axes: Axes, r: float, speed: float) -> None:
 
 def _transmission_angle(axes: Axes, pin: Point, slider: Point, degrees: float) -> None:
     """Mark the angle between the rod and the normal of the slider line, at the slider pin."""
-    along = math.degrees(math.atan2(pin[1] - slider[1], pin[0] - slider[0]))
+    rod_angle = math.degrees(math.atan2(pin[1] - slider[1], pin[0] - slider[0]))
     normal = -90.0 if pin[1] < slider[1] else 90.0
     rod = math.dist(pin, slider)
     radius = 0.42 * rod
     end = slider[1] + math.copysign(1.12 * radius, normal)
     axes.plot([slider[0], slider[0]], [slider[1], end], color=VERMILION, linewidth=0.9, linestyle=":", zorder=6)
-    difference = (along - normal + 180.0) % 360.0 - 180.0
+    difference = (rod_angle - normal + 180.0) % 360.0 - 180.0
     first, last = sorted((normal, normal + difference))
     axes.add_patch(
         Arc(slider, 2 * radius, 2 * radius, theta1=first, theta2=last, color=VERMILION, linewidth=1.3, zorder=6)
@@ -90,7 +90,7 @@ def _stroke(axes: Axes, look: Look, size: float, system: System) -> None:
     """Dimension the stroke on the side of the guide that is away from the crank pivot."""
     (inner, e), (outer, _) = look.inner, look.outer
     side = 1.0 if e >= 0.0 else -1.0
-    y = e + side * (0.9 * look.along + 0.5 * (look.block - look.along) + 0.035 * size)
+    y = e + side * (0.9 * look.slider_size + 0.5 * (look.block - look.slider_size) + 0.035 * size)
     for x in (inner, outer):
         axes.plot([x, x], [e, y + side * 0.015 * size], color=BLUE, linewidth=0.6, zorder=2)
     _arrow(axes, (inner, y), (outer, y))
@@ -116,9 +116,9 @@ def _arrow(axes: Axes, start: Point, end: Point) -> None:
 def scale_bar(axes: Axes, x: float, y: float, size: float, system: System) -> None:
     """Draw a scale bar of a round length, about a sixth of the picture."""
     unit, factor = shown_in("mm", system)
-    most = size / 6.0 * factor
-    power = 10.0 ** math.floor(math.log10(most))
-    told = max(step * power for step in (1.0, 2.0, 5.0) if step * power <= most)
-    length = told / factor
+    longest = size / 6.0 * factor
+    power = 10.0 ** math.floor(math.log10(longest))
+    displayed = max(step * power for step in (1.0, 2.0, 5.0) if step * power <= longest)
+    length = displayed / factor
     axes.plot([x, x + length], [y, y], color=INK, linewidth=2.0, solid_capstyle="butt")
-    _annotate(axes, f"{told:g} {unit}", (x + length, y), (5, 0), INK, va="center")
+    _annotate(axes, f"{displayed:g} {unit}", (x + length, y), (5, 0), INK, va="center")

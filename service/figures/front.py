@@ -18,10 +18,10 @@ from ..designs.stored_designs import StoredDesign
 from ..designs.variation import Variation
 from ..resources.garbage import uncollected
 from .comparison import robustness_figure
+from .datasheet import design_datasheet
 from .marks import marks
 from .parallel import parallel_coordinates
 from .scatter import scatter_matrix
-from .sheet import design_sheet
 from .style import save
 from .swing import swing_figure
 
@@ -41,19 +41,19 @@ def front_figures(front: ParetoFront, system: System = "metric") -> list[FrontFi
     scatter_matrix (two objectives and two designs or more), parallel_coordinates (two designs or more), and one sheet
     for each extreme, best_<quantity>, and for the knee.
     """
-    found = []
+    figures = []
     if len(front) > 1:
         if len(front.objectives) > 1:
-            found.append(
+            figures.append(
                 FrontFigure(("scatter_matrix",), "every pair of objectives", partial(scatter_matrix, front, system))
             )
         title = "dimensions and objectives of every design"
-        found.append(FrontFigure(("parallel_coordinates",), title, partial(parallel_coordinates, front, system)))
-    sheets = (
-        FrontFigure(mark.names, mark.label, partial(sheet_of, front, mark.row, mark.label, system))
+        figures.append(FrontFigure(("parallel_coordinates",), title, partial(parallel_coordinates, front, system)))
+    datasheets = (
+        FrontFigure(mark.names, mark.label, partial(datasheet_of, front, mark.row, mark.label, system))
         for mark in marks(front)
     )
-    return [*found, *sheets]
+    return [*figures, *datasheets]
 
 
 def draw_front(front: ParetoFront, folder: Path, system: System = "metric") -> Iterator[Path]:
@@ -64,13 +64,13 @@ def draw_front(front: ParetoFront, folder: Path, system: System = "metric") -> I
     """
     folder.mkdir(parents=True, exist_ok=True)
     for item in front_figures(front, system):
-        first, *others = (folder / f"{name}.png" for name in item.names)
+        first, *copies = (folder / f"{name}.png" for name in item.names)
         with uncollected():
             save(item.draw(), first)
         yield first
-        for other in others:
-            shutil.copyfile(first, other)
-            yield other
+        for copy in copies:
+            shutil.copyfile(first, copy)
+            yield copy
     if robust_quantities(front.problem) and len(front.objectives) > 1:
         figure = robustness_figure(front)
         if figure is not None:
@@ -78,7 +78,7 @@ def draw_front(front: ParetoFront, folder: Path, system: System = "metric") -> I
             yield folder / "robust.png"
 
 
-def sheet_of(
+def datasheet_of(
     front: ParetoFront, row: int, label: str, system: System = "metric", changed: Variation | None = None
 ) -> Figure:
     """Return the sheet of a design of a front. label: what it is among the others. system: of units.
@@ -94,6 +94,8 @@ def sheet_of(
     title, linkage, swing = f"{front.problem.name}: {label}", design.linkage, front.problem.motion
     if swing is not None:
         return swing_figure(design.mechanism, linkage, swing, system, title=title, subtitle=subtitle)
-    wanted = [front.problem.quantity(objective.quantity) for objective in front.objectives]
-    bold = {of.field: of.short_title for of in wanted}
-    return design_sheet(design.mechanism, linkage, numbers, title=title, subtitle=subtitle, bold=bold, system=system)
+    quantities = [front.problem.quantity(objective.quantity) for objective in front.objectives]
+    bold = {quantity.field: quantity.short_title for quantity in quantities}
+    return design_datasheet(
+        design.mechanism, linkage, numbers, title=title, subtitle=subtitle, bold=bold, system=system
+    )

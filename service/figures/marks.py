@@ -20,7 +20,7 @@ BETTER = {"maximise": 1, "minimise": -1, "target": 0}
 """The way to better values of an objective, upward positive, by its sense."""
 
 
-def arrowed(title: str, better: int) -> str:
+def with_better_arrow(title: str, better: int) -> str:
     """Return an axis title with the way to better values below it. better: as of `Axis`.
 
     Also right for titles along y, which are turned: there the arrows point up and down.
@@ -80,42 +80,42 @@ def marks(front: ParetoFront) -> list[Mark]:
     """Return the marked designs; one that is best in several ways comes once. The knee comes last."""
     labels: dict[int, list[tuple[str, str]]] = {}
     for name, row in front.extremes().items():
-        of = front.problem.quantity(name)
-        file = name if name.isidentifier() else of.stem
-        labels.setdefault(row, []).append((f"best_{file}", f"best {of.short_title}"))
+        quantity = front.problem.quantity(name)
+        file = name if name.isidentifier() else quantity.stem
+        labels.setdefault(row, []).append((f"best_{file}", f"best {quantity.short_title}"))
     if len(front.objectives) > 1:
         labels.setdefault(front.knee(), []).append(("knee", "knee"))
-    found = []
+    marked = []
     for order, (row, pairs) in enumerate(labels.items()):
         names, words = zip(*pairs, strict=True)
         if names == ("knee",):
             marker, size = KNEE_MARKER, 11.0
         else:  # smaller and smaller, so that marks on the same spot stay visible
             marker, size = MARKERS[order % len(MARKERS)], max(5.5, 9.5 - order)
-        found.append(Mark(row, names, words, marker, size))
-    return found
+        marked.append(Mark(row, names, words, marker, size))
+    return marked
 
 
 def objective_axis(front: ParetoFront, objective: Objective, system: System = "metric") -> Axis:
     """Return the axis of an objective, in the units of a system."""
-    of = front.problem.quantity(objective.quantity)
-    symbol, factor = shown_in(of.unit.symbol, system)
-    values = front.columns[of.field] * factor
-    target = None if objective.target is None else objective.target * of.unit.factor * factor
-    return Axis(with_unit(of.short_title, symbol, target), symbol, values, BETTER[objective.sense])
+    quantity = front.problem.quantity(objective.quantity)
+    symbol, factor = shown_in(quantity.unit.symbol, system)
+    values = front.columns[quantity.field] * factor
+    target = None if objective.target is None else objective.target * quantity.unit.factor * factor
+    return Axis(with_unit(quantity.short_title, symbol, target), symbol, values, BETTER[objective.sense])
 
 
 def dimension_axes(front: ParetoFront, system: System = "metric") -> list[Axis]:
     """Return the axes of crank, rod and offset, and of what varies besides them, in the units of a system."""
     columns = ("crank", "rod", "offset")
-    length, one = shown_in("mm", system)
+    length, unit_factor = shown_in("mm", system)
     axes = [
-        Axis(with_unit(name, length), length, 1e3 * one * front.dimensions[:, index], 0)
+        Axis(with_unit(name, length), length, 1e3 * unit_factor * front.dimensions[:, index], 0)
         for index, name in enumerate(columns)
     ]
     for index, item in enumerate(front.problem.mechanism.varying, start=3):
         unit = varying_column(item)[1]
-        symbol, one = shown_in(unit.symbol, system)
+        symbol, unit_factor = shown_in(unit.symbol, system)
         title = with_unit(item.name.removeprefix("mechanism."), symbol)
-        axes.append(Axis(title, symbol, unit.factor * one * front.dimensions[:, index], 0))
+        axes.append(Axis(title, symbol, unit.factor * unit_factor * front.dimensions[:, index], 0))
     return axes

@@ -11,7 +11,7 @@ import numpy as np
 from ...model.extras import NamingExtra
 from ..drawings import layers as on
 from ..drawings.shapes import Arc, Circle, Dashes, Dimension, Drawing, Label, Line, Outline, Point, Shape, Wedge, pairs
-from .style import LINK, new_figure, place
+from .style import LINK, add_axes, new_figure
 
 with NamingExtra("figures need"):
     from matplotlib.artist import Artist
@@ -42,7 +42,7 @@ def drawing_figure(drawing: Drawing) -> Figure:
     width, height = (right - left) / _FILLS, (top - bottom) / _FILLS
     scale = min(_WIDTH / width, _TALLEST / height) * _FILLS  # inches a mm
     figure = new_figure(scale * width, scale * height)
-    axes = place(figure, 0.0, 0.0, scale * width, scale * height)
+    axes = add_axes(figure, 0.0, 0.0, scale * width, scale * height)
     show_rectangle(axes, left, bottom, right, top, share=_FILLS)
     dimensions = [shape for shape in drawing.shapes if isinstance(shape, Dimension)]
     for shapes in (drawing.shapes, *(shape.parts for shape in dimensions)):
@@ -50,7 +50,7 @@ def drawing_figure(drawing: Drawing) -> Figure:
         for label in shapes:
             if isinstance(label, Label):
                 axes.text(
-                    *label.at,
+                    *label.position,
                     label.text,
                     fontsize=72.0 * scale * label.height / _CAPITALS,
                     color=label.layer.ink,
@@ -81,7 +81,7 @@ def show_rectangle(axes: Axes, left: float, low: float, right: float, high: floa
 
 def paint(axes: Axes, shapes: Iterable[Shape]) -> list[Artist]:
     """Draw lines, circles, outlines and wedges, not texts, later ones above earlier ones; return what was drawn."""
-    found: list[Artist] = []
+    artists: list[Artist] = []
     for order, shape in enumerate(shapes):
         style: dict[str, Any] = {
             "linewidth": _POINTS * shape.layer.weight,
@@ -91,20 +91,20 @@ def paint(axes: Axes, shapes: Iterable[Shape]) -> list[Artist]:
         fill = _FILLED.get(shape.layer.name, "none")
         if isinstance(shape, Line):
             x, y = zip(shape.start, shape.end, strict=True)
-            found.append(axes.add_line(Line2D(x, y, color=shape.layer.ink, **style)))
+            artists.append(axes.add_line(Line2D(x, y, color=shape.layer.ink, **style)))
         elif isinstance(shape, Arc):
             x, y = zip(*shape.points, strict=True)
-            found.append(axes.add_line(Line2D(x, y, color=shape.layer.ink, **style)))
+            artists.append(axes.add_line(Line2D(x, y, color=shape.layer.ink, **style)))
         elif isinstance(shape, Circle):
             disc = Disc(shape.centre, shape.radius, facecolor=fill, edgecolor=shape.layer.ink, **style)
-            found.append(axes.add_patch(disc))
+            artists.append(axes.add_patch(disc))
         elif isinstance(shape, Outline):
             corners = [point for side in pairs(shape) for point in _along(*side)]
             polygon = Polygon(corners, facecolor=fill, edgecolor=shape.layer.ink, **style)
-            found.append(axes.add_patch(polygon))
+            artists.append(axes.add_patch(polygon))
         elif isinstance(shape, Wedge):
-            found.append(axes.add_patch(Polygon(shape.corners, facecolor=shape.layer.ink, zorder=style["zorder"])))
-    return found
+            artists.append(axes.add_patch(Polygon(shape.corners, facecolor=shape.layer.ink, zorder=style["zorder"])))
+    return artists
 
 
 def _along(start: Point, end: Point, bulge: float) -> list[Point]:

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from ...objectives.kinds import System
 from ..render.formatting import format_text
 from . import style
-from .sheets import DASHED, DOTS, FAINT, SAMPLES, THIN, Line, Panel, Sheet, panel_in
+from .panel_figure import DASHED, DOTS, FAINT, SAMPLES, THIN, Line, Panel, PanelFigure, panel_in_units
 
 Array = NDArray[np.float64]
-Drawn = Sheet | Figure | Callable[[System], Figure]
+FigureSource = PanelFigure | Figure | Callable[[System], Figure]
 """A sheet, or a figure: drawn before, or in a system of units when it is needed."""
 
 GREEN = "#009e73"  # of the same palette
@@ -45,38 +45,44 @@ _LEFT, _RIGHT, _FOOT, _HEAD = 0.75, 0.25, 0.5, 0.72  # inches
 _GAP, _ROOM = 0.5, 0.9  # between stacked panels, and between those with axes of their own
 
 
-def draw_sheet(sheet: Sheet, system: System = "metric", *, above: float = 0.0) -> Figure:
-    """Return the figure of a sheet in a system of units. above: room, inches, kept free below the heading."""
-    widths = [sheet.width] * sheet.columns if isinstance(sheet.width, float) else list(sheet.width)
-    rows = math.ceil(len(sheet.panels) / sheet.columns)
-    tall = sheet.height - (_GAP if sheet.stacked else _ROOM)
-    head = _HEAD + (_GAP - 0.3 if sheet.stacked and sheet.subtitle else 0.0)
-    figure = style.new_figure(sum(widths), rows * sheet.height + head + above)
-    style.heading(figure, *(format_text(text, system, printed=True) for text in (sheet.title, sheet.subtitle)))
-    for index, panel in enumerate(sheet.panels):
-        row, column = divmod(index, sheet.columns)
-        left, foot = sum(widths[:column]) + _LEFT, (rows - 1 - row) * sheet.height + _FOOT
-        axes = style.place(figure, left, foot, widths[column] - _LEFT - _RIGHT, tall)
-        draw_panel(axes, panel, system, across=not sheet.stacked or row == rows - 1)
+def draw_panel_figure(figure_panels: PanelFigure, system: System = "metric", *, space_above: float = 0.0) -> Figure:
+    """Return the figure of a sheet in a system of units. space_above: room, inches, kept free below the heading."""
+    widths = (
+        [figure_panels.width] * figure_panels.columns
+        if isinstance(figure_panels.width, float)
+        else list(figure_panels.width)
+    )
+    rows = math.ceil(len(figure_panels.panels) / figure_panels.columns)
+    tall = figure_panels.height - (_GAP if figure_panels.stacked else _ROOM)
+    head = _HEAD + (_GAP - 0.3 if figure_panels.stacked and figure_panels.subtitle else 0.0)
+    figure = style.new_figure(sum(widths), rows * figure_panels.height + head + space_above)
+    style.heading(
+        figure, *(format_text(text, system, printed=True) for text in (figure_panels.title, figure_panels.subtitle))
+    )
+    for index, panel in enumerate(figure_panels.panels):
+        row, column = divmod(index, figure_panels.columns)
+        left, foot = sum(widths[:column]) + _LEFT, (rows - 1 - row) * figure_panels.height + _FOOT
+        axes = style.add_axes(figure, left, foot, widths[column] - _LEFT - _RIGHT, tall)
+        draw_panel(axes, panel, system, has_x_title=not figure_panels.stacked or row == rows - 1)
     return figure
 
 
-def figure_of(made: Drawn, system: System = "metric") -> Figure:
+def figure_of(source: FigureSource, system: System = "metric") -> Figure:
     """Return the figure of a sheet, or of what is drawn otherwise, in a system of units; one drawn before as it is."""
-    if isinstance(made, Figure):
-        return made
-    return draw_sheet(made, system) if isinstance(made, Sheet) else made(system)
+    if isinstance(source, Figure):
+        return source
+    return draw_panel_figure(source, system) if isinstance(source, PanelFigure) else source(system)
 
 
-def save_sheet(made: Drawn, path: Path, system: System = "metric") -> None:
+def save_figure(source: FigureSource, path: Path, system: System = "metric") -> None:
     """Write what `figure_of` returns as PNG."""
-    style.save(figure_of(made, system), path)
+    style.save(figure_of(source, system), path)
 
 
-def draw_panel(axes: Axes, panel: Panel, system: System = "metric", *, across: bool = True) -> None:
-    """Draw a panel on axes in a system of units. across: whether the axis below has its title."""
-    panel = panel_in(panel, system)
-    style.dress(axes, across=8)
+def draw_panel(axes: Axes, panel: Panel, system: System = "metric", *, has_x_title: bool = True) -> None:
+    """Draw a panel on axes in a system of units. has_x_title: whether the axis below has its title."""
+    panel = panel_in_units(panel, system)
+    style.style_axes(axes, most_x_ticks=8)
     for start, end in panel.shaded:
         for shift in (-360.0, 0.0, 360.0) if panel.turns else (0.0,):
             axes.axvspan(start + shift, end + shift, color=style.SHADE, linewidth=0, zorder=0)
@@ -89,9 +95,9 @@ def draw_panel(axes: Axes, panel: Panel, system: System = "metric", *, across: b
     _name(axes, panel)
     ink = style.VERMILION if any(line.points for line in panel.lines) else style.MUTED
     style.title_panel(axes, str(panel.title), str(panel.note), ink)
-    axes.tick_params(labelbottom=across)
-    if across:
-        axes.set_xlabel(str(panel.across), fontsize=style.TEXT)
+    axes.tick_params(labelbottom=has_x_title)
+    if has_x_title:
+        axes.set_xlabel(str(panel.x_title), fontsize=style.TEXT)
     named = [line.label for line in panel.lines if line.label]
     if len(named) + (panel.level is not None) > 1:
         axes.legend(
@@ -114,7 +120,7 @@ def _name(axes: Axes, panel: Panel) -> None:
         return
     axes.apply_aspect()
     drawn = np.concatenate([axes.transData.transform(_dense(line)) for line in panel.lines])
-    taken: list[Bbox] = []
+    label_boxes: list[Bbox] = []
     for text, x, y in panel.names:
         axes.plot(x, y, marker="o", markersize=2.6, color=style.INK, zorder=5)
         best: tuple[float, Annotation] | None = None
@@ -133,7 +139,7 @@ def _name(axes: Axes, panel: Panel) -> None:
             box = label.get_window_extent()
             covered = int(box.count_contains(drawn))
             outside = not (axes.bbox.x0 <= box.x0 and box.x1 <= axes.bbox.x1)
-            cost = covered + 1000.0 * outside + sum(1000.0 for other in taken if box.overlaps(other))
+            cost = covered + 1000.0 * outside + sum(1000.0 for other_box in label_boxes if box.overlaps(other_box))
             if best is None or cost < best[0]:
                 if best is not None:
                     best[1].remove()
@@ -141,7 +147,7 @@ def _name(axes: Axes, panel: Panel) -> None:
             else:
                 label.remove()
         assert best is not None
-        taken.append(best[1].get_window_extent())
+        label_boxes.append(best[1].get_window_extent())
 
 
 def _dense(line: Line) -> Array:
@@ -161,11 +167,11 @@ def _scale(axes: Axes, panel: Panel) -> None:
     low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
     if low < 0.0 < high:
         axes.axhline(0.0, color=style.FRAME, linewidth=0.8, zorder=1)
-    axes.set_ylim(style.limits(low, high))
+    axes.set_ylim(style.padded_limits(low, high))
     ends = np.concatenate([line.x for line in panel.lines])
     left, right = float(ends.min()), float(ends.max())
     if any(line.points for line in panel.lines) and not panel.turns:
-        axes.set_xlim(style.limits(left, right, 0.03))
+        axes.set_xlim(style.padded_limits(left, right, 0.03))
     elif right > left:
         axes.set_xlim(left, right)
     if panel.turns:

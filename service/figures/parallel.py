@@ -16,7 +16,7 @@ from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
 from ..render.numerals import on_scale
 from .marks import Axis, dimension_axes, marks, objective_axis
-from .style import FRAME, INK, MUTED, SMALL, TEXT, colours, heading, limits, new_figure, place
+from .style import FRAME, INK, MUTED, SMALL, TEXT, add_axes, colours, heading, new_figure, padded_limits
 
 _DASHES = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5)), (0, (8, 2)), (0, (2.5, 1)))
 _STEP, _HEIGHT, _SIDE = 1.45, 4.1, 0.75  # inches: between axes, of the axes, beside them
@@ -34,7 +34,7 @@ def parallel_coordinates(front: ParetoFront, system: System = "metric") -> Figur
     titles = [textwrap.wrap(axis.title, 16) for axis in axes]
     head = 0.24 + 0.15 * max(len(lines) for lines in titles)
     figure = new_figure(width, foot + _HEIGHT + head + 1.0)
-    panel = place(figure, _SIDE, foot, width - 2.0 * _SIDE, _HEIGHT)
+    panel = add_axes(figure, _SIDE, foot, width - 2.0 * _SIDE, _HEIGHT)
     panel.set_xlim(0, len(axes) - 1)
     panel.set_ylim(0, 1)
     panel.axis("off")
@@ -70,10 +70,10 @@ def parallel_coordinates(front: ParetoFront, system: System = "metric") -> Figur
         handles += panel.plot(np.arange(len(axes)), heights[mark.row], zorder=3, **style)
     for position, axis in enumerate(axes):
         _draw_axis(panel, position, axis, "\n".join(titles[position]))
-    wanted = "objectives, up is better" if all(axis.better for axis in objectives) else "objectives"
+    heading_text = "objectives, up is better" if all(axis.better for axis in objectives) else "objectives"
     top = 1.0 + (head + 0.08) / _HEIGHT
     _group(panel, 0, len(dimensions) - 1, top, "dimensions")
-    _group(panel, len(dimensions), len(axes) - 1, top, wanted)
+    _group(panel, len(dimensions), len(axes) - 1, top, heading_text)
     figure.legend(
         handles,
         [mark.label for mark in marked],
@@ -91,7 +91,7 @@ def parallel_coordinates(front: ParetoFront, system: System = "metric") -> Figur
 
 def _range(axis: Axis) -> tuple[float, float]:
     """Return the values at the lower and the upper end; for objectives the better end is up."""
-    low, high = limits(axis.values.min(), axis.values.max(), 0.0 if axis.varies else 0.5)
+    low, high = padded_limits(axis.values.min(), axis.values.max(), 0.0 if axis.varies else 0.5)
     return (high, low) if axis.better < 0 else (low, high)
 
 

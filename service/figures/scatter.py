@@ -13,8 +13,8 @@ from matplotlib.lines import Line2D
 from ...objectives.counted import counted
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
-from .marks import Axis, Mark, arrowed, dimension_axes, marks, objective_axis
-from .style import INK, SMALL, TEXT, colours, dress, heading, legend_at, limits, new_figure, place
+from .marks import Axis, Mark, dimension_axes, marks, objective_axis, with_better_arrow
+from .style import INK, SMALL, TEXT, add_axes, colours, heading, legend_at, new_figure, padded_limits, style_axes
 
 MOST = 6
 """Objectives drawn at most: beyond, the panels are too small to read."""
@@ -33,9 +33,9 @@ def scatter_matrix(front: ParetoFront, system: System = "metric") -> Figure:
     side = max(1.55, min(2.6, 8.4 / count))
     size = _LEFT + count * side + (count - 1) * _GAP + _RIGHT
     figure = new_figure(size, size - _LEFT - _RIGHT + _BOTTOM + _TOP)
-    labels = [arrowed(axis.title, axis.better) for axis in axes]
-    for panel, across, up in triangle(figure, labels, left=_LEFT, bottom=_BOTTOM, side=side, gap=_GAP):
-        points = _panel(panel, axes[across], axes[up], axes[0].values, marked)
+    labels = [with_better_arrow(axis.title, axis.better) for axis in axes]
+    for panel, x_column, y_column in triangle(figure, labels, left=_LEFT, bottom=_BOTTOM, side=side, gap=_GAP):
+        points = _panel(panel, axes[x_column], axes[y_column], axes[0].values, marked)
     # The empty upper right: legend and colour scale. From five objectives on, two panels are free above one another.
     x = _LEFT + (2 if count > 3 else 1) * (side + _GAP) + 2.0 * _GAP
     y = _BOTTOM + (count - 1) * (side + _GAP) + side
@@ -55,7 +55,9 @@ def triangle(
     count = len(labels) - 1
     for row in range(count):
         for column in range(row + 1):
-            panel = place(figure, left + column * (side + gap), bottom + (count - 1 - row) * (side + gap), side, side)
+            panel = add_axes(
+                figure, left + column * (side + gap), bottom + (count - 1 - row) * (side + gap), side, side
+            )
             yield panel, column, row + 1
             panel.tick_params(labelleft=column == 0, labelbottom=row == count - 1)
             if column == 0:
@@ -67,10 +69,10 @@ def triangle(
 def _single(front: ParetoFront, axes: list[Axis], colour: Axis, marked: list[Mark]) -> Figure:
     """Return the only panel of two objectives, coloured by the dimension that varies most."""
     figure = new_figure(8.8, 5.2)
-    panel = place(figure, _LEFT, _BOTTOM, 4.9, 5.2 - _BOTTOM - _TOP)
+    panel = add_axes(figure, _LEFT, _BOTTOM, 4.9, 5.2 - _BOTTOM - _TOP)
     points = _panel(panel, axes[0], axes[1], colour.values, marked)
-    panel.set_xlabel(arrowed(axes[0].title, axes[0].better), fontsize=TEXT)
-    panel.set_ylabel(arrowed(axes[1].title, axes[1].better), fontsize=TEXT)
+    panel.set_xlabel(with_better_arrow(axes[0].title, axes[0].better), fontsize=TEXT)
+    panel.set_ylabel(with_better_arrow(axes[1].title, axes[1].better), fontsize=TEXT)
     x, y = _LEFT + 5.2, 5.2 - _TOP
     _colour_bar(figure, points, colour.title, x, y - 0.45)
     _legend(figure, marked, x, y - 0.75)
@@ -78,11 +80,11 @@ def _single(front: ParetoFront, axes: list[Axis], colour: Axis, marked: list[Mar
     return figure
 
 
-def _panel(panel: Axes, across: Axis, up: Axis, colour: np.ndarray, marked: list[Mark]) -> PathCollection:
-    dress(panel)
+def _panel(panel: Axes, x_axis: Axis, y_axis: Axis, colour: np.ndarray, marked: list[Mark]) -> PathCollection:
+    style_axes(panel)
     points = panel.scatter(
-        across.values,
-        up.values,
+        x_axis.values,
+        y_axis.values,
         c=colour,
         cmap=colours(),
         s=16,
@@ -91,16 +93,16 @@ def _panel(panel: Axes, across: Axis, up: Axis, colour: np.ndarray, marked: list
         zorder=2,
     )
     for mark in marked:
-        panel.plot(across.values[mark.row], up.values[mark.row], **mark.style, zorder=3)
-    panel.set_xlim(limits(across.values.min(), across.values.max()))
-    panel.set_ylim(limits(up.values.min(), up.values.max()))
+        panel.plot(x_axis.values[mark.row], y_axis.values[mark.row], **mark.style, zorder=3)
+    panel.set_xlim(padded_limits(x_axis.values.min(), x_axis.values.max()))
+    panel.set_ylim(padded_limits(y_axis.values.min(), y_axis.values.max()))
     return points
 
 
 def _colour_bar(figure: Figure, points: PathCollection, title: str, x: float, y: float) -> None:
-    bar = place(figure, x, y, 2.2, 0.13)
+    bar = add_axes(figure, x, y, 2.2, 0.13)
     figure.colorbar(points, cax=bar, orientation="horizontal")
-    dress(bar, across=4)
+    style_axes(bar, most_x_ticks=4)
     bar.yaxis.set_visible(False)
     bar.grid(False)
     bar.spines[:].set_visible(False)

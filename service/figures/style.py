@@ -66,7 +66,7 @@ def save(figure: Figure, path: Path | io.BytesIO) -> None:
     drawn.convert("RGB").save(path, format="png", compress_level=3, dpi=(figure.dpi, figure.dpi))
 
 
-def image(figure: Figure, kind: str) -> bytes:
+def figure_bytes(figure: Figure, kind: str) -> bytes:
     """Return a figure as the content of a file; kind: "png" or "svg"."""
     out = io.BytesIO()
     if kind == "png":
@@ -76,13 +76,13 @@ def image(figure: Figure, kind: str) -> bytes:
     return out.getvalue()
 
 
-def place(figure: Figure, left: float, bottom: float, width: float, height: float) -> Axes:
+def add_axes(figure: Figure, left: float, bottom: float, width: float, height: float) -> Axes:
     """Return axes at a place given in inches from the lower left corner."""
     total_width, total_height = figure.get_size_inches()
     return figure.add_axes((left / total_width, bottom / total_height, width / total_width, height / total_height))
 
 
-def write(figure: Figure, x: float, y: float, text: str, **style: Any) -> None:
+def write_text(figure: Figure, x: float, y: float, text: str, **style: Any) -> None:
     """Write text verbatim at a place in inches from the lower left corner, as job names may contain $."""
     width, height = figure.get_size_inches()
     figure.text(x / width, y / height, text, **{"fontsize": TEXT, "color": INK, "parse_math": False, **style})
@@ -91,8 +91,8 @@ def write(figure: Figure, x: float, y: float, text: str, **style: Any) -> None:
 def heading(figure: Figure, title: str, subtitle: str = "", *, left: float = 0.25) -> None:
     """Write the title at the upper left of a figure, and below it what it is of."""
     height = figure.get_size_inches()[1]
-    write(figure, left, height - 0.3, title, fontsize=TITLE, weight="bold")
-    write(figure, left, height - 0.5, subtitle, color=MUTED)
+    write_text(figure, left, height - 0.3, title, fontsize=TITLE, weight="bold")
+    write_text(figure, left, height - 0.5, subtitle, color=MUTED)
 
 
 def title_panel(axes: Axes, title: str, note: str = "", colour: str = MUTED) -> None:
@@ -102,15 +102,15 @@ def title_panel(axes: Axes, title: str, note: str = "", colour: str = MUTED) -> 
     axes.set_title(note, loc="right", y=1.0, fontsize=SMALL, color=colour, pad=4)
 
 
-def over_turn(axes: Axes) -> None:
+def show_full_turn(axes: Axes) -> None:
     """Let axes show a turn of the crank, in deg."""
     axes.set_xlim(0, 360)
     axes.set_xticks(range(0, 361, 45))
 
 
-def draw_stack(axes: Axes, across: Array, parts: Array, names: Sequence[str]) -> None:
+def draw_stack(axes: Axes, x: Array, parts: Array, names: Sequence[str]) -> None:
     """Draw parts (s, m) over what goes across (m,)."""
-    stack = axes.stackplot(across, parts, labels=names, colors=GREYS, edgecolor="white", linewidth=0.4)
+    stack = axes.stackplot(x, parts, labels=names, colors=GREYS, edgecolor="white", linewidth=0.4)
     for part, hatch in zip(stack, _HATCHES, strict=False):
         part.set_hatch(hatch)
 
@@ -134,8 +134,8 @@ def legend_at(
     figure.legend(list(handles), list(labels), labelspacing=spacing, **place, **looks)
 
 
-def dress(axes: Axes, *, across: int = 5, up: int = 5) -> None:
-    """Give axes the common frame, grid and ticks; across, up: the most ticks along x and y."""
+def style_axes(axes: Axes, *, most_x_ticks: int = 5, most_y_ticks: int = 5) -> None:
+    """Give axes the common frame, grid and ticks; most_x_ticks, most_y_ticks: the most ticks along x and y."""
     for side, spine in axes.spines.items():
         spine.set_visible(side in ("left", "bottom"))
         spine.set_color(FRAME)
@@ -143,13 +143,13 @@ def dress(axes: Axes, *, across: int = 5, up: int = 5) -> None:
     axes.tick_params(length=3, width=0.8, color=FRAME, labelcolor=INK, labelsize=SMALL)
     axes.grid(True, color=GRID, linewidth=0.6)
     axes.set_axisbelow(True)
-    axes.xaxis.set_major_locator(MaxNLocator(across, steps=[1, 2, 2.5, 5, 10]))
-    axes.yaxis.set_major_locator(MaxNLocator(up, steps=[1, 2, 2.5, 5, 10]))
+    axes.xaxis.set_major_locator(MaxNLocator(most_x_ticks, steps=[1, 2, 2.5, 5, 10]))
+    axes.yaxis.set_major_locator(MaxNLocator(most_y_ticks, steps=[1, 2, 2.5, 5, 10]))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: on_scale(value, *axes.get_xlim(), digits=6)))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: on_scale(value, *axes.get_ylim(), digits=6)))
 
 
-def limits(low: float, high: float, margin: float = 0.06) -> tuple[float, float]:
+def padded_limits(low: float, high: float, margin: float = 0.06) -> tuple[float, float]:
     """Return axis limits around a range of values, also around a single one."""
     span = high - low
     if is_constant((low, high)):

@@ -12,14 +12,14 @@ from ...model.machine.mechanism import Mechanism
 from ...model.swing.forces import SwingCurves
 from ...model.swing.swing import Swing
 from ...objectives.kinds import ANGLE, LENGTH, POWER, Kind, System
-from ..designs.swing_curves import both_ways, drive_kind, error_kind
+from ..designs.swing_curves import curves_of_both_strokes, drive_kind, error_kind
 from ..drawings.swing_parts import swing_look, swing_moving, swing_scenery
 from ..render.blocks import dimensions, joined
 from .drawing import scale_bar
 from .painting import paint, show_rectangle
-from .panels import draw_sheet
-from .sheets import CRANK_ANGLE, Line, Panel, Sheet
-from .style import place
+from .panel_figure import CRANK_ANGLE, Line, Panel, PanelFigure
+from .panels import draw_panel_figure
+from .style import add_axes
 
 _TALLEST = 3.2  # inches, of the drawing
 _ASIDE, _BELOW = 0.4, 0.3
@@ -38,39 +38,39 @@ def swing_figure(
 
     title: instead of how it is driven. subtitle: before its dimensions.
     """
-    sheet = swing_sheet(mechanism, linkage, swing)
+    panel_figure = swing_panels(mechanism, linkage, swing)
     if title:
-        sheet = replace(sheet, title=title, subtitle=joined([subtitle, sheet.subtitle], "; "))
-    of = swing_look(mechanism, linkage, swing)
-    (left, low, right, high), size = of.extent, of.look.size
+        panel_figure = replace(panel_figure, title=title, subtitle=joined([subtitle, panel_figure.subtitle], "; "))
+    drawn = swing_look(mechanism, linkage, swing)
+    (left, low, right, high), size = drawn.extent, drawn.look.size
     low -= 0.11 * size
-    wide = sheet.columns * float(np.max(sheet.width)) - 2.0 * _ASIDE
+    wide = panel_figure.columns * float(np.max(panel_figure.width)) - 2.0 * _ASIDE
     tall = min(_TALLEST, wide * (high - low) / (right - left))
-    figure = draw_sheet(sheet, system, above=tall + _BELOW)
-    foot = -(-len(sheet.panels) // sheet.columns) * sheet.height + _BELOW
-    axes = place(figure, _ASIDE, foot, wide, tall)
-    paint(axes, [*swing_scenery(of), *swing_moving(of, 0.5 * (of.swing.start + of.swing.end))])
+    figure = draw_panel_figure(panel_figure, system, space_above=tall + _BELOW)
+    foot = -(-len(panel_figure.panels) // panel_figure.columns) * panel_figure.height + _BELOW
+    axes = add_axes(figure, _ASIDE, foot, wide, tall)
+    paint(axes, [*swing_scenery(drawn), *swing_moving(drawn, 0.5 * (drawn.swing.start + drawn.swing.end))])
     scale_bar(axes, left, low + 0.03 * size, size, system)
     show_rectangle(axes, left, low, right, high)
     return figure
 
 
-def swing_sheet(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Sheet:
+def swing_panels(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> PanelFigure:
     """Return the curves of both strokes over the crank angle; the way back is drawn where it differs."""
-    ways = both_ways(mechanism, linkage, swing)
+    ways = curves_of_both_strokes(mechanism, linkage, swing)
     drive = "force on the slider" if swing.driver == "slider" else "torque on the crank"
     driven = "slider position error" if swing.driver == "crank" else "crank angle error"
-    between = "transmission angle" if swing.driver == "crank" else "angle between rod and crank"
+    angle_title = "transmission angle" if swing.driver == "crank" else "angle between rod and crank"
     panels = [
         _panel(drive, "drive", drive_kind(swing), ways),
         _panel("slider position", "slider_position", LENGTH, ways[:1]),
-        _panel(between, "driven_angle", ANGLE, ways[:1]),
+        _panel(angle_title, "driven_angle", ANGLE, ways[:1]),
     ]
     if swing.duration is not None:
         panels.append(_panel("power of the drive", "power", POWER, ways))
     if mechanism.tolerances.given or swing.actuator_tolerance:
         panels.append(_panel(driven, "driven_error", error_kind(swing), ways[:1]))
-    return Sheet(
+    return PanelFigure(
         f"Swing driven at the {swing.driver}",
         dimensions(linkage),
         tuple(panels),

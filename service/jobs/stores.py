@@ -12,7 +12,7 @@ import typer
 
 from ...model.errors import InputError, NotFound
 from ..runs.run_folder import disk, runs_place
-from ..text.screen import say
+from ..text.screen import print_message
 
 if TYPE_CHECKING:
     from ..store import Job, Store
@@ -81,7 +81,7 @@ def has_store(option: str | None, runs: Path | None = None) -> bool:
 def tell_idle(store: Store) -> None:
     """Say that jobs wait if no worker is there to solve them."""
     if not store.workers_at_work():
-        say("slidercrank: no worker is running, so jobs wait; start one with: slidercrank serve")
+        print_message("slidercrank: no worker is running, so jobs wait; start one with: slidercrank serve")
 
 
 @contextmanager

@@ -15,12 +15,12 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
 from ...model.swing.swing import Swing
-from ..designs.swing_curves import at_even_times
-from ..drawings.parts import look_of, moving, pins_at, scenery
+from ..designs.swing_curves import curves_at_even_times
+from ..drawings.parts import fixed_shapes, look_of, moving_shapes, pin_positions
 from ..drawings.shapes import Shape
 from ..drawings.swing_parts import swing_look, swing_moving, swing_scenery
 from ..figures.painting import paint, show_rectangle
-from ..figures.style import MUTED, SMALL, TEXT, new_figure, place, write
+from ..figures.style import MUTED, SMALL, TEXT, add_axes, new_figure, write_text
 
 if TYPE_CHECKING:
     from PIL.Image import Image as Picture
@@ -66,27 +66,29 @@ def _turning(mechanism: Mechanism, linkage: Linkage) -> _Scene:
     gas = [indicator(mechanism, linkage, load, angles).pressure for _, load in cylinders(mechanism)]
     frames = []
     for step, angle in enumerate(angles.tolist()):
-        pin, slider = pins_at(linkage, angle)
+        pin, slider = pin_positions(linkage, angle)
         degrees = round(math.degrees(angle)) % (360 * turns)
         pressures = ", ".join(f"{1e-5 * pressure[step]:.3g}" for pressure in gas)
-        told = f"crank angle {degrees}°, slider at {slider[0]:.5g} mm"
-        frames.append((moving(pin, slider, look), f"{told}, {pressures} bar" if gas else told))
-    return _Scene(look.extent, look.size, scenery(linkage, look, below=True), frames, "dead centres dashed")
+        reading = f"crank angle {degrees}°, slider at {slider[0]:.5g} mm"
+        frames.append((moving_shapes(pin, slider, look), f"{reading}, {pressures} bar" if gas else reading))
+    return _Scene(
+        look.extent, look.size, fixed_shapes(linkage, look, bearing_below=True), frames, "dead centres dashed"
+    )
 
 
 def _swinging(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> _Scene:
-    of = swing_look(mechanism, linkage, swing)
-    ways = at_even_times(mechanism, of.linkage, of.swing, FRAMES)
+    drawn = swing_look(mechanism, linkage, swing)
+    ways = curves_at_even_times(mechanism, drawn.linkage, drawn.swing, FRAMES)
     frames = []
     for way, angle in (
         (way, angle)
         for way, of_way in zip(("forth", "back"), ways, strict=True)
         for angle in of_way.crank_angle.tolist()
     ):
-        slider = pins_at(of.linkage, angle)[1]
-        told = f"{way}, crank angle {round(math.degrees(angle))}°, slider at {slider[0]:.5g} mm"
-        frames.append((swing_moving(of, angle), told))
-    return _Scene(of.extent, of.look.size, swing_scenery(of), frames, "ends of the swing dashed")
+        slider = pin_positions(drawn.linkage, angle)[1]
+        reading = f"{way}, crank angle {round(math.degrees(angle))}°, slider at {slider[0]:.5g} mm"
+        frames.append((swing_moving(drawn, angle), reading))
+    return _Scene(drawn.extent, drawn.look.size, swing_scenery(drawn), frames, "ends of the swing dashed")
 
 
 def _frames(scene: _Scene, title: str) -> list[Picture]:
@@ -98,19 +100,19 @@ def _frames(scene: _Scene, title: str) -> list[Picture]:
     height = min(_TALLEST, _WIDTH * tall / wide)
     figure = new_figure(_WIDTH, height + _HEAD + _FOOT)
     figure.set_dpi(_DOTS)
-    axes = place(figure, 0.0, _FOOT, _WIDTH, height)
+    axes = add_axes(figure, 0.0, _FOOT, _WIDTH, height)
     show_rectangle(axes, left - margin, low - margin, right + margin, high + margin)
-    write(figure, 0.15, height + _FOOT + 0.15, title[:90], fontsize=TEXT + 1.5, weight="bold")
-    write(figure, 0.15, 0.12, scene.dashed, fontsize=SMALL, color=MUTED)
+    write_text(figure, 0.15, height + _FOOT + 0.15, title[:90], fontsize=TEXT + 1.5, weight="bold")
+    write_text(figure, 0.15, 0.12, scene.dashed, fontsize=SMALL, color=MUTED)
     paint(axes, scene.still)
     reading = figure.text(1.0 - 0.15 / _WIDTH, 0.12 / (height + _HEAD + _FOOT), "", fontsize=TEXT, ha="right")
     canvas = figure.canvas
     canvas.draw()
     still = canvas.copy_from_bbox(figure.bbox)  # type: ignore[attr-defined]
-    found: list[Picture] = []
+    pictures: list[Picture] = []
     palette = None
-    for shapes, told in scene.frames:
-        reading.set_text(told.replace("-", "−"))
+    for shapes, reading_text in scene.frames:
+        reading.set_text(reading_text.replace("-", "−"))
         canvas.restore_region(still)  # type: ignore[attr-defined]
         for artist in (reading, *paint(axes, shapes)):
             figure.draw_artist(artist)
@@ -119,8 +121,8 @@ def _frames(scene: _Scene, title: str) -> list[Picture]:
         picture = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3])  # type: ignore[attr-defined]
         # One palette for all, so that what stands still does not flicker.
         palette = palette or _palette(picture)
-        found.append(picture.quantize(palette=palette, dither=Image.Dither.NONE))
-    return found
+        pictures.append(picture.quantize(palette=palette, dither=Image.Dither.NONE))
+    return pictures
 
 
 def _palette(picture: Picture) -> Picture:
@@ -131,6 +133,6 @@ def _palette(picture: Picture) -> Picture:
     for first in range(0, len(colours), 3):
         if min(colours[first : first + 3]) > _WHITE:
             colours[first : first + 3] = [255, 255, 255]
-    found = Image.new("P", (1, 1))
-    found.putpalette(colours)
-    return found
+    palette_image = Image.new("P", (1, 1))
+    palette_image.putpalette(colours)
+    return palette_image

@@ -17,8 +17,8 @@ from ..designs.cycle_table import CurveColumn
 from ..drawings import layers as on
 from ..drawings.svg import elements, group
 from ..render.numerals import shown as number
-from .play import ANGLES, Play, play_of_turn
-from .swing_play import play_of_swing
+from .playback import ANGLES, Playback, turn_playback
+from .swing_playback import swing_playback
 
 _PLAYER = Path(__file__).parent / "player"
 _STRIP = (float(ANGLES), 64.0)  # width, one unit a degree of a motion of one turn, and height
@@ -35,7 +35,7 @@ def player_page(
     swing: what the crank makes instead of turning fully. Raises `AssemblyError` for a linkage that does not turn fully,
     or what `require_swing` raises.
     """
-    play = play_of_turn(mechanism, linkage) if swing is None else play_of_swing(mechanism, linkage, swing)
+    play = turn_playback(mechanism, linkage) if swing is None else swing_playback(mechanism, linkage, swing)
     title = f"{name}, {design}" if design else name
     template = Template((_PLAYER / "player.html").read_text(encoding="utf-8"))
     page = template.substitute(
@@ -50,13 +50,13 @@ def player_page(
         readout="\n".join(_row(column) for column in play.columns),
         control=play.words.control,
         times=play.words.times,
-        over=play.words.over,
+        over=play.words.span_name,
         note=play.words.note,
     )
     return page.encode()
 
 
-def _data(play: Play) -> str:
+def _data(play: Playback) -> str:
     """Return the data of the script as JSON that may stand in HTML."""
     curves = {
         column.key: [float(f"{value:.7g}") if math.isfinite(value) else None for value in column.values]
@@ -66,7 +66,7 @@ def _data(play: Play) -> str:
     return json.dumps(record, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
 
 
-def _drawing(play: Play, title: str) -> str:
+def _drawing(play: Playback, title: str) -> str:
     (left, low, right, high), size = play.extent, play.size
     margin = 0.04 * size
     frame = f"{left - margin:.9g} {-high - margin:.9g} {right - left + 2 * margin:.9g} {high - low + 2 * margin:.9g}"
@@ -89,11 +89,11 @@ def _row(column: CurveColumn) -> str:
     )
 
 
-def _strip(column: CurveColumn, play: Play) -> str:
+def _strip(column: CurveColumn, play: Playback) -> str:
     """Return a small picture of a curve with the marks of a motion, and a line that the script moves."""
     marks = (angle / play.turns for angle in play.marks)
-    known = [value for value in column.values if math.isfinite(value)]
-    low, high = (min(known), max(known)) if known else (0.0, 1.0)
+    finite = [value for value in column.values if math.isfinite(value)]
+    low, high = (min(finite), max(finite)) if finite else (0.0, 1.0)
     span = (abs(high) or 1.0) if is_constant((low, high)) else high - low
     lines = [f'<line class="dead" x1="{angle:.2f}" x2="{angle:.2f}" y1="0" y2="{_STRIP[1]:g}"/>' for angle in marks]
     if low < 0.0 < high:

@@ -35,17 +35,17 @@ def joined_modules(sources: Mapping[str, str], first: str) -> str:
     """
     parts: dict[str, str] = {}
 
-    def add(name: str, above: tuple[str, ...] = ()) -> None:
-        if name in above:
-            raise ValueError(f"modules must not import each other in a circle; got {' -> '.join((*above, name))}")
+    def add(name: str, importers: tuple[str, ...] = ()) -> None:
+        if name in importers:
+            raise ValueError(f"modules must not import each other in a circle; got {' -> '.join((*importers, name))}")
         if name in parts:
             return
         text, now, later = _as_function(name, sources)
-        for other in now:
-            add(other, (*above, name))
+        for imported in now:
+            add(imported, (*importers, name))
         parts[name] = text
-        for other in later:
-            add(other)
+        for imported in later:
+            add(imported)
 
     add(first)
     return _TAKE + "".join(parts.values()) + f'take("{first}");\n'
@@ -58,20 +58,20 @@ def _as_function(name: str, sources: Mapping[str, str]) -> tuple[str, list[str],
     now: list[str] = []
     later: list[str] = []
 
-    def beside(path: str) -> str:
+    def resolve(path: str) -> str:
         return posixpath.normpath(posixpath.join(posixpath.dirname(name), path))
 
-    def imported(found: re.Match[str]) -> str:
-        now.append(beside(found[2]))
-        return f'const {{{found[1].replace(" as ", ": ")}}} = take("{now[-1]}");'
+    def imported(match: re.Match[str]) -> str:
+        now.append(resolve(match[2]))
+        return f'const {{{match[1].replace(" as ", ": ")}}} = take("{now[-1]}");'
 
-    def imported_later(found: re.Match[str]) -> str:
-        later.append(beside(found[1]))
+    def imported_later(match: re.Match[str]) -> str:
+        later.append(resolve(match[1]))
         return f'Promise.resolve().then(() => take("{later[-1]}"))'
 
     code = _EXPLAINED.sub("", sources[name])
     text = _LATER.sub(imported_later, _IMPORT.sub(imported, code))
-    exported = [found[2] for found in _EXPORT.finditer(text)]
+    exported = [match[2] for match in _EXPORT.finditer(text)]
     text = _EXPORT.sub(r"\1\2", text)
     if strange := _LEFT.search(text):
         raise ValueError(f"{name} must import and export as bundle.py says; got {strange[0][:100]!r}")

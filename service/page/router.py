@@ -51,7 +51,9 @@ async def show_page(request: Request) -> Response:
 def fetch_typeface(request: Request) -> Response:
     """Return the typeface; in a thread, since the first time takes seconds."""
     content = typeface()
-    return tagged(request, f'W/"{tag_of(content)}"', lambda: Response(content, media_type="font/woff"), _HEADERS)
+    return response_with_etag(
+        request, f'W/"{content_tag(content)}"', lambda: Response(content, media_type="font/woff"), _HEADERS
+    )
 
 
 @router.get("/page/{name:path}")
@@ -75,28 +77,31 @@ def _answer(request: Request, name: str) -> Response:
     if file is None:
         raise NotFound(f"the page has no file {name[:100]!r}; open the address of the service itself")
 
-    def answer() -> Response:
+    def file_response() -> Response:
         if "gzip" in request.headers.get("accept-encoding", ""):
             return Response(file.compressed, media_type=file.media_type, headers={"Content-Encoding": "gzip"})
         return Response(file.content, media_type=file.media_type)
 
-    return tagged(request, file.tag, answer, _HEADERS)
+    return response_with_etag(request, file.tag, file_response, _HEADERS)
 
 
-def tagged(
-    request: Request, tag: str | None, answer: Callable[[], Response], headers: Mapping[str, str] = MappingProxyType({})
+def response_with_etag(
+    request: Request,
+    tag: str | None,
+    make_response: Callable[[], Response],
+    headers: Mapping[str, str] = MappingProxyType({}),
 ) -> Response:
     """Return an answer with an ETag, or 304 to who has it already; made only where it is sent.
 
     tag: another one for another content; None for what no browser shall keep.
     """
     same = tag is not None and request.headers.get("if-none-match") == tag
-    response = Response(status_code=304) if same else answer()
+    response = Response(status_code=304) if same else make_response()
     response.headers.update({"Cache-Control": "private, no-cache", **headers, **({"ETag": tag} if tag else {})})
     return response
 
 
-def tag_of(content: bytes) -> str:
+def content_tag(content: bytes) -> str:
     """Return a tag of a content, in letters and digits."""
     return hashlib.sha256(content).hexdigest()[:16]
 
@@ -114,7 +119,7 @@ def files_of(folder: Path) -> dict[str, _File]:
     for name, text in {**texts, **joined}.items():
         content = text.encode()
         compressed = gzip.compress(content, mtime=0)
-        files[name] = _File(_TYPES[Path(name).suffix], content, compressed, f'W/"{tag_of(content)}"')
+        files[name] = _File(_TYPES[Path(name).suffix], content, compressed, f'W/"{content_tag(content)}"')
     return files
 
 

@@ -31,12 +31,12 @@ def _made() -> bytes:
 
     options = Options(layout_features=[*_FEATURES])
     options.name_IDs = [*options.name_IDs, *_LICENCE]
-    whole = files("fontpkg_inter").joinpath("files", "Inter[opsz,wght].ttf").read_bytes()
-    font = load_font(io.BytesIO(whole), options)
+    font_file = files("fontpkg_inter").joinpath("files", "Inter[opsz,wght].ttf").read_bytes()
+    font = load_font(io.BytesIO(font_file), options)
     subsetter = Subsetter(options)
     subsetter.populate(unicodes=[code for part in (*_LETTERS, *_SIGNS) for code in part])
     subsetter.subset(font)
     font.flavor = "woff"
-    made = io.BytesIO()
-    font.save(made)
-    return made.getvalue()
+    file = io.BytesIO()
+    font.save(file)
+    return file.getvalue()

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ..designs.shown_units import record_in, row_in
+from ..designs.display_units import record_in, row_in
 from ..render.terminal import print_blocks
 from ..text.tables import show_design, show_rules, show_undefined, show_violated
-from .discovery import TOLD_THERE
+from .discovery import TOPIC_COLUMNS
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -21,24 +21,24 @@ if TYPE_CHECKING:
 
 def show_analysis(
     screen: Console,
-    found: Analysis,
+    analysis: Analysis,
     rules: Sequence[JudgedRule],
     units: System,
     *,
-    own: Sequence[Quantity] = (),
-    more: str = "",
+    custom: Sequence[Quantity] = (),
+    hint: str = "",
 ) -> None:
     """Write all numbers of a design, how it meets the rules of its job, and its topics.
 
-    own: quantities of its job. more: a line before the topics, "" for none.
+    custom: quantities of its job. hint: a line before the topics, "" for none.
     """
-    row, reasons = found.row, (found.undefined or {}).items()
-    show_design(screen, row_in({key: row[key] for key in row if key not in TOLD_THERE}, units), own=own)
-    show_undefined(screen, {key: why for key, why in reasons if key not in TOLD_THERE}, own)
-    show_violated(screen, record_in(found.violated, units), row_in(row, units))
+    row, reasons = analysis.row, (analysis.undefined or {}).items()
+    show_design(screen, row_in({key: row[key] for key in row if key not in TOPIC_COLUMNS}, units), custom=custom)
+    show_undefined(screen, {key: why for key, why in reasons if key not in TOPIC_COLUMNS}, custom)
+    show_violated(screen, record_in(analysis.violated, units), row_in(row, units))
     show_rules(screen, rules)
-    if more:
-        screen.print(more, style="dim")
-    for topic in found.topics:
+    if hint:
+        screen.print(hint, style="dim")
+    for topic in analysis.topics:
         screen.print()
-        print_blocks(screen, topic.blocks(found.found[topic.name]), units)
+        print_blocks(screen, topic.blocks(analysis.topic_numbers[topic.name]), units)

@@ -8,11 +8,11 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
-from ..designs.shown_units import record_in, row_in
+from ..designs.display_units import record_in, row_in
 from ..designs.violations import violated_by
 from ..runs.result import Row, rows_of
+from .design_question import BoundQuestion
 from .discovery import TOPICS
-from .question import QuestionOfDesign
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
@@ -34,8 +34,8 @@ class Analysis:
     """
 
     row: Row
-    found: dict[str, dict[str, Any]]
-    topics: tuple[QuestionOfDesign, ...]
+    topic_numbers: dict[str, dict[str, Any]]
+    topics: tuple[BoundQuestion, ...]
     notes: list[str]
     refused: list[str]
     undefined: dict[str, str] | None = None
@@ -46,26 +46,30 @@ class Analysis:
 
         rules: of its job at the design; None without one.
         """
-        topics = {topic.name: topic.numbers_in(self.found[topic.name], units) for topic in self.topics}
+        topics = {topic.name: topic.numbers_in(self.topic_numbers[topic.name], units) for topic in self.topics}
         undefined = {} if self.undefined is None else {"undefined": record_in(self.undefined, units)}
         judged = {} if rules is None else {"rules": [asdict(rule) for rule in rules]}
         return row_in(self.row, units) | topics | undefined | {"violated": record_in(self.violated, units)} | judged
 
 
-def numbers_of(mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] = ()) -> tuple[Row, dict[str, str]]:
-    """Return every quantity of one design, and by column why it lacks others. own: quantities of its job."""
+def quantities_of_design(
+    mechanism: Mechanism, linkage: Linkage, custom: Sequence[Quantity] = ()
+) -> tuple[Row, dict[str, str]]:
+    """Return every quantity of one design, and by column why it lacks others. custom: quantities of its job."""
     from ...objectives.tables.analysis import columns_of
     from .peaks import row_of
 
-    return determined(rows_of(columns_of(mechanism, row_of(linkage), custom=own))[0], mechanism, linkage, own)
+    return with_undefined_values(
+        rows_of(columns_of(mechanism, row_of(linkage), custom=custom))[0], mechanism, linkage, custom
+    )
 
 
-def determined(
-    row: Row, mechanism: Mechanism, linkage: Linkage, own: Sequence[Quantity] = (), swing: Swing | None = None
+def with_undefined_values(
+    row: Row, mechanism: Mechanism, linkage: Linkage, custom: Sequence[Quantity] = (), swing: Swing | None = None
 ) -> tuple[Row, dict[str, str]]:
     """Return a row of all quantities with NaN for those that a design lacks, and by column why it lacks them.
 
-    row: of the `columns_of` of a table. own: quantities of the job. swing: in place of a full turn.
+    row: of the `columns_of` of a table. custom: quantities of the job. swing: in place of a full turn.
     """
     from ...objectives.peak_torque import PEAK_TORQUE
     from ...objectives.registry import QUANTITIES
@@ -73,27 +77,29 @@ def determined(
     from ...objectives.tables.turn_columns import PEAK_TORQUE_ANGLE
 
     reasons: dict[str, str] = {}
-    for of in (*QUANTITIES.values(), *own):
-        value = row.get(of.field)
+    for quantity in (*QUANTITIES.values(), *custom):
+        value = row.get(quantity.field)
         if not isinstance(value, float):
             continue
-        reason = of.undefined_because([mechanism]) or missing_value_reason(of, value, mechanism, linkage, swing)
+        reason = quantity.undefined_because([mechanism]) or missing_value_reason(
+            quantity, value, mechanism, linkage, swing
+        )
         if reason:
-            reasons |= {key: reason for key in (of.field, f"slack_{of.field}") if key in row}
+            reasons |= {key: reason for key in (quantity.field, f"slack_{quantity.field}") if key in row}
     angle = row.get(PEAK_TORQUE_ANGLE)
     if isinstance(angle, float) and math.isnan(angle):
         reasons[PEAK_TORQUE_ANGLE] = reasons.get(PEAK_TORQUE.field, "the torque is the same at every crank angle")
     return row | dict.fromkeys(reasons, math.nan), reasons
 
 
-def numbers_of_swing(design: StoredDesign) -> tuple[Row, dict[str, str]]:
+def quantities_of_swing(design: StoredDesign) -> tuple[Row, dict[str, str]]:
     """Return every quantity of a design that swings, and by column why it lacks others."""
     import numpy as np
 
     from ...objectives.tables.swinging import columns_of
 
     row = rows_of(columns_of(design.part.mechanism, np.array([design.values]), design.part.own))[0]
-    return determined(row, design.mechanism, design.linkage, design.part.own, design.part.motion)
+    return with_undefined_values(row, design.mechanism, design.linkage, design.part.own, design.part.motion)
 
 
 def analysis_of(
@@ -102,7 +108,7 @@ def analysis_of(
     linkage: Linkage,
     topics: Sequence[str],
     *,
-    more: Sequence[QuestionOfDesign] = (),
+    further_topics: Sequence[BoundQuestion] = (),
     options: Mapping[str, dict[str, Any]] | None = None,
     notes: Sequence[str] = (),
     cancelled: Callable[[], bool],
@@ -111,24 +117,26 @@ def analysis_of(
 ) -> Analysis:
     """Return the analysis of one design.
 
-    row, undefined: of `numbers_of`. topics: of `chosen_topics`, each with its options. more: topics after these.
-    cancelled: asked now and then; when it says so, the topics left are left out. lenient: a topic that this design does
-    not have is left out, not an error.
+    row, undefined: from `quantities_of_design`. topics: from `chosen_topics`, each with its options. further_topics:
+    added after these. cancelled: polled; once true, the remaining topics are omitted. lenient: whether a topic that
+    does not apply to this design is omitted instead of raising an error.
     """
-    design = tuple(TOPICS[name].of(mechanism, linkage, (options or {}).get(name)) for name in topics)
-    design += tuple(more)
-    found: dict[str, dict[str, Any]] = {}
-    said, refused = list(notes), list[str]()
+    design = tuple(TOPICS[name].for_design(mechanism, linkage, (options or {}).get(name)) for name in topics)
+    design += tuple(further_topics)
+    numbers_by_topic: dict[str, dict[str, Any]] = {}
+    remarks, refused = list(notes), list[str]()
     for topic in design:
         if cancelled():
-            said.append(f"interrupted; omitted: {', '.join(t.name for t in design[len(found) + len(refused) :])}")
+            remarks.append(
+                f"interrupted; omitted: {', '.join(t.name for t in design[len(numbers_by_topic) + len(refused) :])}"
+            )
             break
         try:
-            found[topic.name] = topic.numbers(cancelled)
+            numbers_by_topic[topic.name] = topic.numbers(cancelled)
         except InputError as error:
             reason = f"{topic.name}: {error}"
             if not lenient:
                 raise InputError(reason) from None
             refused.append(reason)
-    shown = tuple(topic for topic in design if topic.name in found)
-    return Analysis(row, found, shown, said, refused, undefined, violated_by(mechanism, row))
+    answered = tuple(topic for topic in design if topic.name in numbers_by_topic)
+    return Analysis(row, numbers_by_topic, answered, remarks, refused, undefined, violated_by(mechanism, row))

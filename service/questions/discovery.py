@@ -7,36 +7,41 @@ from importlib import import_module
 from pkgutil import iter_modules
 
 from ...model.errors import InputError
-from .question import Question
-from .wider import WiderQuestion
+from .design_question import DesignQuestion
+from .front_or_job_question import FrontOrJobQuestion
 
 ALL = "all"
 
 
-def _discover_questions() -> dict[str, Question | WiderQuestion]:
+def _discover_questions() -> dict[str, DesignQuestion | FrontOrJobQuestion]:
     package = __name__.rpartition(".")[0]
     folders = [item.name for item in iter_modules(import_module(package).__path__) if item.ispkg]
     declared = [getattr(import_module(f"{package}.{folder}"), "QUESTION", None) for folder in folders]
-    return {one.name: one for one in sorted((one for one in declared if one is not None), key=lambda one: one.place)}
+    return {
+        question.name: question
+        for question in sorted(
+            (question for question in declared if question is not None), key=lambda question: question.place
+        )
+    }
 
 
 QUESTIONS = _discover_questions()
 """All questions, by name."""
-OF_DESIGNS = {name: one for name, one in QUESTIONS.items() if isinstance(one, Question)}
+DESIGN_QUESTIONS = {name: one for name, one in QUESTIONS.items() if isinstance(one, DesignQuestion)}
 """All that one design can be asked, by name."""
-WIDER = {name: one for name, one in QUESTIONS.items() if isinstance(one, WiderQuestion)}
+FRONT_OR_JOB_QUESTIONS = {name: one for name, one in QUESTIONS.items() if isinstance(one, FrontOrJobQuestion)}
 """All that a front, several runs or a job can be asked, by name."""
-COMMANDS = {name: one.command for name, one in OF_DESIGNS.items() if one.command is not None}
+QUESTION_COMMANDS = {name: one.command for name, one in DESIGN_QUESTIONS.items() if one.command is not None}
 """Those that are commands of their own."""
-TOPICS = {name: one for name, one in OF_DESIGNS.items() if name not in COMMANDS}
+TOPICS = {name: one for name, one in DESIGN_QUESTIONS.items() if name not in QUESTION_COMMANDS}
 """Those that `analyse --show` adds, in their order."""
-TOLD_THERE = tuple(key for topic in TOPICS.values() for key in topic.tells)
+TOPIC_COLUMNS = tuple(key for topic in TOPICS.values() for key in topic.tells)
 """Columns that topics show; the table of a design leaves them out."""
 
 
 INPUTS = {given.name: given for topic in TOPICS.values() for given in topic.inputs}
 """What topics may be asked with, by name; no two topics have one of the same name."""
-TOPIC_OF = {given.name: topic.name for topic in TOPICS.values() for given in topic.inputs}
+TOPIC_OF_INPUT = {given.name: topic.name for topic in TOPICS.values() for given in topic.inputs}
 """Name of the topic of an input."""
 
 
@@ -47,9 +52,9 @@ def chosen_topics(names: Iterable[str], *, job: bool, word: str = "--show") -> t
     """
     import difflib
 
-    asked = [name.strip().replace("-", "_") for text in names for name in text.split(",")]
+    requested = [name.strip().replace("-", "_") for text in names for name in text.split(",")]
     possible = tuple(name for name, topic in TOPICS.items() if job or not topic.needs_job)
-    for name in asked:
+    for name in requested:
         if name not in TOPICS and name != ALL:
             near = difflib.get_close_matches(name, TOPICS, n=1)
             hint = f"did you mean {near[0]}?" if near else f"choose from {', '.join(TOPICS)}, {ALL}"
@@ -59,4 +64,4 @@ def chosen_topics(names: Iterable[str], *, job: bool, word: str = "--show") -> t
                 f"--show {name} needs masses, loads or tolerances; no job file was given; give one: analyse JOB "
                 f"--show {name}"
             )
-    return possible if ALL in asked else tuple(dict.fromkeys(asked))
+    return possible if ALL in requested else tuple(dict.fromkeys(requested))

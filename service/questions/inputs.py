@@ -32,7 +32,7 @@ class Input:
     usual: str = ""
     option: str = ""
     sign: Sign = "any"
-    below: float | None = None
+    upper_limit: float | None = None
     drawn: bool = True
     example: str = ""
     words: Any = None
@@ -68,51 +68,51 @@ class Input:
     def remark(self) -> str:
         """The help with the default or an example."""
         typed = self.usual or self.example
-        shown = f'"{typed}"' if self.unit.symbol else typed
-        return f"{self.help}  [{'default' if self.usual else 'example'}: {shown}]" if typed else self.help
+        quoted = f'"{typed}"' if self.unit.symbol else typed
+        return f"{self.help}  [{'default' if self.usual else 'example'}: {quoted}]" if typed else self.help
 
-    def read(self, given: object, word: str) -> Any:
+    def read(self, raw: object, word: str) -> Any:
         """Return the value in SI of a text with its unit, or of a number in SI; a word as it is.
 
         word: what the door calls the input. Raises `InputError` that begins with it.
         """
         from ...model.machine.loads.load import require_word
         from ...objectives.units import quote
-        from ..designs.selection import value_of
+        from ..designs.selection import parse_value
 
         if self.kind is None:
-            if self.loose and isinstance(given, str):
-                given = given.strip().casefold().replace("-", " ").replace("_", " ")
-            require_word(word, given, self.words)
-            return given
+            if self.loose and isinstance(raw, str):
+                raw = raw.strip().casefold().replace("-", " ").replace("_", " ")
+            require_word(word, raw, self.words)
+            return raw
         kind = replace(self.kind, example=self.usual or self.example or self.kind.example)
-        value = value_of(word, given, kind, sign=self.sign)
-        if self.below is not None and value >= self.below:
-            limit = f"{self.unit.factor * self.below:g} {self.unit.symbol}".rstrip()
-            raise InputError(f"{word} must be less than {limit}; got {quote(given)}; write it like {self.usual}")
+        value = parse_value(word, raw, kind, sign=self.sign)
+        if self.upper_limit is not None and value >= self.upper_limit:
+            limit = f"{self.unit.factor * self.upper_limit:g} {self.unit.symbol}".rstrip()
+            raise InputError(f"{word} must be less than {limit}; got {quote(raw)}; write it like {self.usual}")
         return value
 
-    def typed(self, number: float | str) -> str:
+    def with_unit(self, number: float | str) -> str:
         """Return a number of the API as text with its unit; a word as it is."""
         return number if isinstance(number, str) else f"{number!r} {self.unit.symbol}"
 
 
 def read_inputs(
-    inputs: Sequence[Input], given: Mapping[str, object], question: str, words: Mapping[str, str] | None = None
+    inputs: Sequence[Input], raw_values: Mapping[str, object], question: str, words: Mapping[str, str] | None = None
 ) -> dict[str, Any]:
     """Return the values, in SI, of the inputs that are given by name; None is not given.
 
     words: what the door calls them, if not by their names. Raises `InputError` for an input that the question does not
     have, and without one that it needs.
     """
-    said = {one.name: one.name for one in inputs} | dict(words or {})
-    known = {one.name: one for one in inputs}
-    for name in given:
-        if name not in known:
-            rule = f"{question} may only be given {', '.join(known)}" if known else f"{question} has no inputs"
+    labels = {item.name: item.name for item in inputs} | dict(words or {})
+    by_name = {item.name: item for item in inputs}
+    for name in raw_values:
+        if name not in by_name:
+            rule = f"{question} may only be given {', '.join(by_name)}" if by_name else f"{question} has no inputs"
             raise InputError(f"{rule}; got {name}; leave {name} out")
-    values = {name: known[name].read(value, said[name]) for name, value in given.items() if value is not None}
-    for one in inputs:
-        if one.required and one.name not in values:
-            raise InputError(f"{question} needs {said[one.name]}; got none; give it like {one.example}")
+    values = {name: by_name[name].read(value, labels[name]) for name, value in raw_values.items() if value is not None}
+    for item in inputs:
+        if item.required and item.name not in values:
+            raise InputError(f"{question} needs {labels[item.name]}; got none; give it like {item.example}")
     return values

@@ -59,7 +59,7 @@ class Sentence:
 
     text: Text
     style: Literal["heading", "plain", "note"] = "plain"
-    apart: bool = False
+    space_before: bool = False
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class Table:
     ruled: bool = False
     indented: bool = False
     dim: tuple[int, ...] = ()
-    apart: bool = False
+    space_before: bool = False
     bold: tuple[int, ...] = ()
 
 

@@ -32,9 +32,9 @@ def format_value(value: Value, system: System = "metric", *, bare: bool = False,
     """Return a value with its unit in a system. bare: without the unit. printed: as figures write numbers."""
     if value.number is None or math.isnan(value.number):
         return value.missing
-    face = value.kind.display_unit(system)
+    display_unit = value.kind.display_unit(system)
     digits, decimals = digits_of(value, system)
-    number, unit = face.factor * value.number, "" if bare or value.bare else unit_text(face.symbol)
+    number, unit = display_unit.factor * value.number, "" if bare or value.bare else unit_text(display_unit.symbol)
     if printed and decimals is None:
         text = shown(number, digits)
     else:
@@ -66,11 +66,11 @@ def format_text(text: Text, system: System = "metric", *, bare: bool = False, pr
 
 def heads(table: Table, system: System = "metric", *, separator: str = ", ") -> tuple[str, ...]:
     """Return the heads of a table, each with the unit of its column after a separator."""
-    found = []
+    titles = []
     for column in table.columns:
         unit = "" if column.kind is None else unit_text(column.kind.display_unit(system).symbol)
-        found.append(separator.join(part for part in (format_text(column.title, system), unit) if part))
-    return tuple(found)
+        titles.append(separator.join(part for part in (format_text(column.title, system), unit) if part))
+    return tuple(titles)
 
 
 def cells(table: Table, system: System = "metric", *, printed: bool = False) -> tuple[tuple[str, ...], ...]:

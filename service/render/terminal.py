@@ -19,7 +19,7 @@ _STYLES = {"heading": "bold", "plain": None, "note": "dim"}
 def print_blocks(screen: Console, blocks: Sequence[Block], system: System = "metric") -> None:
     """Write blocks in a system of units; what follows a table and the notes on it stands apart."""
     for before, block in zip((None, *blocks), blocks, strict=False):
-        if block.apart or ((isinstance(before, Table) or _is_note(before)) and not _is_note(block)):
+        if block.space_before or ((isinstance(before, Table) or _is_note(before)) and not _is_note(block)):
             screen.print()
         if isinstance(block, Sentence):
             screen.print(format_text(block.text, system), style=_STYLES[block.style], soft_wrap=True, markup=False)
@@ -36,7 +36,7 @@ def _print_table(screen: Console, block: Table, system: System) -> None:
     rows = table(
         *(f"{'>' if column.right else ''}{title}" for column, title in zip(block.columns, titles, strict=True)),
         ruled=block.ruled,
-        **({"padding": (0, 2, 0, 0), "pad_edge": True} if block.apart else {}),
+        **({"padding": (0, 2, 0, 0), "pad_edge": True} if block.space_before else {}),
     )
     for place in block.dim:
         rows.columns[place].style = "dim"
@@ -55,11 +55,11 @@ def table(*columns: str, ruled: bool = False, **look: Any) -> Drawn:
 
     usual: dict[str, Any] = {"pad_edge": False, "show_header": any(column.strip(">") for column in columns)}
     usual |= {"box": box.SIMPLE_HEAD, "padding": (0, 1), "show_edge": False} if ruled else {"box": None}
-    found = Drawn(**({"padding": (0, 2, 0, 0)} | usual | look))
+    rich_table = Drawn(**({"padding": (0, 2, 0, 0)} | usual | look))
     for column in columns:
         right = column.startswith(">")
-        found.add_column(column.removeprefix(">"), justify="right" if right else "left", no_wrap=right)
-    return found
+        rich_table.add_column(column.removeprefix(">"), justify="right" if right else "left", no_wrap=right)
+    return rich_table
 
 
 def print_table(screen: Console, table: Drawn) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import unit_text
 from ..designs.columns import find_column
-from ..designs.shown_units import row_in
+from ..designs.display_units import row_in
 from ..render.numerals import rounded
 from .document import Block, Paragraph, Section, Table
 from .subject import Alternative, Subject
@@ -15,25 +15,28 @@ _SAME = 1e-9  # of a length
 
 def decision_section(subject: Subject) -> Section | None:
     """Return which design was decided for, and the others with the reasons against them; None before a decision."""
-    chosen = next((one for one in subject.alternatives if one.decided), None)
+    chosen = next((alternative for alternative in subject.alternatives if alternative.decided), None)
     if chosen is None:
         return None
     because = f": {chosen.reason}" if chosen.reason else "; no reason was given"
     blocks: list[Block] = [Paragraph(f"Decided for {chosen.name}{because}.")]
     lengths = [float(chosen.row[f"{name}_mm"] or 0.0) for name in DIMENSIONS]
-    own = [1e3 * value for value in subject.design.values[:3]]
-    if any(abs(one - other) > _SAME * abs(other) for one, other in zip(lengths, own, strict=True)):
+    reported_lengths = [1e3 * value for value in subject.design.values[:3]]
+    if any(
+        abs(alternative - reported) > _SAME * abs(reported)
+        for alternative, reported in zip(lengths, reported_lengths, strict=True)
+    ):
         blocks.append(Paragraph("This report is about another design.", "note"))
-    ordered = [chosen, *(one for one in subject.alternatives if one is not chosen)]
-    rows = [row_in(one.row, subject.system) for one in ordered]
+    ordered = [chosen, *(alternative for alternative in subject.alternatives if alternative is not chosen)]
+    rows = [row_in(alternative.row, subject.system) for alternative in ordered]
     keys = [find_column(name, list(rows[0])).key for name in DIMENSIONS]
     columns = [find_column(key, list(rows[0])) for key in keys]
-    wanted = subject.result.objectives
-    numbers = [*columns, *(find_column(item.column, list(rows[0])) for item in wanted)]
+    objectives = subject.result.objectives
+    numbers = [*columns, *(find_column(item.column, list(rows[0])) for item in objectives)]
     heads = tuple(f"{column.title}, {unit_text(column.unit)}" if column.unit else column.title for column in numbers)
     cells = tuple(
-        (one.name, *(rounded(row[column.key]) for column in numbers), _words(one, subject))
-        for one, row in zip(ordered, rows, strict=True)
+        (alternative.name, *(rounded(row[column.key]) for column in numbers), _words(alternative, subject))
+        for alternative, row in zip(ordered, rows, strict=True)
     )
     share = 0.6 / len(numbers)
     blocks.append(
@@ -50,14 +53,17 @@ def decision_section(subject: Subject) -> Section | None:
     return Section("Decision", tuple(blocks))
 
 
-def _words(one: Alternative, subject: Subject) -> str:
+def _words(alternative: Alternative, subject: Subject) -> str:
     """Return the reason, the note, and what a design misses."""
     titles = {**{f"{name}_mm": name for name in DIMENSIONS}, "slow_stroke": "slow stroke"}
-    missed = [find_column(key, list(one.row)).title if key not in titles else titles[key] for key in one.broken]
-    left = [titles.get(key, key) for key in one.outside]
+    missed = [
+        find_column(key, list(alternative.row)).title if key not in titles else titles[key]
+        for key in alternative.broken
+    ]
+    left = [titles.get(key, key) for key in alternative.outside]
     parts = [
-        one.reason,
-        one.note and f"note: {one.note}",
+        alternative.reason,
+        alternative.note and f"note: {alternative.note}",
         missed and f"misses {', '.join(missed)}",
         left and f"outside the job: {', '.join(left)}",
     ]

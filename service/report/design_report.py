@@ -34,7 +34,7 @@ def design_report(subject: Subject, *, made: float | None = None) -> Report:
     return Report(
         title=f"{subject.result.name}: {subject.name}",
         subtitle=f"Design report for review; run {subject.run}",
-        made=when,
+        date=when,
         sections=(
             _summary(subject),
             *([] if decision is None else [decision]),
@@ -54,12 +54,12 @@ def design_report(subject: Subject, *, made: float | None = None) -> Report:
 def _summary(subject: Subject) -> Section:
     row = subject.row
     keys = {metric_key(key) for key in row}
-    known = [of.name for of in (STROKE, ACTUATOR_TRAVEL, SWING_ANGLE) if of.field in keys]
-    columns = [find_column(name, list(row)) for name in (*DIMENSIONS, *known)]
-    lengths = [f"{of.title} {subject.sensible(of.key, row[of.key])} {unit_text(of.unit)}" for of in columns]
+    size_names = [item.name for item in (STROKE, ACTUATOR_TRAVEL, SWING_ANGLE) if item.field in keys]
+    columns = [find_column(name, list(row)) for name in (*DIMENSIONS, *size_names)]
+    lengths = [f"{item.title} {subject.sensible(item.key, row[item.key])} {unit_text(item.unit)}" for item in columns]
     rows = {
         "Lengths": [", ".join(lengths)],
-        "Objectives": [f"{of.title} {measured(row[of.column], of.unit)}" for of in subject.result.objectives],
+        "Objectives": [f"{item.title} {measured(row[item.column], item.unit)}" for item in subject.result.objectives],
         "Choices": [_format_choice(subject, key) for key in chosen_columns(row)] if subject.problem.choices else [],
         "Beyond what is allowed": [unit_text(line) for line in subject.violated],
         "Machine": _machine(subject),
@@ -67,23 +67,23 @@ def _summary(subject: Subject) -> Section:
         if subject.changed is None
         else _change_sentences(subject, subject.changed),
     }
-    told = Facts({title: lines for title, lines in rows.items() if lines})
-    return Section("Summary", (told, linkage_picture(subject)))
+    facts = Facts({title: lines for title, lines in rows.items() if lines})
+    return Section("Summary", (facts, linkage_picture(subject)))
 
 
 def _format_choice(subject: Subject, key: str) -> str:
     """Return what was chosen, or an amount that comes with it, in words."""
     column, value = find_column(key, list(subject.row)), subject.row[key]
-    known = next((of for of in subject.problem.own if of.field == key), None)
-    title, unit = (column.title, column.unit) if known is None else (known.title, known.unit.symbol)
+    custom = next((quantity for quantity in subject.problem.own if quantity.field == key), None)
+    title, unit = (column.title, column.unit) if custom is None else (custom.title, custom.unit.symbol)
     return f"{title} {value}" if isinstance(value, str) else f"{title} {measured(value, unit)}"
 
 
 def _machine(subject: Subject) -> list[str]:
     """Return lines on a design's machine that differ from the job's: what varies or a choice sets."""
     stated = machine_in_words(subject.problem, subject.problem.mechanism)
-    own = machine_in_words(subject.problem, subject.design.mechanism)
-    return [unit_text(line) for line in own if line not in stated]
+    lines = machine_in_words(subject.problem, subject.design.mechanism)
+    return [unit_text(line) for line in lines if line not in stated]
 
 
 def _best_objectives(subject: Subject) -> list[str]:
@@ -98,17 +98,20 @@ def _best_objectives(subject: Subject) -> list[str]:
 def _change_sentences(subject: Subject, changed: Variation) -> list[str]:
     """Return sentences on the changes to a design of the front, and on where they leave it."""
     before = subject.result.designs[subject.number - 1]
-    other = [
-        f"{name} {measured(subject.row[of.key], of.unit)} instead of {measured(before[of.key], of.unit)}"
-        for name, of in ((name, find_column(name, list(before))) for name in DIMENSIONS)
-        if rounded(subject.row[of.key]) != rounded(before[of.key])
+    changes = [
+        f"{name} {measured(subject.row[column.key], column.unit)} instead of "
+        f"{measured(before[column.key], column.unit)}"
+        for name, column in ((name, find_column(name, list(before))) for name in DIMENSIONS)
+        if rounded(subject.row[column.key]) != rounded(before[column.key])
     ]
-    found = [f"design {subject.number} of {len(subject.result.designs)} with other lengths: {', '.join(other)}"]
+    sentences = [f"design {subject.number} of {len(subject.result.designs)} with other lengths: {', '.join(changes)}"]
     if changed.outside:
-        found.append(f"outside the ranges of the job: {', '.join(key.removesuffix('_mm') for key in changed.outside)}")
+        sentences.append(
+            f"outside the ranges of the job: {', '.join(key.removesuffix('_mm') for key in changed.outside)}"
+        )
     if changed.broken:
-        found.append("misses requirements of the job; see below")
+        sentences.append("misses requirements of the job; see below")
     better = len(changed.dominated_by)
     if better:
-        found.append(f"{counted(better, 'design')} of the front at least as good in every objective")
-    return found
+        sentences.append(f"{counted(better, 'design')} of the front at least as good in every objective")
+    return sentences

@@ -15,10 +15,10 @@ from ...objectives.needs import Consequence
 from ...objectives.registry import QUANTITIES
 from ..designs.columns import Column, all_columns
 from ..designs.requirements import requirements_of
-from ..designs.toleranced import toleranced
+from ..designs.toleranced import format_toleranced
 from ..designs.trade_offs import trade_offs_of
 from ..drawings.design_drawing import design_drawing
-from ..figures.front import sheet_of
+from ..figures.front import datasheet_of
 from ..figures.painting import drawing_figure
 from ..render.numerals import as_stored, rounded
 from .document import Block, Paragraph, Picture, Section, Table
@@ -60,7 +60,7 @@ def numbers_section(subject: Subject) -> Section:
         )
         for column in columns
     )
-    objectives = {wanted.column for wanted in subject.result.objectives}
+    objectives = {objective.column for objective in subject.result.objectives}
     return Section(
         "Every number of the design",
         (
@@ -89,17 +89,19 @@ def _columns_of_machine(subject: Subject) -> tuple[list[Column], list[str]]:
     What the job asks for is never left out.
     """
     part, mechanism = subject.design.part, subject.design.mechanism
-    known = {key_in(of.field, subject.system)[0]: of for of in (*QUANTITIES.values(), *part.own)}
-    asked = {item.column for item in subject.result.objectives} | {
+    quantity_of_column = {
+        key_in(quantity.field, subject.system)[0]: quantity for quantity in (*QUANTITIES.values(), *part.own)
+    }
+    required = {item.column for item in subject.result.objectives} | {
         slack.removeprefix("slack_") for slack in _bounds_by_slack(subject)
     }
     columns, absent = [], []
     for column in all_columns(subject.row):
-        value, of = subject.row[column.key], known.get(column.key)
-        without = value is None or (isinstance(value, float) and math.isnan(value))
-        if of is not None and column.key not in asked:
-            without = without or any(of.lacks(mechanism, word) for word in get_args(Consequence))
-        if without and column.key not in asked:
+        value, quantity = subject.row[column.key], quantity_of_column.get(column.key)
+        is_absent = value is None or (isinstance(value, float) and math.isnan(value))
+        if quantity is not None and column.key not in required:
+            is_absent = is_absent or any(quantity.lacks(mechanism, word) for word in get_args(Consequence))
+        if is_absent and column.key not in required:
             absent.append(column.title)
         else:
             columns.append(column)
@@ -108,32 +110,32 @@ def _columns_of_machine(subject: Subject) -> tuple[list[Column], list[str]]:
 
 def _dimensions_with_tolerance(subject: Subject) -> dict[str, str]:
     """Return the dimensions that have a tolerance, with the digits that it makes sensible, by their columns."""
-    found = {}
+    texts = {}
     for key, tolerance in subject.tolerances.items():
         value = subject.row.get(key)
         if isinstance(value, float):
-            found[key] = toleranced(value, tolerance).replace("-", "−")
-    return found
+            texts[key] = format_toleranced(value, tolerance).replace("-", "−")
+    return texts
 
 
 def _rules(subject: Subject) -> list[Block]:
     slacks = [column for column in all_columns(subject.row) if column.key.startswith("slack_")]
     if not slacks:
         return [Paragraph("The job sets no requirements besides the ranges of the dimensions.", "note")]
-    rows, met, asked = [], True, _bounds_by_slack(subject)
+    rows, all_met, bounds = [], True, _bounds_by_slack(subject)
     for column in slacks:
         slack, value = subject.row[column.key], subject.row.get(column.key.removeprefix("slack_"))
         active = _active(subject, column)
-        held = active or (isinstance(slack, float) and slack >= 0.0)
-        met = met and held
-        state = "met, active" if active and held else "met" if held else "not met"
+        is_met = active or (isinstance(slack, float) and slack >= 0.0)
+        all_met = all_met and is_met
+        state = "met, active" if active and is_met else "met" if is_met else "not met"
         title = column.title.removeprefix("slack of ")
         distance = "0" if active else rounded(slack)
-        bound = asked.get(column.key, "")
+        bound = bounds.get(column.key, "")
         rows.append((title, bound, rounded(value), distance, unit_text(column.unit), state))
-    verdict = "All requirements are met." if met else "Not all requirements are met: see below."
+    verdict = "All requirements are met." if all_met else "Not all requirements are met: see below."
     return [
-        Paragraph(verdict, "good" if met else "bad"),
+        Paragraph(verdict, "good" if all_met else "bad"),
         Table(
             "Requirements: the slack is the distance to the nearer bound",
             ("quantity", "asked", "value", "slack", "unit", "state"),
@@ -146,14 +148,14 @@ def _rules(subject: Subject) -> list[Block]:
 
 def _bounds_by_slack(subject: Subject) -> dict[str, str]:
     """Return the bounds of each requirement of the design, those of what was chosen included, by its slack's column."""
-    found = {}
+    bounds = {}
     for item in requirements_of(subject.design.part):
         key, factor = key_in(item.slack, subject.system)
         ends = [("at least", item.lower), ("at most", item.upper)]
         if item.lower == item.upper:
             ends = [("equal to", item.lower)]
-        found[key] = " and ".join(f"{word} {rounded(end * factor)}" for word, end in ends if end is not None)
-    return found
+        bounds[key] = " and ".join(f"{word} {rounded(end * factor)}" for word, end in ends if end is not None)
+    return bounds
 
 
 def _active(subject: Subject, column: Column) -> bool:
@@ -169,8 +171,8 @@ def _optimality(subject: Subject) -> list[Block]:
     if subject.changed is not None:
         blocks.append(Paragraph("Not a design of the front: whether it could be better was not searched for.", "note"))
     if status == "stationary":
-        kept = "while the requirements hold"
-        text = f"Stationary: no small change betters every objective {kept} (residual {rounded(residual)})."
+        condition = "while the requirements hold"
+        text = f"Stationary: no small change betters every objective {condition} (residual {rounded(residual)})."
         blocks.append(Paragraph(text, "good"))
     elif status is not None:
         text = f"Best found, but not shown to be stationary (residual {rounded(residual)})."
@@ -198,4 +200,4 @@ def linkage_picture(subject: Subject) -> Picture:
 
 def _sheet(subject: Subject) -> Figure:
     label = "the chosen design" if subject.changed is None else subject.label
-    return sheet_of(subject.front, subject.number - 1, label, subject.system, subject.changed)
+    return datasheet_of(subject.front, subject.number - 1, label, subject.system, subject.changed)

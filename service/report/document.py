@@ -72,6 +72,6 @@ class Report:
 
     title: str
     subtitle: str
-    made: str
+    date: str
     sections: tuple[Section, ...]
     signatures: tuple[str, ...] = ("Prepared", "Reviewed", "Approved")

@@ -25,7 +25,7 @@ def sensitivity_section(subject: Subject) -> Section:
     """Return by how much every quantity changes with every dimension."""
     design = subject.design
     rows = tornado_rows(design.mechanism, design.linkage, design.part.motion)
-    draw = partial(tornado_figure, rows, subject.system, width=7.4, most=_MOST)
+    draw = partial(tornado_figure, rows, subject.system, width=7.4, limit=_MOST)
     return Section("Sensitivity", (Picture("Change of quantities with the dimensions", draw),))
 
 
@@ -34,44 +34,44 @@ def tolerance_section(subject: Subject) -> Section | None:
     mechanism, linkage = subject.design.mechanism, subject.design.linkage
     if not np.any(limits(mechanism, linkage)):
         return None
-    found = numbers(mechanism, linkage)
+    record = numbers(mechanism, linkage)
     blocks: tuple[Block, ...] = (
-        Facts(_facts(found, subject.system)),
-        _sources(found, subject.system),
+        Facts(_facts(record, subject.system)),
+        _sources(record, subject.system),
         Picture(
             "Position error over a turn", lambda: tolerances_figure(error_bands(mechanism, linkage), subject.system)
         ),
         Paragraph(
-            f"Random machines: {found['monte_carlo']['samples']}, seed {found['monte_carlo']['seed']}; normal errors, "
-            "limits at three standard deviations.",
+            f"Random machines: {record['monte_carlo']['samples']}, seed {record['monte_carlo']['seed']}; normal "
+            "errors, limits at three standard deviations.",
             "note",
         ),
     )
     return Section("Tolerances", blocks)
 
 
-def _facts(found: Mapping[str, Any], system: System) -> dict[str, list[str]]:
-    def at(name: str) -> str:
-        size, angle = found[f"{name}_mm"], found[f"{name}_angle_deg"]
+def _facts(record: Mapping[str, Any], system: System) -> dict[str, list[str]]:
+    def size_and_angle(name: str) -> str:
+        size, angle = record[f"{name}_mm"], record[f"{name}_angle_deg"]
         if size is None:
             return "undefined: a linkage within the tolerances does not rotate fully"
         return f"{length(size, system, 6)} at {rounded(angle)} deg"
 
-    spread = found["monte_carlo"]["percentiles_greatest_mm"]
+    spread = record["monte_carlo"]["percentiles_greatest_mm"]
     percents = [f"{percent} % within {length(value, system, 6)}" for percent, value in spread.items()]
     return {
-        "Worst case, first order": [at("worst_case")],
-        "Worst case, exact": [at("exact_worst_case")],
-        "Root-sum-square": [at("root_sum_square")],
+        "Worst case, first order": [size_and_angle("worst_case")],
+        "Worst case, exact": [size_and_angle("exact_worst_case")],
+        "Root-sum-square": [size_and_angle("root_sum_square")],
         "Random machines": percents or ["none that turns fully"],
         "Yield": [
             f"{rounded(item['yield_percent'])} % within {length(item['limit_mm'], system, 6)} ({item['limit']})"
-            for item in found["yields"]
+            for item in record["yields"]
         ],
     }
 
 
-def _sources(found: PositionError, system: System) -> Table:
+def _sources(record: PositionError, system: System) -> Table:
     unit, factor = shown_in("mm", system)
     rows = tuple(
         (
@@ -81,7 +81,7 @@ def _sources(found: PositionError, system: System) -> Table:
             f"{row['share_of_worst_case_percent']:.1f}",
             f"{row['share_of_variance_percent']:.1f}",
         )
-        for row in found["contributions"]
+        for row in record["contributions"]
     )
     return Table(
         "Where the position error comes from, at the worst crank angle",

@@ -21,9 +21,9 @@ _MANY = 400
 def front_section(subject: Subject) -> Section:
     """Return the ranges of the objectives, the marked designs, and the figures of the front."""
     result = subject.result
-    said = map(unit_text, front_violations_in_words(result))
-    beyond = (Paragraph(f"Beyond the allowable value: {line}.", "bad") for line in said)
-    blocks: list[Block] = [*beyond, _ranges(subject), _comparison_table(subject)]
+    lines = map(unit_text, front_violations_in_words(result))
+    violations = (Paragraph(f"Beyond the allowable value: {line}.", "bad") for line in lines)
+    blocks: list[Block] = [*violations, _ranges(subject), _comparison_table(subject)]
     raster = len(result.designs) > _MANY
     if len(result.designs) > 1:
         if len(result.objectives) > 1:
@@ -38,15 +38,15 @@ def front_section(subject: Subject) -> Section:
 
 def _ranges(subject: Subject) -> Table:
     rows = []
-    for wanted in subject.result.objectives:
-        ranked = sorted(subject.result.designs, key=wanted.rank)
-        best, worst = ranked[0][wanted.column], ranked[-1][wanted.column]
-        value = subject.row[wanted.column]
-        place = 1 + sum(wanted.rank(row) < wanted.rank(subject.row) for row in ranked)
+    for objective in subject.result.objectives:
+        ranked = sorted(subject.result.designs, key=objective.rank)
+        best, worst = ranked[0][objective.column], ranked[-1][objective.column]
+        value = subject.row[objective.column]
+        place = 1 + sum(objective.rank(row) < objective.rank(subject.row) for row in ranked)
         rank = f"{place} of {len(ranked) + (subject.changed is not None)}"
-        numbers = (rounded(value), rounded(best), rounded(worst), unit_text(wanted.unit), rank)
-        sense = wanted.sense if wanted.target is None else f"target {measured(wanted.target, wanted.unit)}"
-        rows.append((wanted.title, sense, *numbers))
+        numbers = (rounded(value), rounded(best), rounded(worst), unit_text(objective.unit), rank)
+        sense = objective.sense if objective.target is None else f"target {measured(objective.target, objective.unit)}"
+        rows.append((objective.title, sense, *numbers))
     return Table(
         f"Objectives: {subject.label}{',' if subject.changed else ''} within the front",
         ("objective", "wanted", "this design", "best", "worst", "unit", "rank"),
@@ -59,14 +59,14 @@ def _ranges(subject: Subject) -> Table:
 def _comparison_table(subject: Subject) -> Table:
     """Return this design next to the best in each objective and the knee."""
     result = subject.result
-    titles = {wanted.quantity: wanted.title for wanted in result.objectives}
+    titles = {objective.quantity: objective.title for objective in result.objectives}
     labels: dict[int, list[str]] = {subject.number - 1: ["this design" if subject.changed is None else "unchanged"]}
     for name, place in result.extremes.items():
         labels.setdefault(place, []).append(f"best {titles[name]}")
     if result.knee is not None and len(result.objectives) > 1:
         labels.setdefault(result.knee, []).append("knee")
     names = list(subject.row)
-    keys = [find_column(name, names).key for name in DIMENSIONS] + [wanted.column for wanted in result.objectives]
+    keys = [find_column(name, names).key for name in DIMENSIONS] + [objective.column for objective in result.objectives]
     keys += ["slow_stroke"] if result.strokes_differ else []
     columns = [find_column(key, list(subject.row)) for key in dict.fromkeys(keys)]
     rows = tuple(
@@ -83,13 +83,13 @@ def _comparison_table(subject: Subject) -> Table:
             *rows,
         )
     heads = tuple(f"{column.title}, {unit_text(column.unit)}" if column.unit else column.title for column in columns)
-    lengths, what = 0.104, 0.15  # the heads of objectives are the longest words: "transmission"
-    share = (0.95 - what - lengths * len(DIMENSIONS)) / (len(columns) - len(DIMENSIONS))
+    lengths, label_width = 0.104, 0.15  # the heads of objectives are the longest words: "transmission"
+    share = (0.95 - label_width - lengths * len(DIMENSIONS)) / (len(columns) - len(DIMENSIONS))
     return Table(
         "Marked designs",
         ("no.", "what it is", *heads),
         rows,
-        (0.05, what, *(lengths for _ in DIMENSIONS), *(share for _ in columns[len(DIMENSIONS) :])),
+        (0.05, label_width, *(lengths for _ in DIMENSIONS), *(share for _ in columns[len(DIMENSIONS) :])),
         frozenset({0, *range(2, 2 + len(columns))}),
         bold=frozenset({0}),
         small=len(columns) > 5,

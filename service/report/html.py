@@ -8,7 +8,7 @@ from html import escape
 from pathlib import Path
 from string import Template
 
-from ..figures.style import image
+from ..figures.style import figure_bytes
 from .document import Block, Facts, Paragraph, Picture, Report, Section, Table
 
 _PAGE = Path(__file__).parent / "page"
@@ -25,7 +25,7 @@ def html_file(report: Report) -> bytes:
     page = Template((_PAGE / "report.html").read_text(encoding="utf-8")).substitute(
         title=escape(report.title),
         subtitle=escape(report.subtitle),
-        made=escape(report.made),
+        made=escape(report.date),
         style=(_PAGE / "report.css").read_text(encoding="utf-8"),
         sections="\n".join(parts),
     )
@@ -44,7 +44,9 @@ def _block(block: Block, name: str) -> list[str]:
         kind = "" if block.tone == "plain" else f' class="{block.tone}"'
         return [f"<p{kind}>{escape(block.text)}</p>"]
     if isinstance(block, Facts):
-        rows = (f"<dt>{escape(name)}</dt><dd>{'<br>'.join(map(escape, of))}</dd>" for name, of in block.rows.items())
+        rows = (
+            f"<dt>{escape(name)}</dt><dd>{'<br>'.join(map(escape, lines))}</dd>" for name, lines in block.rows.items()
+        )
         return [f'<dl class="facts">{"".join(rows)}</dl>']
     if isinstance(block, Table):
         return _table(block)
@@ -73,9 +75,9 @@ def _picture(picture: Picture, name: str) -> str:
     label = escape(picture.title, quote=True)
     figure = picture.draw()
     if picture.raster:
-        content = base64.b64encode(image(figure, "png")).decode()
+        content = base64.b64encode(figure_bytes(figure, "png")).decode()
         return f'<img alt="{label}" src="data:image/png;base64,{content}">'
-    return _inline(image(figure, "svg").decode(), label, name)
+    return _inline(figure_bytes(figure, "svg").decode(), label, name)
 
 
 def _inline(text: str, label: str, name: str) -> str:

@@ -53,19 +53,21 @@ def _versions_in_words(versions: Mapping[str, str]) -> str:
 
 
 def _certificate(subject: Subject) -> tuple[Block, ...]:
-    found = subject.certificate
-    if found is None:
+    certificate = subject.certificate
+    if certificate is None:
         text = "No certificate: how far the front is from the true one was not proven (slidercrank certify does that)."
         return (Paragraph(text, "note"),)
-    lines = [f"{found['status']}: {found['message']}"]
+    lines = [f"{certificate['status']}: {certificate['message']}"]
     for key, title in (
         ("epsilon", "epsilon proven, with the added designs"),
         ("epsilon_of_delivered", "epsilon proven, for this front alone"),
         ("gap_of_delivered", "gap of this front, certain"),
         ("hypervolume_gap", "hypervolume missed, at most"),
     ):
-        value = found.get(key)
+        value = certificate.get(key)
         if value is not None:
             lines.append(f"{title}: {rounded(float(value))}")
-    lines += [f"{found['boxes']} boxes, {found['open_boxes']} open, {rounded(float(found['seconds']))} s"]
-    return (Facts({"Certificate": lines, **({"Notes": found["notes"]} if found["notes"] else {})}),)
+    lines += [
+        f"{certificate['boxes']} boxes, {certificate['open_boxes']} open, {rounded(float(certificate['seconds']))} s"
+    ]
+    return (Facts({"Certificate": lines, **({"Notes": certificate["notes"]} if certificate["notes"] else {})}),)

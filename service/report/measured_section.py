@@ -8,8 +8,8 @@ from functools import partial
 from ...objectives.counted import counted
 from ...objectives.kinds import System
 from ...objectives.tables.measured import Measured
-from ..figures.panels import draw_sheet
-from ..figures.sheets import Sheet
+from ..figures.panel_figure import PanelFigure
+from ..figures.panels import draw_panel_figure
 from ..questions.measured.analysis import curve_value, figure, file_notes, numbers
 from ..render.blocks import Unit
 from ..render.formatting import format_text
@@ -23,9 +23,9 @@ _ADDED = "Shifts that, added to the measured curves, give the best fit; not appl
 def measured_section(subject: Subject, measured: Measured) -> Section:
     """Return the deviation of each measured curve, the shifts that fit best, and the figure."""
     mechanism, linkage = subject.design.mechanism, subject.design.linkage
-    found = numbers(mechanism, linkage, measured=measured)
+    deviations_found = numbers(mechanism, linkage, measured=measured)
     deviations, shifts = [], []
-    for entry in found["curves"].values():
+    for entry in deviations_found["curves"].values():
         names = ("rms", "mean", "largest", "largest_at_crank_angle", "best_crank_angle_shift", "best_shift", "left_rms")
         values = [curve_value(entry, name, missing="–") for name in names]
         title, unit = entry["title"], format_text(Unit(values[0].kind), subject.system)
@@ -34,7 +34,7 @@ def measured_section(subject: Subject, measured: Measured) -> Section:
         shifts.append((title, *texts[4:], unit))
     blocks: tuple[Block, ...] = (
         Table(
-            f"Measured minus computed, {counted(found['rows'], 'row')}",
+            f"Measured minus computed, {counted(deviations_found['rows'], 'row')}",
             ("curve", "samples", "RMS", "mean", "largest", "at, deg", "unit"),
             tuple(deviations),
             (0.32, 0.12, 0.12, 0.12, 0.12, 0.1, 0.1),
@@ -47,16 +47,18 @@ def measured_section(subject: Subject, measured: Measured) -> Section:
             (0.36, 0.2, 0.17, 0.17, 0.1),
             frozenset({1, 2, 3}),
         ),
-        *(Paragraph(f"{line}.", "note") for line in file_notes(found)),
+        *(Paragraph(f"{line}.", "note") for line in file_notes(deviations_found)),
         *_pictures(figure(mechanism, linkage, measured=measured), subject.system),
     )
     return Section("Measured curves", blocks)
 
 
-def _pictures(sheet: Sheet, system: System) -> list[Picture]:
+def _pictures(panel_figure: PanelFigure, system: System) -> list[Picture]:
     """Return the panels, as many in a picture as a page shows well."""
-    parts = [sheet.panels[start : start + _PANELS] for start in range(0, len(sheet.panels), _PANELS)]
+    parts = [panel_figure.panels[start : start + _PANELS] for start in range(0, len(panel_figure.panels), _PANELS)]
     return [
-        Picture("Measured and computed", partial(draw_sheet, replace(sheet, panels=part), system), raster=True)
+        Picture(
+            "Measured and computed", partial(draw_panel_figure, replace(panel_figure, panels=part), system), raster=True
+        )
         for part in parts
     ]

@@ -15,7 +15,7 @@ import matplotlib
 
 from ...model.extras import required
 from ...objectives.kinds import SHOWN, unit_text
-from ..figures.style import image
+from ..figures.style import figure_bytes
 from .document import Block, Facts, Paragraph, Picture, Report, Table
 
 typst = required("typst", "reports as PDF need")
@@ -41,16 +41,16 @@ def pdf_file(report: Report) -> bytes:
             {"title": section.title, "blocks": _template_blocks(section.blocks, folder, number)}
             for number, section in enumerate(report.sections)
         ]
-        told = {"title": report.title, "subtitle": report.subtitle, "made": report.made}
-        content = told | {"signatures": report.signatures, "sections": sections}
+        header = {"title": report.title, "subtitle": report.subtitle, "made": report.date}
+        content = header | {"signatures": report.signatures, "sections": sections}
         (folder / "report.json").write_text(json.dumps(content), encoding="utf-8")
-        found = typst.compile(folder / _TEMPLATE.name, font_paths=[_FONTS])
-    return bytes(found)
+        pdf = typst.compile(folder / _TEMPLATE.name, font_paths=[_FONTS])
+    return bytes(pdf)
 
 
 def _template_blocks(blocks: Sequence[Block], folder: Path, section: int) -> list[dict[str, Any]]:
     """Return the blocks of a section as the template takes them; pictures are drawn into the folder."""
-    found = []
+    contents = []
     for number, (block, after) in enumerate(zip(blocks, (*blocks, None)[1:], strict=True)):
         if isinstance(block, Picture):
             content = _drawn(block, folder / f"{section}-{number}")
@@ -62,8 +62,8 @@ def _template_blocks(blocks: Sequence[Block], folder: Path, section: int) -> lis
             cells = [list(map(_unbreakable_text, row)) for row in block.rows]
             places = {"right": sorted(block.right), "bold": sorted(block.bold)}
             content = asdict(block) | places | {"heads": list(map(_unbreakable_text, block.heads)), "rows": cells}
-        found.append({"kind": type(block).__name__} | content)
-    return found
+        contents.append({"kind": type(block).__name__} | content)
+    return contents
 
 
 def _drawn(picture: Picture, file: Path) -> dict[str, Any]:
@@ -74,7 +74,7 @@ def _drawn(picture: Picture, file: Path) -> dict[str, Any]:
     file = file.with_suffix(".png" if picture.raster else ".pdf")
     if picture.raster:
         figure.set_dpi(round(_SHARP * scale))
-        file.write_bytes(image(figure, "png"))
+        file.write_bytes(figure_bytes(figure, "png"))
     else:
         figure.savefig(file, metadata={"CreationDate": None})
     return {"title": picture.title, "file": file.name, "width": scale * width, "height": scale * height}

@@ -10,7 +10,7 @@ from typing import Any
 from ...model.errors import RunError
 from ...objectives.kinds import System
 from ..designs.measured_file import read_measured
-from ..designs.turning import require_turning
+from ..designs.rotating_crank import require_rotating_crank
 from ..runs.result import Result
 from ..runs.stored_runs import problem_of
 from .design_report import design_report
@@ -25,20 +25,20 @@ def run_report(
     measured: CSV of measured curves to compare.
     """
     versions, certificate = _load_json(folder / "versions.json") or {}, _load_json(folder / "certificate.json")
-    kept: dict[str, Any] = {"versions": versions, "certificate": certificate, "system": units}
-    subject = Subject(problem_of(folder, result), result, number, run=folder.name, **kept)
+    records: dict[str, Any] = {"versions": versions, "certificate": certificate, "system": units}
+    subject = Subject(problem_of(folder, result), result, number, run=folder.name, **records)
     if measured is not None:
         design = subject.design
-        require_turning(design.part.motion, "a comparison with measured curves")
+        require_rotating_crank(design.part.motion, "a comparison with measured curves")
         subject = replace(subject, measured=read_measured(measured, design.mechanism, design.linkage))
-    made = design_report(subject)
+    report = design_report(subject)
     if pdf:
         from .pdf import pdf_file
 
-        return pdf_file(made)
+        return pdf_file(report)
     from .html import html_file
 
-    return html_file(made)
+    return html_file(report)
 
 
 def _load_json(file: Path) -> dict[str, Any] | None:
@@ -46,7 +46,7 @@ def _load_json(file: Path) -> dict[str, Any] | None:
     if not file.is_file():
         return None
     try:
-        found = json.loads(file.read_text(encoding="utf-8"))
+        content = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise RunError(f"{file} is damaged: {error}; run the command that wrote it again") from error
-    return found if isinstance(found, dict) else None
+    return content if isinstance(content, dict) else None

@@ -12,9 +12,9 @@ from ...objectives.kinds import System
 from ...objectives.tables.measured import Measured
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.problem import Problem
-from ..designs.shown_units import record_in, result_in, row_in
+from ..designs.display_units import record_in, result_in, row_in
 from ..designs.stored_designs import StoredDesign, front_of, stored_design
-from ..designs.toleranced import toleranced, tolerances_of
+from ..designs.toleranced import format_toleranced, tolerances_of
 from ..designs.variation import Variation
 from ..designs.violations import violated_by, violations_in_words
 from ..render.numerals import rounded
@@ -54,7 +54,7 @@ class Subject:
     run: str
     versions: Mapping[str, str]
     certificate: Mapping[str, Any] | None = None
-    known: ParetoFront | None = None
+    loaded_front: ParetoFront | None = None
     changed: Variation | None = None
     system: System = "metric"
     measured: Measured | None = None
@@ -68,7 +68,7 @@ class Subject:
     @cached_property
     def front(self) -> ParetoFront:
         """The front with its problem."""
-        return self.known or front_of(self.problem, self.metric)
+        return self.loaded_front or front_of(self.problem, self.metric)
 
     @cached_property
     def design(self) -> StoredDesign:
@@ -78,15 +78,15 @@ class Subject:
     @cached_property
     def tolerances(self) -> dict[str, float]:
         """Tolerance of each dimension that has one, by its column and in its unit."""
-        found = tolerances_of(self.design.mechanism, self.design.linkage)
-        faces = {name: key_in(f"{name}_mm", self.system) for name in found}
-        return {key: factor * found[name] for name, (key, factor) in faces.items()}
+        tolerances_mm = tolerances_of(self.design.mechanism, self.design.linkage)
+        keys = {name: key_in(f"{name}_mm", self.system) for name in tolerances_mm}
+        return {key: factor * tolerances_mm[name] for name, (key, factor) in keys.items()}
 
     def sensible(self, key: str, cell: Cell) -> str:
         """Return a cell for people: of a dimension with a tolerance the decimals of that, else six digits."""
         if key not in self.tolerances or not isinstance(cell, float):
             return rounded(cell)
-        return toleranced(cell, self.tolerances[key]).partition(" ")[0].replace("-", "−")
+        return format_toleranced(cell, self.tolerances[key]).partition(" ")[0].replace("-", "−")
 
     @property
     def row(self) -> Row:

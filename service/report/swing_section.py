@@ -9,7 +9,7 @@ from ...model.swing.errors import error_shares
 from ...model.swing.summary import SwingSummary, summarise
 from ...model.swing.swing import Swing
 from ...objectives.kinds import shown_in
-from ..designs.swing_curves import driven, error_kind
+from ..designs.swing_curves import driven_side, error_kind
 from ..questions.swing.analysis import blocks as swing_blocks
 from ..questions.swing.analysis import swing_record, swing_title
 from ..render.blocks import Table as Numbers
@@ -26,14 +26,14 @@ class SwingOfSubject:
         self._subject, self._swing = subject, swing
 
     @cached_property
-    def found(self) -> SwingSummary:
+    def summary(self) -> SwingSummary:
         """The numbers of the swing."""
         design = self._subject.design
         return summarise(design.mechanism, design.linkage, self._swing)
 
     def section(self) -> Section:
         """Return the numbers of the swing, and the extremes of its curves."""
-        record, system = swing_record(self._subject.design.mechanism, self.found), self._subject.system
+        record, system = swing_record(self._subject.design.mechanism, self.summary), self._subject.system
         tables = [block for block in swing_blocks(record) if isinstance(block, Numbers)]
         numbers, extremes = (cells(table, system, printed=True) for table in tables)
         named, wide = ("", "value", "unit", "where"), (0.38, 0.14, 0.08, 0.4)
@@ -47,33 +47,34 @@ class SwingOfSubject:
 
     def tolerances(self) -> Section | None:
         """Return where the error of the driven side comes from; None for a job without tolerances."""
-        worst, design, system = self.found.position_error, self._subject.design, self._subject.system
+        worst, design, system = self.summary.position_error, self._subject.design, self._subject.system
         if worst is None:
             return None
-        shares = error_shares(design.mechanism, design.linkage, self.found.swing, worst.crank_angle)
-        total, face = sum(share.error for share in shares), error_kind(self.found.swing).metric
-        unit, factor = shown_in(face.symbol, system)
+        shares = error_shares(design.mechanism, design.linkage, self.summary.swing, worst.crank_angle)
+        total, unit_of_error = sum(share.error for share in shares), error_kind(self.summary.swing).metric
+        unit, factor = shown_in(unit_of_error.symbol, system)
         rows = tuple(
             (
                 share.source,
                 f"{rounded(math.degrees(share.limit))} deg"
                 if share.source == "crank angle"
                 else length(1e3 * share.limit, system, 6),
-                rounded(factor * face.factor * share.error),
+                rounded(factor * unit_of_error.factor * share.error),
                 f"{100.0 * share.error / total:.1f}",
             )
             for share in shares
         )
-        what = "crank angle" if driven(self.found.swing) == "crank" else "slider position"
-        said = (
-            f"The {what} is off by {rounded(factor * face.factor * worst.value)} {unit} at most, at a crank angle of "
-            f"{rounded(math.degrees(worst.crank_angle))} deg: worst case of all sources, to first order."
+        driven_quantity = "crank angle" if driven_side(self.summary.swing) == "crank" else "slider position"
+        sentence = (
+            f"The {driven_quantity} is off by {rounded(factor * unit_of_error.factor * worst.value)} {unit} at most, "
+            f"at a crank angle of {rounded(math.degrees(worst.crank_angle))} deg: worst case of all sources, to first "
+            "order."
         )
         table = Table(
-            f"Where the error of the {what} comes from there",
+            f"Where the error of the {driven_quantity} comes from there",
             ("source", "limit", f"adds, {unit}", "share, %"),
             rows,
             (0.4, 0.2, 0.2, 0.2),
             frozenset({1, 2, 3}),
         )
-        return Section("Tolerances", (Paragraph(said), table))
+        return Section("Tolerances", (Paragraph(sentence), table))

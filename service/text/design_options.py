@@ -22,7 +22,7 @@ class SettingOptions:
     seed: Annotated[int | None, typer.Option(min=0), "Random seed."] = None
 
     @property
-    def given(self) -> dict[str, Any]:
+    def overrides(self) -> dict[str, Any]:
         """Those that are given."""
         return {name: value for name, value in vars(self).items() if value is not None}
 

@@ -16,7 +16,7 @@ from ...model.errors import InputError
 from ...model.extras import required
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import ANGULAR_SPEED, LENGTH, Kind, System
-from ..designs.selection import value_of
+from ..designs.selection import parse_value
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
@@ -85,13 +85,13 @@ def for_typer(command: Callable[..., None]) -> Callable[..., None]:
         options += dicts.get(name, ())
         if name in dicts:
             continue
-        given = [(name, parameter.default, hints[name])]
+        field_options = [(name, parameter.default, hints[name])]
         if name in groups:
             types = get_type_hints(groups[name], include_extras=True)
-            given = [(field.name, field.default, types[field.name]) for field in fields(groups[name])]
+            field_options = [(field.name, field.default, types[field.name]) for field in fields(groups[name])]
         options += [
             inspect.Parameter(option, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=_helped(option, hint))
-            for option, default, hint in given
+            for option, default, hint in field_options
         ]
 
     @wraps(command)
@@ -149,7 +149,7 @@ def length_option(name: str, text: str | None, problem: Problem | None, word: Ca
     word: gives what the door calls it.
     """
     if text is not None:
-        return value_of(word(name), text, LENGTH, sign="any" if name == "offset" else "positive")
+        return parse_value(word(name), text, LENGTH, sign="any" if name == "offset" else "positive")
     bounds = getattr(problem, name, None)
     if bounds is not None and bounds.fixed:
         return float(bounds.lower)
@@ -160,7 +160,7 @@ def length_option(name: str, text: str | None, problem: Problem | None, word: Ca
 
 def speed_option(text: str, word: str = "--speed") -> float:
     """Return the crank speed, rad/s. word: what the door calls it."""
-    return value_of(word, text, ANGULAR_SPEED)
+    return parse_value(word, text, ANGULAR_SPEED)
 
 
 def require_ending(option: str, file: Path | None, *endings: str) -> None:
@@ -177,6 +177,6 @@ def require_ending(option: str, file: Path | None, *endings: str) -> None:
         raise InputError(f"the file of {option} must end with {' or '.join(endings)}; got {file}; name it {name}")
 
 
-def given_value(option: str, text: str | None, kind: Kind, *, sign: Any = "any") -> float | None:
+def option_value(option: str, text: str | None, kind: Kind, *, sign: Any = "any") -> float | None:
     """Return an option's value as `value_of` does, None without one."""
-    return None if text is None else value_of(option, text, kind, sign=sign)
+    return None if text is None else parse_value(option, text, kind, sign=sign)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from ...objectives.kinds import System
     from ...optimise.front.progress import Progress
-    from ..figures.panels import Drawn
+    from ..figures.panels import FigureSource
 
 
 def console() -> Console:
@@ -39,40 +39,40 @@ def _console(stream: TextIO) -> Console:
     return Console(file=stream, width=wide, highlight=False, markup=False, emoji=False)
 
 
-def say(message: str) -> None:
+def print_message(message: str) -> None:
     """Write a message to standard error; where nothing can be written there, it is lost."""
     with contextlib.suppress(OSError):
         sys.stderr.write(f"{path_text(message)}\n")
 
 
-def give(text: str) -> None:
+def print_output(text: str) -> None:
     """Write a result to standard output as it is."""
     sys.stdout.write(text)
     sys.stdout.flush()
 
 
-def answer(json: bool, record: Any, show: Callable[[Console], None]) -> None:
+def print_answer(json: bool, record: Any, show: Callable[[Console], None]) -> None:
     """Write a result as JSON, or for people."""
     if json:
-        give(json_text(record))
+        print_output(json_text(record))
     else:
         show(console())
 
 
-def waiting(text: str) -> contextlib.AbstractContextManager[Status | None]:
+def show_activity(text: str) -> contextlib.AbstractContextManager[Status | None]:
     """Return a context that shows an activity while entered; nothing where standard error is no terminal."""
     screen = error_console()
     return screen.status(text) if screen.is_terminal else contextlib.nullcontext()
 
 
-def write_figure(file: Path, draw: Callable[[], Drawn], units: System = "metric") -> None:
+def write_figure(file: Path, draw: Callable[[], FigureSource], units: System = "metric") -> None:
     """Write a figure as PNG, its folder made if it is not there, and say where it is."""
-    from ..figures.panels import save_sheet
+    from ..figures.panels import save_figure
 
-    with disk(file.parent), waiting("drawing the figure"):
+    with disk(file.parent), show_activity("drawing the figure"):
         file.parent.mkdir(parents=True, exist_ok=True)
-        save_sheet(draw(), file, units)
-    say(f"figure: {file}")
+        save_figure(draw(), file, units)
+    print_message(f"figure: {file}")
 
 
 def progress_bar() -> contextlib.AbstractContextManager[Callable[[Progress], None]]:

@@ -40,7 +40,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
 
     Each is a list of lines except name, search, the numbers of the freedom, and the floors, see `_floors`.
     """
-    sheet = elimination_branches(problem)[0]
+    branch = elimination_branches(problem)[0]
     settings = problem.settings
     samples = f", {counted(settings.samples, 'sample')} a round" if settings.samples else ""
     return {
@@ -63,8 +63,8 @@ def summarise(problem: Problem) -> dict[str, Any]:
         "floors": _floors(problem),
         "objectives": [_objective(objective, problem) for objective in problem.objectives],
         "unknowns": 3 + len(problem.mechanism.varying),
-        "degrees_of_freedom": _degrees_of_freedom(sheet),
-        "eliminated": list(sheet.eliminated),
+        "degrees_of_freedom": _degrees_of_freedom(branch),
+        "eliminated": list(branch.eliminated),
         "warnings": [
             *problem.warnings,
             *driven_by_loads(problem),
@@ -85,28 +85,28 @@ def job_in_words(problem: Problem, tables: Mapping[str, Any]) -> dict[str, Any]:
 
 def freedom_in_words(problem: Problem) -> str:
     """Return the degrees of freedom left as a sentence."""
-    sheet = elimination_branches(problem)[0]
-    left, unknowns = _degrees_of_freedom(sheet), len(sheet.names)
-    what = "dimensions" if unknowns == 3 else "dimensions and other numbers"
-    if _is_fixed(sheet):
-        return f"all {what} are fixed; requirements are only checked"
-    text = f"{left} of {unknowns} {what} left to choose"
+    branch = elimination_branches(problem)[0]
+    left, unknowns = _degrees_of_freedom(branch), len(branch.names)
+    numbers = "dimensions" if unknowns == 3 else "dimensions and other numbers"
+    if _is_fixed(branch):
+        return f"all {numbers} are fixed; requirements are only checked"
+    text = f"{left} of {unknowns} {numbers} left to choose"
     if left < 0:
         text = f"{-left} more equalities than dimensions: a design exists only if they agree"
     elif left == 0:
         text = f"{text}: the equalities usually leave single designs"
-    if sheet.eliminated:
-        text += f"; {', '.join(name.replace('_', ' ') for name in sheet.eliminated)} met exactly by elimination"
+    if branch.eliminated:
+        text += f"; {', '.join(name.replace('_', ' ') for name in branch.eliminated)} met exactly by elimination"
     return text
 
 
-def _is_fixed(sheet: EliminationBranch) -> bool:
-    return all(ends.fixed for ends in sheet.bounds.values())
+def _is_fixed(branch: EliminationBranch) -> bool:
+    return all(ends.fixed for ends in branch.bounds.values())
 
 
-def _degrees_of_freedom(sheet: EliminationBranch) -> int:
-    equalities = 0 if _is_fixed(sheet) else sum(constraint.equality for constraint in sheet.remaining)
-    return len(sheet.free) - equalities
+def _degrees_of_freedom(branch: EliminationBranch) -> int:
+    equalities = 0 if _is_fixed(branch) else sum(constraint.equality for constraint in branch.remaining)
+    return len(branch.free) - equalities
 
 
 def _machine(problem: Problem) -> list[str]:
@@ -114,7 +114,7 @@ def _machine(problem: Problem) -> list[str]:
     low, high = (machine_in_words(problem, end) for end in problem.mechanism.ends)
     if len(low) != len(high):  # a number that is zero at one end leaves its line out
         return machine_in_words(problem, problem.mechanism)
-    return [range_text(one, other) for one, other in zip(low, high, strict=True)]
+    return [range_text(lowest, highest) for lowest, highest in zip(low, high, strict=True)]
 
 
 def machine_in_words(problem: Problem, mechanism: Mechanism) -> list[str]:
@@ -188,8 +188,16 @@ def _motion(problem: Problem) -> list[str]:
 
 
 def _own(problem: Problem) -> list[str]:
-    lines = [f"{own.name}: {own.title}, by {own.function}" for own in problem.own if isinstance(own, OwnQuantity)]
-    targets = {own.target for own in problem.own if isinstance(own, MotionDeviation) and own.target is not None}
+    lines = [
+        f"{quantity.name}: {quantity.title}, by {quantity.function}"
+        for quantity in problem.own
+        if isinstance(quantity, OwnQuantity)
+    ]
+    targets = {
+        quantity.target
+        for quantity in problem.own
+        if isinstance(quantity, MotionDeviation) and quantity.target is not None
+    }
     return [
         *(f"target motion: {len(t.positions)} points, phase {t.phase}, shift {t.shift}" for t in targets),
         *lines,
@@ -203,8 +211,8 @@ def _link(link: Link) -> str:
         return "no mass"
     centre = "half-way" if link.centre is None else f"{1e3 * link.centre:.6g} mm along"
     inertia = "of a slender rod" if link.inertia is None else f"{link.inertia:.6g} kg m^2"
-    across = f" and {1e3 * link.centre_across:.6g} mm across" if link.centre_across else ""
-    return f"{link.mass:.6g} kg, mass centre {centre}{across}, inertia {inertia}"
+    centre_across = f" and {1e3 * link.centre_across:.6g} mm across" if link.centre_across else ""
+    return f"{link.mass:.6g} kg, mass centre {centre}{centre_across}, inertia {inertia}"
 
 
 def _friction(friction: Friction) -> list[str]:
@@ -274,10 +282,10 @@ def _cost(name: str, cost: Cost) -> str:
 
 def _lengths(problem: Problem, name: str) -> str:
     """Return where a dimension may lie; of choices all that there are."""
-    found = sorted({(getattr(part, name).lower, getattr(part, name).upper) for part in problem.variants})
-    if len(found) < 2:
+    ranges = sorted({(getattr(part, name).lower, getattr(part, name).upper) for part in problem.variants})
+    if len(ranges) < 2:
         return _range(getattr(problem, name))
-    return f"{', '.join(f'{1e3 * lower:.6g}' for lower, _ in found)} mm, one of these"
+    return f"{', '.join(f'{1e3 * lower:.6g}' for lower, _ in ranges)} mm, one of these"
 
 
 def _varying(item: Varying) -> str:
@@ -300,8 +308,8 @@ def _choices(problem: Problem) -> list[str]:
     idle = {label for label, _ in impossible_options(problem)}
     possible = [variant for variant in problem.variants if ", ".join(variant.labels) not in idle]
     for place, name in enumerate(problem.choices):
-        shown = dict.fromkeys(_option(name, variant.labels[place], variant.mechanism.speed) for variant in possible)
-        lines.append(f"{name}: {', '.join(shown)}")
+        options = dict.fromkeys(_option(name, variant.labels[place], variant.mechanism.speed) for variant in possible)
+        lines.append(f"{name}: {', '.join(options)}")
     count = len(possible)
     if count > 1:
         lines.append(f"{count} combinations of choices, all tried")
@@ -323,7 +331,7 @@ def _limits(problem: Problem) -> list[str]:
     if len(limited) > _MOST_TOLD:
         return [f"limits set by {len(limited)} combinations of choices"]
     return [
-        f"with {' and '.join(variant.labels)}: {_rule(limit, problem, own=True)}"
+        f"with {' and '.join(variant.labels)}: {_rule(limit, problem, is_stated=True)}"
         for variant in limited
         for limit in variant.limits
     ]
@@ -335,38 +343,42 @@ def _range(bounds: Range) -> str:
     return f"{1e3 * bounds.lower:.6g} to {1e3 * bounds.upper:.6g} mm"
 
 
-def _rule(constraint: Constraint, problem: Problem, *, own: bool = False) -> str:
-    """Return a constraint in words. own: whether it is the job's for certain."""
-    of = problem.quantity(constraint.quantity)
-    own = own or constraint in problem.constraints
+def _rule(constraint: Constraint, problem: Problem, *, is_stated: bool = False) -> str:
+    """Return a constraint in words. is_stated: whether it is the job's for certain."""
+    quantity = problem.quantity(constraint.quantity)
+    is_stated = is_stated or constraint in problem.constraints
 
-    def shown(value: float) -> str:
-        return f"{value * of.unit.factor:.6g} {of.unit.symbol}".rstrip()
+    def format_bound(value: float) -> str:
+        return f"{value * quantity.unit.factor:.6g} {quantity.unit.symbol}".rstrip()
 
     if constraint.equality:
-        return f"{of.title} = {shown(constraint.lower or 0.0)}"
+        return f"{quantity.title} = {format_bound(constraint.lower or 0.0)}"
     ends = (("at least", constraint.lower), ("at most", constraint.upper))
-    asked = " and ".join(f"{word} {shown(end)}" for word, end in ends if end is not None)
-    if own:
-        replaces = of.floor is not None and constraint.lower is not None and constraint.lower < of.floor
-        return f"{of.title} {asked}" + (f" (replaces the default of {shown(of.floor or 0.0)})" if replaces else "")
-    return f"{of.title} {asked} (default, as the job sets none)"
+    bounds = " and ".join(f"{word} {format_bound(end)}" for word, end in ends if end is not None)
+    if is_stated:
+        replaces = quantity.floor is not None and constraint.lower is not None and constraint.lower < quantity.floor
+        return f"{quantity.title} {bounds}" + (
+            f" (replaces the default of {format_bound(quantity.floor or 0.0)})" if replaces else ""
+        )
+    return f"{quantity.title} {bounds} (default, as the job sets none)"
 
 
 def _floors(problem: Problem) -> list[dict[str, Any]]:
     """Return the least allowed values of quantities with a default: quantity, value, unit, whether it is default."""
-    found = []
+    floors = []
     for constraint in constraints_of(problem):
-        known = restate(problem, constraint)
-        of = problem.quantity(known.quantity)
-        if of.floor is not None and known.lower is not None:
-            value, default = known.lower * of.unit.factor, constraint not in problem.constraints
-            found.append({"quantity": of.name, "least": value, "unit": of.unit.symbol, "is_default": default})
-    return found
+        restated = restate(problem, constraint)
+        quantity = problem.quantity(restated.quantity)
+        if quantity.floor is not None and restated.lower is not None:
+            value, default = restated.lower * quantity.unit.factor, constraint not in problem.constraints
+            floors.append(
+                {"quantity": quantity.name, "least": value, "unit": quantity.unit.symbol, "is_default": default}
+            )
+    return floors
 
 
 def _objective(objective: Objective, problem: Problem) -> str:
-    of = problem.quantity(objective.quantity)
+    quantity = problem.quantity(objective.quantity)
     if objective.target is None:
-        return f"{objective.sense} {of.title}"
-    return f"bring {of.title} to {objective.target * of.unit.factor:.6g} {of.unit.symbol}".rstrip()
+        return f"{objective.sense} {quantity.title}"
+    return f"bring {quantity.title} to {objective.target * quantity.unit.factor:.6g} {quantity.unit.symbol}".rstrip()

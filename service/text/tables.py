@@ -39,8 +39,8 @@ def show_result(screen: Console, result: Result) -> None:
         screen.print("\nAt the knee:")
         for sentence in result.trade_offs:
             screen.print(f"  {sentence}", soft_wrap=True)
-    said = [f"Beyond the allowable value: {sentence}" for sentence in front_violations_in_words(result)]
-    for sentence in (*said, *(f"Warning: {sentence}" for sentence in result.warnings)):
+    violations = [f"Beyond the allowable value: {sentence}" for sentence in front_violations_in_words(result)]
+    for sentence in (*violations, *(f"Warning: {sentence}" for sentence in result.warnings)):
         screen.print(f"\n{sentence}.", style="yellow", soft_wrap=True)
 
 
@@ -50,13 +50,13 @@ def show_front(
     rows: Sequence[int],
     *,
     columns: Sequence[Column] | None = None,
-    most: int = ROWS,
+    limit: int = ROWS,
 ) -> None:
-    """Write designs of a front, given by their positions, as a table; at most `most`, spread over them.
+    """Write designs of a front, given by their positions, as a table; at most `limit`, spread over them.
 
     columns: dimensions, stroke and objectives if None; what is the same in all designs is then said once above.
     """
-    chosen = spread_rows(result, rows, most)
+    chosen = spread_rows(result, rows, limit)
     if columns is None:
         columns, constant = _usual_columns(result)
         if constant:
@@ -66,7 +66,7 @@ def show_front(
     notes = []
     if len(chosen) < len(rows):
         notes.append(f"{len(chosen)} of {counted(len(rows), 'design')} shown")
-    if any(result.extremes[wanted.quantity] in chosen for wanted in result.objectives):
+    if any(result.extremes[objective.quantity] in chosen for objective in result.objectives):
         notes.append("* best in an objective")
     if result.knee in chosen and len(result.objectives) > 1:
         notes.append("knee: nearest to the ideal")
@@ -74,36 +74,42 @@ def show_front(
         screen.print(f" {';  '.join(notes)}", style="dim")
 
 
-def show_design(screen: Console, row: Row, *, only: Sequence[str] | None = None, own: Sequence[Quantity] = ()) -> None:
+def show_design(
+    screen: Console, row: Row, *, only: Sequence[str] | None = None, custom: Sequence[Quantity] = ()
+) -> None:
     """Write all quantities of one design, one a line; those without a value are left out.
 
-    own: quantities of its job, whose titles and units say more than their columns' keys.
+    custom: quantities of its job, whose titles and units say more than their columns' keys.
     """
-    known = {of.field: of for of in own}
+    custom_by_column = {quantity.field: quantity for quantity in custom}
     rows = table("", ">", "")
     for key in only or row:
         value = row[key]
         if value is None or (isinstance(value, float) and math.isnan(value)):
             continue
-        column, of = find_column(key, row), known.get(key)
+        column, quantity = find_column(key, row), custom_by_column.get(key)
         text = value if isinstance(value, str) else f"{value:.6g}"
-        rows.add_row(of.title if of else column.title, text, of.unit.symbol if of else column.unit)
+        rows.add_row(
+            quantity.title if quantity else column.title, text, quantity.unit.symbol if quantity else column.unit
+        )
     print_table(screen, rows)
 
 
-def show_undefined(screen: Console, reasons: Mapping[str, str], own: Sequence[Quantity] = ()) -> None:
+def show_undefined(screen: Console, reasons: Mapping[str, str], custom: Sequence[Quantity] = ()) -> None:
     """Write why quantities of a design have no value, those of one rule together. reasons: by the columns."""
-    known = {of.field: of.title for of in own}
+    custom_titles = {quantity.field: quantity.title for quantity in custom}
     together: dict[str, list[str]] = {}
     for key, reason in reasons.items():
-        together.setdefault(reason.partition(";")[0], []).append(known.get(key) or find_column(key, reasons).title)
+        together.setdefault(reason.partition(";")[0], []).append(
+            custom_titles.get(key) or find_column(key, reasons).title
+        )
     if together:
         screen.print("\nNot defined here:", style="dim")
     for rule, titles in together.items():
         screen.print(f"  {', '.join(titles)}: {rule}", style="dim", soft_wrap=True, markup=False)
 
 
-def plain(value: Any) -> float | None:
+def finite_or_none(value: Any) -> float | None:
     """Return a number that JSON can have: None for what is not finite."""
     number = float(value)
     return number if math.isfinite(number) else None
@@ -117,15 +123,15 @@ def usual_keys(result: Result) -> list[str]:
     dimensions = [find_column(name, names).key for name in DIMENSIONS]
     keys = [*dimensions, *chosen_columns(names), *(key for key in names if metric_key(key) == STROKE.field)]
     keys += ["slow_stroke"] if result.strokes_differ else []
-    return keys + [wanted.column for wanted in result.objectives if wanted.column not in keys]
+    return keys + [objective.column for objective in result.objectives if objective.column not in keys]
 
 
 def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
     """Return the columns of `usual_keys` that differ between designs; in words the others."""
     from ...optimise.front.constant import is_constant
 
-    objectives = {wanted.column for wanted in result.objectives}
-    wishes = {wanted.column: wanted for wanted in result.objectives}
+    objectives = {objective.column for objective in result.objectives}
+    wishes = {objective.column: objective for objective in result.objectives}
     columns, constant = [], []
     for key in usual_keys(result):
         column = find_column(key, result.designs[0])
@@ -146,17 +152,17 @@ def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
 def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column]) -> Table:
     from rich.text import Text
 
-    shown = table(ruled=True, padding=0, pad_edge=True, show_header=True)
-    shown.add_column("no.", justify="right", vertical="bottom")
+    rich_table = table(ruled=True, padding=0, pad_edge=True, show_header=True)
+    rich_table.add_column("no.", justify="right", vertical="bottom")
     for column in columns:
         narrow = textwrap.wrap(column.title.removesuffix(", worst case"), 8, break_long_words=False)
         title = "\n".join(f"{line} " for line in (*narrow, column.unit))
-        shown.add_column(title, justify="right", vertical="bottom", no_wrap=True)
-    shown.add_column("", no_wrap=True)
+        rich_table.add_column(title, justify="right", vertical="bottom", no_wrap=True)
+    rich_table.add_column("", no_wrap=True)
     best = {
-        (result.extremes[wanted.quantity], wanted.column)
-        for wanted in result.objectives
-        if wanted.quantity in result.extremes
+        (result.extremes[objective.quantity], objective.column)
+        for objective in result.objectives
+        if objective.quantity in result.extremes
     }
     texts = [_aligned([result.designs[row][column.key] for row in rows]) for column in columns]
     for row, line in zip(rows, zip(*texts, strict=True), strict=True):
@@ -166,8 +172,8 @@ def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column])
             Text(text + ("*" if top else " "), style="bold" if top else "")
             for text, top in zip(line, tops, strict=True)
         ]
-        shown.add_row(str(row + 1), *cells, "knee" if knee else "", style="bold" if knee else "")
-    return shown
+        rich_table.add_row(str(row + 1), *cells, "knee" if knee else "", style="bold" if knee else "")
+    return rich_table
 
 
 def _aligned(values: Sequence[Cell]) -> list[str]:
@@ -185,13 +191,13 @@ def _aligned(values: Sequence[Cell]) -> list[str]:
     return [text(value) for value in values]
 
 
-def spread_rows(result: Result, rows: Sequence[int], most: int) -> list[int]:
-    """Return up to `most` of the positions, in their order: the marked ones and others spread evenly; all for 0."""
-    if most <= 0 or len(rows) <= most:
+def spread_rows(result: Result, rows: Sequence[int], limit: int) -> list[int]:
+    """Return up to `limit` of the positions, in their order: the marked ones and others spread evenly; all for 0."""
+    if limit <= 0 or len(rows) <= limit:
         return list(rows)
     marked = {*result.extremes.values(), result.knee} & set(rows)
     rest = [row for row in rows if row not in marked]
-    free = max(0, most - len(marked))
+    free = max(0, limit - len(marked))
     steps = [round(index * (len(rest) - 1) / max(1, free - 1)) for index in range(free)]
     chosen = marked | {rest[step] for step in steps}
     return [row for row in rows if row in chosen]
@@ -215,8 +221,8 @@ def show_rules(screen: Console, rules: Sequence[JudgedRule]) -> None:
         screen.print("It meets every range and requirement of the job.", soft_wrap=True)
     for rule in broken:
         value = "has no value" if rule.value is None else f"is {_of(rule.value, rule)}"
-        by = "" if rule.missed_by is None else f", by {_of(rule.missed_by, rule)}"
-        screen.print(f"Not met: {rule.title} {_asked(rule)} {value}{by}.", style="bold", soft_wrap=True)
+        miss = "" if rule.missed_by is None else f", by {_of(rule.missed_by, rule)}"
+        screen.print(f"Not met: {rule.title} {_asked(rule)} {value}{miss}.", style="bold", soft_wrap=True)
     for rule in (rule for rule in rules if rule.met):
         value = "" if rule.value is None else _of(rule.value, rule)
         screen.print(f"  met: {rule.title} {_asked(rule)}: {value}", soft_wrap=True, style="dim")

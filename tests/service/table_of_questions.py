@@ -24,7 +24,7 @@ from slidercrank.service.agents.server import TOOLS
 from slidercrank.service.api.app import create_app
 from slidercrank.service.cli import app
 from slidercrank.service.client import Client
-from slidercrank.service.questions.discovery import COMMANDS, QUESTIONS, TOPICS
+from slidercrank.service.questions.discovery import QUESTION_COMMANDS, QUESTIONS, TOPICS
 from slidercrank.service.store import Store
 
 FILE = Path(__file__).with_name("questions.csv")
@@ -34,7 +34,7 @@ COLUMNS = ("question", "file", "subject", "doors", "statements", "javascript", "
 FORMS = {"round": "rounded", "certify": "certificate", "compare": "comparison"}
 """Names in the API and its client, where they are not those of the commands."""
 UNDECLARED = {
-    "compare": ("runs", "service/designs/comparing.py service/commands/compare.py service/api/comparison.py"),
+    "compare": ("runs", "service/designs/front_comparison.py service/commands/compare.py service/api/comparison.py"),
     "check": ("job", "service/preview/preview.py service/commands/job.py service/api/preview.py"),
     "what-if": ("design", "service/designs/variation.py service/api/what_if.py"),
     "trade-offs": ("design", "service/designs/trade_offs.py"),
@@ -78,7 +78,7 @@ def _paths(store: Path) -> list[str]:
 def _doors(name: str, paths: list[str], commands: set[str], drawn: bool) -> Iterator[str]:
     """Yield the doors at which a question is had, as far as these tell themselves."""
     form = FORMS.get(name, name)
-    called = (COMMANDS[name].called or name) if name in COMMANDS else name
+    called = (QUESTION_COMMANDS[name].called or name) if name in QUESTION_COMMANDS else name
     if name in TOPICS:
         yield "analyse --show"
     elif called in commands:
@@ -92,7 +92,7 @@ def _doors(name: str, paths: list[str], commands: set[str], drawn: bool) -> Iter
     served = name in QUESTIONS and bool(getattr(QUESTIONS[name], "path", True))
     if served or hasattr(Client, form.replace("-", "_")):
         yield "client"
-    if name in TOPICS or name in COMMANDS or name in SHOWN or drawn:
+    if name in TOPICS or name in QUESTION_COMMANDS or name in SHOWN or drawn:
         yield "page"
     reported = (file.read_text(encoding="utf-8") for file in (ROOT / "service" / "report").glob("*.py"))
     if any(f"questions.{name}." in text for text in reported):

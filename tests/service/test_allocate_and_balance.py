@@ -20,7 +20,7 @@ from slidercrank.optimise.job import load_job
 from slidercrank.optimise.sizing.counterweight import RodSpace, balance
 from slidercrank.optimise.sizing.tolerance_allocation import allocate
 from slidercrank.optimise.sizing.words import Kind
-from slidercrank.service.figures.panels import draw_sheet
+from slidercrank.service.figures.panels import draw_panel_figure
 from slidercrank.service.questions.allocate.figure import allocation_curves, allocation_figure
 from slidercrank.service.questions.counterweight import analysis as counterweight
 from tests.service.conftest import Command
@@ -210,8 +210,8 @@ def test_the_figure_of_an_allocation_draws_what_the_model_gives(kind: Kind, job:
     now, before = (first_order(each, LINKAGE, theta) for each in (found.mechanism, mechanism))
     errors = [each.worst_case if kind == "worst case" else each.root_sum_square for each in (now, before)]
     np.testing.assert_allclose(data.parts.sum(axis=0), errors[0], rtol=1e-9)
-    assert data.before is not None
-    np.testing.assert_allclose(data.before, errors[1], rtol=1e-9)
+    assert data.error_before is not None
+    np.testing.assert_allclose(data.error_before, errors[1], rtol=1e-9)
     assert data.sources == ("crank", "rod", "offset", "crank angle", "crank pin clearance")
     (span,) = data.counted
     fractions = (LINKAGE.at(np.radians(span)).slider_position - LINKAGE.dead_centres[0]) / LINKAGE.stroke
@@ -219,13 +219,13 @@ def test_the_figure_of_an_allocation_draws_what_the_model_gives(kind: Kind, job:
     figure = allocation_figure(data)
     error, cost = figure.axes
     lines: list[Any] = list(error.lines)
-    np.testing.assert_allclose(lines[0].get_ydata(), 1e3 * data.before)
+    np.testing.assert_allclose(lines[0].get_ydata(), 1e3 * data.error_before)
     np.testing.assert_array_equal(lines[2].get_xdata(), np.degrees(found.angles))
     widths = [bar.get_width() for bar in cost.patches]  # type: ignore[attr-defined]
     np.testing.assert_allclose(widths, [*(part.cost for part in found.parts), 13.0, 6.0, 10.0], rtol=1e-12)
     assert overlaps(figure) == []
     inch = allocation_figure(data, "inch")
-    np.testing.assert_allclose(np.asarray(inch.axes[0].lines[0].get_ydata()), data.before / 0.0254)
+    np.testing.assert_allclose(np.asarray(inch.axes[0].lines[0].get_ydata()), data.error_before / 0.0254)
     assert inch.axes[0].get_ylabel() == "position error, in"
 
 
@@ -247,4 +247,4 @@ def test_the_figure_of_a_balance_draws_what_the_model_gives(space: RodSpace | No
         if space is not None:
             np.testing.assert_allclose(sheet.panels[2].lines[n].y, curves.moment, rtol=0, atol=1e-9 * size)
     assert sheet.panels[1].lines[1].y.max() == pytest.approx(found.shaking_after.peak_force, rel=1e-4)
-    assert overlaps(draw_sheet(sheet)) == []
+    assert overlaps(draw_panel_figure(sheet)) == []

@@ -14,7 +14,7 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.job import load_job
-from slidercrank.service.questions.discovery import TOLD_THERE
+from slidercrank.service.questions.discovery import TOPIC_COLUMNS
 from tests.service import fronts
 from tests.service.conftest import Command
 from tests.service.test_result import DESIGN_KEYS
@@ -133,7 +133,7 @@ def test_what_a_topic_shows_is_left_out_of_the_table_but_not_of_json(command: Co
     shown = command("analyse", job, *design).stdout
     row = json.loads(command("analyse", job, *design, "--json").stdout)
     titles = {quantity.field: quantity.title for quantity in QUANTITIES.values()}
-    for key in TOLD_THERE:
+    for key in TOPIC_COLUMNS:
         assert titles[key] not in shown
     for key, value in row.items():
         assert (value is None) == (key in row["undefined"])

@@ -20,10 +20,10 @@ from slidercrank.objectives.kinds import PRESSURE, SHOWN, unit_text
 from slidercrank.objectives.tables.curve_extremes import defined_curves
 from slidercrank.service.api.app import create_app
 from slidercrank.service.designs.measured_file import read_measured
-from slidercrank.service.questions.answers import schema_of
-from slidercrank.service.questions.discovery import COMMANDS, OF_DESIGNS, TOPICS
+from slidercrank.service.questions.answer_types import schema_of
+from slidercrank.service.questions.design_question import BoundQuestion, DesignQuestion
+from slidercrank.service.questions.discovery import DESIGN_QUESTIONS, QUESTION_COMMANDS, TOPICS
 from slidercrank.service.questions.measured import MEASURED
-from slidercrank.service.questions.question import Question, QuestionOfDesign
 from slidercrank.service.render.blocks import Block, Sentence, Value
 from slidercrank.service.render.formatting import plain_blocks
 from slidercrank.service.runs.result import json_ready
@@ -48,7 +48,9 @@ OTHER_KEYS = {
 """Key and factor in inches of what has no unit of one kind alone."""
 
 
-def some_inputs(question: Question, problem: sc.Problem, design: Sequence[float], random: Random) -> dict[str, Any]:
+def some_inputs(
+    question: DesignQuestion, problem: sc.Problem, design: Sequence[float], random: Random
+) -> dict[str, Any]:
     """Return inputs in SI that most designs of a machine can be asked with."""
     crank, rod, offset = design[:3]
     if question.name == "swing":
@@ -79,12 +81,14 @@ def _some_value(name: str, words: Any, crank: float, random: Random) -> Any:
     return float(random.uniform(0.8, 1.2)) * shares.get(name, 0.2 * crank)
 
 
-def asked_of(question: Question, problem: sc.Problem, design: Sequence[float], random: Random) -> QuestionOfDesign:
+def asked_of(question: DesignQuestion, problem: sc.Problem, design: Sequence[float], random: Random) -> BoundQuestion:
     machine = problem.mechanism.at(list(design[3:]))
-    return question.asked(machine, linkage_of(problem, design), problem, some_inputs(question, problem, design, random))
+    return question.for_problem(
+        machine, linkage_of(problem, design), problem, some_inputs(question, problem, design, random)
+    )
 
 
-def answers_of(name: str) -> Iterator[tuple[QuestionOfDesign, dict[str, Any]]]:
+def answers_of(name: str) -> Iterator[tuple[BoundQuestion, dict[str, Any]]]:
     """Yield a question to designs of every sort of machine that has an answer, and the numbers."""
     random = np.random.default_rng(sum(map(ord, name)))
     for sort in SORTS:
@@ -93,7 +97,7 @@ def answers_of(name: str) -> Iterator[tuple[QuestionOfDesign, dict[str, Any]]]:
             if name == "flywheel" and sort == "turn":
                 continue  # with friction it takes 12 s
             try:
-                asked = asked_of(OF_DESIGNS[name], problem, some_design(problem, random), random)
+                asked = asked_of(DESIGN_QUESTIONS[name], problem, some_design(problem, random), random)
                 yield asked, asked.numbers()
             except (InputError, AssemblyError):
                 continue
@@ -159,7 +163,7 @@ def assert_shown_in_inches(blocks: Sequence[Block], record: Any, near: float = 1
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name in OF_DESIGNS if name != "clearance"])
+@pytest.mark.parametrize("name", [name for name in DESIGN_QUESTIONS if name != "clearance"])
 def test_answers_of_random_machines_are_as_declared_and_the_same_in_inches(name: str) -> None:
     answers = 0
     for asked, numbers in answers_of(name):
@@ -176,7 +180,7 @@ def test_answers_of_random_machines_are_as_declared_and_the_same_in_inches(name:
 @pytest.mark.slow
 def test_impacts_in_a_loose_joint_are_as_declared_and_the_same_in_inches() -> None:
     problem = sc.load_job(JOBS / "loose.toml", require_feasible=False)
-    asked = TOPICS["clearance"].of(problem.mechanism.nominal, sc.Linkage(0.03, 0.16, 0.01))
+    asked = TOPICS["clearance"].for_design(problem.mechanism.nominal, sc.Linkage(0.03, 0.16, 0.01))
     analysis = asked.question.analysis
     stopped = analysis.simulated(asked.mechanism, asked.linkage, cancelled=lambda: True)
     done = analysis.simulated(asked.mechanism, asked.linkage, cycles=3, discard=1)
@@ -199,7 +203,7 @@ def test_deviations_of_measured_curves_are_as_declared_and_the_same_in_inches(so
     noisy = [curve.kind.metric.factor * curve.values * random.uniform(0.9, 1.1, 12) for curve in curves]
     rows = np.column_stack([np.degrees(angles), *noisy]).tolist()
     text = "\n".join([",".join(heads), *(",".join(map(repr, row)) for row in rows)])
-    asked = MEASURED.of(machine, linkage, {"measured": read_measured(text, machine, linkage)})
+    asked = MEASURED.for_design(machine, linkage, {"measured": read_measured(text, machine, linkage)})
     numbers = asked.numbers()
     assert len(numbers["curves"]) == len(curves)
     inch = asked.numbers_in(numbers, "inch")
@@ -208,7 +212,7 @@ def test_deviations_of_measured_curves_are_as_declared_and_the_same_in_inches(so
     assert_shown_in_inches(asked.blocks(numbers)[:4], inch)  # below, what was read of the file is said in its units
 
 
-ALL = {**OF_DESIGNS, "measured": MEASURED}
+ALL = {**DESIGN_QUESTIONS, "measured": MEASURED}
 
 
 @pytest.mark.parametrize("name", ALL)
@@ -234,13 +238,13 @@ def test_the_description_of_the_api_has_the_schema_of_every_answer(tmp_path: Pat
         return [one.get("$ref", "").rpartition("/")[2] for one in schemas[model]["properties"][field]["anyOf"]]
 
     topics = [schema_of(topic.answer_type)["title"] for topic in TOPICS.values()]
-    assert described("ToldTopic", "numbers") == [*topics, ""]
+    assert described("TopicAnswer", "numbers") == [*topics, ""]
     for model in ("AnalysisModel", "StoredAnalysisModel"):
         places = schemas[model]["properties"]["analysis"]["properties"]
         assert {name: of["$ref"].rpartition("/")[2] for name, of in places.items()} == dict(
             zip(TOPICS, topics, strict=True)
         )
-    for name in (*COMMANDS, "measured"):
+    for name in (*QUESTION_COMMANDS, "measured"):
         assert described(f"{name.capitalize()}Model", name) == [schema_of(ALL[name].answer_type)["title"], ""]
     for name, question in ALL.items():
         schema = schema_of(question.answer_type)

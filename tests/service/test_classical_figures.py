@@ -21,8 +21,8 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.service.cases import case_5
 from slidercrank.service.cases import figures as of_cases
 from slidercrank.service.cases.published import read_table
-from slidercrank.service.figures.panels import draw_sheet
-from slidercrank.service.figures.sheets import Line, Panel, Sheet
+from slidercrank.service.figures.panel_figure import Line, Panel, PanelFigure
+from slidercrank.service.figures.panels import draw_panel_figure
 from slidercrank.service.questions.approximations import analysis as approximations_analysis
 from slidercrank.service.questions.discovery import TOPICS
 from slidercrank.service.questions.polygons import analysis as polygons_analysis
@@ -45,7 +45,7 @@ def line(panel: Panel, label: str) -> Line:
 
 def test_polygon_panels_hold_the_vertices_of_both_branches() -> None:
     found = polygons_analysis.both_branches(LINKAGE, 0.5, speed=3.0, acceleration=2.0)
-    sheet = polygons_analysis.polygon_sheet(found, title="", subtitle="")
+    sheet = polygons_analysis.polygon_panels(found, title="", subtitle="")
     position, velocity, acceleration = sheet.panels
     for branch in ("open", "crossed"):
         expected = polygons(Linkage(0.14, 0.31, 0.06, branch), 0.5, speed=3.0, acceleration=2.0)
@@ -196,7 +196,7 @@ def test_offset_panels_are_the_motion_and_virtual_work_of_the_feeder() -> None:
         np.testing.assert_allclose(line(formula, label).y, expected, rtol=0, atol=1e-8)
 
 
-SHEETS: dict[str, Callable[[], Sheet]] = {
+SHEETS: dict[str, Callable[[], PanelFigure]] = {
     name: make for of_case in of_cases.FIGURES.values() for name, make in of_case.items() if name != "clearance"
 } | {
     "static forces": lambda: static_analysis.figure(MACHINE, LINKAGE),
@@ -208,13 +208,13 @@ SHEETS: dict[str, Callable[[], Sheet]] = {
 @pytest.mark.parametrize("name", SHEETS)
 def test_no_two_texts_of_a_sheet_overlap(name: str) -> None:
     sheet = SHEETS[name]()
-    assert isinstance(sheet, Sheet)
-    assert overlaps(draw_sheet(sheet)) == []
+    assert isinstance(sheet, PanelFigure)
+    assert overlaps(draw_panel_figure(sheet)) == []
 
 
 @pytest.mark.parametrize("name", ["polygons", "static_forces", "approximations"])
 def test_figures_are_written(name: str, tmp_path: Path) -> None:
-    file = TOPICS[name].of(MACHINE, LINKAGE).draw(tmp_path)
+    file = TOPICS[name].for_design(MACHINE, LINKAGE).draw(tmp_path)
     assert file.read_bytes().startswith(b"\x89PNG")
 
 

@@ -20,7 +20,7 @@ from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.kinds import ACCELERATION, LENGTH, SPEED
 from slidercrank.service.figures.panels import figure_of
-from slidercrank.service.figures.style import image
+from slidercrank.service.figures.style import figure_bytes
 from slidercrank.service.questions.clearance.analysis import blocks, figure, numbers, simulated
 from slidercrank.service.questions.clearance.figure import loose_curves, speed_runs, speeds_figure
 from slidercrank.service.render.terminal import print_blocks
@@ -130,7 +130,7 @@ def test_curves_are_the_last_turn_of_the_motion(run: ClearanceRun) -> None:
 def test_figures_are_drawn(run: ClearanceRun) -> None:
     for drawn in (figure(MACHINE, LINKAGE, run=run), speeds_figure([run, run])):
         metric, inch = figure_of(drawn), figure_of(drawn, "inch")
-        assert image(metric, "png").startswith(b"\x89PNG")
+        assert figure_bytes(metric, "png").startswith(b"\x89PNG")
         for before, after in zip(metric.axes, inch.axes, strict=True):
             unit = before.get_title(loc="left").rpartition(", ")[2]
             factor = {"mm": 1.0 / 25.4, "N": 1.0 / 4.4482216152605}.get(unit, 1000.0 / 25.4)  # else m/s or m/s^2

@@ -13,7 +13,7 @@ from matplotlib.colors import to_rgb
 
 from slidercrank.optimise.decisions.compare import compare
 from slidercrank.optimise.front.front import ParetoFront
-from slidercrank.service.figures.comparison import GREATEST, Drawn, comparison_matrix
+from slidercrank.service.figures.comparison import MOST_RUNS, PlottedRun, comparison_matrix
 from slidercrank.service.runs.result import result_of
 from slidercrank.service.runs.run_folder import RunFolder
 from tests.service import fronts
@@ -117,7 +117,7 @@ def test_the_figure_draws_the_designs_of_every_run() -> None:
     parts = [part(slice(0, 20)), part(slice(10, 30))]
     wanted = result_of(parts[0], "").objectives
     columns = [item.column for item in wanted]
-    drawn = [Drawn(f"run {n}", one.designs[columns].to_numpy(dtype=np.float64)) for n, one in enumerate(parts)]
+    drawn = [PlottedRun(f"run {n}", one.designs[columns].to_numpy(dtype=np.float64)) for n, one in enumerate(parts)]
     figure = comparison_matrix(drawn, wanted)
     panels = figure.axes
     assert len(panels) == 6
@@ -133,9 +133,9 @@ def test_runs_are_told_apart_without_colour() -> None:
     """No two runs share a marker, and neighbours differ in fill by much in grey (luminance by ITU-R BT.601)."""
     values = np.array([[0.0, 1.0], [1.0, 0.0]])
     wanted = result_of(part(slice(0, 5), names=("peak_torque", "transmission_angle")), "").objectives
-    figure = comparison_matrix([Drawn(f"{n}", values) for n in range(GREATEST)], wanted)
+    figure = comparison_matrix([PlottedRun(f"{n}", values) for n in range(MOST_RUNS)], wanted)
     lines = figure.axes[0].lines
-    assert len({line.get_marker() for line in lines}) == GREATEST
+    assert len({line.get_marker() for line in lines}) == MOST_RUNS
     fills = ["white" if fill == "none" else fill for fill in (line.get_markerfacecolor() for line in lines)]
     greys = [float(np.dot(to_rgb(fill), (0.299, 0.587, 0.114))) for fill in fills]
     assert min(abs(a - b) for a, b in pairwise(greys)) > 0.2

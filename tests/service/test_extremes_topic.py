@@ -20,7 +20,7 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.objectives.tables.curve_extremes import curve_extremes
 from slidercrank.service.figures.curves import cycle_curves as curves_of_figure
-from slidercrank.service.figures.panels import draw_sheet
+from slidercrank.service.figures.panels import draw_panel_figure
 from slidercrank.service.questions.discovery import TOPICS
 from slidercrank.service.questions.extremes import analysis as extremes
 from slidercrank.service.render.formatting import format_text
@@ -164,8 +164,8 @@ def test_panels_mark_the_extremes_on_their_curves(name: str, count: int, tmp_pat
             distances = np.abs(curve.x[:, None] - mark.x[None, :]).min(axis=0)
             assert np.all(distances < 1e-7)
         assert bool(marks) != ("undefined" in format_text(panel.note))
-    assert overlaps(draw_sheet(sheet)) == []
-    file = TOPICS["extremes"].of(MACHINES[name], LINKAGE).draw(tmp_path)
+    assert overlaps(draw_panel_figure(sheet)) == []
+    file = TOPICS["extremes"].for_design(MACHINES[name], LINKAGE).draw(tmp_path)
     assert file.read_bytes().startswith(b"\x89PNG")
 
 

@@ -23,13 +23,13 @@ from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.problem.requirements import Objective
 from slidercrank.service.figures.curves import Curves, cycle_curves
+from slidercrank.service.figures.datasheet import design_datasheet
 from slidercrank.service.figures.front import draw_front
 from slidercrank.service.figures.marks import marks
+from slidercrank.service.figures.panel_figure import Panel, panel_in_units
 from slidercrank.service.figures.parallel import parallel_coordinates
 from slidercrank.service.figures.scatter import scatter_matrix
-from slidercrank.service.figures.sheet import design_sheet
-from slidercrank.service.figures.sheets import Panel, panel_in
-from slidercrank.service.figures.style import colours, dress, new_figure, place
+from slidercrank.service.figures.style import add_axes, colours, new_figure, style_axes
 from slidercrank.service.render.formatting import format_text
 from slidercrank.service.render.numerals import shown
 from tests.service import fronts
@@ -92,7 +92,9 @@ def test_marked_points_lie_on_their_curve_and_are_its_extremum(name: str) -> Non
 def test_marked_values_are_those_of_the_table(name: str) -> None:
     mechanism, linkage, curves = curves_of(name)
     row = analyse(mechanism, np.array([[linkage.crank, linkage.rod, linkage.offset]])).iloc[0]
-    torque, transmission, _, speed, acceleration = (point_of(panel_in(curve, "metric")) for curve in curves.panels)
+    torque, transmission, _, speed, acceleration = (
+        point_of(panel_in_units(curve, "metric")) for curve in curves.panels
+    )
     assert torque is not None
     assert abs(torque[1]) == pytest.approx(row["peak_torque_Nm"], rel=1e-12)
     assert torque[0] == pytest.approx(row["peak_torque_angle_deg"], rel=1e-12)
@@ -213,7 +215,7 @@ def test_no_two_texts_of_a_design_sheet_overlap(name: str) -> None:
     numbers = {str(key): value for key, value in row.items()}
     bold = {"position_error_mm": "position error", "least_transmission_angle_deg": "least transmission angle"}
     title = "A job with a name of the greatest length that is allowed, which is 80 characters: best this, best that"
-    figure = design_sheet(machine(linkage), linkage, numbers, title=title, subtitle="design 1 of 2", bold=bold)
+    figure = design_datasheet(machine(linkage), linkage, numbers, title=title, subtitle="design 1 of 2", bold=bold)
     assert overlaps(figure) == []
 
 
@@ -225,7 +227,7 @@ def test_the_table_of_a_sheet_has_every_objective_of_the_job() -> None:
     defined = [of for of in QUANTITIES.values() if np.isfinite(row[of.field])]
     every = {of.field: of.short_title for of in defined[-20:]}
     for bold in (few, every):
-        figure = design_sheet(machine(linkage), linkage, numbers, title="A job", bold=bold)
+        figure = design_datasheet(machine(linkage), linkage, numbers, title="A job", bold=bold)
         printed = [text.get_text() for text in figure.texts if text.get_fontweight() == "bold"]
         assert set(bold.values()) <= set(printed)
         assert {shown(float(numbers[key]), 5, zeros=True) for key in bold} <= set(printed)
@@ -236,7 +238,7 @@ def test_a_sheet_without_tolerances_has_no_position_error() -> None:
     linkage = LINKAGES["offset"]
     bare = replace(machine(linkage), tolerances=Tolerances())
     row = analyse(bare, np.array([[linkage.crank, linkage.rod, linkage.offset]])).iloc[0]
-    figure = design_sheet(bare, linkage, {str(key): value for key, value in row.items()}, title="A job")
+    figure = design_datasheet(bare, linkage, {str(key): value for key, value in row.items()}, title="A job")
     texts = [text.get_text() for text in figure.texts]
     assert "peak torque" in texts
     assert not [text for text in texts if "error" in text or text in ("0", "–", "nan")]
@@ -250,8 +252,8 @@ def test_ends_and_ticks_of_axes_show_no_rounding_noise() -> None:
     said = [text.get_text() for text in parallel_coordinates(noisy).findobj(Text)]
     assert not [text for text in said if "e−" in text]
     figure = new_figure(2.0, 2.0)
-    axes = place(figure, 0.2, 0.2, 1.0, 1.0)
-    dress(axes)
+    axes = add_axes(figure, 0.2, 0.2, 1.0, 1.0)
+    style_axes(axes)
     axes.set_xlim(-1.0, 5.0)
     axes.set_ylim(0.0, 3e-7)
     form = axes.xaxis.get_major_formatter()

@@ -9,7 +9,7 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.service.designs.row_formulas import RowFormula, find_formula
-from slidercrank.service.designs.selection import none_meets, parse_condition, select
+from slidercrank.service.designs.selection import no_match_message, parse_condition, select
 from slidercrank.service.runs.result import Result
 
 ROWS: list[dict[str, Any]] = [
@@ -83,12 +83,12 @@ def test_a_condition_that_is_not_defined_is_not_met() -> None:
 @pytest.mark.parametrize("condition", ["crank / 0 > 5 mm", "1 m / (crank - crank) < 5", "sqrt(-crank / offset) > 0"])
 def test_a_formula_without_a_value_is_met_by_none_and_said_so(condition: str) -> None:
     assert select(ROWS, [condition]) == []
-    said = none_meets(STORED, [condition])
+    said = no_match_message(STORED, [condition])
     assert "none of the 3 designs meets" in said
     assert said.endswith(" has no value for any of them")
 
 
 def test_a_word_that_no_design_has_is_answered_with_those_that_there_are() -> None:
-    said = none_meets(STORED, ["slow_stroke = outwards"])
+    said = no_match_message(STORED, ["slow_stroke = outwards"])
     assert said.endswith("; slow_stroke is inward or outward there")
-    assert none_meets(STORED, ["crank > 1 m"]).endswith("meets crank > 1 m")
+    assert no_match_message(STORED, ["crank > 1 m"]).endswith("meets crank > 1 m")

@@ -14,7 +14,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.service.figures.sheets import panel_in
+from slidercrank.service.figures.panel_figure import panel_in_units
 from slidercrank.service.questions.indicator import analysis
 from tests.service.conftest import Command
 
@@ -40,7 +40,7 @@ def test_numbers_are_those_of_the_textbook() -> None:
 
 def test_the_figure_has_a_closed_line_for_each_cylinder() -> None:
     machine = Mechanism(speed=90.0, loads=(AIR, Compressor(**{**vars(AIR), "head": "inner dead centre"})))
-    diagram, curve = (panel_in(panel, "metric") for panel in analysis.figure(machine, LINKAGE).panels)
+    diagram, curve = (panel_in_units(panel, "metric") for panel in analysis.figure(machine, LINKAGE).panels)
     assert [line.label for line in diagram.lines] == [line.label for line in curve.lines] == ["load 1", "load 2"]
     for line in diagram.lines:
         assert (line.x[0], line.y[0]) == (line.x[-1], line.y[-1])

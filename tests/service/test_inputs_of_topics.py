@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 from slidercrank.model.errors import InputError
 from slidercrank.objectives.kinds import LENGTH, RATIO
 from slidercrank.service.cli import app as command_line
-from slidercrank.service.questions.discovery import INPUTS, TOPIC_OF, TOPICS
+from slidercrank.service.questions.discovery import INPUTS, TOPIC_OF_INPUT, TOPICS
 from slidercrank.service.questions.inputs import Input, read_inputs
 from tests.service.alike import assert_same
 from tests.service.api.fixed_front import API, Solved, client_of
@@ -45,7 +45,7 @@ def test_no_two_topics_have_an_input_of_the_same_name() -> None:
 
 @pytest.mark.parametrize("one", INPUTS.values(), ids=list(INPUTS))
 def test_every_input_is_a_parameter_of_numbers_with_its_default(one: Input) -> None:
-    analysis = import_module(f"{TOPICS[TOPIC_OF[one.name]].package}.analysis")
+    analysis = import_module(f"{TOPICS[TOPIC_OF_INPUT[one.name]].package}.analysis")
     default = inspect.signature(analysis.numbers).parameters[one.name].default
     assert default == (one.default if one.usual else None)
     assert (one.name in inspect.signature(analysis.figure).parameters) == one.drawn
@@ -55,7 +55,7 @@ def test_every_input_is_a_parameter_of_numbers_with_its_default(one: Input) -> N
 def test_any_value_gives_the_same_numbers_by_option_and_in_the_api(
     client: httpx.Client, solved: Solved, name: str
 ) -> None:
-    one, topic, random = INPUTS[name], TOPIC_OF[name], np.random.default_rng(3)
+    one, topic, random = INPUTS[name], TOPIC_OF_INPUT[name], np.random.default_rng(3)
     for value in random.uniform(*RANGES[name], 3).tolist():
         typed = f"{value!r} {one.unit.symbol}".strip()
         expected = printed(solved, "--show", topic, one.flag, typed)[topic]
@@ -95,7 +95,7 @@ def test_the_list_of_topics_has_what_each_is_asked_with(client: httpx.Client) ->
     assert told.items() <= angle.items()
 
 
-LIMIT = Input("limit", LENGTH, "Limit", "A limit.", "2 mm", sign="positive", below=1.0)
+LIMIT = Input("limit", LENGTH, "Limit", "A limit.", "2 mm", sign="positive", upper_limit=1.0)
 
 
 @pytest.mark.parametrize(

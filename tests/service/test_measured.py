@@ -20,8 +20,8 @@ from slidercrank.model.machine.friction import Friction
 from slidercrank.objectives.tables.deviation import deviations
 from slidercrank.service.designs import measured_file
 from slidercrank.service.designs.measured_file import measured_text, read_measured
-from slidercrank.service.figures.panels import draw_sheet
-from slidercrank.service.figures.sheets import panel_in
+from slidercrank.service.figures.panel_figure import panel_in_units
+from slidercrank.service.figures.panels import draw_panel_figure
 from slidercrank.service.questions.measured import MEASURED
 from slidercrank.service.questions.measured import analysis as topic
 from slidercrank.service.render.terminal import print_blocks
@@ -188,7 +188,7 @@ def test_damaged_files_are_read_or_refused_in_one_line() -> None:
         said = ""
         try:
             measured = read_measured(text, fronts.MACHINE, LINKAGE)
-            numbers: Any = MEASURED.of(fronts.MACHINE, LINKAGE, {"measured": measured}).numbers(lambda: False)
+            numbers: Any = MEASURED.for_design(fronts.MACHINE, LINKAGE, {"measured": measured}).numbers(lambda: False)
             assert json.loads(json_text(numbers)) == numbers
         except InputError as error:
             said = str(error)
@@ -299,9 +299,9 @@ def test_known_shifts_are_told_in_text_json_and_figure(tmp_path: Path, command: 
     assert (place / "measured.png").read_bytes().startswith(b"\x89PNG")
     sheet = topic.figure(fronts.MACHINE, LINKAGE, measured=read_measured(measured_text(file), fronts.MACHINE, LINKAGE))
     assert [len(panel.lines) for panel in sheet.panels] == [4, 4]
-    assert overlaps(draw_sheet(sheet)) == []
+    assert overlaps(draw_panel_figure(sheet)) == []
     for panel, entry in zip(sheet.panels, record["curves"].values(), strict=True):
-        _, fitted, measured, ring = panel_in(panel, "metric").lines
+        _, fitted, measured, ring = panel_in_units(panel, "metric").lines
         assert np.interp(measured.x, fitted.x, fitted.y) == pytest.approx(measured.y, abs=1e-2)
         assert ring.x == pytest.approx([entry["largest_at_crank_angle_deg"]], rel=1e-9)
 
@@ -324,7 +324,7 @@ def test_what_friction_leaves_undetermined_is_told() -> None:
     locked = replace(fronts.MACHINE, friction=Friction(guide=1.5))
     text = "crank_angle_deg,torque_Nm\n,3\n" + "\n".join(f"{angle},1" for angle in range(0, 360, 5))
     measured = read_measured(text, locked, LINKAGE)
-    numbers: Any = MEASURED.of(locked, LINKAGE, {"measured": measured}).numbers(lambda: False)
+    numbers: Any = MEASURED.for_design(locked, LINKAGE, {"measured": measured}).numbers(lambda: False)
     assert numbers["rows_without_crank_angle"] == 1
     assert numbers["curves"]["torque"]["rms_Nm"] is None
     stream = io.StringIO()
@@ -333,7 +333,7 @@ def test_what_friction_leaves_undetermined_is_told() -> None:
     assert "nan" not in stream.getvalue()
     (panel,) = topic.figure(locked, LINKAGE, measured=measured).panels
     assert panel.note == "undefined where friction locks"
-    draw_sheet(topic.figure(locked, LINKAGE, measured=measured))
+    draw_panel_figure(topic.figure(locked, LINKAGE, measured=measured))
 
 
 def test_at_most_some_thousand_samples_are_drawn() -> None:

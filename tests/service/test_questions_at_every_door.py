@@ -23,7 +23,7 @@ from slidercrank.service.agents.tool import Tool
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.client import Client
 from slidercrank.service.jobs.submission import submit
-from slidercrank.service.questions.discovery import COMMANDS, OF_DESIGNS, TOPICS
+from slidercrank.service.questions.discovery import DESIGN_QUESTIONS, QUESTION_COMMANDS, TOPICS
 from slidercrank.service.questions.inputs import Input
 from slidercrank.service.runs.result import json_ready
 from slidercrank.service.store import Store
@@ -37,7 +37,7 @@ from tests.service.machines import some_design, some_tables
 MACHINES = ("loose", "cylinders", "engine")
 """Between them they have every topic but the press, whose distance is given."""
 TOUCH, RATED = 0.0125, 55.5
-SIZING = tuple(name for name, command in COMMANDS.items() if command.sizes)
+SIZING = tuple(name for name, command in QUESTION_COMMANDS.items() if command.sizes)
 SIZES = {"limit": (0.25, 0.5), "radius": (40, 120), "mass": (1, 6), "rod_radius": (30, 80), "rod_mass": (1, 3)}
 """From and to, metric, of what sizing is asked with; moments count on arms of 100 to 500 mm."""
 
@@ -57,7 +57,7 @@ def client(address: str) -> Iterator[Client]:
 def by_agent(place: Path, **inputs: Any) -> dict[str, Any]:
     """Return what the tool `ask` of agents answers, as they get it."""
     call = Call(place, frozenset(), lambda: False, lambda _: None)
-    found: dict[str, Any] = json_ready(Tool("ask", ask).answer(call, inputs).record)
+    found: dict[str, Any] = json_ready(Tool("ask", ask).execute(call, inputs).record)
     return found
 
 
@@ -188,16 +188,16 @@ def some_input(one: Input, random: np.random.Generator) -> float | str:
 @pytest.mark.parametrize("name", SIZING)
 def test_random_designs_are_sized_alike_at_every_door(sizes: tuple[Client, int, Path], name: str) -> None:
     (client, number, job), random = sizes, np.random.default_rng(10)
-    front, question = sc.solve(sc.load_job(job)), OF_DESIGNS[name]
+    front, question = sc.solve(sc.load_job(job)), DESIGN_QUESTIONS[name]
     for row in random.choice(len(front), 3, replace=False).tolist():
         given = {one: some_input(one, random) for one in question.inputs}
         expected = client.ask(number, row + 1, name, **{one.key: value for one, value in given.items()})
-        texts = {one: one.typed(value) for one, value in given.items()}
+        texts = {one: one.with_unit(value) for one, value in given.items()}
         assert front.ask(name, row, **{one.name: text for one, text in texts.items()}) == expected
         lengths = zip(("crank", "rod", "offset"), front.dimensions[row].tolist(), strict=True)
         options = [f"--{of}={length!r} m" for of, length in lengths]
         options += [f"{one.flag}={text}" for one, text in texts.items()]
-        done = CliRunner().invoke(command_line, [COMMANDS[name].called or name, str(job), *options, "--json"])
+        done = CliRunner().invoke(command_line, [QUESTION_COMMANDS[name].called or name, str(job), *options, "--json"])
         assert done.exit_code == 0, done.stderr
         assert json.loads(done.stdout) == expected
         words = {one.name: text for one, text in texts.items()}
@@ -232,7 +232,7 @@ def test_what_cannot_be_sized_is_refused_in_one_sentence(
         sc.solve(sc.load_job(solved.job)).ask(name, 0, **({key: f"{value} mm"} if given else {}))
     done = CliRunner().invoke(
         command_line,
-        [COMMANDS[name].called or name, str(solved.job), *words, *([f"--{key}={value} mm"] if given else [])],
+        [QUESTION_COMMANDS[name].called or name, str(solved.job), *words, *([f"--{key}={value} mm"] if given else [])],
     )
     assert sentence in str(alone.value)
     assert str(alone.value) in str(refused.value)
@@ -241,7 +241,7 @@ def test_what_cannot_be_sized_is_refused_in_one_sentence(
 
 @pytest.mark.parametrize("name", SIZING)
 def test_a_job_that_swings_is_sized_at_no_door(name: str) -> None:
-    command = COMMANDS[name].called or name
+    command = QUESTION_COMMANDS[name].called or name
     given = {"limit": "1 mm"} if name == "allocate" else {}
     with pytest.raises(InputError) as refused:
         sc.load_job("runs/support.toml").ask(name, [1.4, 1.8, -0.05], **given)
@@ -269,15 +269,18 @@ def test_a_swing_of_a_job_is_asked_in_python_as_on_the_command_line() -> None:
         assert support.ask(name, design, **inputs) == json.loads(done.stdout)
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", QUESTION_COMMANDS)
 def test_an_endpoint_says_what_its_command_says_and_takes_its_inputs(address: str, name: str) -> None:
     described = httpx.get(f"{address}{API}/openapi.json", timeout=60.0).json()
     asked = described["paths"][f"/api/v1/jobs/{{number}}/designs/{{design}}/{name}"]["get"]
-    assert (asked["operationId"], asked["description"]) == (COMMANDS[name].endpoint, cleandoc(COMMANDS[name].help))
+    assert (asked["operationId"], asked["description"]) == (
+        QUESTION_COMMANDS[name].endpoint,
+        cleandoc(QUESTION_COMMANDS[name].help),
+    )
     keys = [parameter["name"] for parameter in asked["parameters"]]
     other = ("crank_mm", "rod_mm", "offset_mm", "value")  # numbers than those of the design
     assert [key for key in keys if key not in ("number", "design", "units", *other)] == [
-        one.key for one in OF_DESIGNS[name].inputs
+        one.key for one in DESIGN_QUESTIONS[name].inputs
     ]
     assert set(other) <= set(keys)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from slidercrank.optimise.front.picking import Priority
-from slidercrank.service.designs.selection import numbered
+from slidercrank.service.designs.selection import numbered_rows
 from slidercrank.service.runs.result import Result, json_ready, result_of, rows_from_csv
 from slidercrank.service.runs.run_folder import RunFolder
 from tests.service import fronts
@@ -138,13 +138,13 @@ def test_a_damaged_run_is_exit_code_2(stored: Result, command: Command) -> None:
 def test_export_writes_the_files_of_the_run(stored: Result, tmp_path: Path, command: Command) -> None:
     done = command("export", "latest", "--csv", tmp_path / "a.csv", "--json", tmp_path / "a.json")
     assert (done.exit_code, done.stdout) == (0, "")
-    assert json_ready(rows_from_csv((tmp_path / "a.csv").read_text())) == json_ready(numbered(stored.designs))
+    assert json_ready(rows_from_csv((tmp_path / "a.csv").read_text())) == json_ready(numbered_rows(stored.designs))
     assert (tmp_path / "a.json").read_bytes() == (Path(stored.run) / "front.json").read_bytes()
 
 
 def test_export_writes_to_standard_output(stored: Result, command: Command) -> None:
     assert json_ready(rows_from_csv(command("export", "latest", "--csv", "-").stdout)) == json_ready(
-        numbered(stored.designs)
+        numbered_rows(stored.designs)
     )
     assert json.loads(command("export", "latest", "--json", "-").stdout) == stored.record()
 
@@ -234,7 +234,7 @@ def test_an_export_takes_part_of_the_front_in_an_order(stored: Result, tmp_path:
     options = ("--where", f"peak_torque <= {torque} N m", "--sort", "crank", "--reverse")
     done = command("export", "latest", *files, *options)
     assert (done.exit_code, done.stdout) == (0, ""), done.stderr
-    expected = [row for row in numbered(stored.designs) if row["peak_torque_Nm"] <= torque]  # type: ignore[operator]
+    expected = [row for row in numbered_rows(stored.designs) if row["peak_torque_Nm"] <= torque]  # type: ignore[operator]
     expected.sort(key=lambda row: row["crank_mm"], reverse=True)  # type: ignore[arg-type, return-value]
     assert 0 < len(expected) < len(stored.designs)
     assert json_ready(rows_from_csv((tmp_path / "a.csv").read_text())) == json_ready(expected)

@@ -20,7 +20,7 @@ from slidercrank.objectives.bars import LINKS
 from slidercrank.objectives.quantity import Group
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.tables.analysis import analyse
-from slidercrank.service.figures.sheets import panel_in
+from slidercrank.service.figures.panel_figure import panel_in_units
 from slidercrank.service.questions.strength.analysis import blocks, figure, numbers
 from slidercrank.service.render.terminal import print_blocks
 from slidercrank.service.runs.result import json_ready
@@ -80,7 +80,7 @@ def test_numbers_are_those_of_the_quantities_and_places_those_of_the_greatest_st
 
 def test_curves_of_the_figure_are_those_of_a_section_cut_from_the_other_end() -> None:
     machine, linkage = strong(22)
-    panels = [panel_in(panel, "metric") for panel in figure(machine, linkage).panels]
+    panels = [panel_in_units(panel, "metric") for panel in figure(machine, linkage).panels]
     assert [str(panel.title).split()[0] for panel in panels] == [name for name in LINKS for _ in range(2)]
     for name, over, along in zip(LINKS, panels[::2], panels[1::2], strict=True):
         length = float(getattr(linkage, name))

@@ -14,7 +14,7 @@ import slidercrank as sc
 from slidercrank.model.errors import InputError
 from slidercrank.model.transient.speed_profile_cycle import speed_profile_cycle
 from slidercrank.objectives.tables.measured import measured_from
-from slidercrank.service.motion.play import play_of_turn
+from slidercrank.service.motion.playback import turn_playback
 from tests.service.api.fixed_front import API, Solved, client_of
 from tests.service.conftest import Command
 
@@ -88,7 +88,7 @@ def test_what_moves_takes_the_time_of_a_turn() -> None:
     problem, linkage = sc.problem(JOB), sc.Linkage(0.03, 0.12, 0.01)
     period = speed_profile_cycle(problem.mechanism, linkage).period
     assert period == pytest.approx(0.025, rel=1e-12)
-    assert play_of_turn(problem.mechanism, linkage).record["perSecond"] == pytest.approx(1.0 / period, rel=1e-12)
+    assert turn_playback(problem.mechanism, linkage).record["perSecond"] == pytest.approx(1.0 / period, rel=1e-12)
 
 
 def test_curves_over_time_are_refused_along_a_profile() -> None:

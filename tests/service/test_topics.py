@@ -28,7 +28,8 @@ def test_a_folder_that_declares_a_topic_is_found(tmp_path: Path, monkeypatch: py
     folder = tmp_path / "weather"
     folder.mkdir()
     (folder / "__init__.py").write_text(
-        "from slidercrank.service.questions.question import Question\nQUESTION = Question(__name__, 35, 'rain')\n"
+        "from slidercrank.service.questions.design_question import DesignQuestion\n"
+        "QUESTION = DesignQuestion(__name__, 35, 'rain')\n"
     )
     monkeypatch.setattr(questions, "__path__", [*questions.__path__, str(tmp_path)])
     found = list(discovery._discover_questions())

@@ -14,9 +14,9 @@ import pytest
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.kinds import ANGLE, FORCE, LENGTH, PERCENT, RATIO, SHOWN, TORQUE, Kind, System, unit_text
-from slidercrank.service.designs.shown_units import record_in
-from slidercrank.service.figures.panels import draw_sheet
-from slidercrank.service.figures.sheets import Line, Panel, Sheet, over_turn, panel_in
+from slidercrank.service.designs.display_units import record_in
+from slidercrank.service.figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, panel_in_units
+from slidercrank.service.figures.panels import draw_panel_figure
 from slidercrank.service.questions.discovery import TOPICS
 from slidercrank.service.render.blocks import Table, Text, Unit, Value, column, heading, words
 from slidercrank.service.render.formatting import PlainBlock, format_text, format_value, plain_blocks
@@ -73,13 +73,13 @@ def test_axes_of_a_figure_are_changed_with_all_that_is_drawn() -> None:
     line = Line(words("at {size}", size=Value(0.0508, LENGTH)), x, np.array([0.0, LBF_IN]))
     title = words("torque at {place}", place=Value(0.0254, LENGTH))
     panel = Panel(title, "offset", (line,), TORQUE, LENGTH, names=(("A", 0.0254, LBF_IN),), level=("RMS", LBF_IN))
-    one = panel_in(panel, "inch")
-    assert (one.title, one.across) == ("torque at 1 in, lbf in", "offset, in")
+    one = panel_in_units(panel, "inch")
+    assert (one.title, one.x_title) == ("torque at 1 in, lbf in", "offset, in")
     assert one.lines[0].label == "at 2 in"
     np.testing.assert_allclose([one.lines[0].x, one.lines[0].y], [[0.0, 1.0], [0.0, 1.0]])
     assert one.level is not None
     np.testing.assert_allclose([*one.names[0][1:], one.level[1]], 1.0)
-    drawn = panel_in(Panel("rod angle, deg", "crank angle, deg", (line,), turns=True), "inch")
+    drawn = panel_in_units(Panel("rod angle, deg", "crank angle, deg", (line,), turns=True), "inch")
     np.testing.assert_array_equal([drawn.lines[0].x, drawn.lines[0].y], [line.x, line.y])
 
 
@@ -89,7 +89,7 @@ def test_the_figure_of_a_topic_has_lengths_and_extremes_in_inches() -> None:
     sheet = figure(fronts.MACHINE, Linkage(0.1237, 0.3519, 0.0811))
     assert format_text(sheet.subtitle, "inch") == "crank 4.87008 in, rod 13.8543 in, offset 3.19291 in"
     for panel in sheet.panels:
-        drawn = panel_in(panel, "inch")
+        drawn = panel_in_units(panel, "inch")
         ends = [end for line in drawn.lines if line.points for end in line.y.tolist()]
         assert [part.split(" at ")[0] for part in str(drawn.note).split(", ")] == [shown(end) for end in ends]
         assert len(ends) == 2
@@ -97,8 +97,8 @@ def test_the_figure_of_a_topic_has_lengths_and_extremes_in_inches() -> None:
 
 def test_the_drawn_note_of_a_panel_has_its_values() -> None:
     line, least = Line("", np.array([0.0, 360.0]), np.array([1.0, 2.0])), Value(-1.23456, FORCE, digits=4)
-    panel = over_turn("force", line, kind=FORCE, note=words("{least} at 3°", least=least))
-    figure = draw_sheet(Sheet("", "", (panel,)))
+    panel = crank_angle_panel("force", line, kind=FORCE, note=words("{least} at 3°", least=least))
+    figure = draw_panel_figure(PanelFigure("", "", (panel,)))
     assert figure.axes[0].get_title(loc="right") == "−1.235 N at 3°"
     assert figure.axes[0].get_title(loc="left") == "force, N"
 
@@ -112,7 +112,7 @@ def test_heads_of_a_table_have_their_lines_in_both_systems(command: Command) -> 
 
 
 def test_offsets_of_approximations_are_fractions_of_one_length_in_either_unit() -> None:
-    topic = TOPICS["approximations"].of(fronts.MACHINE, Linkage(0.12, 0.35, 0.08))
+    topic = TOPICS["approximations"].for_design(fronts.MACHINE, Linkage(0.12, 0.35, 0.08))
     record = topic.numbers(lambda: False)
     expected: tuple[tuple[System, str], ...] = (("metric", "115 mm"), ("inch", "4.528 in"))
     for units, farthest in expected:
@@ -122,7 +122,7 @@ def test_offsets_of_approximations_are_fractions_of_one_length_in_either_unit() 
 
 
 def test_sensitivities_are_per_inch_in_text_and_json() -> None:
-    topic = TOPICS["sensitivity"].of(Mechanism(speed=30.0, slider_mass=0.8), Linkage(0.12, 0.35, 0.08))
+    topic = TOPICS["sensitivity"].for_design(Mechanism(speed=30.0, slider_mass=0.8), Linkage(0.12, 0.35, 0.08))
     record = topic.numbers(lambda: False)
     metric, inch = (
         {row["quantity"]: row for row in of["quantities"]} for of in (record, topic.numbers_in(record, "inch"))

@@ -22,7 +22,7 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.flywheel import design_flywheel
 from slidercrank.model.transient.steady import steady_running
-from slidercrank.service.figures.sheets import Panel, panel_in
+from slidercrank.service.figures.panel_figure import Panel, panel_in_units
 from slidercrank.service.questions.discovery import TOPICS
 from slidercrank.service.questions.flywheel import analysis as flywheel
 from slidercrank.service.questions.start_up import analysis as start_up
@@ -128,9 +128,9 @@ def test_a_start_needs_a_drive_and_a_flywheel_a_motor_that_runs_steadily() -> No
 
 def drawn(topic: ModuleType, machine: Mechanism, folder: Path, **options: float) -> tuple[Panel, ...]:
     """Return the panels of a topic's figure, which is drawn too."""
-    file = TOPICS[topic.__name__.split(".")[-2]].of(machine, LINKAGE, options).draw(folder)
+    file = TOPICS[topic.__name__.split(".")[-2]].for_design(machine, LINKAGE, options).draw(folder)
     assert file.stat().st_size > 10_000
-    return tuple(panel_in(panel, "metric") for panel in topic.figure(machine, LINKAGE, **options).panels)
+    return tuple(panel_in_units(panel, "metric") for panel in topic.figure(machine, LINKAGE, **options).panels)
 
 
 def test_the_figure_of_the_start_shows_the_model(tmp_path: Path) -> None:

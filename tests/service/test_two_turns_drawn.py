@@ -16,7 +16,7 @@ from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.service.figures.curves import cycle_curves
-from slidercrank.service.figures.sheets import Sheet, turn
+from slidercrank.service.figures.panel_figure import PanelFigure, sampled_turn
 from slidercrank.service.questions.cylinders import analysis as cylinders
 from slidercrank.service.questions.extremes import analysis as extremes
 from slidercrank.service.questions.friction import analysis as friction
@@ -52,7 +52,7 @@ ROWS = Arrangement(phases=(0.0, math.pi, 3.0 * math.pi, 2.0 * math.pi), places=(
     ],
     ids=["extremes", "motor", "static_forces", "friction", "uneven_speed", "cylinders", "indicator"],
 )
-def test_every_topic_draws_both_turns(figure: Callable[[Mechanism, Linkage], Sheet], machine: Mechanism) -> None:
+def test_every_topic_draws_both_turns(figure: Callable[[Mechanism, Linkage], PanelFigure], machine: Mechanism) -> None:
     panels = [panel for panel in figure(machine, LINKAGE).panels if panel.turns]
     assert panels
     for panel in panels:
@@ -63,12 +63,12 @@ def test_every_topic_draws_both_turns(figure: Callable[[Mechanism, Linkage], She
 
 def test_the_sheet_of_a_design_has_the_torque_of_both_turns_and_its_peak_in_the_second() -> None:
     found = cycle_curves(MACHINE, LINKAGE)
-    assert (found.angles[0], found.angles[-1], found.last) == (0.0, 720.0, 720.0)
+    assert (found.angles[0], found.angles[-1], found.last_turn_end) == (0.0, 720.0, 720.0)
     torque, peak = found.panels[0].lines
     assert peak.x[0] > 360.0
     wanted = cycle(MACHINE, LINKAGE, np.radians(found.angles)).torque
     assert np.abs(torque.y - wanted).max() <= 1e-9 * np.abs(wanted).max()
-    assert cycle_curves(Mechanism(speed=300.0, slider_mass=0.5), LINKAGE).last == 360.0
+    assert cycle_curves(Mechanism(speed=300.0, slider_mass=0.5), LINKAGE).last_turn_end == 360.0
 
 
 def test_the_indicator_has_no_spike_where_the_turns_meet() -> None:
@@ -83,8 +83,8 @@ def test_the_indicator_has_no_spike_where_the_turns_meet() -> None:
 
 
 def test_what_is_marked_on_a_turn_is_marked_on_both() -> None:
-    angles = turn([0.3], turns=2)
+    angles = sampled_turn([0.3], turns=2)
     for place in (0.3, 0.3 + 2.0 * math.pi):
         assert (np.abs(angles - place) < 2e-9).sum() == 2
     assert angles[-1] == pytest.approx(4.0 * math.pi)
-    assert np.array_equal(turn([0.3]), turn([0.3], turns=1))
+    assert np.array_equal(sampled_turn([0.3]), sampled_turn([0.3], turns=1))

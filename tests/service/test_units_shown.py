@@ -19,7 +19,7 @@ from slidercrank.objectives.keys import key_in, metric_key, split_unit
 from slidercrank.objectives.kinds import KINDS, RATIO, SHOWN, shown_in
 from slidercrank.objectives.units import kind_for, per_si, to_si
 from slidercrank.service.designs.columns import find_column
-from slidercrank.service.designs.shown_units import record_in, result_in, row_in
+from slidercrank.service.designs.display_units import record_in, result_in, row_in
 from slidercrank.service.runs.result import result_of, rows_from_csv
 from tests.service import fronts
 from tests.service.conftest import Command

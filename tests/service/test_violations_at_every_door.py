@@ -13,7 +13,7 @@ import pytest
 
 import slidercrank as sc
 from slidercrank.optimise.job import parse_job
-from slidercrank.service.designs.selection import part_of
+from slidercrank.service.designs.selection import result_part
 from slidercrank.service.designs.stored_designs import front_of
 from slidercrank.service.designs.violations import front_violations_in_words, violations_in_words
 from slidercrank.service.report.design_report import design_report
@@ -102,7 +102,7 @@ def test_a_run_keeps_and_shows_it(kept: Result, command: Command) -> None:
     assert kept.violated == result().violated
     assert json.loads(command("front", "latest", "--json").stdout)["violated"] == kept.violated
     one = json.loads(command("front", "latest", "--design", 2, "--json").stdout)
-    assert one["violated"] == {key: [by[1]] for key, by in kept.violated.items()} == part_of(kept, [1]).violated
+    assert one["violated"] == {key: [by[1]] for key, by in kept.violated.items()} == result_part(kept, [1]).violated
     count = len(kept.designs)
     whole = command("front", "latest").stdout
     assert f"Beyond the allowable value: shear of the crank pin in {count} of {count} designs, at worst" in whole

@@ -19,13 +19,13 @@ from typer.testing import CliRunner
 
 import slidercrank as sc
 from slidercrank.model.errors import InputError
-from slidercrank.service.agents.call import Answer, Call
+from slidercrank.service.agents.call import Call, ToolAnswer
 from slidercrank.service.agents.server import TOOLS
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.client import Client
 from slidercrank.service.designs.stored_designs import front_of
 from slidercrank.service.jobs.submission import submit
-from slidercrank.service.questions.discovery import WIDER
+from slidercrank.service.questions.discovery import FRONT_OR_JOB_QUESTIONS
 from slidercrank.service.runs.result import json_ready
 from slidercrank.service.runs.stored_runs import problem_of, read_run
 from slidercrank.service.store import Store
@@ -57,13 +57,13 @@ class Doors:
         """Return what a command prints as JSON, without the names of the run and of what was asked."""
         done = self.command(name, row, given, "--json")
         assert done.exit_code == 0, done.stderr
-        left = ("run", "wishes") if WIDER[name].row != "must" else ("run", "number")
+        left = ("run", "wishes") if FRONT_OR_JOB_QUESTIONS[name].row != "must" else ("run", "number")
         return {key: value for key, value in json.loads(done.stdout).items() if key not in left}
 
-    def agent(self, name: str, row: int | None, given: Mapping[str, Any]) -> Answer:
+    def agent(self, name: str, row: int | None, given: Mapping[str, Any]) -> ToolAnswer:
         """Return the answer to an agent."""
         design = {} if row is None else {"design": row + 1}
-        return ASK.answer(
+        return ASK.execute(
             call_in(self.folder.parent), {"run": self.folder.name, "topics": [name], **design, "inputs": given}
         )
 
@@ -83,7 +83,7 @@ def call_in(runs: Path) -> Call:
 
 def options(name: str, given: Mapping[str, Any]) -> list[str]:
     """Return inputs as a command line has them."""
-    flags, words = WIDER[name].flags, list[str]()
+    flags, words = FRONT_OR_JOB_QUESTIONS[name].flags, list[str]()
     for key, value in given.items():
         texts = [f"{of}={text}" for of, text in value.items()] if isinstance(value, dict) else value
         for text in texts if isinstance(texts, list) else [texts]:
@@ -231,7 +231,7 @@ def test_what_is_told_to_people_is_in_the_units_of_each_door(doors: Doors) -> No
     for units, unit, key in (("metric", "mm", "crank_mm"), ("inch", "in", "crank_in")):
         done = doors.command("wish", None, given, "--units", units)
         asked = {"run": doors.folder.name, "topics": ["wish"], "inputs": given, "units": units}
-        answer = ASK.answer(call_in(doors.folder.parent), asked)
+        answer = ASK.execute(call_in(doors.folder.parent), asked)
         assert answer.text.splitlines() == done.stdout.strip().splitlines()
         (line,) = (line for line in answer.text.splitlines() if line.startswith("crank  "))
         assert line.split() == ["crank", unit, f"{answer.record['design'][key]:.6g}"]
@@ -274,7 +274,7 @@ def test_a_random_sweep_has_the_same_rows_in_python_by_the_command_and_for_agent
             command_line, ["sweep", str(job), *options("sweep", given | lengths), "--json", "--units", units]
         )
         assert done.exit_code == 0, done.stderr
-        agent = ASK.answer(
+        agent = ASK.execute(
             call_in(tmp_path), {"job": fronts.JOB, **lengths, "topics": ["sweep"], "inputs": given, "units": units}
         )
         assert json_ready(agent.record) == {"rows": json.loads(done.stdout)}
@@ -319,7 +319,7 @@ def test_a_wrong_sweep_is_refused_in_the_same_sentence(tmp_path: Path, given: di
     said = refusal(lambda: problem.ask("sweep", **given))
     assert said.startswith(sentence)
     asked = {"job": fronts.JOB, "topics": ["sweep"], "inputs": given}
-    assert refusal(lambda: ASK.answer(call_in(tmp_path), asked)) == said
+    assert refusal(lambda: ASK.execute(call_in(tmp_path), asked)) == said
 
 
 def test_a_job_that_swings_is_swept_at_no_door(tmp_path: Path) -> None:
@@ -327,7 +327,7 @@ def test_a_job_that_swings_is_swept_at_no_door(tmp_path: Path) -> None:
     done = CliRunner().invoke(command_line, ["sweep", "runs/support.toml", *options("sweep", given)])
     said = refusal(lambda: sc.load_job("runs/support.toml").ask("sweep", **given))
     assert said == refusal(
-        lambda: ASK.answer(call_in(tmp_path), {"job": "support", "topics": ["sweep"], "inputs": given})
+        lambda: ASK.execute(call_in(tmp_path), {"job": "support", "topics": ["sweep"], "inputs": given})
     )
     assert (done.exit_code, done.stderr.strip()) == (2, f"slidercrank: {said}")
 
@@ -400,7 +400,7 @@ def test_questions_are_asked_of_what_they_are_of(doors: Doors) -> None:
         ({"run": doors.folder.name, "design": 99}, "the run has designs 1 to "),
     ):
         inputs = {"topics": ["certify"], **subject}
-        assert refusal(partial(ASK.answer, call_in(doors.folder.parent), inputs)).startswith(sentence)
+        assert refusal(partial(ASK.execute, call_in(doors.folder.parent), inputs)).startswith(sentence)
 
 
 ADDED = """

@@ -54,9 +54,9 @@ declare global {
     type Job = Schemas["JobShown"];
     type JobRow = Schemas["JobRow"];
     type JobPage = Schemas["JobPage"];
-    type Kept = Schemas["KeptDesign"];
+    type Kept = Schemas["BookmarkedDesign"];
     type Limit = Schemas["LimitModel"];
-    type MadeWish = Schemas["MadeWishModel"];
+    type MadeWish = Schemas["WishRecordModel"];
     type Objective = Schemas["ObjectiveModel"];
     type Preset = Schemas["PresetModel"];
     type Preview = Schemas["PreviewModel"];

@@ -2,10 +2,10 @@
 
 from ....objectives.kinds import LENGTH
 from ....optimise.sizing.words import Kind
+from ..design_question import DesignQuestion, QuestionCommand
 from ..inputs import Input
-from ..question import Command, Question
 
-QUESTION = Question(
+QUESTION = DesignQuestion(
     __name__,
     1,
     shows="tolerances of least cost within a limit of the position error",
@@ -28,7 +28,7 @@ QUESTION = Question(
             loose=True,
         ),
     ),
-    command=Command(
+    command=QuestionCommand(
         help="""Find the cheapest tolerances that keep the position error within a limit.
 
     The limit applies at every crank angle in the part of the stroke selected in [tolerances]. Dimensions without a

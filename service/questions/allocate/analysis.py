@@ -18,7 +18,7 @@ from ....optimise.problem.problem import Problem
 from ....optimise.sizing.tolerance_allocation import Allocation, allocate
 from ....optimise.sizing.words import Kind
 from ...render.blocks import Block, Table, Text, Unit, Value, column, heading, joined, recorded, sentence, words
-from ..answers import Note, Record
+from ..answer_types import Note, Record
 from ..peaks import peak
 
 OfLength = Annotated[float | None, Note("null for the crank angle")]

@@ -37,7 +37,7 @@ class AllocationCurves:
     angles: Array
     sources: tuple[str, ...]
     parts: Array
-    before: Array | None
+    error_before: Array | None
     limit: float
     counted: tuple[tuple[float, float], ...]
     active: Array
@@ -47,26 +47,26 @@ class AllocationCurves:
     kind: str
 
 
-def allocation_curves(found: Allocation, linkage: Linkage, costs: Costs, before: Mechanism) -> AllocationCurves:
+def allocation_curves(allocation: Allocation, linkage: Linkage, costs: Costs, before: Mechanism) -> AllocationCurves:
     """Return the figure's data. before: the mechanism with the tolerances that it had."""
     theta = np.linspace(0.0, 2.0 * np.pi, _SAMPLES)
-    now = first_order(found.mechanism, linkage, theta)
-    share, error = _cumulated_error(now, found.kind)
-    there = now.contributions.max(axis=1) > 0.0
+    now = first_order(allocation.mechanism, linkage, theta)
+    share, error = _cumulated_error(now, allocation.kind)
+    contributes = now.contributions.max(axis=1) > 0.0
     was = costs_before(costs, linkage, before)
     spans = [(float(np.degrees(part[0])), float(np.degrees(part[-1]))) for part in counted_angles(before, linkage)]
     return AllocationCurves(
         np.degrees(theta),
-        tuple(name for name, adds in zip(SOURCES, there, strict=True) if adds),
-        (share * error)[there],
-        None if was is None else _cumulated_error(first_order(before, linkage, theta), found.kind)[1],
-        found.limit,
+        tuple(name for name, adds in zip(SOURCES, contributes, strict=True) if adds),
+        (share * error)[contributes],
+        None if was is None else _cumulated_error(first_order(before, linkage, theta), allocation.kind)[1],
+        allocation.limit,
         tuple(spans),
-        np.degrees(found.angles),
-        tuple(part.name.replace("_", " ") for part in found.parts),
-        np.array([part.cost for part in found.parts]),
+        np.degrees(allocation.angles),
+        tuple(part.name.replace("_", " ") for part in allocation.parts),
+        np.array([part.cost for part in allocation.parts]),
         None if was is None else np.array(list(was.values())),
-        "worst case" if found.kind == "worst case" else "root-sum-square",
+        "worst case" if allocation.kind == "worst case" else "root-sum-square",
     )
 
 
@@ -87,12 +87,12 @@ def allocation_figure(data: AllocationCurves, system: System = "metric") -> Figu
     gaps = _gaps(data.counted)
     note = f"{data.kind} within {shown(limit)} {unit.symbol}" + ("; pale: not counted" if gaps else "")
     style.heading(figure, "Least-cost tolerances", note)
-    error = style.place(figure, 0.8, foot + 0.85, 5.9, 2.7)
-    style.dress(error, up=6)
-    style.over_turn(error)
+    error = style.add_axes(figure, 0.8, foot + 0.85, 5.9, 2.7)
+    style.style_axes(error, most_y_ticks=6)
+    style.show_full_turn(error)
     style.draw_stack(error, data.angles, unit.factor * data.parts, data.sources)
-    if data.before is not None:
-        errors = unit.factor * data.before
+    if data.error_before is not None:
+        errors = unit.factor * data.error_before
         error.plot(data.angles, errors, color=style.BLUE, linewidth=1.3, linestyle=":", label="as in the job")
     error.axhline(limit, color=style.VERMILION, linewidth=1.4, linestyle=(0, (6, 2)), label="limit")
     error.plot(
@@ -101,14 +101,18 @@ def allocation_figure(data: AllocationCurves, system: System = "metric") -> Figu
     )  # fmt: skip
     for start, end in gaps:
         error.axvspan(start, end, color=style.SHADE, alpha=0.8, linewidth=0, zorder=4)
-    tops = [float(data.parts.sum(axis=0).max()), data.limit, *([] if data.before is None else [data.before.max()])]
+    tops = [
+        float(data.parts.sum(axis=0).max()),
+        data.limit,
+        *([] if data.error_before is None else [data.error_before.max()]),
+    ]
     error.set_ylim(0.0, 1.06 * unit.factor * max(tops))
     error.set_ylabel(with_unit("position error", unit.symbol), fontsize=style.TEXT)
     error.set_xlabel("crank angle, deg", fontsize=style.TEXT)
     style.legend_beside(error, stacked=len(data.sources))
 
-    cost = style.place(figure, 1.3, 0.5, 5.4, foot - 0.35)
-    style.dress(cost, across=8)
+    cost = style.add_axes(figure, 1.3, 0.5, 5.4, foot - 0.35)
+    style.style_axes(cost, most_x_ticks=8)
     cost.grid(False, axis="y")
     rows = np.arange(count)[::-1]
     before = data.costs_before
@@ -130,11 +134,11 @@ def allocation_figure(data: AllocationCurves, system: System = "metric") -> Figu
 
 def _gaps(counted: tuple[tuple[float, float], ...]) -> list[tuple[float, float]]:
     """Return the crank angles from 0 to 360 deg that are not counted."""
-    inside = sorted(
+    counted_spans = sorted(
         (max(start + shift, 0.0), min(end + shift, 360.0))
         for start, end in counted
         for shift in (-360.0, 0.0, 360.0)
         if start + shift < 360.0 and end + shift > 0.0
     )
-    edges = [0.0, *(end for span in inside for end in span), 360.0]
+    edges = [0.0, *(end for span in counted_spans for end in span), 360.0]
     return [(start, end) for start, end in zip(edges[::2], edges[1::2], strict=True) if end - start > 1e-6]

@@ -1,5 +1,5 @@
 """Textbook approximations: numbers, text and figure."""
 
-from ..question import Question
+from ..design_question import DesignQuestion
 
-QUESTION = Question(__name__, 70, "errors of lumped-mass and series approximations")
+QUESTION = DesignQuestion(__name__, 70, "errors of lumped-mass and series approximations")

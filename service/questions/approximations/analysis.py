@@ -13,10 +13,10 @@ from ....model.classical.lumped import rotating_and_reciprocating
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....objectives.kinds import ACCELERATION, LENGTH, TORQUE, Kind
-from ...figures.sheets import Line, Panel, Sheet, over_turn
+from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import Block, Table, Text, Unit, column, dimensions, heading, joined, note, recorded, recorded_all
 from ...render.numerals import shown
-from ..answers import Note, Record
+from ..answer_types import Note, Record
 
 Share = Annotated[float | None, Note("null where the exact value is zero all over")]
 
@@ -61,9 +61,9 @@ _SHORT = {"two masses by mass centre": "two masses", "two masses, half and half"
 
 def _errors_over_offset(mechanism: Mechanism, linkage: Linkage, count: int) -> Errors:
     """Return the errors at offsets from zero to the design's own, or to (rod - crank) / 2 if greater."""
-    own = float(linkage.offset)
-    far = max(abs(own), 0.5 * (float(linkage.rod) - float(linkage.crank)))
-    return errors_over_offset(mechanism, linkage, math.copysign(1.0, own) * np.linspace(0.0, far, count))
+    offset = float(linkage.offset)
+    far = max(abs(offset), 0.5 * (float(linkage.rod) - float(linkage.crank)))
+    return errors_over_offset(mechanism, linkage, math.copysign(1.0, offset) * np.linspace(0.0, far, count))
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Approximations:
@@ -72,33 +72,33 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Approximations:
     Errors: the greatest difference over the cycle as a share of the exact peak, in per cent; None where all is zero.
     Of inertia alone, at constant speed. Raises `InputError` without a crank speed.
     """
-    found = compare(mechanism, linkage, np.linspace(0.0, 2.0 * math.pi, 1440, endpoint=False))
+    comparison = compare(mechanism, linkage, np.linspace(0.0, 2.0 * math.pi, 1440, endpoint=False))
     rotating, reciprocating = rotating_and_reciprocating(mechanism, linkage)
     offsets = _errors_over_offset(mechanism, linkage, _TOLD)
 
     return {
         "rotating_mass_kg": rotating,
         "reciprocating_mass_kg": reciprocating,
-        "exact_peak_acceleration_m_s2": _peak(found.acceleration),
-        "exact_peak_torque_Nm": _peak(found.torque),
+        "exact_peak_acceleration_m_s2": _peak(comparison.acceleration),
+        "exact_peak_torque_Nm": _peak(comparison.torque),
         "offset_mm": (1e3 * offsets.offset + 0.0).tolist(),  # of a negative offset the first one is -0.0
         "accelerations": [
             {
                 "name": name,
                 "peak_acceleration_m_s2": _peak(curve),
-                "error_percent": _percent(relative_error(curve, found.acceleration)),
+                "error_percent": _percent(relative_error(curve, comparison.acceleration)),
                 "error_over_offset_percent": list(map(_percent, offsets.accelerations[name].tolist())),
             }
-            for name, curve in found.accelerations.items()
+            for name, curve in comparison.accelerations.items()
         ],
         "torques": [
             {
                 "name": name,
                 "peak_torque_Nm": _peak(curve),
-                "error_percent": _percent(relative_error(curve, found.torque)),
+                "error_percent": _percent(relative_error(curve, comparison.torque)),
                 "error_over_offset_percent": list(map(_percent, offsets.torques[name].tolist())),
             }
-            for name, curve in found.torques.items()
+            for name, curve in comparison.torques.items()
         ],
     }
 
@@ -117,9 +117,9 @@ def blocks(numbers: Approximations) -> list[Block]:
     columns = (column("model", left=True), column("peak"), column("unit", left=True), column("error"), *offsets)
     rows: list[tuple[Text, ...]] = []
     rows.append(("slider acceleration, exact", *_exact(numbers, "exact_peak_acceleration_m_s2", ACCELERATION)))
-    rows += [_row(one, "peak_acceleration_m_s2", ACCELERATION) for one in numbers["accelerations"]]
+    rows += [_row(approximation, "peak_acceleration_m_s2", ACCELERATION) for approximation in numbers["accelerations"]]
     rows.append(("inertia torque, exact", *_exact(numbers, "exact_peak_torque_Nm", TORQUE)))
-    rows += [_row(one, "peak_torque_Nm", TORQUE) for one in numbers["torques"]]
+    rows += [_row(approximation, "peak_torque_Nm", TORQUE) for approximation in numbers["torques"]]
     return [
         heading("Approximate models: inertia only, constant speed"),
         Table(columns, tuple(rows), ruled=True),
@@ -135,41 +135,41 @@ def _exact(numbers: Approximations, key: str, kind: Kind) -> tuple[Text, ...]:
     return recorded(numbers, key, digits=5), Unit(kind), *[""] * (1 + _TOLD)
 
 
-def _row(one: Approximation, key: str, kind: Kind) -> tuple[Text, ...]:
-    errors = (one["error_percent"], *one["error_over_offset_percent"])
+def _row(approximation: Approximation, key: str, kind: Kind) -> tuple[Text, ...]:
+    errors = (approximation["error_percent"], *approximation["error_over_offset_percent"])
     cells = ("-" if percent is None else f"{percent:.3g} %" for percent in errors)
-    return f"  {one['name']}", recorded(one, key, digits=5), Unit(kind), *cells
+    return f"  {approximation['name']}", recorded(approximation, key, digits=5), Unit(kind), *cells
 
 
-def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
+def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return acceleration and inertia torque, exact and approximate, and the greatest errors over offset."""
-    found = compare(mechanism, linkage, np.linspace(0.0, 2.0 * math.pi, 721))
+    comparison = compare(mechanism, linkage, np.linspace(0.0, 2.0 * math.pi, 721))
     errors = _errors_over_offset(mechanism, linkage, _DRAWN)
-    degrees, offsets = np.degrees(found.crank_angle), np.abs(errors.offset)
-    torques = [(_SHORT.get(name, name), 1 + n, name) for n, name in enumerate(found.torques)]
+    degrees, offsets = np.degrees(comparison.crank_angle), np.abs(errors.offset)
+    torques = [(_SHORT.get(name, name), 1 + n, name) for n, name in enumerate(comparison.torques)]
     panels = [
-        over_turn(
+        crank_angle_panel(
             "slider acceleration",
-            Line("exact", degrees, found.acceleration),
-            *(Line(name, degrees, curve, 1) for name, curve in found.accelerations.items()),
+            Line("exact", degrees, comparison.acceleration),
+            *(Line(name, degrees, curve, 1) for name, curve in comparison.accelerations.items()),
             kind=ACCELERATION,
         ),
-        over_turn(
+        crank_angle_panel(
             "inertia torque",
-            Line("exact", degrees, found.torque),
-            *(Line(label, degrees, found.torques[name], style) for label, style, name in torques),
+            Line("exact", degrees, comparison.torque),
+            *(Line(label, degrees, comparison.torques[name], style) for label, style, name in torques),
             kind=TORQUE,
         ),
         Panel(
             "greatest error in acceleration, % of its peak",
             "offset",
             tuple(Line(name, offsets, 100.0 * curve, 1) for name, curve in errors.accelerations.items()),
-            along=LENGTH,
+            x_kind=LENGTH,
         ),
     ]
     if np.all(errors.peak_torque > 0.0):
         lines = tuple(Line(label, offsets, 100.0 * errors.torques[name], style) for label, style, name in torques)
-        panels.append(Panel("greatest error in torque, %", "offset", lines, along=LENGTH))
+        panels.append(Panel("greatest error in torque, %", "offset", lines, x_kind=LENGTH))
     subtitle = joined([dimensions(linkage), f"{shown(mechanism.speed)} rad/s; inertia only"])
     title = "Approximate and exact models"
-    return Sheet(title, subtitle, tuple(panels), columns=2, width=7.6, height=3.0)
+    return PanelFigure(title, subtitle, tuple(panels), columns=2, width=7.6, height=3.0)

@@ -1,8 +1,8 @@
 """Shaking of the frame: numbers, text and figure."""
 
-from ..question import Question
+from ..design_question import DesignQuestion
 
-QUESTION = Question(
+QUESTION = DesignQuestion(
     __name__,
     40,
     "shaking force and moment",

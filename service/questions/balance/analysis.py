@@ -18,9 +18,9 @@ from ....model.signals.averages import average
 from ....model.signals.signals import Signal
 from ....objectives.kinds import FORCE, TORQUE
 from ....objectives.needs import MOTION
-from ...figures.sheets import Line, Sheet, over_turn, turn
+from ...figures.panel_figure import Line, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, NamedNumber, compared, joined, named_number, number_list
-from ..answers import AngleOfPeak, Note, Record
+from ..answer_types import Note, PeakAngle, Record
 from ..peaks import Peak, peak, row_of
 
 Bare = Annotated[float | None, Note("null without a counterweight")]
@@ -32,13 +32,13 @@ class Shaking(Record):
     counterweight_kg: float
     counterweight_radius_mm: float
     peak_shaking_force_N: float
-    peak_shaking_force_angle_deg: AngleOfPeak
+    peak_shaking_force_angle_deg: PeakAngle
     rms_shaking_force_N: float
     peak_shaking_force_without_counterweight_N: Bare
     rms_shaking_force_without_counterweight_N: Bare
     peak_shaking_moment_Nm: float
     """About the crank pivot."""
-    peak_shaking_moment_angle_deg: AngleOfPeak
+    peak_shaking_moment_angle_deg: PeakAngle
     rms_shaking_moment_Nm: float
     peak_shaking_moment_without_counterweight_Nm: Bare
     rms_shaking_moment_without_counterweight_Nm: Bare
@@ -100,19 +100,19 @@ def _curves(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float64]) 
 
 def blocks(numbers: Shaking) -> list[Block]:
     """Return the numbers for people."""
-    shown: list[NamedNumber] = []
+    lines: list[NamedNumber] = []
     for name, unit, _ in _CURVES:
-        for which in ("peak", "rms"):
-            without = f"{which}_{name}_without_counterweight_{unit}"
-            remarks = ("over time" if which == "rms" else "", compared(numbers, without, "without counterweight"))
-            shown.append(named_number(numbers, f"{which}_{name}_{unit}", joined(remarks)))
+        for statistic in ("peak", "rms"):
+            bare_key = f"{statistic}_{name}_without_counterweight_{unit}"
+            remarks = ("over time" if statistic == "rms" else "", compared(numbers, bare_key, "without counterweight"))
+            lines.append(named_number(numbers, f"{statistic}_{name}_{unit}", joined(remarks)))
     title = "Balance (inertia forces on the frame, without gravity and loads; moment about the crank pivot)"
-    return number_list(title, shown)
+    return number_list(title, lines)
 
 
-def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
+def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return shaking force and moment over the cycle, with and without the counterweight."""
-    theta, bare = turn(), _bare(mechanism)
+    theta, bare = sampled_turn(), _bare(mechanism)
     degrees, now = np.degrees(theta), _curves(mechanism, linkage, theta)
     size, moment = (
         [Line("as it is", degrees, np.hypot(now.force_x, now.force_y))],
@@ -122,10 +122,10 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
         then = _curves(bare, linkage, theta)
         size.append(Line("without counterweight", degrees, np.hypot(then.force_x, then.force_y), 1))
         moment.append(Line("without counterweight", degrees, then.moment, 1))
-    along, across = Line("along the slider line", degrees, now.force_x), Line("across", degrees, now.force_y, 1)
+    force_x, force_y = Line("along the slider line", degrees, now.force_x), Line("across", degrees, now.force_y, 1)
     panels = (
-        over_turn("shaking force", *size, kind=FORCE),
-        over_turn("its components", along, across, kind=FORCE),
-        over_turn("shaking moment about the crank pivot", *moment, kind=TORQUE),
+        crank_angle_panel("shaking force", *size, kind=FORCE),
+        crank_angle_panel("its components", force_x, force_y, kind=FORCE),
+        crank_angle_panel("shaking moment about the crank pivot", *moment, kind=TORQUE),
     )
-    return Sheet("Shaking force and moment on the frame", "", panels, width=6.4, height=2.25, stacked=True)
+    return PanelFigure("Shaking force and moment on the frame", "", panels, width=6.4, height=2.25, stacked=True)

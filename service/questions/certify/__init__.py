@@ -1,9 +1,9 @@
 """Proof of how far a front can be from the true one: numbers and text."""
 
-from ..plain_input import Plain
-from ..wider import WiderQuestion
+from ..front_or_job_question import FrontOrJobQuestion
+from ..typed_input import TypedInput
 
-QUESTION = WiderQuestion(
+QUESTION = FrontOrJobQuestion(
     package=__name__,
     subject="front",
     place=1000,
@@ -14,12 +14,12 @@ QUESTION = WiderQuestion(
     Searches the whole design box and adds designs where the front has gaps. No feasible design then beats all of them
     by more than epsilon.""",
     inputs=(
-        Plain(
+        TypedInput(
             "epsilon",
             help="Distance to prove, as a fraction of each objective's range over the front.",
             usual="0.01",
             limits={"gt": 0.0, "lt": 1.0},
         ),
-        Plain("seconds", help="Time limit; reports what is proven so far.", usual="60.0", limits={"gt": 0.0}),
+        TypedInput("seconds", help="Time limit; reports what is proven so far.", usual="60.0", limits={"gt": 0.0}),
     ),
 )

@@ -9,10 +9,10 @@ from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.kinds import LENGTH
 from ....optimise.certificate.certify import EPSILON, SECONDS, certify_designs
 from ....optimise.certificate.infeasible import prove_infeasible
-from ...designs.shown_units import record_in
+from ...designs.display_units import record_in
 from ...render.blocks import Block, Value, heading, joined, sentence, words
 from ...runs.result import rows_of
-from ..wider import Answer, Watch
+from ..front_or_job_question import Answer, SearchListener
 
 if TYPE_CHECKING:
     from ....model.arrays import Array
@@ -23,24 +23,28 @@ if TYPE_CHECKING:
 _SHOWN_NOTES = 8
 
 
-def answer(front: ParetoFront, *, watch: Watch, epsilon: float = EPSILON, seconds: float = SECONDS, **_: Any) -> Answer:
+def answer(
+    front: ParetoFront, *, watch: SearchListener, epsilon: float = EPSILON, seconds: float = SECONDS, **_: Any
+) -> Answer:
     """Return the certificate, or of a front without designs the proof. Raises as `certify_designs` does."""
     if not len(front):
         return _nothing_feasible(front.problem, seconds)
 
-    def tell(at: Step) -> None:
-        proven = f"{100.0 * at.epsilon:.3g} % proven" if math.isfinite(at.epsilon) else "nothing proven yet"
-        watch.tell(f"{proven}, {at.open:,} of {at.boxes:,} boxes open, {at.added:,} designs added")
+    def report(step: Step) -> None:
+        proven = f"{100.0 * step.epsilon:.3g} % proven" if math.isfinite(step.epsilon) else "nothing proven yet"
+        watch.report(f"{proven}, {step.open:,} of {step.boxes:,} boxes open, {step.added:,} designs added")
 
     options = {"epsilon": epsilon, "seconds": seconds}
-    found = certify_designs(front.problem, front.dimensions[:, :3], **options, progress=tell, cancelled=watch.cancelled)
-    record = _record(found, front.problem)
+    certificate = certify_designs(
+        front.problem, front.dimensions[:, :3], **options, progress=report, cancelled=watch.cancelled
+    )
+    record = _record(certificate, front.problem)
     return Answer(
         record=lambda units: record_in(record, units),
-        blocks=_blocks(found, front),
-        met=found.proven,
-        message=found.message,
-        found=found,
+        blocks=_blocks(certificate, front),
+        is_satisfied=certificate.proven,
+        message=certificate.message,
+        search_result=certificate,
     )
 
 
@@ -50,30 +54,33 @@ def _nothing_feasible(problem: Problem, seconds: float) -> Answer:
     message = f"proven: {text}" if proven else f"not proven that {text}; allow more time"
     record = {"name": problem.name, "infeasible": proven, "message": message}
     lines = [sentence("{name}: {message}", name=problem.name, message=message)]
-    return Answer(record=lambda _: dict(record), blocks=lines, met=proven, message=message)
+    return Answer(record=lambda _: dict(record), blocks=lines, is_satisfied=proven, message=message)
 
 
-def _record(found: Certificate, problem: Problem) -> dict[str, Any]:
+def _record(certificate: Certificate, problem: Problem) -> dict[str, Any]:
     """Return a certificate for JSON, metric; at the end the added designs with all their numbers."""
-    wanted = [problem.quantity(objective.quantity) for objective in problem.objectives]
+    quantities = [problem.quantity(objective.quantity) for objective in problem.objectives]
     return {
         "name": problem.name,
-        "status": found.status,
-        "message": found.message,
-        "epsilon_asked": found.asked,
-        "epsilon": found.epsilon,
-        "epsilon_of_delivered": found.delivered,
-        "gap_of_delivered": found.gap,
-        "hole": _by_size(found.hole),
-        "ranges": {of.field: float(span) * of.unit.factor for of, span in zip(wanted, found.span, strict=True)},
-        "hypervolume_gap": found.hypervolume_gap,
-        "boxes": found.boxes,
-        "open_boxes": found.open,
-        "remaining_share": found.remaining,
-        "remaining_where": _by_size(found.where),
-        "notes": list(found.notes),
-        "seconds": found.seconds,
-        "added": rows_of(found.table.to_dict("list")) if len(found.table) else [],
+        "status": certificate.status,
+        "message": certificate.message,
+        "epsilon_asked": certificate.asked,
+        "epsilon": certificate.epsilon,
+        "epsilon_of_delivered": certificate.delivered,
+        "gap_of_delivered": certificate.gap,
+        "hole": _by_size(certificate.hole),
+        "ranges": {
+            quantity.field: float(span) * quantity.unit.factor
+            for quantity, span in zip(quantities, certificate.span, strict=True)
+        },
+        "hypervolume_gap": certificate.hypervolume_gap,
+        "boxes": certificate.boxes,
+        "open_boxes": certificate.open,
+        "remaining_share": certificate.remaining,
+        "remaining_where": _by_size(certificate.where),
+        "notes": list(certificate.notes),
+        "seconds": certificate.seconds,
+        "added": rows_of(certificate.table.to_dict("list")) if len(certificate.table) else [],
     }
 
 
@@ -82,25 +89,25 @@ def _by_size(values: Array | None) -> dict[str, Any] | None:
     return None if values is None else dict(zip(sizes, (1e3 * values).tolist(), strict=True))
 
 
-def _blocks(found: Certificate, front: ParetoFront) -> list[Block]:
-    share = f", {found.open:,} open ({100.0 * found.remaining:.3g} % of it)" if found.open else ""
+def _blocks(certificate: Certificate, front: ParetoFront) -> list[Block]:
+    share = f", {certificate.open:,} open ({100.0 * certificate.remaining:.3g} % of it)" if certificate.open else ""
     blocks: list[Block] = [
-        heading("{name}: {message}", name=front.problem.name, message=found.message),
-        sentence(f"Design box: {found.boxes:,} boxes in {found.seconds:.1f} s{share}"),
+        heading("{name}: {message}", name=front.problem.name, message=certificate.message),
+        sentence(f"Design box: {certificate.boxes:,} boxes in {certificate.seconds:.1f} s{share}"),
     ]
-    if found.where is not None:
+    if certificate.where is not None:
         ranges = [
             words("{name} {low} to {high}", name=name, low=Value(low, LENGTH, bare=True), high=Value(high, LENGTH))
-            for name, (low, high) in zip(DIMENSIONS, found.where.tolist(), strict=True)
+            for name, (low, high) in zip(DIMENSIONS, certificate.where.tolist(), strict=True)
         ]
         blocks.append(sentence("Largest gap in the proof: {ranges}", ranges=joined(ranges)))
-    if found.hole is not None:
+    if certificate.hole is not None:
         sizes = [
             words("{name} {size}", name=name, size=Value(size, LENGTH))
-            for name, size in zip(DIMENSIONS, found.hole.tolist(), strict=True)
+            for name, size in zip(DIMENSIONS, certificate.hole.tolist(), strict=True)
         ]
         blocks.append(sentence("Largest gap in the front of the search: {sizes}", sizes=joined(sizes)))
-    if math.isfinite(gap := found.hypervolume_gap):
+    if math.isfinite(gap := certificate.hypervolume_gap):
         volume = f"Hypervolume: {front.hypervolume:.6g}; that of the true front is larger by at most {gap:.3g}"
         blocks.append(sentence(volume))
-    return [*blocks, *(sentence("Note: {note}", note=note) for note in found.notes[:_SHOWN_NOTES])]
+    return [*blocks, *(sentence("Note: {note}", note=note) for note in certificate.notes[:_SHOWN_NOTES])]

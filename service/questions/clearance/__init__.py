@@ -1,5 +1,5 @@
 """Impacts in a loose joint: numbers, text and figure."""
 
-from ..question import Question
+from ..design_question import DesignQuestion
 
-QUESTION = Question(__name__, 110, "impacts in the joint with clearance, from [clearance]")
+QUESTION = DesignQuestion(__name__, 110, "impacts in the joint with clearance, from [clearance]")

@@ -16,7 +16,7 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.clearance import Joint, Law
 from ....model.machine.mechanism import Mechanism
 from ...render.blocks import Block, Table, Text, Unit, column, heading, note, recorded, sentence, words
-from ..answers import Keys, Note
+from ..answer_types import Keys, Note
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -88,8 +88,8 @@ def simulated(
             "the job for example "
             '[clearance] with joint = "crank pin", radial_clearance = "0.2 mm" and journal_radius = "10 mm"'
         )
-    with _turns_bar() as tell:
-        options: dict[str, Any] = {"cycles": cycles, "discard": discard, "progress": tell, "cancelled": cancelled}
+    with _turns_bar() as report:
+        options: dict[str, Any] = {"cycles": cycles, "discard": discard, "progress": report, "cancelled": cancelled}
         return simulate(mechanism, linkage, mechanism.clearance, **options)
 
 
@@ -106,7 +106,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None 
     run = run or simulated(mechanism, linkage, **options)
     clearance = run.clearance
     summary = summarise(run) if run.cycles > run.discard else None
-    found: dict[str, Any] = {
+    record: dict[str, Any] = {
         "joint": clearance.joint,
         "radial_clearance_mm": 1e3 * clearance.radius,
         "law": clearance.law,
@@ -120,11 +120,11 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None 
     for field, key, unit, factor, _, _ in ROWS:
         estimate = None if summary is None else getattr(summary, field)
         certain = None if estimate is None else estimate.uncertainty
-        found[f"{key}{unit}"] = None if estimate is None else factor * estimate.value
-        found[f"{key}_uncertainty{unit}"] = None if certain is None else factor * certain
-    found["fastest_impact_m_s"] = None if summary is None else summary.fastest_impact
-    found["energy_residual_J"] = None if summary is None else summary.energy_residual
-    return found
+        record[f"{key}{unit}"] = None if estimate is None else factor * estimate.value
+        record[f"{key}_uncertainty{unit}"] = None if certain is None else factor * certain
+    record["fastest_impact_m_s"] = None if summary is None else summary.fastest_impact
+    record["energy_residual_J"] = None if summary is None else summary.energy_residual
+    return record
 
 
 def blocks(numbers: dict[str, Any]) -> list[Block]:
@@ -172,8 +172,8 @@ def _turns_bar() -> Iterator[Callable[[ClearanceProgress], None] | None]:
 
     with tqdm(desc="loose joint, turn 1", bar_format="{desc} {bar:24} {elapsed}", total=1, leave=False) as bar:
 
-        def tell(at: ClearanceProgress) -> None:
-            bar.total, bar.n = at.cycles, at.cycle
-            bar.set_description_str(f"loose joint, turn {at.cycle} of {at.cycles}, {at.impacts} impacts")
+        def report(turn: ClearanceProgress) -> None:
+            bar.total, bar.n = turn.cycles, turn.cycle
+            bar.set_description_str(f"loose joint, turn {turn.cycle} of {turn.cycles}, {turn.impacts} impacts")
 
-        yield tell
+        yield report

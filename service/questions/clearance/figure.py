@@ -16,9 +16,9 @@ from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....objectives.kinds import ACCELERATION, ANGULAR_SPEED, ENERGY, FORCE, LENGTH, PERCENT, RATIO, SPEED, Kind, System
+from ...figures.panel_figure import CRANK_ANGLE, DASHED, DOTS, THIN, Line, Panel, PanelFigure
 from ...figures.panels import draw_panel
-from ...figures.sheets import CRANK_ANGLE, DASHED, DOTS, THIN, Line, Panel, Sheet
-from ...figures.style import heading, new_figure, place, write
+from ...figures.style import add_axes, heading, new_figure, write_text
 from ...render.blocks import Text, Unit, Value, words
 from ...render.formatting import format_text
 from ...render.numerals import shown
@@ -80,27 +80,27 @@ def clearance_figure(run: ClearanceRun, system: System = "metric") -> Figure:
     share = f"{shown(100.0 * off / float(run.linkage.stroke), 2)} % of the stroke"
     note = words(f"largest deviation {{off}}, {share}", off=Value(off, LENGTH, 3))
     greatest = words("greatest {force}", force=Value(float(curves.force.max()), FORCE, 4))
-    across, force = "crank angle in the direction of rotation, deg", Line("", curves.angles, curves.force, THIN)
-    contact = Panel("contact force", across, (force,), FORCE, turns=True, note=greatest)
+    x_title, force = "crank angle in the direction of rotation, deg", Line("", curves.angles, curves.force, THIN)
+    contact = Panel("contact force", x_title, (force,), FORCE, turns=True, note=greatest)
     for row, panel in enumerate((contact, acceleration, velocity, replace(position, note=note))):
-        draw_panel(place(figure, 0.75, 0.55 + 1.62 * row, 6.7, 1.24), panel, system, across=row == 0)
-    draw_panel(place(figure, 8.3, 2.65, 3.75, 3.75), _journal(curves, run.clearance.radius), system)
+        draw_panel(add_axes(figure, 0.75, 0.55 + 1.62 * row, 6.7, 1.24), panel, system, has_x_title=row == 0)
+    draw_panel(add_axes(figure, 8.3, 2.65, 3.75, 3.75), _journal(curves, run.clearance.radius), system)
     if run.cycles > run.discard:
         for row, line in enumerate(_statistics_lines(summarise(run))):
-            write(figure, 7.95, 1.8 - 0.2 * row, format_text(line, system, printed=True))
+            write_text(figure, 7.95, 1.8 - 0.2 * row, format_text(line, system, printed=True))
     return figure
 
 
-def speeds_figure(runs: Sequence[ClearanceRun]) -> Sheet:
+def speeds_figure(runs: Sequence[ClearanceRun]) -> PanelFigure:
     """Return displacement, velocity and acceleration of the slider with a loose joint, a column for each run."""
     columns = []
     for run in runs:
         curves = loose_curves(run)
-        first, *others = (_motion_panel(curves, kind) for kind in _TITLES)
-        columns.append([replace(first, note=(_speed(run),)), *others])
+        first, *other_panels = (_motion_panel(curves, kind) for kind in _TITLES)
+        columns.append([replace(first, note=(_speed(run),)), *other_panels])
     panels = tuple(panel for row in zip(*columns, strict=True) for panel in row)
     subtitle = "solid: loose joint, dashed: ideal joints"
-    return Sheet(_clearance(runs[0]), subtitle, panels, columns=len(runs), width=4.05, height=1.82, stacked=True)
+    return PanelFigure(_clearance(runs[0]), subtitle, panels, columns=len(runs), width=4.05, height=1.82, stacked=True)
 
 
 def speed_runs(mechanism: Mechanism, linkage: Linkage, rpm: Sequence[float] = CASE_RPM) -> list[ClearanceRun]:
@@ -128,8 +128,8 @@ def _motion_panel(curves: LooseCurves, kind: Kind) -> Panel:
     loose, ideal = curves.curves[kind], curves.ideal[kind]
     note: Text = ""
     if kind is ACCELERATION:
-        most = (Value(float(np.abs(values).max()), kind, 3) for values in (loose, ideal))
-        note = words("greatest {loose}, ideal {ideal}", **dict(zip(("loose", "ideal"), most, strict=True)))
+        peaks = (Value(float(np.abs(values).max()), kind, 3) for values in (loose, ideal))
+        note = words("greatest {loose}, ideal {ideal}", **dict(zip(("loose", "ideal"), peaks, strict=True)))
     lines = (Line("", curves.angles, loose, THIN), Line("", curves.angles, ideal, DASHED))
     return Panel(_TITLES[kind], CRANK_ANGLE, lines, kind, turns=True, note=note)
 
@@ -142,11 +142,11 @@ def _journal(curves: LooseCurves, radius: float) -> Panel:
         Line("", curves.journal_x, curves.journal_y, THIN),
         Line("", curves.journal_x[touching], curves.journal_y[touching], DOTS),
     )
-    title, across = (
+    title, x_title = (
         "path of the journal's centre (dots: in contact)",
         "horizontal: along the slider line; vertical: across it",
     )
-    return Panel(title, across, lines, LENGTH, LENGTH, equal=True)
+    return Panel(title, x_title, lines, LENGTH, LENGTH, equal=True)
 
 
 def _statistics_lines(summary: ClearanceSummary) -> list[Text]:

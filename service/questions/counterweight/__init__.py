@@ -2,10 +2,10 @@
 
 from ....objectives.kinds import LENGTH, MASS
 from ....optimise.sizing.words import Measure
+from ..design_question import DesignQuestion, QuestionCommand
 from ..inputs import Input
-from ..question import Command, Question
 
-QUESTION = Question(
+QUESTION = DesignQuestion(
     __name__,
     2,
     shows="counterweight, and a balance mass on the rod, of least shaking force",
@@ -55,7 +55,7 @@ QUESTION = Question(
             sign="positive",
         ),
     ),
-    command=Command(
+    command=QuestionCommand(
         help="""Find the counterweight, and a balance mass on the rod, that minimise the shaking force.
 
     The counterweight replaces the one in JOB. Counts inertia forces at constant crank speed over all crank angles,

@@ -15,7 +15,7 @@ from ....objectives.kinds import FORCE, LENGTH, MASS, TORQUE, display_unit
 from ....optimise.problem.problem import Problem
 from ....optimise.sizing.counterweight import Balance, RodSpace, Shaking, balance
 from ....optimise.sizing.words import Measure
-from ...figures.sheets import Line, Panel, Sheet, over_turn
+from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import (
     Block,
     NamedNumber,
@@ -30,7 +30,7 @@ from ...render.blocks import (
     words,
 )
 from ...render.numerals import shown
-from ..answers import AngleOfPeak, Note, Record
+from ..answer_types import Note, PeakAngle, Record
 from . import QUESTION
 
 
@@ -50,10 +50,10 @@ class ShakingNumbers(Record):
     """Shaking of inertia; moments are about the crank pivot, root mean squares over time."""
 
     peak_shaking_force_N: float
-    peak_shaking_force_angle_deg: AngleOfPeak
+    peak_shaking_force_angle_deg: PeakAngle
     rms_shaking_force_N: float
     peak_shaking_moment_Nm: float
-    peak_shaking_moment_angle_deg: AngleOfPeak
+    peak_shaking_moment_angle_deg: PeakAngle
     rms_shaking_moment_Nm: float
 
 
@@ -109,10 +109,10 @@ def prepare(
     return {"found": found}
 
 
-def _rod_space(inputs: Mapping[str, Any], said: Mapping[str, str]) -> RodSpace | None:
+def _rod_space(inputs: Mapping[str, Any], labels: Mapping[str, str]) -> RodSpace | None:
     """Return the space for a balance mass on the rod. Raises `InputError` for its radius or mass alone."""
-    names = [one.name for one in QUESTION.inputs if one.name.startswith("rod_")]
-    (first, radius), (second, mass) = ((said.get(name, name), inputs.get(name)) for name in names)
+    names = [item.name for item in QUESTION.inputs if item.name.startswith("rod_")]
+    (first, radius), (second, mass) = ((labels.get(name, name), inputs.get(name)) for name in names)
     if radius is None and mass is None:
         return None
     if radius is None or mass is None:
@@ -179,48 +179,48 @@ def blocks(numbers: BalanceNumbers) -> list[Block]:
         per_mass = replace(FORCE, metric=display_unit("N"), inch=display_unit("lbf", inch))
         text = "at its maximum; each further {unit} would save {saving}"
         remark = words(text, unit=Unit(MASS), saving=Value(saving, per_mass, 4))
-    shown: list[NamedNumber] = [
+    lines: list[NamedNumber] = [
         ("counterweight: mass times radius", moment, remark),
         ("its angle from the crank", angle, "180 deg is opposite the crank pin"),
         ("its mass", mass, words("at {radius} from the crank pivot", radius=radius)),
     ]
     rod = numbers["rod_balance"]
     if rod is not None:
-        shown += [
+        lines += [
             ("added to the rod", recorded(rod, "mass_kg"), _centre(rod)),
             ("its inertia about the crank pin", recorded(rod, "inertia_kg_m2"), ""),
         ]
     for name, unit in (("shaking_force", "N"), ("shaking_moment", "Nm")):
-        for which in ("peak", "rms"):
-            key, called = f"{which}_{name}_{unit}", name.replace("_", " ")
-            title = f"RMS {called} over time" if which == "rms" else f"{which} {called}"
-            shown.append((title, recorded(numbers["after"], key), compared(numbers["before"], key, "before")))
+        for statistic in ("peak", "rms"):
+            key, called = f"{statistic}_{name}_{unit}", name.replace("_", " ")
+            title = f"RMS {called} over time" if statistic == "rms" else f"{statistic} {called}"
+            lines.append((title, recorded(numbers["after"], key), compared(numbers["before"], key, "before")))
     line = '  in the job: counterweight = {{ mass = "{mass}", radius = "{radius}", angle = "{angle}" }}'
     return [
-        *number_list(f"Balance with least {numbers['measure']} shaking (moment about the crank pivot)", shown),
+        *number_list(f"Balance with least {numbers['measure']} shaking (moment about the crank pivot)", lines),
         note(line, mass=mass, radius=radius, angle=angle),
     ]
 
 
 def _centre(rod: RodBalance) -> Text:
-    along, across = rod["centre_along_mm"], rod["centre_across_mm"]
-    if along is None or across is None:
+    along_mm, across_mm = rod["centre_along_mm"], rod["centre_across_mm"]
+    if along_mm is None or across_mm is None:
         return ""
-    places = {"along": Value(1e-3 * round(along, 3), LENGTH), "across": Value(1e-3 * round(across, 3), LENGTH)}
+    places = {"along": Value(1e-3 * round(along_mm, 3), LENGTH), "across": Value(1e-3 * round(across_mm, 3), LENGTH)}
     return words("mass centre {along} along and {across} across the rod", **places)
 
 
-def figure(_: Mechanism, __: Linkage, *, found: Balance, problem: Problem, **options: Any) -> Sheet:
+def figure(_: Mechanism, __: Linkage, *, found: Balance, problem: Problem, **options: Any) -> PanelFigure:
     """Return hodograph, force and, where a rod balance changes it, moment before and after."""
     theta = np.linspace(0.0, 2.0 * np.pi, _SAMPLES)
     degrees = np.degrees(theta)
     curves = list(enumerate(zip(("before", "after"), found.hodograph(theta), strict=True)))
-    hodographs = tuple(Line(name, each.force_x, each.force_y, n) for n, (name, each) in curves)
-    sizes = (Line(name, degrees, np.hypot(each.force_x, each.force_y), n) for n, (name, each) in curves)
-    across = words("horizontal: along the slider line, {unit}; vertical: across it", unit=Unit(FORCE))
+    hodographs = tuple(Line(name, shaking.force_x, shaking.force_y, n) for n, (name, shaking) in curves)
+    sizes = (Line(name, degrees, np.hypot(shaking.force_x, shaking.force_y), n) for n, (name, shaking) in curves)
+    x_title = words("horizontal: along the slider line, {unit}; vertical: across it", unit=Unit(FORCE))
     panels = [
-        Panel("hodograph of the shaking force", across, hodographs, kind=FORCE, along=FORCE, equal=True),
-        over_turn("size of the shaking force", *sizes, kind=FORCE),
+        Panel("hodograph of the shaking force", x_title, hodographs, kind=FORCE, x_kind=FORCE, equal=True),
+        crank_angle_panel("size of the shaking force", *sizes, kind=FORCE),
     ]
     angle = shown(float(np.degrees(found.angle)) % 360.0)
     mass, radius = Value(found.mass, MASS, 4), Value(found.radius, LENGTH, 4)
@@ -228,8 +228,10 @@ def figure(_: Mechanism, __: Linkage, *, found: Balance, problem: Problem, **opt
         words(f"counterweight {{mass}} at {{radius}}, {angle}° from the crank", mass=mass, radius=radius)
     ]
     if found.rod is not None:
-        moments = (Line(name, degrees, each.moment, n) for n, (name, each) in curves)
-        panels.append(over_turn("moment about the pivot", *moments, kind=TORQUE))
+        moments = (Line(name, degrees, shaking.moment, n) for n, (name, shaking) in curves)
+        panels.append(crank_angle_panel("moment about the pivot", *moments, kind=TORQUE))
         added = words("{mass} added to the rod", mass=Value(found.rod.mass, MASS, 4))
         parts.append(added if found.rod.mass else "nothing added to the rod")
-    return Sheet(f"{problem.name}: balance", joined(parts), tuple(panels), columns=len(panels), width=5.0, height=4.4)
+    return PanelFigure(
+        f"{problem.name}: balance", joined(parts), tuple(panels), columns=len(panels), width=5.0, height=4.4
+    )

@@ -1,5 +1,5 @@
 """Several cylinders on one crankshaft: numbers, text and figure."""
 
-from ..question import Question
+from ..design_question import DesignQuestion
 
-QUESTION = Question(__name__, 42, "several cylinders on one crankshaft: total torque and shaking")
+QUESTION = DesignQuestion(__name__, 42, "several cylinders on one crankshaft: total torque and shaking")

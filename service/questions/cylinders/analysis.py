@@ -15,9 +15,9 @@ from ....model.machine.two_turns import cycle_turns
 from ....model.signals.panels import Extreme
 from ....model.signals.signals import Signal
 from ....objectives.kinds import ANGLE, FORCE, LENGTH, TORQUE
-from ...figures.sheets import FAINT, Line, Sheet, over_turn, turn
+from ...figures.panel_figure import FAINT, Line, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, Table, Text, column, compared, named_number, number_list, recorded
-from ..answers import AngleOfPeak, Locked, Note, Record
+from ..answer_types import Note, NullIfLocked, PeakAngle, Record
 from ..peaks import peak
 
 
@@ -27,34 +27,34 @@ class Cylinder(Record):
     phase_deg: float
     bank_deg: float
     place_mm: float
-    peak_torque_Nm: Locked
-    peak_crank_pin_force_N: Locked
-    peak_slider_pin_force_N: Locked
-    peak_guide_force_N: Locked
+    peak_torque_Nm: NullIfLocked
+    peak_crank_pin_force_N: NullIfLocked
+    peak_slider_pin_force_N: NullIfLocked
+    peak_guide_force_N: NullIfLocked
 
 
 class Cylinders(Record):
     """Torque and shaking of all cylinders together."""
 
     cylinders: list[Cylinder]
-    peak_torque_Nm: Locked
-    peak_torque_angle_deg: AngleOfPeak
-    least_torque_Nm: Locked
-    least_torque_angle_deg: AngleOfPeak
-    greatest_torque_Nm: Locked
-    greatest_torque_angle_deg: AngleOfPeak
-    mean_torque_Nm: Locked
-    rms_torque_Nm: Locked
+    peak_torque_Nm: NullIfLocked
+    peak_torque_angle_deg: PeakAngle
+    least_torque_Nm: NullIfLocked
+    least_torque_angle_deg: PeakAngle
+    greatest_torque_Nm: NullIfLocked
+    greatest_torque_angle_deg: PeakAngle
+    mean_torque_Nm: NullIfLocked
+    rms_torque_Nm: NullIfLocked
     torque_fluctuation_Nm: Annotated[float | None, Note("RMS deviation from the mean; null where friction locks")]
     energy_change_J: Annotated[float | None, Note("that a flywheel takes up and gives back; null where friction locks")]
     peak_shaking_force_N: float
-    peak_shaking_force_angle_deg: AngleOfPeak
+    peak_shaking_force_angle_deg: PeakAngle
     rms_shaking_force_N: float
     peak_shaking_moment_Nm: float
-    peak_shaking_moment_angle_deg: AngleOfPeak
+    peak_shaking_moment_angle_deg: PeakAngle
     rms_shaking_moment_Nm: float
     peak_rocking_couple_Nm: float
-    peak_rocking_couple_angle_deg: AngleOfPeak
+    peak_rocking_couple_angle_deg: PeakAngle
     peak_shaking_force_of_one_N: float
     peak_shaking_moment_of_one_Nm: float
 
@@ -64,27 +64,27 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Cylinders:
 
     Raises `InputError` for a machine without stated cylinders.
     """
-    whole = multi_cylinder_cycle(mechanism, linkage)
+    shaft = multi_cylinder_cycle(mechanism, linkage)
     return {
         "cylinders": [_each(member, linkage) for member in members(mechanism)],
-        "peak_torque_Nm": abs(whole.peak.value),
-        "peak_torque_angle_deg": _degrees(whole.peak),
-        "least_torque_Nm": whole.least.value,
-        "least_torque_angle_deg": _degrees(whole.least),
-        "greatest_torque_Nm": whole.greatest.value,
-        "greatest_torque_angle_deg": _degrees(whole.greatest),
-        "mean_torque_Nm": whole.mean,
-        "rms_torque_Nm": whole.rms,
-        "torque_fluctuation_Nm": whole.fluctuation,
-        "energy_change_J": whole.energy_change,
-        "peak_shaking_force_N": whole.shaking_force.value,
-        "peak_shaking_force_angle_deg": _degrees(whole.shaking_force),
-        "rms_shaking_force_N": whole.rms_shaking_force,
-        "peak_shaking_moment_Nm": whole.shaking_moment.value,
-        "peak_shaking_moment_angle_deg": _degrees(whole.shaking_moment),
-        "rms_shaking_moment_Nm": whole.rms_shaking_moment,
-        "peak_rocking_couple_Nm": whole.couple.value,
-        "peak_rocking_couple_angle_deg": _degrees(whole.couple),
+        "peak_torque_Nm": abs(shaft.peak.value),
+        "peak_torque_angle_deg": _degrees(shaft.peak),
+        "least_torque_Nm": shaft.least.value,
+        "least_torque_angle_deg": _degrees(shaft.least),
+        "greatest_torque_Nm": shaft.greatest.value,
+        "greatest_torque_angle_deg": _degrees(shaft.greatest),
+        "mean_torque_Nm": shaft.mean,
+        "rms_torque_Nm": shaft.rms,
+        "torque_fluctuation_Nm": shaft.fluctuation,
+        "energy_change_J": shaft.energy_change,
+        "peak_shaking_force_N": shaft.shaking_force.value,
+        "peak_shaking_force_angle_deg": _degrees(shaft.shaking_force),
+        "rms_shaking_force_N": shaft.rms_shaking_force,
+        "peak_shaking_moment_Nm": shaft.shaking_moment.value,
+        "peak_shaking_moment_angle_deg": _degrees(shaft.shaking_moment),
+        "rms_shaking_moment_Nm": shaft.rms_shaking_moment,
+        "peak_rocking_couple_Nm": shaft.couple.value,
+        "peak_rocking_couple_angle_deg": _degrees(shaft.couple),
         "peak_shaking_force_of_one_N": peak(single_cylinder(mechanism), Signal.SHAKING_FORCE, linkage).value,
         "peak_shaking_moment_of_one_Nm": peak(single_cylinder(mechanism), Signal.SHAKING_MOMENT, linkage).value,
     }
@@ -131,24 +131,24 @@ def blocks(numbers: Cylinders) -> list[Block]:
         column("peak torque", TORQUE),
         *(column(title, FORCE) for title in ("crank pin", "slider pin", "guide")),
     )
-    rows = tuple(tuple(recorded(own, key) for key in own) for own in numbers["cylinders"])
+    rows = tuple(tuple(recorded(cylinder, key) for key in cylinder) for cylinder in numbers["cylinders"])
     title = f"{len(rows)} cylinders on one crankshaft, in total"
     return [*number_list(title, together), Table(columns, rows)]
 
 
-def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
+def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return torque, shaking force and shaking moment of the whole over a turn, with the torque of each cylinder."""
-    theta = turn(multi_cylinder_breakpoints(mechanism, linkage), turns=cycle_turns(mechanism))
+    theta = sampled_turn(multi_cylinder_breakpoints(mechanism, linkage), turns=cycle_turns(mechanism))
     degrees, now = np.degrees(theta), multi_cylinder_curves(mechanism, linkage, theta)
-    each = [Line("each" if k == 0 else "", degrees, own, FAINT) for k, own in enumerate(now.torques)]
+    single_lines = [Line("each" if k == 0 else "", degrees, torque, FAINT) for k, torque in enumerate(now.torques)]
     together = Line("together", degrees, now.torque)
     forces = [Line("along x", degrees, now.force_x), Line("along y", degrees, now.force_y, 1)]
     panels = [
-        over_turn("drive torque", *each, together, kind=TORQUE),
-        over_turn("shaking force", *forces, kind=FORCE),
-        over_turn("shaking moment about the shaft", Line("together", degrees, now.moment), kind=TORQUE),
+        crank_angle_panel("drive torque", *single_lines, together, kind=TORQUE),
+        crank_angle_panel("shaking force", *forces, kind=FORCE),
+        crank_angle_panel("shaking moment about the shaft", Line("together", degrees, now.moment), kind=TORQUE),
     ]
     if mechanism.arrangement is not None and mechanism.arrangement.places:
         couple = [Line("about x", degrees, now.couple_x), Line("about y", degrees, now.couple_y, 1)]
-        panels.append(over_turn("rocking couple", *couple, kind=TORQUE))
-    return Sheet("Cylinders on one crankshaft", "", tuple(panels), width=6.4, height=2.25, stacked=True)
+        panels.append(crank_angle_panel("rocking couple", *couple, kind=TORQUE))
+    return PanelFigure("Cylinders on one crankshaft", "", tuple(panels), width=6.4, height=2.25, stacked=True)

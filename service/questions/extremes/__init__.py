@@ -1,7 +1,7 @@
 """Extremes of every curve of one design: numbers, text and figure."""
 
-from ..question import Question
+from ..design_question import DesignQuestion
 
-QUESTION = Question(
+QUESTION = DesignQuestion(
     __name__, 85, "minimum and maximum of every curve, with their crank angles, and both strokes", needs_job=False
 )

@@ -16,7 +16,7 @@ from ....objectives.kinds import RATIO, SPEED, TIME
 from ....objectives.needs import ONE_TIMING
 from ....objectives.tables.curve_extremes import CurveExtremes, Extreme, curve_extremes, cuts_of, defined_curves
 from ....objectives.tables.cycle_curves import KINDS
-from ...figures.sheets import Line, Panel, Sheet, over_turn, turn
+from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import (
     Block,
     NamedNumber,
@@ -32,8 +32,8 @@ from ...render.blocks import (
 )
 from ...render.extremes import extremes_table
 from ...render.numerals import shown
-from ...text.tables import plain
-from ..answers import Keys, Note, Record, keys_of_kinds
+from ...text.tables import finite_or_none
+from ..answer_types import Keys, Note, Record, keys_of_kinds
 
 _PANELS = ("slider_position", "slider_velocity", "slider_acceleration", "torque", "crank_pin", "load")
 _STROKES = ("outward", "inward")
@@ -80,29 +80,29 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Extremes:
     undetermined, with the reason, and for crank angle and slider position of a curve that is constant. Ratios and
     differences compare the outward stroke with the inward stroke.
     """
-    extremes = {found.name: found for found in curve_extremes(mechanism, linkage)}
+    extremes = {curve.name: curve for curve in curve_extremes(mechanism, linkage)}
     locks = locking_reason(mechanism.friction, linkage)
-    answer: Extremes = {
-        "curves": {name: _entry(found) for name, found in extremes.items()},
+    record: Extremes = {
+        "curves": {name: _entry(curve) for name, curve in extremes.items()},
         "strokes": _strokes(mechanism, linkage, extremes.get("slider_velocity")),
     }
     if locks:
-        answer["undefined_because"] = f"friction locks this design: {locks}"
-    return answer
+        record["undefined_because"] = f"friction locks this design: {locks}"
+    return record
 
 
-def _entry(found: CurveExtremes) -> dict[str, Any]:
-    entry: dict[str, Any] = {"title": found.title}
-    for word, extreme in (("least", found.least), ("greatest", found.greatest)):
-        entry[f"{word}{found.kind.metric.suffix}"] = plain(found.kind.metric.factor * extreme.value)
+def _entry(curve: CurveExtremes) -> dict[str, Any]:
+    entry: dict[str, Any] = {"title": curve.title}
+    for word, extreme in (("least", curve.least), ("greatest", curve.greatest)):
+        entry[f"{word}{curve.kind.metric.suffix}"] = finite_or_none(curve.kind.metric.factor * extreme.value)
         entry |= _place(word, extreme)
     return entry
 
 
 def _place(word: str, extreme: Extreme) -> dict[str, float | None]:
     return {
-        f"{word}_at_crank_angle_deg": plain(math.degrees(extreme.crank_angle)),
-        f"{word}_at_slider_position_mm": plain(1e3 * extreme.slider_position),
+        f"{word}_at_crank_angle_deg": finite_or_none(math.degrees(extreme.crank_angle)),
+        f"{word}_at_slider_position_mm": finite_or_none(1e3 * extreme.slider_position),
     }
 
 
@@ -120,13 +120,13 @@ def _strokes(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | N
         if ONE_TIMING.is_met(mechanism)
         else None
     )
-    found: dict[str, Any] = {
+    record: dict[str, Any] = {
         **strokes,
         "angle_ratio": angles["outward"] / angles["inward"],
         "duration_ratio": None if times is None else float(times.ratio),
     }
     if velocity is None:
-        return found
+        return record
     # Outward is along +x on the open branch, along -x on the crossed one.
     ends = (velocity.greatest, velocity.least) if mechanism.branch == "open" else (velocity.least, velocity.greatest)
     durations = [None if times is None else float(getattr(times, name)) / abs(mechanism.speed) for name in _STROKES]
@@ -138,7 +138,7 @@ def _strokes(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | N
         }
     fast, back = (strokes[name]["greatest_speed_m_s"] for name in _STROKES)
     outward_s, inward_s = durations
-    return found | {
+    return record | {
         "duration_difference_s": None if outward_s is None or inward_s is None else outward_s - inward_s,
         "greatest_speed_ratio": fast / back,
         "greatest_speed_difference_m_s": fast - back,
@@ -147,21 +147,21 @@ def _strokes(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | N
 
 def blocks(numbers: Extremes) -> list[Block]:
     """Return a line for each curve, and the strokes."""
-    found: list[Block] = [
+    shown_blocks: list[Block] = [
         heading("Extreme values over the turn, with continuous crank angles"),
         extremes_table(numbers["curves"]),
     ]
     if "undefined_because" in numbers:
-        found.append(sentence("Undefined: {reason}", reason=numbers["undefined_because"]))
-    strokes, shown = numbers["strokes"], list[NamedNumber]()
+        shown_blocks.append(sentence("Undefined: {reason}", reason=numbers["undefined_because"]))
+    strokes, lines = numbers["strokes"], list[NamedNumber]()
     for name in _STROKES:
         stroke = strokes[name]
-        shown.append((f"{name} stroke", recorded(stroke, "crank_angle_deg"), ""))
+        lines.append((f"{name} stroke", recorded(stroke, "crank_angle_deg"), ""))
         if "duration_s" in stroke:
             at = recorded(stroke, "greatest_speed_at_crank_angle_deg", decimals=2)
             if stroke["duration_s"] is not None:
-                shown.append(("  duration", Value(stroke["duration_s"], TIME), ""))
-            shown.append(("  greatest slider speed", recorded(stroke, "greatest_speed_m_s"), words("at {at}", at=at)))
+                lines.append(("  duration", Value(stroke["duration_s"], TIME), ""))
+            lines.append(("  greatest slider speed", recorded(stroke, "greatest_speed_m_s"), words("at {at}", at=at)))
     for title, key, kind in (
         ("ratio of crank angles", "angle_ratio", RATIO),
         ("ratio of durations", "duration_ratio", RATIO),
@@ -170,41 +170,43 @@ def blocks(numbers: Extremes) -> list[Block]:
         ("difference of greatest speeds", "greatest_speed_difference_m_s", SPEED),
     ):
         if strokes.get(key) is not None:
-            shown.append((title, Value(strokes[key], kind), "outward against inward"))
-    return [*found, *number_list("Strokes", shown)]
+            lines.append((title, Value(strokes[key], kind), "outward against inward"))
+    return [*shown_blocks, *number_list("Strokes", lines)]
 
 
-def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
+def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return the main curves over the turn, with their extremes: as many of six as the machine defines.
 
     What friction leaves undetermined has gaps.
     """
-    extremes = {found.name: found for found in curve_extremes(mechanism, linkage)}
+    extremes = {extreme_curve.name: extreme_curve for extreme_curve in curve_extremes(mechanism, linkage)}
     marked = [e.crank_angle for name in _PANELS if name in extremes for e in _ends(extremes[name])]
-    theta = turn(
+    theta = sampled_turn(
         cuts_of(mechanism, linkage), [angle for angle in marked if math.isfinite(angle)], turns=cycle_turns(mechanism)
     )
     curves = {curve.name: curve.values for curve in defined_curves(mechanism, linkage, theta)}
     degrees = np.degrees(theta)
     panels = tuple(_panel(extremes[name], degrees, curves[name]) for name in _PANELS if name in extremes)
-    return Sheet("Extreme values over the turn", dimensions(linkage), panels, columns=min(2, len(panels)), width=5.2)
+    return PanelFigure(
+        "Extreme values over the turn", dimensions(linkage), panels, columns=min(2, len(panels)), width=5.2
+    )
 
 
-def _ends(found: CurveExtremes) -> tuple[Extreme, Extreme]:
-    return found.least, found.greatest
+def _ends(curve: CurveExtremes) -> tuple[Extreme, Extreme]:
+    return curve.least, curve.greatest
 
 
-def _panel(found: CurveExtremes, degrees: np.ndarray, values: np.ndarray) -> Panel:
+def _panel(curve: CurveExtremes, degrees: np.ndarray, values: np.ndarray) -> Panel:
     lines = [Line("", degrees, values)]
-    ends = [end for end in _ends(found) if math.isfinite(end.crank_angle)]
-    note: Text = "constant" if math.isfinite(found.least.value) else "undefined where friction locks"
+    ends = [end for end in _ends(curve) if math.isfinite(end.crank_angle)]
+    note: Text = "constant" if math.isfinite(curve.least.value) else "undefined where friction locks"
     if ends:
         angles, sizes = np.degrees([end.crank_angle for end in ends]), [end.value for end in ends]
         lines.append(Line("", angles, np.array(sizes), points=True))
         note = joined(
             [
-                words(f"{{value}} at {shown(at)}°", value=Value(size, found.kind, digits=4, bare=True))
+                words(f"{{value}} at {shown(at)}°", value=Value(size, curve.kind, digits=4, bare=True))
                 for size, at in zip(sizes, angles, strict=True)
             ]
         )
-    return over_turn(found.title, *lines, kind=found.kind, note=note)
+    return crank_angle_panel(curve.title, *lines, kind=curve.kind, note=note)

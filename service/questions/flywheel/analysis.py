@@ -13,10 +13,10 @@ from ....model.machine.mechanism import Mechanism
 from ....model.transient.flywheel import design_flywheel
 from ....model.transient.steady import Runner, SteadyRunning
 from ....objectives.kinds import ANGULAR_SPEED, INERTIA
-from ...figures.sheets import FAINT, Line, Panel, Sheet, over_turn
+from ...figures.panel_figure import FAINT, Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import Block, Table, Text, Value, column, recorded, sentence, words
 from ...render.numerals import shown
-from ..answers import Note, Record
+from ..answer_types import Note, Record
 from ..start_up.analysis import RPM, SteadyNumbers, in_order, steady_numbers
 from . import FLUCTUATION
 
@@ -48,18 +48,18 @@ _SIZES = np.geomspace(0.25, 4.0, 33)
 
 def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCTUATION.default) -> Flywheel:
     """Return the flywheel for a coefficient of speed fluctuation, and those for others, ready for JSON."""
-    found = design_flywheel(mechanism, linkage, fluctuation)
-    tried = [found if wanted == fluctuation else design_flywheel(mechanism, linkage, wanted) for wanted in _TRIED]
+    chosen = design_flywheel(mechanism, linkage, fluctuation)
+    tried = [chosen if limit == fluctuation else design_flywheel(mechanism, linkage, limit) for limit in _TRIED]
     bare, reason = _fluctuation_without_flywheel(mechanism, linkage)
     return {
         "motor": "constant torque" if mechanism.drive is None else type(mechanism.drive.motor).__name__,
         "wanted_fluctuation": fluctuation,
-        "flywheel_kgm2": found.inertia,
-        "classical_estimate_kgm2": found.estimate,
+        "flywheel_kgm2": chosen.inertia,
+        "classical_estimate_kgm2": chosen.estimate,
         "fluctuation_without_flywheel": None if bare is None else bare[0],
         "least_speed_without_flywheel_rpm": None if bare is None else RPM * bare[1],
         "reason_without_flywheel": reason,
-        "steady": steady_numbers(found.running),
+        "steady": steady_numbers(chosen.running),
         "fluctuations": list(_TRIED),
         "flywheels_kgm2": [design.inertia for design in tried],
         "classical_estimates_kgm2": [design.estimate for design in tried],
@@ -84,11 +84,11 @@ def _fluctuation_without_flywheel(
 def blocks(numbers: Flywheel) -> list[Block]:
     """Return the numbers for people."""
     inertia, steady = numbers["flywheel_kgm2"], numbers["steady"]
-    wanted = f"for a speed fluctuation of {numbers['wanted_fluctuation']:g}"
-    needed = sentence(f"No flywheel is needed {wanted}: without one {{without}}.", without=_without_one(numbers))
+    purpose = f"for a speed fluctuation of {numbers['wanted_fluctuation']:g}"
+    needed = sentence(f"No flywheel is needed {purpose}: without one {{without}}.", without=_without_one(numbers))
     if inertia:
         needed = sentence(
-            f"Flywheel on the crank shaft {wanted}: {{inertia}} (classical estimate {{estimate}}); "
+            f"Flywheel on the crank shaft {purpose}: {{inertia}} (classical estimate {{estimate}}); "
             "without one {without}.",
             inertia=Value(inertia, INERTIA, 5),
             estimate=Value(numbers["classical_estimate_kgm2"], INERTIA, 5),
@@ -130,12 +130,12 @@ def _without_one(numbers: Flywheel) -> Text:
     return f"it is {bare:.4g}: the crank nearly stops, below a millionth of its maximum speed"
 
 
-def figure(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCTUATION.default) -> Sheet:
+def figure(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCTUATION.default) -> PanelFigure:
     """Return the fluctuation over the flywheel, exact and classical, and the speed over a turn with two flywheels.
 
     Where a flywheel is too small for the machine to come through a turn, there is no point.
     """
-    found, runner = design_flywheel(mechanism, linkage, fluctuation), Runner(mechanism, linkage)
+    design, runner = design_flywheel(mechanism, linkage, fluctuation), Runner(mechanism, linkage)
 
     def run(flywheel: float) -> SteadyRunning | None:
         try:
@@ -145,30 +145,32 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCT
         except InputError:
             return None
 
-    sizes = _SIZES * (found.inertia or found.estimate)
+    sizes = _SIZES * (design.inertia or design.estimate)
     points = [(size, running.fluctuation) for size in sizes if (running := run(float(size)))]
     flywheels, fluctuations = np.array(points).reshape(-1, 2).T
     lines = [Line("exact", flywheels, fluctuations)]
-    lines.append(Line("classical", flywheels, found.estimate * fluctuation / flywheels, FAINT))
-    if found.inertia:
-        chosen = np.array([found.inertia]), np.array([found.running.fluctuation])
+    lines.append(Line("classical", flywheels, design.estimate * fluctuation / flywheels, FAINT))
+    if design.inertia:
+        chosen = np.array([design.inertia]), np.array([design.running.fluctuation])
         lines.append(Line("", *chosen, points=True))
-    turns = [("with flywheel" if found.needed else "without flywheel", found.running, 0)]
-    small = run(0.5 * found.inertia) if found.needed else None
+    turns = [("with flywheel" if design.needed else "without flywheel", design.running, 0)]
+    small = run(0.5 * design.inertia) if design.needed else None
     if small is not None:
         turns.append(("with half the inertia", small, FAINT))
     speeds = []
     for name, running, style in turns:
         angle, (speed,) = in_order(running, running.speed)
         speeds.append(Line(name, angle, speed, style))
-    reached = shown(found.running.fluctuation)
+    reached = shown(design.running.fluctuation)
     size: Text = f"none needed for {shown(fluctuation)}"
-    if found.inertia:
-        size = words(f"{{inertia}} for {reached}", inertia=Value(found.inertia, INERTIA, 4))
+    if design.inertia:
+        size = words(f"{{inertia}} for {reached}", inertia=Value(design.inertia, INERTIA, 4))
     motor = "constant motor torque" if mechanism.drive is None else "the motor's own torque curve"
     panels = (
-        Panel("coefficient of speed fluctuation", "flywheel on the crank shaft", tuple(lines), along=INERTIA),
-        over_turn("crank speed over a turn", *speeds, kind=ANGULAR_SPEED),
+        Panel("coefficient of speed fluctuation", "flywheel on the crank shaft", tuple(lines), x_kind=INERTIA),
+        crank_angle_panel("crank speed over a turn", *speeds, kind=ANGULAR_SPEED),
     )
     title = "Flywheel and speed fluctuation"
-    return Sheet(title, words("{size}; {motor}", size=size, motor=motor), panels, columns=2, width=4.9, height=3.2)
+    return PanelFigure(
+        title, words("{size}; {motor}", size=size, motor=motor), panels, columns=2, width=4.9, height=3.2
+    )

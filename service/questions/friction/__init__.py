@@ -1,5 +1,5 @@
 """Friction of one design: numbers, text and figure."""
 
-from ..question import Question
+from ..design_question import DesignQuestion
 
-QUESTION = Question(__name__, 20, "efficiency, self-locking", tells=("self_locking_margin_deg",))
+QUESTION = DesignQuestion(__name__, 20, "efficiency, self-locking", tells=("self_locking_margin_deg",))

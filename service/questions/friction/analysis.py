@@ -19,10 +19,10 @@ from ....model.machine.two_turns import cycle_turns
 from ....model.signals.averages import average_torque
 from ....model.signals.signals import Signal
 from ....objectives.kinds import ANGLE, FORCE, PERCENT, TORQUE, Kind
-from ...figures.sheets import CRANK_ANGLE, Line, Panel, Sheet, over_turn, turn
+from ...figures.panel_figure import CRANK_ANGLE, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, NamedNumber, Value, compared, joined, named_number, number_list, recorded, words
-from ...text.tables import plain
-from ..answers import Locked, Note, Record
+from ...text.tables import finite_or_none
+from ..answer_types import Note, NullIfLocked, Record
 from ..peaks import peak, row_of
 
 Smooth = Annotated[float | None, Note("null where it is not determined")]
@@ -43,19 +43,19 @@ class FrictionNumbers(Record):
     pin_friction_angle_deg: Annotated[float | None, Note("null where the pins are too thick for any")]
     locked_angles_deg: list[list[float]]
     """From and to, of each range of crank angles at which it locks."""
-    peak_torque_Nm: Locked
+    peak_torque_Nm: NullIfLocked
     peak_torque_without_friction_Nm: Smooth
-    mean_torque_Nm: Locked
+    mean_torque_Nm: NullIfLocked
     mean_torque_without_friction_Nm: Smooth
-    peak_guide_force_N: Locked
+    peak_guide_force_N: NullIfLocked
     peak_guide_force_without_friction_N: Smooth
-    input_work_J: Locked
+    input_work_J: NullIfLocked
     useful_work_J: Annotated[float | None, Note("negative where the load drives; null where friction locks")]
-    friction_heat_J: Locked
-    guide_heat_J: Locked
-    crank_pivot_heat_J: Locked
-    crank_pin_heat_J: Locked
-    slider_pin_heat_J: Locked
+    friction_heat_J: NullIfLocked
+    guide_heat_J: NullIfLocked
+    crank_pivot_heat_J: NullIfLocked
+    crank_pin_heat_J: NullIfLocked
+    slider_pin_heat_J: NullIfLocked
     efficiency: Annotated[float | None, Note("null where friction locks, and where the load does no net work")]
 
 
@@ -74,22 +74,28 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> FrictionNumbers:
     Undefined values are None: torques and energies of a linkage that locks, the efficiency if the load does no net
     work.
     """
-    whole, mechanism = is_shaft(mechanism), single_cylinder(mechanism)
-    friction, found = mechanism.friction, verdict(mechanism, linkage)
+    has_several, mechanism = is_shaft(mechanism), single_cylinder(mechanism)
+    friction, locking = mechanism.friction, verdict(mechanism, linkage)
     smooth = replace(mechanism, friction=Friction())
     pins = (friction.crank_pin.circle + friction.slider_pin.circle) / float(linkage.rod)
-    torque, smooth_torque = (plain(peak(of, Signal.TORQUE, linkage).value) for of in (mechanism, smooth))
-    mean, smooth_mean = (plain(average_torque(of, row_of(linkage)).mean[0]) for of in (mechanism, smooth))
-    guide, smooth_guide = (plain(peak(of, Signal.GUIDE_FORCE, linkage).value) for of in (mechanism, smooth))
-    work = None if found.locks else energies(mechanism, linkage)
+    torque, smooth_torque = (
+        finite_or_none(peak(machine, Signal.TORQUE, linkage).value) for machine in (mechanism, smooth)
+    )
+    mean, smooth_mean = (
+        finite_or_none(average_torque(machine, row_of(linkage)).mean[0]) for machine in (mechanism, smooth)
+    )
+    guide, smooth_guide = (
+        finite_or_none(peak(machine, Signal.GUIDE_FORCE, linkage).value) for machine in (mechanism, smooth)
+    )
+    work = None if locking.locks else energies(mechanism, linkage)
     return {
-        "one_cylinder_at_constant_speed": whole,
-        "verdict": "drives" if found.holds is None and not found.locks else _locking_in_words(found.holds),
-        "self_locking_margin_deg": plain(math.degrees(found.margin)),
+        "one_cylinder_at_constant_speed": has_several,
+        "verdict": "drives" if locking.holds is None and not locking.locks else _locking_in_words(locking.holds),
+        "self_locking_margin_deg": finite_or_none(math.degrees(locking.margin)),
         "least_transmission_angle_deg": math.degrees(float(linkage.least_transmission_angle)),
         "guide_friction_angle_deg": math.degrees(math.atan(friction.guide)),
         "pin_friction_angle_deg": math.degrees(math.asin(pins)) if pins < 1.0 else None,
-        "locked_angles_deg": [[math.degrees(a) % 360.0, math.degrees(b) % 360.0] for a, b in found.locked],
+        "locked_angles_deg": [[math.degrees(a) % 360.0, math.degrees(b) % 360.0] for a, b in locking.locked],
         "peak_torque_Nm": torque,
         "peak_torque_without_friction_Nm": smooth_torque,
         "mean_torque_Nm": mean,
@@ -115,7 +121,7 @@ def _locking_in_words(holds: float | None) -> Verdict:
 
 def blocks(numbers: FrictionNumbers) -> list[Block]:
     """Return the numbers for people."""
-    where = ", ".join(f"{a:.2f} to {b:.2f} deg" for a, b in numbers["locked_angles_deg"])
+    locked_ranges = ", ".join(f"{a:.2f} to {b:.2f} deg" for a, b in numbers["locked_angles_deg"])
     heats = {
         "guide": numbers["guide_heat_J"],
         "crank pivot": numbers["crank_pivot_heat_J"],
@@ -128,59 +134,63 @@ def blocks(numbers: FrictionNumbers) -> list[Block]:
         "least transmission angle {angle} minus the friction angles",
         angle=recorded(numbers, "least_transmission_angle_deg", digits=4),
     )
-    shown: list[NamedNumber] = [
+    lines: list[NamedNumber] = [
         ("self-locking margin", recorded(numbers, "self_locking_margin_deg"), least),
         ("friction angle, guide", recorded(numbers, "guide_friction_angle_deg"), ""),
         ("friction angle, pins", recorded(numbers, "pin_friction_angle_deg"), ""),
     ]
-    for key, smooth, over in (
+    for key, smooth, averaging in (
         ("peak_torque_Nm", "peak_torque_without_friction_Nm", ""),
         ("mean_torque_Nm", "mean_torque_without_friction_Nm", _OVER),
         ("peak_guide_force_N", "peak_guide_force_without_friction_N", ""),
     ):
-        shown.append(named_number(numbers, key, joined([over, compared(numbers, smooth, "without friction")])))
+        lines.append(named_number(numbers, key, joined([averaging, compared(numbers, smooth, "without friction")])))
     why = "the load does no net work" if heat is not None else "all values are undefined"
     delivered = "of the load's work is delivered at the crank" if drives else ""
     efficiency = numbers["efficiency"]
     side = "negative: the load drives the machine" if drives else "against the load"
-    shown += [
+    lines += [
         ("input work per cycle", recorded(numbers, "input_work_J"), ""),
         ("useful work per cycle", recorded(numbers, "useful_work_J"), side),
         ("friction heat per cycle", recorded(numbers, "friction_heat_J"), shares),
         ("efficiency", Value(efficiency, PERCENT), why if efficiency is None else delivered),
     ]
-    of = " of one cylinder at constant speed" if numbers["one_cylinder_at_constant_speed"] else ""
-    return number_list(f"Friction{of}: {_WORDS[numbers['verdict']]}{f' ({where})' if where else ''}", shown)
+    scope = " of one cylinder at constant speed" if numbers["one_cylinder_at_constant_speed"] else ""
+    return number_list(
+        f"Friction{scope}: {_WORDS[numbers['verdict']]}{f' ({locked_ranges})' if locked_ranges else ''}", lines
+    )
 
 
-def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
+def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return torque, guide force and transmission angle with and without friction, over the cycle.
 
     At angles where friction locks there is no torque and no force.
     """
     mechanism = single_cylinder(mechanism)
     smooth = replace(mechanism, friction=Friction())
-    found = verdict(mechanism, linkage)
-    ends = [end for span in found.locked for end in span]
+    locking = verdict(mechanism, linkage)
+    ends = [end for span in locking.locked for end in span]
     turns = cycle_turns(mechanism)
-    theta = turn(breakpoints(smooth if found.locks else mechanism, linkage), ends, turns=turns)
+    theta = sampled_turn(breakpoints(smooth if locking.locks else mechanism, linkage), ends, turns=turns)
     degrees = np.degrees(theta)
-    with_it, without = (cycle(each, linkage, theta) for each in (mechanism, smooth))
-    margin, least = float(found.margin), float(linkage.least_transmission_angle)
+    with_it, frictionless = (cycle(machine, linkage, theta) for machine in (mechanism, smooth))
+    margin, least = float(locking.margin), float(linkage.least_transmission_angle)
     level = ("locks below (worst side)", least - margin) if np.isfinite(margin) else None
 
-    def both(title: str, kind: Kind, name: str) -> Panel:
-        lines = (("with friction", with_it), ("without", without))
-        curves = (Line(label, degrees, getattr(of, name), n) for n, (label, of) in enumerate(lines))
-        return over_turn(title, *curves, kind=kind)
+    def comparison_panel(title: str, kind: Kind, name: str) -> Panel:
+        lines = (("with friction", with_it), ("without", frictionless))
+        curves = (
+            Line(label, degrees, getattr(curves_of_case, name), n) for n, (label, curves_of_case) in enumerate(lines)
+        )
+        return crank_angle_panel(title, *curves, kind=kind)
 
     angle = Line("transmission angle", degrees, with_it.transmission_angle)
     panels = (
-        both("drive torque", TORQUE, "torque"),
-        both("guide force on the slider", FORCE, "guide"),
-        over_turn("transmission angle", angle, kind=ANGLE, level=level),
+        comparison_panel("drive torque", TORQUE, "torque"),
+        comparison_panel("guide force on the slider", FORCE, "guide"),
+        crank_angle_panel("transmission angle", angle, kind=ANGLE, level=level),
     )
-    locked = tuple((float(np.degrees(a)), float(np.degrees(b))) for a, b in found.locked)
-    across = joined([CRANK_ANGLE, "(shaded: locks or may jam)" if locked else ""], " ")
-    shaded = tuple(replace(panel, across=across, shaded=locked) for panel in panels)
-    return Sheet("Friction over the cycle", "", shaded, width=6.4, height=2.25, stacked=True)
+    locked = tuple((float(np.degrees(a)), float(np.degrees(b))) for a, b in locking.locked)
+    x_title = joined([CRANK_ANGLE, "(shaded: locks or may jam)" if locked else ""], " ")
+    shaded = tuple(replace(panel, x_title=x_title, shaded=locked) for panel in panels)
+    return PanelFigure("Friction over the cycle", "", shaded, width=6.4, height=2.25, stacked=True)

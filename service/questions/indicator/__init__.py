@@ -1,5 +1,5 @@
 """Indicator diagram of the cylinders: numbers, text and figure."""
 
-from ..question import Question
+from ..design_question import DesignQuestion
 
-QUESTION = Question(__name__, 45, "cylinder pressure over volume and crank angle, valve events")
+QUESTION = DesignQuestion(__name__, 45, "cylinder pressure over volume and crank angle, valve events")

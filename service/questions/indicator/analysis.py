@@ -16,9 +16,9 @@ from ....model.machine.loads.cylinder import Cylinder
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
 from ....objectives.kinds import PRESSURE, VOLUME, display_unit
-from ...figures.sheets import Line, Panel, Sheet, over_turn, turn
+from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, NamedNumber, number_list, recorded
-from ..answers import Note, Record
+from ..answer_types import Note, Record
 
 _GAS_PRESSURE = replace(PRESSURE, metric=display_unit("bar", 1e-5))
 Event = Annotated[float | None, Note("null where no such event comes")]
@@ -46,13 +46,13 @@ class Indicator(Record):
 
 
 def _require_cylinders(mechanism: Mechanism) -> tuple[tuple[int, Cylinder], ...]:
-    found = cylinders(mechanism)
-    if not found:
+    loads = cylinders(mechanism)
+    if not loads:
         raise InputError(
             "an indicator diagram needs a cylinder; this job has none; add to the job for example "
             '[[load]] with bore = "70 mm", suction = "1 bar", discharge = "8 bar" and clearance = 0.05'
         )
-    return found
+    return loads
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Indicator:
@@ -61,17 +61,17 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Indicator:
     The end of expansion, compression or burning at peak pressure is None where no such event comes. Raises `InputError`
     without a cylinder.
     """
-    found: list[CylinderPressures] = []
+    records: list[CylinderPressures] = []
     for place, load in _require_cylinders(mechanism):
-        curve = indicator(mechanism, linkage, load, turn(np.array(linkage.dead_centre_angles)))
+        curve = indicator(mechanism, linkage, load, sampled_turn(np.array(linkage.dead_centre_angles)))
         ends = *valve_events(mechanism, linkage, load), burning_ends(mechanism, linkage, load)
         expansion, compression, burning = (None if angle is None else math.degrees(angle) for angle in ends)
-        least, most = float(curve.volume.min()), float(curve.volume.max())
-        found.append(
+        least, greatest = float(curve.volume.min()), float(curve.volume.max())
+        records.append(
             {
                 "load": place + 1,
                 "least_volume_cm3": _CM3 * least,
-                "greatest_volume_cm3": _CM3 * most,
+                "greatest_volume_cm3": _CM3 * greatest,
                 "least_pressure_bar": _BAR * load.low,
                 "greatest_pressure_bar": _BAR * load.high,
                 "expansion_ends_deg": expansion,
@@ -79,35 +79,35 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Indicator:
                 "burning_ends_deg": burning,
             }
         )
-    return {"cylinders": found}
+    return {"cylinders": records}
 
 
 def blocks(numbers: Indicator) -> list[Block]:
     """Return the numbers for people."""
-    found: list[Block] = []
-    for one in numbers["cylinders"]:
-        shown: list[NamedNumber] = [
-            ("least volume", recorded(one, "least_volume_cm3"), ""),
-            ("greatest volume", recorded(one, "greatest_volume_cm3"), ""),
-            ("least pressure", recorded(one, "least_pressure_bar"), ""),
-            ("greatest pressure", recorded(one, "greatest_pressure_bar"), ""),
+    shown_blocks: list[Block] = []
+    for cylinder in numbers["cylinders"]:
+        lines: list[NamedNumber] = [
+            ("least volume", recorded(cylinder, "least_volume_cm3"), ""),
+            ("greatest volume", recorded(cylinder, "greatest_volume_cm3"), ""),
+            ("least pressure", recorded(cylinder, "least_pressure_bar"), ""),
+            ("greatest pressure", recorded(cylinder, "greatest_pressure_bar"), ""),
         ]
         valve, falls = "a valve opens", "the pressure falls from its peak"
         for name, event in (("expansion", valve), ("compression", valve), ("burning", falls)):
-            angle = recorded(one, f"{name}_ends_deg")
+            angle = recorded(cylinder, f"{name}_ends_deg")
             if angle.number is not None:
-                shown.append((f"{name} ends", angle, event))
-        found += number_list(f"Indicator diagram of load {one['load']} (pressures are absolute)", shown)
-    return found
+                lines.append((f"{name} ends", angle, event))
+        shown_blocks += number_list(f"Indicator diagram of load {cylinder['load']} (pressures are absolute)", lines)
+    return shown_blocks
 
 
-def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
+def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return pressure over volume and over the crank angle, a line for each cylinder."""
     over_volume, over_angle = [], []
     for style, (place, load) in enumerate(_require_cylinders(mechanism)):
         ends = *valve_events(mechanism, linkage, load), burning_ends(mechanism, linkage, load)
         events = [angle for angle in ends if angle is not None]
-        theta = turn(np.array(linkage.dead_centre_angles), events, turns=cycle_turns(mechanism))
+        theta = sampled_turn(np.array(linkage.dead_centre_angles), events, turns=cycle_turns(mechanism))
         curve = indicator(mechanism, linkage, load, theta)
         # Closed: the diagram ends where it began.
         volume, pressure = (np.append(values, values[0]) for values in (curve.volume, curve.pressure))
@@ -115,7 +115,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
         over_volume.append(Line(name, volume, pressure, style))
         over_angle.append(Line(name, np.degrees(theta), curve.pressure, style))
     panels = (
-        Panel("pressure", "volume", tuple(over_volume), kind=_GAS_PRESSURE, along=VOLUME),
-        over_turn("pressure", *over_angle, kind=_GAS_PRESSURE),
+        Panel("pressure", "volume", tuple(over_volume), kind=_GAS_PRESSURE, x_kind=VOLUME),
+        crank_angle_panel("pressure", *over_angle, kind=_GAS_PRESSURE),
     )
-    return Sheet("Indicator diagram", "", panels, width=6.4, height=3.0)
+    return PanelFigure("Indicator diagram", "", panels, width=6.4, height=3.0)

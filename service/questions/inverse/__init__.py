@@ -1,10 +1,10 @@
 """Crank angles, speeds and accelerations that move the slider as given."""
 
 from ....objectives.kinds import ACCELERATION, LENGTH, SPEED
+from ..design_question import DesignQuestion, QuestionCommand
 from ..inputs import Input
-from ..question import Command, Question
 
-QUESTION = Question(
+QUESTION = DesignQuestion(
     __name__,
     shows="crank angles that put the slider at a position",
     inputs=(
@@ -28,7 +28,7 @@ QUESTION = Question(
             example="3 m/s^2",
         ),
     ),
-    command=Command(
+    command=QuestionCommand(
         help="""Find every crank angle that puts the slider at a position.
 
     Most positions have two, one on each stroke; strokes are named for counter-clockwise rotation. Given the slider's

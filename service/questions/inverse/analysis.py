@@ -18,7 +18,7 @@ from ....model.swing.swing import Swing, dead_points, placed, require_swing
 from ....objectives.keys import kind_of_key
 from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED
 from ...render.blocks import Block, Table, column, joined, recorded, sentence, words
-from ..answers import Note, Record
+from ..answer_types import Note, Record
 
 _NEAR = 1e-9  # rad, beyond an end of a swing: rounding
 UNDEFINED = "at a dead centre the slider is at rest at any crank speed: crank speed and acceleration are undefined"
@@ -73,23 +73,27 @@ def numbers(
     Raises what `Linkage.from_slider` and `require_swing` raise, and `AssemblyError` for a position beyond the swing.
     """
     every = linkage.from_slider(slider_position, velocity=slider_velocity, acceleration=slider_acceleration)
-    found, said = every, []
+    solutions, notes = every, []
     if swing is not None:
-        own = require_swing(mechanism, linkage, swing)
-        swing = placed(mechanism, own, swing)
-        found = _solutions_in_swing(every, swing)
+        swinging = require_swing(mechanism, linkage, swing)
+        swing = placed(mechanism, swinging, swing)
+        solutions = _solutions_in_swing(every, swing)
         ends = f"from {_degrees(swing.start)} to {_degrees(swing.end)} deg"
-        if not found:
-            places = sorted(1e3 * float(own.at(angle).slider_position) for angle in _turning_angles(own, swing))
+        if not solutions:
+            places = sorted(
+                1e3 * float(swinging.at(angle).slider_position) for angle in _turning_angles(swinging, swing)
+            )
             raise AssemblyError(
                 f"the position must be between {places[0]:.9g} and {places[-1]:.9g} mm, the slider's travel while the "
                 f"crank swings {ends}; got {1e3 * slider_position:.9g} mm; choose one in this range"
             )
-        if len(found) < len(every):
-            other = "one other crank angle for this position lies" if len(every) - len(found) == 1 else "others lie"
-            said.append(f"{other} outside the swing {ends}")
-    if slider_velocity is not None and any(each.speed is None for each in found):
-        said.append(UNDEFINED)
+        if len(solutions) < len(every):
+            omission = (
+                "one other crank angle for this position lies" if len(every) - len(solutions) == 1 else "others lie"
+            )
+            notes.append(f"{omission} outside the swing {ends}")
+    if slider_velocity is not None and any(solution.speed is None for solution in solutions):
+        notes.append(UNDEFINED)
     return {
         "crank_mm": 1e3 * float(linkage.crank),
         "rod_mm": 1e3 * float(linkage.rod),
@@ -98,23 +102,23 @@ def numbers(
         "slider_position_mm": 1e3 * slider_position,
         "slider_velocity_m_s": slider_velocity,
         "slider_acceleration_m_s2": slider_acceleration,
-        "solutions": [_solution_record(each) for each in found],
-        "note": "; ".join(said),
+        "solutions": [_solution_record(solution) for solution in solutions],
+        "note": "; ".join(notes),
     }
 
 
-def _solutions_in_swing(found: tuple[CrankSolution, ...], swing: Swing) -> tuple[CrankSolution, ...]:
+def _solutions_in_swing(solutions: tuple[CrankSolution, ...], swing: Swing) -> tuple[CrankSolution, ...]:
     """Return the solutions of a swing between crank angles, their angles as it has them."""
-    kept = []
-    for each in found:
-        angles = [at for near in (0.0, _NEAR, -_NEAR) for at in swing.inside(each.crank_angle + near)]
-        kept += [replace(each, crank_angle=angles[0])] if angles else []
-    return tuple(sorted(kept, key=lambda each: each.crank_angle))
+    within_swing = []
+    for solution in solutions:
+        angles = [at for near in (0.0, _NEAR, -_NEAR) for at in swing.inside(solution.crank_angle + near)]
+        within_swing += [replace(solution, crank_angle=angles[0])] if angles else []
+    return tuple(sorted(within_swing, key=lambda solution: solution.crank_angle))
 
 
-def _turning_angles(own: Linkage, swing: Swing) -> list[float]:
+def _turning_angles(linkage: Linkage, swing: Swing) -> list[float]:
     """Return the ends of a swing, and where the slider turns back within."""
-    return [swing.start, swing.end, *(angle for dead in dead_points(own) for angle in swing.inside(dead))]
+    return [swing.start, swing.end, *(angle for dead in dead_points(linkage) for angle in swing.inside(dead))]
 
 
 def _degrees(angle: float) -> str:
@@ -124,34 +128,34 @@ def _degrees(angle: float) -> str:
 def blocks(record: CrankAngles) -> list[Block]:
     """Return the slider's motion and the crank angles."""
     motion = {key: recorded(record, key) for key in _GIVEN}
-    given = [
+    motion_texts = [
         words(f"{kind_of_key(key)[0].removeprefix('slider_')} {{value}}", value=value)
         for key, value in motion.items()
         if value.number is not None
     ]
-    asked = [
+    rate_columns = [
         (key, column(title, kind))
-        for key, title, kind, of in (
+        for key, title, kind, slider_key in (
             ("crank_speed_rpm", "crank speed", ANGULAR_SPEED, "slider_velocity_m_s"),
             ("crank_acceleration_rad_s2", "crank acceleration", ANGULAR_ACCELERATION, "slider_acceleration_m_s2"),
         )
-        if motion[of].number is not None
+        if motion[slider_key].number is not None
     ]
     rows = []
     for solution in record["solutions"]:
-        rates = (recorded(solution, key) for key, _ in asked)
+        rates = (recorded(solution, key) for key, _ in rate_columns)
         rows.append((recorded(solution, "crank_angle_deg"), solution["stroke"] or "dead centre", *rates))
     heads = (column("crank angle", ANGLE), column("stroke (counter-clockwise)", left=True))
     return [
-        sentence("slider: {given}", given=joined(given)),
-        Table((*heads, *(head for _, head in asked)), tuple(rows), ruled=True),
+        sentence("slider: {given}", given=joined(motion_texts)),
+        Table((*heads, *(head for _, head in rate_columns)), tuple(rows), ruled=True),
     ]
 
 
-def _solution_record(found: CrankSolution) -> Solution:
+def _solution_record(solution: CrankSolution) -> Solution:
     return {
-        "crank_angle_deg": ANGLE.metric.factor * found.crank_angle,
-        "stroke": found.stroke,
-        "crank_speed_rpm": None if found.speed is None else ANGULAR_SPEED.metric.factor * found.speed,
-        "crank_acceleration_rad_s2": found.acceleration,
+        "crank_angle_deg": ANGLE.metric.factor * solution.crank_angle,
+        "stroke": solution.stroke,
+        "crank_speed_rpm": None if solution.speed is None else ANGULAR_SPEED.metric.factor * solution.speed,
+        "crank_acceleration_rad_s2": solution.acceleration,
     }

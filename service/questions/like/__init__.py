@@ -1,9 +1,9 @@
 """The design most like one of a front that also meets further conditions: numbers and text."""
 
-from ..plain_input import Plain
-from ..wider import WiderQuestion
+from ..front_or_job_question import FrontOrJobQuestion
+from ..typed_input import TypedInput
 
-QUESTION = WiderQuestion(
+QUESTION = FrontOrJobQuestion(
     package=__name__,
     subject="front",
     row="must",
@@ -16,7 +16,7 @@ QUESTION = WiderQuestion(
     It is the nearest of the designs that are Pareto-optimal for the run's job with the conditions added. Distance is
     measured in the objectives, each relative to its range over the run's front. Nothing is saved.""",
     inputs=(
-        Plain(
+        TypedInput(
             "where",
             type=list[str],
             help="Condition to meet as well: a quantity, a dimension or a formula, then >=, <= or =, then a value, "

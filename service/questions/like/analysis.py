@@ -13,13 +13,13 @@ from ....model.linkage.dimensions import DIMENSIONS
 from ....optimise.decisions.like import Ends, common, distance, nearest
 from ....optimise.front.hypervolume import scaling
 from ....optimise.problem.requirements import Constraint
-from ...designs.requirements import names_of
+from ...designs.display_units import record_in
+from ...designs.requirements import quantity_names
 from ...designs.selection import Condition, parse_condition
-from ...designs.shown_units import record_in
 from ...render.blocks import Block, Sentence, Table, Text, Value, column, heading, recorded
 from ...runs.result import Row, rows_of
 from ..design_table import title_and_unit
-from ..wider import Answer
+from ..front_or_job_question import Answer
 from . import QUESTION
 
 if TYPE_CHECKING:
@@ -34,13 +34,15 @@ def answer(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> A
     front.part(row)  # refuses what is no row
     before = rows_of(front.columns)[row]
     constraints, ranges = _added_constraints(where, before, front.problem)
-    given, span = front.values[row], scaling(front.values)[1]
-    found = nearest(front.problem, before, given, span, constraints, ranges)
-    record: dict[str, Any] = {"status": found.status, "message": found.message}
-    if not len(found):
-        return Answer(record=lambda _: record, blocks=[Sentence(found.message)], met=False, message=found.message)
-    after = rows_of(found.columns)[0]
-    record |= {"distance": float(distance(found.values, given, span)[0]), "design": after, "before": before}
+    values, span = front.values[row], scaling(front.values)[1]
+    similar = nearest(front.problem, before, values, span, constraints, ranges)
+    record: dict[str, Any] = {"status": similar.status, "message": similar.message}
+    if not len(similar):
+        return Answer(
+            record=lambda _: record, blocks=[Sentence(similar.message)], is_satisfied=False, message=similar.message
+        )
+    after = rows_of(similar.columns)[0]
+    record |= {"distance": float(distance(similar.values, values, span)[0]), "design": after, "before": before}
     record["moved"] = {key: value for key in after if (value := _change(before, after, key)) is not None}
     title = heading(
         f"{{name}}: like design {row % len(front) + 1}, with {{where}}",
@@ -50,14 +52,14 @@ def answer(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> A
     return Answer(
         record=lambda units: record_in(record, units),
         blocks=[title, *_blocks(front, record, row)],
-        message=found.message,
+        message=similar.message,
     )
 
 
 def _added_constraints(where: Sequence[str], row: Row, problem: Problem) -> tuple[list[Constraint], dict[str, Ends]]:
     """Return conditions as constraints, and those on dimensions as ranges, m; both bounds of one quantity as one."""
-    names = names_of(problem) | {f"{dimension}_mm": dimension for dimension in DIMENSIONS}
-    found: dict[str, Ends] = {}
+    names = quantity_names(problem) | {f"{dimension}_mm": dimension for dimension in DIMENSIONS}
+    ends_by_name: dict[str, Ends] = {}
     for text in where:
         condition = parse_condition(text, list(row), row)
         formula = condition.formula
@@ -68,16 +70,16 @@ def _added_constraints(where: Sequence[str], row: Row, problem: Problem) -> tupl
                 f"like {_EXAMPLE}"
             )
         factor = 1e3 if name in DIMENSIONS else 1.0 if formula else problem.quantity(name).unit.factor
-        ends = common(found.get(name, (None, None)), _ends(condition, factor, text))
+        ends = common(ends_by_name.get(name, (None, None)), _ends(condition, factor, text))
         if ends is None:
             raise InputError(
                 f"the conditions on {name} must not contradict each other; got {text!r} last; leave one out"
             )
-        found[name] = ends
-    ranges = {name: ends for name, ends in found.items() if name in DIMENSIONS}
+        ends_by_name[name] = ends
+    ranges = {name: ends for name, ends in ends_by_name.items() if name in DIMENSIONS}
     constraints = [
         Constraint(quantity=name, lower=lower, upper=upper)
-        for name, (lower, upper) in found.items()
+        for name, (lower, upper) in ends_by_name.items()
         if name not in DIMENSIONS
     ]
     return constraints, ranges
@@ -115,8 +117,8 @@ def _blocks(front: ParetoFront, record: Mapping[str, Any], row: int) -> list[Blo
     heads = (f"design {row % len(front) + 1}", "now", "change", "% of range")
     columns = (column("quantity", left=True), column("unit", left=True), *map(column, heads))
     bold = tuple(place for place, key in enumerate(keys) if key in objectives)
-    apart = f"distance {record['distance']:.4g} of the objectives' ranges"
+    distance_text = f"distance {record['distance']:.4g} of the objectives' ranges"
     return [
-        Table(columns, tuple(rows), ruled=True, apart=True, bold=bold),
-        Sentence(f"{after['status']}: residual {after['residual']:.1e}; {apart}"),
+        Table(columns, tuple(rows), ruled=True, space_before=True, bold=bold),
+        Sentence(f"{after['status']}: residual {after['residual']:.1e}; {distance_text}"),
     ]

@@ -18,11 +18,11 @@ from ....objectives.tables.curve_extremes import cuts_of, defined_curves
 from ....objectives.tables.cycle_curves import KINDS
 from ....objectives.tables.deviation import Deviation, deviations
 from ....objectives.tables.measured import Measured
-from ...figures.sheets import DASHED, SAMPLES, Array, Line, Panel, Sheet, over_turn, turn
+from ...figures.panel_figure import DASHED, SAMPLES, Array, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, Sentence, Table, Text, Unit, Value, column, dimensions, heading, recorded, words
 from ...render.numerals import shown
-from ...text.tables import plain
-from ..answers import Keys, Note, Record, keys_of_kinds
+from ...text.tables import finite_or_none
+from ..answer_types import Keys, Note, Record, keys_of_kinds
 
 _Fit = Annotated[float | None, Note("null where the samples do not determine a shift")]
 _CURVE = {
@@ -61,32 +61,32 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> De
     least root mean square is left, left_rms. None stands for what friction leaves undetermined, and for shifts that
     the samples do not determine.
     """
-    found = deviations(mechanism, linkage, measured.crank_angle, measured.values)
+    found_deviations = deviations(mechanism, linkage, measured.crank_angle, measured.values)
     return {
         "rows": len(measured.crank_angle),
         "understood": measured.understood,
         "rows_without_crank_angle": measured.without_angle,
         "crank_angle_from_time": measured.by_time,
         "left_out": list(measured.left_out),
-        "curves": {one.name: _entry(one) for one in found},
+        "curves": {deviation.name: _entry(deviation) for deviation in found_deviations},
     }
 
 
-def _entry(found: Deviation) -> dict[str, Any]:
+def _entry(deviation: Deviation) -> dict[str, Any]:
     def value(name: str, number: float | None) -> dict[str, float | None]:
-        return {f"{name}{unit.suffix}": None if number is None else plain(unit.factor * number)}
+        return {f"{name}{unit.suffix}": None if number is None else finite_or_none(unit.factor * number)}
 
     def angle(name: str, number: float | None) -> dict[str, float | None]:
-        return {f"{name}_deg": None if number is None else plain(math.degrees(number))}
+        return {f"{name}_deg": None if number is None else finite_or_none(math.degrees(number))}
 
-    fit, unit = found.fit, found.kind.metric
+    fit, unit = deviation.fit, deviation.kind.metric
     return {
-        "title": found.title,
-        "samples": found.count,
-        **value("rms", found.rms),
-        **value("mean", found.mean),
-        **value("largest", found.largest),
-        **angle("largest_at_crank_angle", found.crank_angle),
+        "title": deviation.title,
+        "samples": deviation.count,
+        **value("rms", deviation.rms),
+        **value("mean", deviation.mean),
+        **value("largest", deviation.largest),
+        **angle("largest_at_crank_angle", deviation.crank_angle),
         **angle("best_crank_angle_shift", None if fit is None else fit.crank_angle),
         **value("best_shift", None if fit is None else fit.value),
         **value("left_rms", None if fit is None else fit.rms),
@@ -134,48 +134,48 @@ def file_notes(numbers: Mapping[str, Any]) -> list[str]:
     if rows:
         lines.append(f"Rows without a crank angle, omitted: {rows}")
     if names:
-        some = [name if name.isprintable() else ascii(name) for name in names[:_NAMED]]
-        more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
-        lines.append(f"Columns that are empty or not a curve, omitted: {', '.join(some)}{more}")
+        listed = [name if name.isprintable() else ascii(name) for name in names[:_NAMED]]
+        remainder = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+        lines.append(f"Columns that are empty or not a curve, omitted: {', '.join(listed)}{remainder}")
     return lines
 
 
-def figure(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> Sheet:
+def figure(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> PanelFigure:
     """Return a panel for each measured curve: computed, also shifted to fit, samples, and the largest deviation."""
     degrees = np.degrees(np.mod(measured.crank_angle, cycle_turns(mechanism) * 2.0 * np.pi))
     panels = tuple(
-        _panel(found, _curves(mechanism, linkage, found), degrees, measured.values[found.name])
-        for found in deviations(mechanism, linkage, measured.crank_angle, measured.values)
+        _panel(deviation, _curves(mechanism, linkage, deviation), degrees, measured.values[deviation.name])
+        for deviation in deviations(mechanism, linkage, measured.crank_angle, measured.values)
     )
     subtitle = words(
         "{sizes}; line: computed, dashed: shifted to fit, dots: measured, ring: largest deviation",
         sizes=dimensions(linkage),
     )
-    return Sheet("Measured and computed", subtitle, panels, columns=min(2, len(panels)), width=5.2)
+    return PanelFigure("Measured and computed", subtitle, panels, columns=min(2, len(panels)), width=5.2)
 
 
-def _curves(mechanism: Mechanism, linkage: Linkage, found: Deviation) -> list[Line]:
+def _curves(mechanism: Mechanism, linkage: Linkage, deviation: Deviation) -> list[Line]:
     """Return the computed curve, and where there is a fit, the same where the samples would then lie."""
 
     def line(style: int, angle: float, value: float) -> Line:
         turns = cycle_turns(mechanism)
-        theta = turn(cuts_of(mechanism, linkage) - angle, turns=turns)
+        theta = sampled_turn(cuts_of(mechanism, linkage) - angle, turns=turns)
         at = np.mod(theta + angle, turns * 2.0 * np.pi)
-        (curve,) = (curve.values for curve in defined_curves(mechanism, linkage, at) if curve.name == found.name)
+        (curve,) = (curve.values for curve in defined_curves(mechanism, linkage, at) if curve.name == deviation.name)
         return Line("", np.degrees(theta), curve - value, style=style)
 
-    fit = found.fit
+    fit = deviation.fit
     return [line(0, 0.0, 0.0), *([] if fit is None else [line(DASHED, fit.crank_angle, fit.value)])]
 
 
-def _panel(found: Deviation, computed: list[Line], at: Array, samples: Array) -> Panel:
-    there = np.flatnonzero(np.isfinite(samples))
-    drawn = there[np.unique(np.linspace(0, len(there) - 1, min(len(there), _DRAWN)).astype(np.intp))]
+def _panel(deviation: Deviation, computed: list[Line], at: Array, samples: Array) -> Panel:
+    finite = np.flatnonzero(np.isfinite(samples))
+    drawn = finite[np.unique(np.linspace(0, len(finite) - 1, min(len(finite), _DRAWN)).astype(np.intp))]
     lines = [*computed, Line("", at[drawn], samples[drawn], style=SAMPLES)]
     note: Text = _UNDETERMINED
-    if math.isfinite(found.rms):
-        place = np.degrees([found.crank_angle])
-        lines.append(Line("", place, np.array([found.sample]), points=True))
-        rms, largest = (Value(value, found.kind, 4, bare=True) for value in (found.rms, found.largest))
+    if math.isfinite(deviation.rms):
+        place = np.degrees([deviation.crank_angle])
+        lines.append(Line("", place, np.array([deviation.sample]), points=True))
+        rms, largest = (Value(value, deviation.kind, 4, bare=True) for value in (deviation.rms, deviation.largest))
         note = words(f"RMS {{rms}}, largest {{largest}} at {shown(place[0])}°", rms=rms, largest=largest)
-    return over_turn(found.title, *lines, kind=found.kind, note=note)
+    return crank_angle_panel(deviation.title, *lines, kind=deviation.kind, note=note)

@@ -1,8 +1,8 @@
 """Motor sizing of one design: numbers, text and figure."""
 
-from ..question import Question
+from ..design_question import DesignQuestion
 
-QUESTION = Question(
+QUESTION = DesignQuestion(
     __name__,
     30,
     "power, RMS torque over time, reflected inertia",

@@ -25,10 +25,10 @@ from ....model.signals.shaft_statistics import mean_speed_ratio
 from ....model.signals.signals import Signal
 from ....objectives.kinds import INERTIA, POWER, TORQUE
 from ....objectives.needs import SPEED
-from ...figures.sheets import Line, Sheet, over_turn, turn
+from ...figures.panel_figure import Line, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, named_number, number_list
-from ...text.tables import plain
-from ..answers import AngleOfPeak, Locked, Note, Record
+from ...text.tables import finite_or_none
+from ..answer_types import Note, NullIfLocked, PeakAngle, Record
 from ..peaks import peak, row_of
 
 Moving = Annotated[float | None, Note("null where friction locks or may jam the linkage, and without a crank speed")]
@@ -37,17 +37,17 @@ Moving = Annotated[float | None, Note("null where friction locks or may jam the 
 class Motor(Record):
     """Torque, power and inertia that a motor moves; with several cylinders."""
 
-    peak_torque_Nm: Locked
-    peak_torque_angle_deg: AngleOfPeak
+    peak_torque_Nm: NullIfLocked
+    peak_torque_angle_deg: PeakAngle
     rms_torque_Nm: Annotated[float | None, Note("over time; null where friction locks or may jam the linkage")]
     mean_torque_Nm: Annotated[float | None, Note("over the crank angle; null where friction locks the linkage")]
     peak_power_W: Moving
-    peak_power_angle_deg: AngleOfPeak
+    peak_power_angle_deg: PeakAngle
     mean_power_W: Moving
     greatest_reflected_inertia_kg_m2: float
-    greatest_reflected_inertia_angle_deg: AngleOfPeak
+    greatest_reflected_inertia_angle_deg: PeakAngle
     least_reflected_inertia_kg_m2: float
-    least_reflected_inertia_angle_deg: AngleOfPeak
+    least_reflected_inertia_angle_deg: PeakAngle
     mean_reflected_inertia_kg_m2: float
     """Over the crank angle."""
 
@@ -68,14 +68,15 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Motor:
     averages, moves = average_torque(mechanism, design), SPEED.is_met(mechanism)
 
     least, least_angle = _least_inertia(mechanism, linkage)
+    mean_power = mean_speed_ratio(mechanism) * mechanism.speed * averages.mean[0]
     return {
-        "peak_torque_Nm": plain(torque.value),
-        "peak_torque_angle_deg": plain(torque.degrees),
-        "rms_torque_Nm": plain(averages.rms[0]),
-        "mean_torque_Nm": plain(averages.mean[0]),
-        "peak_power_W": plain(power.value) if moves else None,
-        "peak_power_angle_deg": plain(power.degrees) if moves else None,
-        "mean_power_W": plain(mean_speed_ratio(mechanism) * mechanism.speed * averages.mean[0]) if moves else None,
+        "peak_torque_Nm": finite_or_none(torque.value),
+        "peak_torque_angle_deg": finite_or_none(torque.degrees),
+        "rms_torque_Nm": finite_or_none(averages.rms[0]),
+        "mean_torque_Nm": finite_or_none(averages.mean[0]),
+        "peak_power_W": finite_or_none(power.value) if moves else None,
+        "peak_power_angle_deg": finite_or_none(power.degrees) if moves else None,
+        "mean_power_W": finite_or_none(mean_power) if moves else None,
         "greatest_reflected_inertia_kg_m2": greatest.value,
         "greatest_reflected_inertia_angle_deg": greatest.degrees,
         "least_reflected_inertia_kg_m2": least,
@@ -86,28 +87,30 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Motor:
 
 def _least_inertia(mechanism: Mechanism, linkage: Linkage) -> tuple[float, float]:
     """Return the least moving inertia and its crank angle, rad; of equal ones the first."""
-    around = np.linspace(0.0, TURN, _SAMPLES, endpoint=False)
-    values, step = _inertia(mechanism, linkage, around), TURN / _SAMPLES
+    angles_sampled = np.linspace(0.0, TURN, _SAMPLES, endpoint=False)
+    values, step = _inertia(mechanism, linkage, angles_sampled), TURN / _SAMPLES
     dips = np.flatnonzero((values <= np.roll(values, 1)) & (values <= np.roll(values, -1)))
     size, rise = values.max(), np.abs(values - np.roll(values, 1)).max()
-    found = [
+    minima = [
         minimize_scalar(
             lambda angle: float(_inertia(mechanism, linkage, angle)[0]),
             bounds=(lowest - step, lowest + step),
             method="bounded",
             options={"xatol": 1e-10},
         )
-        for lowest in around[dips[values[dips] <= values.min() + rise]].tolist()[:_MOST_DIPS]
+        for lowest in angles_sampled[dips[values[dips] <= values.min() + rise]].tolist()[:_MOST_DIPS]
     ]
-    heights, angles = (np.array(part) for part in zip(*((size - at.fun, at.x) for at in found), strict=True))
-    first = found[int(first_greatest(heights, angles, TURN))]
-    return float(min(at.fun for at in found)), angle_in_cycle(float(first.x), TURN)
+    heights, angles = (np.array(part) for part in zip(*((size - at.fun, at.x) for at in minima), strict=True))
+    first = minima[int(first_greatest(heights, angles, TURN))]
+    return float(min(at.fun for at in minima)), angle_in_cycle(float(first.x), TURN)
 
 
 def _inertia(mechanism: Mechanism, linkage: Linkage, angle: Any) -> Any:
     """Return the moving inertia of all cylinders at crank angles (n,), rad."""
-    curves = (shaking_curves(own.mechanism, linkage, angle + own.lead) for own in cylinders_of(mechanism))
-    return sum(own.reflected_inertia for own in curves)
+    curves = (
+        shaking_curves(cylinder.mechanism, linkage, angle + cylinder.lead) for cylinder in cylinders_of(mechanism)
+    )
+    return sum(cylinder.reflected_inertia for cylinder in curves)
 
 
 def blocks(numbers: Motor) -> list[Block]:
@@ -120,18 +123,20 @@ def blocks(numbers: Motor) -> list[Block]:
     }
     if numbers["peak_power_W"] is None and numbers["peak_torque_Nm"] is not None:
         remarks |= dict.fromkeys(("peak_power_W", "mean_power_W"), SPEED.rule)
-    known = numbers["peak_torque_Nm"] is not None
-    title = "Motor" if known else "Motor: friction locks or jams the linkage, so the torque is undefined"
+    is_defined = numbers["peak_torque_Nm"] is not None
+    title = "Motor" if is_defined else "Motor: friction locks or jams the linkage, so the torque is undefined"
     keys = [key for key in numbers if not key.endswith("_angle_deg")]
     return number_list(title, [named_number(numbers, key, remarks.get(key, "")) for key in keys])
 
 
-def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
+def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return torque, power and reflected inertia over the cycle; no torque and power where friction locks."""
     design = row_of(linkage)
     locks = not locking_margin(mechanism.friction, design)[0][0] > 0.0
     turns = cycle_turns(mechanism)
-    theta = turn(breakpoints(replace(mechanism, friction=Friction()) if locks else mechanism, linkage), turns=turns)
+    theta = sampled_turn(
+        breakpoints(replace(mechanism, friction=Friction()) if locks else mechanism, linkage), turns=turns
+    )
     degrees = np.degrees(theta)
     several = mechanism.arrangement is not None
     torque = (multi_cylinder_curves if several else cycle)(mechanism, linkage, theta).torque
@@ -142,8 +147,8 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
     power = Line("power", degrees, torque * crank_speed(mechanism, theta)[0])
     levels = (None, None) if locks else (("RMS over time", rms), ("mean over time", mean))
     panels = (
-        over_turn("drive torque", Line("torque", degrees, torque), kind=TORQUE, level=levels[0]),
-        over_turn("power", power, kind=POWER, level=levels[1]),
-        over_turn("reflected inertia", inertia, kind=INERTIA, level=("mean", usual)),
+        crank_angle_panel("drive torque", Line("torque", degrees, torque), kind=TORQUE, level=levels[0]),
+        crank_angle_panel("power", power, kind=POWER, level=levels[1]),
+        crank_angle_panel("reflected inertia", inertia, kind=INERTIA, level=("mean", usual)),
     )
-    return Sheet("Motor torque and power over the cycle", "", panels, width=6.4, height=2.25, stacked=True)
+    return PanelFigure("Motor torque and power over the cycle", "", panels, width=6.4, height=2.25, stacked=True)

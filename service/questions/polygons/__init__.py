@@ -1,9 +1,11 @@
 """Kinematic polygons: numbers, text and figure."""
 
 from ....objectives.kinds import ANGLE
+from ..design_question import DesignQuestion
 from ..inputs import Input
-from ..question import Question
 
 # At 30 deg no link of any common proportion is normal to the slider line.
 AT = Input("crank_angle", ANGLE, "Crank angle", "Crank angle of the polygons.", "30 deg", "at")
-QUESTION = Question(__name__, 80, "position, velocity and acceleration diagrams at --at", needs_job=False, inputs=(AT,))
+QUESTION = DesignQuestion(
+    __name__, 80, "position, velocity and acceleration diagrams at --at", needs_job=False, inputs=(AT,)
+)

@@ -12,10 +12,10 @@ from ....model.classical.polygons import Polygons, polygons
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Branch, Mechanism
 from ....objectives.kinds import ACCELERATION, LENGTH, SPEED
-from ...figures.sheets import Line, Panel, Sheet
+from ...figures.panel_figure import Line, Panel, PanelFigure
 from ...render.blocks import Block, Table, Text, Unit, Value, column, dimensions, heading, joined, recorded
 from ...render.numerals import shown
-from ..answers import Record
+from ..answer_types import Record
 from . import AT
 
 
@@ -63,27 +63,27 @@ def both_branches(
 def numbers(mechanism: Mechanism, linkage: Linkage, *, crank_angle: float = AT.default) -> PolygonNumbers:
     """Return the vertices at one crank angle, rad, by branch and polygon; without a crank speed for 1 rad/s."""
     speed = mechanism.speed or 1.0
-    found = both_branches(linkage, crank_angle, speed=speed, acceleration=mechanism.acceleration)
+    by_branch = both_branches(linkage, crank_angle, speed=speed, acceleration=mechanism.acceleration)
     return {
         "crank_angle_deg": math.degrees(crank_angle),
         "speed_rad_s": speed,
         "acceleration_rad_s2": mechanism.acceleration,
-        "open": _vertices(found["open"]),
-        "crossed": _vertices(found["crossed"]),
+        "open": _vertices(by_branch["open"]),
+        "crossed": _vertices(by_branch["crossed"]),
     }
 
 
-def _vertices(found: Polygons) -> BranchPolygons:
+def _vertices(drawn: Polygons) -> BranchPolygons:
     position, velocity, acceleration = (
-        dict(zip(vertices, (kind.metric.factor * getattr(found, name)).tolist(), strict=True))
+        dict(zip(vertices, (kind.metric.factor * getattr(drawn, name)).tolist(), strict=True))
         for name, vertices, kind in _POLYGONS
     )
     return {
         "position_mm": position,
         "velocity_m_s": velocity,
         "acceleration_m_s2": acceleration,
-        "rod_velocity_rad_s": float(found.rod_velocity),
-        "rod_acceleration_rad_s2": float(found.rod_acceleration),
+        "rod_velocity_rad_s": float(drawn.rod_velocity),
+        "rod_acceleration_rad_s2": float(drawn.rod_acceleration),
     }
 
 
@@ -110,20 +110,20 @@ def blocks(numbers: Mapping[str, Any]) -> list[Block]:
     ]
 
 
-def figure(mechanism: Mechanism, linkage: Linkage, *, crank_angle: float = AT.default) -> Sheet:
+def figure(mechanism: Mechanism, linkage: Linkage, *, crank_angle: float = AT.default) -> PanelFigure:
     """Return the polygons at one crank angle, rad; without a crank speed for 1 rad/s."""
     speed = mechanism.speed or 1.0
-    found = both_branches(linkage, crank_angle, speed=speed, acceleration=mechanism.acceleration)
+    by_branch = both_branches(linkage, crank_angle, speed=speed, acceleration=mechanism.acceleration)
     at = (
         f"crank angle {shown(math.degrees(crank_angle))}°, {shown(speed)} rad/s, {shown(mechanism.acceleration)} rad/s²"
     )
     subtitle = joined([dimensions(linkage), at], "; ")
-    return polygon_sheet(found, title="Kinematic polygons", subtitle=subtitle)
+    return polygon_panels(by_branch, title="Kinematic polygons", subtitle=subtitle)
 
 
-def polygon_sheet(
-    found: Mapping[Branch, Polygons], *, title: Text, subtitle: Text, units: tuple[str, str, str] | None = None
-) -> Sheet:
+def polygon_panels(
+    by_branch: Mapping[Branch, Polygons], *, title: Text, subtitle: Text, units: tuple[str, str, str] | None = None
+) -> PanelFigure:
     """Return the three polygons as panels, one line for each branch; the vertices are named.
 
     units: of position, velocity and acceleration, of numbers that are drawn as they are; None for SI.
@@ -131,8 +131,8 @@ def polygon_sheet(
     panels = []
     for place, (name, vertices, kind) in enumerate(_POLYGONS):
         lines, names = [], []
-        for index, branch in enumerate(found):
-            points: np.ndarray = getattr(found[branch], name)
+        for index, branch in enumerate(by_branch):
+            points: np.ndarray = getattr(by_branch[branch], name)
             closed = np.concatenate([points, points[:1]]) if name != "position" else points
             lines.append(Line(branch, closed[:, 0], closed[:, 1], index))
             for number, (vertex, (x, y)) in enumerate(zip(vertices, points, strict=True)):
@@ -140,6 +140,6 @@ def polygon_sheet(
                     names.append((f"{vertex} {branch}", float(x), float(y)))
                 elif index == 0:
                     names.append((vertex, float(x), float(y)))
-        unit, of = ("", kind) if units is None else (f", {units[place]}", None)
-        panels.append(Panel(f"{name}{unit}", f"x{unit}", tuple(lines), of, of, tuple(names), equal=True))
-    return Sheet(title, subtitle, tuple(panels), columns=3, width=4.6, height=4.2)
+        unit, axis_kind = ("", kind) if units is None else (f", {units[place]}", None)
+        panels.append(Panel(f"{name}{unit}", f"x{unit}", tuple(lines), axis_kind, axis_kind, tuple(names), equal=True))
+    return PanelFigure(title, subtitle, tuple(panels), columns=3, width=4.6, height=4.2)

@@ -1,8 +1,8 @@
 """What a press can do before a dead centre: numbers, text and figure."""
 
 from ....objectives.kinds import LENGTH, TORQUE
+from ..design_question import DesignQuestion
 from ..inputs import Input
-from ..question import Question
 
 TOUCH = Input(
     "touch_distance",
@@ -26,7 +26,7 @@ RATED = Input(
     "Torque that the clutch or motor can deliver at the crank. [default: peak torque of the design]",
     sign="positive",
 )
-QUESTION = Question(
+QUESTION = DesignQuestion(
     __name__,
     46,
     "force, speed and work of a press before a dead centre; dwell",

@@ -18,9 +18,9 @@ from ....model.machine.mechanism import Mechanism
 from ....objectives.dead_centre import DWELL_ANGLE, before_dead_centre
 from ....objectives.kinds import ANGLE, FORCE, LENGTH, SPEED
 from ....objectives.peak_torque import PEAK_TORQUE
-from ...figures.sheets import Line, Panel, Sheet
+from ...figures.panel_figure import Line, Panel, PanelFigure
 from ...render.blocks import Block, NamedNumber, Table, column, named_number, note, number_list, recorded_all
-from ..answers import Note, Record
+from ..answer_types import Note, Record
 from ..peaks import row_of
 
 _ROWS = 10
@@ -99,8 +99,8 @@ def _speed(mechanism: Mechanism) -> float:
     return abs(mechanism.speed) if mechanism.speed_profile is None else 0.0
 
 
-def _touch(mechanism: Mechanism, given: float | None) -> float:
-    touch = mechanism.slider.touch if given is None else given
+def _touch(mechanism: Mechanism, distance: float | None) -> float:
+    touch = mechanism.slider.touch if distance is None else distance
     if touch is None:
         raise InputError(
             'a touch distance is missing; give it as an input, or in the job [mechanism] slider = { mass = "80 kg", '
@@ -109,8 +109,8 @@ def _touch(mechanism: Mechanism, given: float | None) -> float:
     return touch
 
 
-def _torque(mechanism: Mechanism, linkage: Linkage, given: float | None) -> float:
-    torque = float(PEAK_TORQUE.evaluate(mechanism, row_of(linkage)).values[0]) if given is None else given
+def _torque(mechanism: Mechanism, linkage: Linkage, rated: float | None) -> float:
+    torque = float(PEAK_TORQUE.evaluate(mechanism, row_of(linkage)).values[0]) if rated is None else rated
     if not torque > 0.0:
         raise InputError(
             "the press force needs a torque, but the peak torque of this design is zero; give a rated torque, such as "
@@ -144,50 +144,50 @@ def _require_stroke(distance: float, stroke: float) -> None:
 def blocks(numbers: Press) -> list[Block]:
     """Return the numbers for people."""
     origin = "the peak torque of this design" if numbers["torque_is_peak_of_design"] else ""
-    shown: list[NamedNumber] = [
+    lines: list[NamedNumber] = [
         named_number(numbers, "rated_torque_Nm", origin),
         named_number(numbers, "touch_distance_mm", f"before the {numbers['dead_centre']} dead centre"),
         named_number(numbers, "touch_force_N", "available from the rated torque at the touch distance"),
         named_number(numbers, "work_J", "available from the rated torque between touch and dead centre"),
     ]
     if numbers["touch_speed_m_s"] is not None:
-        shown.append(named_number(numbers, "touch_speed_m_s", ""))
+        lines.append(named_number(numbers, "touch_speed_m_s", ""))
     if numbers["dwell_distance_mm"] is not None:
-        shown += [
+        lines += [
             named_number(numbers, "dwell_distance_mm", "on both sides of the dead centre"),
             named_number(numbers, "dwell_angle_deg", ""),
         ]
     if numbers["dwell_time_s"] is not None:
-        shown.append(named_number(numbers, "dwell_time_s", ""))
+        lines.append(named_number(numbers, "dwell_time_s", ""))
     columns = {
         "distances_mm": column("before the dead centre", LENGTH),
         "angles_deg": column("crank angle to it", ANGLE),
         "forces_N": column("force", FORCE),
         "speeds_m_s": column("slider speed", SPEED),
     }
-    known = [key for key, value in numbers.items() if value is not None]
-    there = {key: head for key, head in columns.items() if key in known}
-    rows = tuple(zip(*(recorded_all(numbers, key) for key in there), strict=True))
+    defined = [key for key, value in numbers.items() if value is not None]
+    heads = {key: head for key, head in columns.items() if key in defined}
+    rows = tuple(zip(*(recorded_all(numbers, key) for key in heads), strict=True))
     return [
-        *number_list("Press", shown),
-        Table(tuple(there.values()), rows, ruled=True),
+        *number_list("Press", lines),
+        Table(tuple(heads.values()), rows, ruled=True),
         note("Static forces, without friction and inertia."),
     ]
 
 
 def figure(
     mechanism: Mechanism, linkage: Linkage, *, touch_distance: float | None = None, rated_torque: float | None = None
-) -> Sheet:
+) -> PanelFigure:
     """Return available force and slider speed over the distance before the dead centre."""
     touch, torque = _touch(mechanism, touch_distance), _torque(mechanism, linkage, rated_torque)
     distances = touch * np.arange(1, _SAMPLES + 1) / _SAMPLES
     _, travels = _angles_before_dead_centre(mechanism, linkage, distances)
-    shown = slice(_SAMPLES // _ROWS - 1, None)  # nearer, the force goes to infinity
-    forces = Line("", distances[shown], (torque / travels)[shown])
+    drawn = slice(_SAMPLES // _ROWS - 1, None)  # nearer, the force goes to infinity
+    forces = Line("", distances[drawn], (torque / travels)[drawn])
     panels = [Panel("available force", _CAPTION, (forces,), FORCE, LENGTH)]
     speed = _speed(mechanism)
     if speed:
-        speeds = Line("", distances[shown], (speed * travels)[shown])
+        speeds = Line("", distances[drawn], (speed * travels)[drawn])
         panels.append(Panel("slider speed", _CAPTION, (speeds,), SPEED, LENGTH))
     subtitle = f"before the {mechanism.slider.dead_centre} dead centre, static, without friction"
-    return Sheet("Press", subtitle, tuple(panels), width=6.4, height=2.6)
+    return PanelFigure("Press", subtitle, tuple(panels), width=6.4, height=2.6)

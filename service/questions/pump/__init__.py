@@ -1,5 +1,5 @@
 """What a pump or compressor delivers: numbers, text and figure."""
 
-from ..question import Question
+from ..design_question import DesignQuestion
 
-QUESTION = Question(__name__, 44, "delivered flow of pumps and compressors, its ripple, pressure torque")
+QUESTION = DesignQuestion(__name__, 44, "delivered flow of pumps and compressors, its ripple, pressure torque")

@@ -20,9 +20,9 @@ from ....objectives.flow import FLOW, FLOW_RIPPLE, pumps_of
 from ....objectives.kinds import TORQUE, VOLUME_FLOW
 from ....objectives.peak_torque import PEAK_TORQUE
 from ....objectives.quantity import Quantity
-from ...figures.sheets import FAINT, Line, Sheet, over_turn, turn
+from ...figures.panel_figure import FAINT, Line, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, named_number, number_list
-from ..answers import Note, Record
+from ..answer_types import Note, Record
 from ..peaks import row_of
 from ..static_forces.analysis import massless
 
@@ -54,8 +54,8 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Delivery:
     }
 
 
-def _value(of: Quantity, mechanism: Mechanism, linkage: Linkage) -> float:
-    return float(of.evaluate(mechanism, row_of(linkage)).values[0])
+def _value(quantity: Quantity, mechanism: Mechanism, linkage: Linkage) -> float:
+    return float(quantity.evaluate(mechanism, row_of(linkage)).values[0])
 
 
 def _is_even(mechanism: Mechanism) -> bool:
@@ -86,22 +86,24 @@ def blocks(numbers: Delivery) -> list[Block]:
         "mean_torque_Nm": "from the pressures only",
         "peak_torque_Nm": "from the pressures only",
     }
-    known = [key for key, value in numbers.items() if value is not None]
-    shown = [named_number(numbers, key, remark) for key, remark in remarks.items() if key in known]
-    return number_list("Delivery", shown)
+    defined = [key for key, value in numbers.items() if value is not None]
+    lines = [named_number(numbers, key, remark) for key, remark in remarks.items() if key in defined]
+    return number_list("Delivery", lines)
 
 
-def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
+def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return the flow of each cylinder and of all together, of a liquid, and the pressure torque."""
     shaft = mechanism if mechanism.arrangement else replace(mechanism, arrangement=Arrangement(phases=(0.0,)))
     alone = _pressures(shaft)
-    theta = turn(multi_cylinder_breakpoints(alone, linkage))
+    theta = sampled_turn(multi_cylinder_breakpoints(alone, linkage))
     degrees, panels = np.degrees(theta), []
     if _is_even(mechanism):
-        each = _flows(shaft, linkage, theta)
-        single = [Line("each" if k == 0 else "", degrees, own, FAINT) for k, own in enumerate(each) if len(each) > 1]
-        together = Line("together", degrees, np.sum(each, axis=0))
-        panels.append(over_turn("liquid flow", *single, together, kind=VOLUME_FLOW))
+        flows = _flows(shaft, linkage, theta)
+        single = [
+            Line("each" if k == 0 else "", degrees, flow, FAINT) for k, flow in enumerate(flows) if len(flows) > 1
+        ]
+        together = Line("together", degrees, np.sum(flows, axis=0))
+        panels.append(crank_angle_panel("liquid flow", *single, together, kind=VOLUME_FLOW))
     torque = multi_cylinder_curves(alone, linkage, theta).torque
-    panels.append(over_turn("pressure torque", Line("", degrees, torque), kind=TORQUE))
-    return Sheet("Delivery", "", tuple(panels), width=6.4, height=2.4, stacked=True)
+    panels.append(crank_angle_panel("pressure torque", Line("", degrees, torque), kind=TORQUE))
+    return PanelFigure("Delivery", "", tuple(panels), width=6.4, height=2.4, stacked=True)

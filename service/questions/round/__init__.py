@@ -1,9 +1,9 @@
 """The best designs of round numbers near one of a front: numbers and text."""
 
-from ..plain_input import Plain
-from ..wider import WiderQuestion
+from ..front_or_job_question import FrontOrJobQuestion
+from ..typed_input import TypedInput
 
-QUESTION = WiderQuestion(
+QUESTION = FrontOrJobQuestion(
     package=__name__,
     subject="front",
     row="must",
@@ -19,7 +19,7 @@ QUESTION = WiderQuestion(
     a little and lose clearly less. If no design meets every requirement, lists the nearest ones with what each misses
     and by how much.""",
     inputs=(
-        Plain(
+        TypedInput(
             "to",
             type=list[str],
             help='Step of crank, rod and offset, such as "0.5 mm" or "1/32 in", or of one variable: "rod=1 mm". May '
@@ -30,7 +30,7 @@ QUESTION = WiderQuestion(
             limits={"min_length": 1, "max_length": 50},
             sent=["0.5 mm", "rod=1 mm"],
         ),
-        Plain(
+        TypedInput(
             "allow",
             type=list[str],
             help='REQUIREMENT=AMOUNT by which designs may miss the requirement, such as "stroke=0.1 mm". May be '
@@ -41,7 +41,7 @@ QUESTION = WiderQuestion(
             limits={"max_length": 50},
             sent=["stroke=0.1 mm"],
         ),
-        Plain(
+        TypedInput(
             "count",
             type=int,
             help="Maximum number of designs to list.",

@@ -15,12 +15,12 @@ from ....objectives.units import quote
 from ....optimise.front.progress import stage_text
 from ....optimise.front.rounded import Rounded, drop_conversion_rounding
 from ...designs.columns import find_column
-from ...designs.selection import value_of
-from ...designs.shown_units import record_in
+from ...designs.display_units import record_in
+from ...designs.selection import parse_value
 from ...render.blocks import Block, Phrase, Sentence, Table, Text, Value, column, heading, joined, recorded, words
 from ..design_table import title_and_unit
-from ..plain_input import Plain, texts_by_name
-from ..wider import Answer, Watch
+from ..front_or_job_question import Answer, SearchListener
+from ..typed_input import TypedInput, texts_by_name
 from . import QUESTION
 
 if TYPE_CHECKING:
@@ -28,15 +28,15 @@ if TYPE_CHECKING:
     from ....optimise.front.rounding_search import Stage
     from ....optimise.problem.problem import Problem
 
-_TO, _ALLOW = (one for one in QUESTION.inputs if isinstance(one, Plain) and one.example)
+_TO, _ALLOW = (one for one in QUESTION.inputs if isinstance(one, TypedInput) and one.example)
 
 
-def answer(front: ParetoFront, *, row: int, watch: Watch, words: Mapping[str, str], **inputs: Any) -> Answer:
+def answer(front: ParetoFront, *, row: int, watch: SearchListener, words: Mapping[str, str], **inputs: Any) -> Answer:
     """Return the rounded neighbours of a design. Raises as `search` does."""
     for at in search(front, row, words, **inputs):
         if isinstance(at, Answer):
             return at
-        watch.tell(stage_text(vars(at)))
+        watch.report(stage_text(vars(at)))
     raise AssertionError("the search ends with its answer")
 
 
@@ -61,15 +61,15 @@ def search(
         yield _answered(at, row) if isinstance(at, Rounded) else at
 
 
-def _answered(found: Rounded, row: int) -> Answer:
-    record = _record(found)
+def _answered(rounded: Rounded, row: int) -> Answer:
+    record = _record(rounded)
     return Answer(
-        record=lambda units: _record_in(units, record, found),
-        blocks=_blocks(found, record, row) if len(found) else [],
-        met=found.met,
-        message=found.message,
-        notes=found.notes,
-        found=found,
+        record=lambda units: _record_in(units, record, rounded),
+        blocks=_blocks(rounded, record, row) if len(rounded) else [],
+        is_satisfied=rounded.met,
+        message=rounded.message,
+        notes=rounded.notes,
+        search_result=rounded,
     )
 
 
@@ -82,10 +82,10 @@ def steps_of(to: Sequence[str], part: Problem, key: str) -> dict[str, float]:
     kinds = dict.fromkeys(DIMENSIONS, LENGTH)
     names = {name: name for name in DIMENSIONS} | {f"{name}_mm": name for name in DIMENSIONS}
     for item in part.mechanism.varying:
-        of = varying_column(item)[0]
+        column_key = varying_column(item)[0]
         kinds[item.name] = kind_of(unit_of(item.paths[0]))
-        names |= {item.name: item.name, of: item.name, split_unit(of)[0]: item.name}
-    found: dict[str, float] = {}
+        names |= {item.name: item.name, column_key: item.name, split_unit(column_key)[0]: item.name}
+    steps: dict[str, float] = {}
     for text in to:
         name, equals, value = (piece.strip() for piece in text.rpartition("="))
         name = metric_key(name)
@@ -93,14 +93,14 @@ def steps_of(to: Sequence[str], part: Problem, key: str) -> dict[str, float]:
             raise InputError(f"{key} must be STEP or NAME=STEP; got {quote(text)}; write it like {_TO.example}")
         if equals and name not in names:
             raise InputError(f"{key} is for {', '.join(kinds)}; got {name!r}; name one of them, like {_TO.example}")
-        one = names[name] if equals else ""
-        if one in found:
+        variable = names[name] if equals else ""
+        if variable in steps:
             raise InputError(
-                f"{key} may give each step only once; got {one or 'that of all lengths'} twice; leave out one"
+                f"{key} may give each step only once; got {variable or 'that of all lengths'} twice; leave out one"
             )
-        found[one] = _step(value, kinds[one] if one else LENGTH, key)
-    every = found.pop("", None)
-    return (dict.fromkeys(DIMENSIONS, every) if every is not None else {}) | found
+        steps[variable] = _step(value, kinds[variable] if variable else LENGTH, key)
+    every = steps.pop("", None)
+    return (dict.fromkeys(DIMENSIONS, every) if every is not None else {}) | steps
 
 
 def _step(text: str, kind: Kind, key: str) -> float:
@@ -108,69 +108,75 @@ def _step(text: str, kind: Kind, key: str) -> float:
     from ....optimise.job.grids import step_of
 
     small = SMALL_LENGTH if kind is LENGTH else kind
-    return step_of(text, lambda given: value_of(key, str(given), small, sign="positive"))
+    return step_of(text, lambda given: parse_value(key, str(given), small, sign="positive"))
 
 
-def _record(found: Rounded) -> dict[str, Any]:
+def _record(rounded: Rounded) -> dict[str, Any]:
     """Return the answer as JSON has it, metric."""
-    part = found.problem
-    given: dict[str, Any] = {
-        name: factor * value for (name, factor), value in zip(found.names.values(), found.given.tolist(), strict=True)
+    part = rounded.problem
+    original: dict[str, Any] = {
+        name: factor * value
+        for (name, factor), value in zip(rounded.names.values(), rounded.given.tolist(), strict=True)
     }
-    for wanted, value in zip(part.objectives, found.before.tolist(), strict=True):
-        of = part.quantity(wanted.quantity)
-        given[of.field] = value * of.unit.factor
-    allowed = {part.quantity(name): value for name, value in found.allowed.items()}
+    for objective, value in zip(part.objectives, rounded.before.tolist(), strict=True):
+        quantity = part.quantity(objective.quantity)
+        original[quantity.field] = value * quantity.unit.factor
+    allowed = {part.quantity(name): value for name, value in rounded.allowed.items()}
     rows = [
-        {name: values[row].item() for name, values in found.columns.items()}
+        {name: values[row].item() for name, values in rounded.columns.items()}
         | {
-            "tightest": found.tightest(row),
-            "missed": found.missed(row),
-            "misses": [dict(vars(miss)) for miss in found.misses(row)],
+            "tightest": rounded.tightest(row),
+            "missed": rounded.missed(row),
+            "misses": [dict(vars(miss)) for miss in rounded.misses(row)],
         }
-        for row in range(len(found))
+        for row in range(len(rounded))
     ]
     return {
-        "met": found.met,
-        "message": found.message,
-        "steps": {found.names[name][0]: found.names[name][1] * step for name, step in found.steps.items()},
-        "allowed": {of.field: drop_conversion_rounding(value * of.unit.factor) for of, value in allowed.items()},
-        "within_steps": found.reach,
-        "judged": found.judged,
-        "kept": found.kept,
-        "given": given,
+        "met": rounded.met,
+        "message": rounded.message,
+        "steps": {rounded.names[name][0]: rounded.names[name][1] * step for name, step in rounded.steps.items()},
+        "allowed": {
+            quantity.field: drop_conversion_rounding(value * quantity.unit.factor)
+            for quantity, value in allowed.items()
+        },
+        "within_steps": rounded.reach,
+        "judged": rounded.judged,
+        "kept": rounded.kept,
+        "given": original,
         "designs": rows,
-        "notes": list(found.notes),
+        "notes": list(rounded.notes),
     }
 
 
-def _record_in(units: System, record: dict[str, Any], found: Rounded) -> dict[str, Any]:
+def _record_in(units: System, record: dict[str, Any], rounded: Rounded) -> dict[str, Any]:
     """Return the answer in a system of units, its round numbers as they are written there."""
-    told: dict[str, Any] = record_in(deepcopy(record), units) | {"message": found.message_in(units)}
-    keys = [key_in(found.names[name][0], units)[0] for name in found.steps]
-    for row in (told["steps"], *told["designs"]):
+    converted: dict[str, Any] = record_in(deepcopy(record), units) | {"message": rounded.message_in(units)}
+    keys = [key_in(rounded.names[name][0], units)[0] for name in rounded.steps]
+    for row in (converted["steps"], *converted["designs"]):
         row.update({key: drop_conversion_rounding(row[key]) for key in keys})
-    told["allowed"] = {key: drop_conversion_rounding(value) for key, value in told["allowed"].items()}
-    for miss in (miss for row in told["designs"] for miss in row["misses"]):
+    converted["allowed"] = {key: drop_conversion_rounding(value) for key, value in converted["allowed"].items()}
+    for miss in (miss for row in converted["designs"] for miss in row["misses"]):
         miss["unit"], factor = shown_in(miss["unit"], units)
         miss.update(amount=factor * miss["amount"], allowed=drop_conversion_rounding(factor * miss["allowed"]))
-    return told
+    return converted
 
 
-def _blocks(found: Rounded, record: dict[str, Any], row: int) -> list[Block]:
+def _blocks(rounded: Rounded, record: dict[str, Any], row: int) -> list[Block]:
     """Return the designs as the columns of a table, and what each misses or nearly does."""
-    given, designs, steps = record["given"], record["designs"], record["steps"]
-    told = [
-        words("{title} {step}", title=find_column(key, given).title, step=recorded(steps, key, digits=4))
+    original, designs, steps = record["given"], record["designs"], record["steps"]
+    step_texts = [
+        words("{title} {step}", title=find_column(key, original).title, step=recorded(steps, key, digits=4))
         for key in steps
     ]
-    objectives = {(of := found.problem.quantity(item.quantity)).field: of for item in found.problem.objectives}
+    objectives = {
+        (quantity := rounded.problem.quantity(item.quantity)).field: quantity for item in rounded.problem.objectives
+    }
     rows: list[tuple[Text, ...]] = []
-    for key in given:
-        title, unit = title_and_unit(key, given)
+    for key in original:
+        title, unit = title_and_unit(key, original)
         if key in objectives:
             title = objectives[key].title  # of a formula as it is written
-        rows.append((title, unit, recorded(given, key), *(recorded(design, key) for design in designs)))
+        rows.append((title, unit, recorded(original, key), *(recorded(design, key) for design in designs)))
         if key in objectives:
             stem = objectives[key].stem
             changes = (recorded(design, f"change_{key}", digits=3, sign=True) for design in designs)
@@ -180,15 +186,15 @@ def _blocks(found: Rounded, record: dict[str, Any], row: int) -> list[Block]:
     rows.append(("greatest loss", range_, "", *(_format_loss(design["loss_percent"]) for design in designs)))
     heads = (column("quantity", left=True), column("unit", left=True), column("given"))
     numbers = tuple(column(str(number)) for number in range(1, len(designs) + 1))
-    name = found.problem.name
+    name = rounded.problem.name
     return [
-        heading(f"{{name}}: design {row + 1}, rounded: {{steps}}", name=name, steps=joined(told)),
-        Table((*heads, *numbers), tuple(rows), ruled=True, apart=True),
+        heading(f"{{name}}: design {row + 1}, rounded: {{steps}}", name=name, steps=joined(step_texts)),
+        Table((*heads, *numbers), tuple(rows), ruled=True, space_before=True),
         *(
-            Sentence(words(f"{number}: {{requirements}}", requirements=_requirements(design, found)))
+            Sentence(words(f"{number}: {{requirements}}", requirements=_requirements(design, rounded)))
             for number, design in enumerate(designs, 1)
         ),
-        *([Sentence(Phrase(found.message, found.message_in("inch")), apart=True)] if found.met else []),
+        *([Sentence(Phrase(rounded.message, rounded.message_in("inch")), space_before=True)] if rounded.met else []),
     ]
 
 
@@ -196,23 +202,25 @@ def _format_loss(value: float) -> Value:
     return Value(value if math.isfinite(value) else None, digits=2, sign=True, missing="-")
 
 
-def _requirements(design: Mapping[str, Any], found: Rounded) -> Text:
+def _requirements(design: Mapping[str, Any], rounded: Rounded) -> Text:
     """Return in words what a design misses, or which requirement is tightest."""
     if design["misses"]:
-        missed = joined([_format_miss(miss, found.problem) for miss in design["misses"]], " and ")
+        missed = joined([_format_miss(miss, rounded.problem) for miss in design["misses"]], " and ")
         return words("misses {missed}", missed=missed)
     if design["tightest"] is None:
         return "meets every requirement"
-    of = found.problem.quantity(design["tightest"])
-    if any(item.equality for item in found.constraints if item.quantity == design["tightest"]):
-        return f"tightest is {of.title}, which is required exactly"
-    slack = recorded(design, f"slack_{of.field}", digits=4)
-    return words("tightest is {title}, slack {slack}", title=of.title, slack=slack)
+    quantity = rounded.problem.quantity(design["tightest"])
+    if any(item.equality for item in rounded.constraints if item.quantity == design["tightest"]):
+        return f"tightest is {quantity.title}, which is required exactly"
+    slack = recorded(design, f"slack_{quantity.field}", digits=4)
+    return words("tightest is {title}, slack {slack}", title=quantity.title, slack=slack)
 
 
 def _format_miss(miss: Mapping[str, Any], problem: Problem) -> Text:
-    of = problem.quantity(miss["quantity"])
-    amount, most = (Value(miss[name] / of.unit.factor, of.kind, 4) for name in ("amount", "allowed"))
-    allowed = words("; {most} is allowed", most=most) if miss["allowed"] else ""
+    quantity = problem.quantity(miss["quantity"])
+    amount, allowance = (Value(miss[name] / quantity.unit.factor, quantity.kind, 4) for name in ("amount", "allowed"))
+    allowed = words("; {most} is allowed", most=allowance) if miss["allowed"] else ""
     side = miss["side"]
-    return words("{title} by {amount} ({side}{allowed})", title=of.title, amount=amount, side=side, allowed=allowed)
+    return words(
+        "{title} by {amount} ({side}{allowed})", title=quantity.title, amount=amount, side=side, allowed=allowed
+    )

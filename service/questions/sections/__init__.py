@@ -1,12 +1,12 @@
 """Sections of crank and rod of least mass: numbers and text."""
 
-from ..question import Command, Question
+from ..design_question import DesignQuestion, QuestionCommand
 
-QUESTION = Question(
+QUESTION = DesignQuestion(
     __name__,
     3,
     shows="crank and rod as bars of least mass within the limits of stress",
-    command=Command(
+    command=QuestionCommand(
         help="""Size crank and rod of one design as rectangular bars with least mass.
 
     The bars satisfy the stress, fatigue, buckling and bearing limits in the job's [sections] under all forces of the

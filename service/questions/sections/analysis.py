@@ -11,7 +11,7 @@ from ....model.machine.mechanism import Mechanism
 from ....optimise.problem.problem import Problem
 from ....optimise.sizing.sections import size_sections
 from ...render.blocks import Block, Sentence, Table, Value, column, recorded, sentence, words
-from ..answers import Record
+from ..answer_types import Record
 
 
 class Sections(Record):
@@ -50,40 +50,40 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, problem: Problem | None, 
             "sizing sections needs the table [sections]; this job has none; add it with a material and pins"
         )
     pins = {pin: getattr(mechanism.strength, pin) for pin in ("crank_pivot", "crank_pin", "slider_pin")}
-    found = size_sections(mechanism, linkage, mechanism.strength.material, replace(problem.sections, **pins))
+    sections = size_sections(mechanism, linkage, mechanism.strength.material, replace(problem.sections, **pins))
     crank, rod = float(linkage.crank), float(linkage.rod)
     return {
         "crank_mm": 1e3 * crank,
         "rod_mm": 1e3 * rod,
         "offset_mm": 1e3 * float(linkage.offset),
-        "crank_width_mm": 1e3 * found.crank.width,
-        "crank_depth_mm": 1e3 * found.crank.depth,
-        "rod_width_mm": 1e3 * found.rod.width,
-        "rod_depth_mm": 1e3 * found.rod.depth,
-        "crank_mass_kg": found.crank.mass(crank),
-        "rod_mass_kg": found.rod.mass(rod),
-        "mass_kg": found.mass,
-        "settled": found.is_converged,
-        "iterations": found.iterations,
-        "utilisation": found.utilisation,
-        "mass_percent_per_percent": found.sensitivity,
+        "crank_width_mm": 1e3 * sections.crank.width,
+        "crank_depth_mm": 1e3 * sections.crank.depth,
+        "rod_width_mm": 1e3 * sections.rod.width,
+        "rod_depth_mm": 1e3 * sections.rod.depth,
+        "crank_mass_kg": sections.crank.mass(crank),
+        "rod_mass_kg": sections.rod.mass(rod),
+        "mass_kg": sections.mass,
+        "settled": sections.is_converged,
+        "iterations": sections.iterations,
+        "utilisation": sections.utilisation,
+        "mass_percent_per_percent": sections.sensitivity,
     }
 
 
 def blocks(numbers: Sections) -> list[Block]:
     """Return the numbers for people."""
 
-    def size(of: str) -> Sentence:
-        sides = {side: recorded(numbers, f"{of}_{side}_mm", digits=4) for side in ("width", "depth")}
-        return sentence(f"{of}: width {{width}}, depth {{depth}}", **sides)
+    def size(bar: str) -> Sentence:
+        sides = {side: recorded(numbers, f"{bar}_{side}_mm", digits=4) for side in ("width", "depth")}
+        return sentence(f"{bar}: width {{width}}, depth {{depth}}", **sides)
 
-    settled = "" if numbers["settled"] else "; not converged"
-    together = f"mass of both: {{mass}}, after {numbers['iterations']} iterations{settled}"
+    remark = "" if numbers["settled"] else "; not converged"
+    together = f"mass of both: {{mass}}, after {numbers['iterations']} iterations{remark}"
     rows = []
-    for name, used in numbers["utilisation"].items():
+    for name, utilisation in numbers["utilisation"].items():
         rate = Value(numbers["mass_percent_per_percent"][name], digits=3)
         saved = words("{rate} % of mass", rate=rate) if (rate.number or 0.0) > _ACTIVE else ""
-        rows.append((name, Value(100.0 * used, digits=4), saved))
+        rows.append((name, Value(100.0 * utilisation, digits=4), saved))
     columns = column("limit", left=True), column("utilisation, %"), column("raising it by 1 % saves")
     mass = recorded(numbers, "mass_kg", digits=5)
     return [size("crank"), size("rod"), sentence(together, mass=mass), Table(columns, tuple(rows))]

@@ -1,5 +1,5 @@
 """Sensitivity to the dimensions: numbers, text and figure."""
 
-from ..question import Question
+from ..design_question import DesignQuestion
 
-QUESTION = Question(__name__, 60, "sensitivity of every quantity to every dimension")
+QUESTION = DesignQuestion(__name__, 60, "sensitivity of every quantity to every dimension")

@@ -15,7 +15,7 @@ from ....objectives.registry import QUANTITIES
 from ....objectives.tables.sensitivity import sensitivity
 from ...render.blocks import Block, Table, Text, Unit, Value, column, heading, note, words
 from ...runs.result import json_ready, rows_of
-from ..answers import Keys, Note, Record
+from ..answer_types import Keys, Note, Record
 from ..peaks import row_of
 
 if TYPE_CHECKING:
@@ -67,11 +67,13 @@ def in_units(numbers: Sensitivity, system: System) -> dict[str, Any]:
 
     def entry(row: dict[str, Any]) -> dict[str, Any]:
         unit, factor = shown_in(row["unit"], system)
-        found: dict[str, Any] = {}
+        converted: dict[str, Any] = {}
         for key, value in row.items():
             scale = factor / length if "_per_mm" in key else factor if "tolerance" in key or key == "value" else None
-            found[key.replace("_per_mm", f"_per_{per}")] = value if scale is None or value is None else scale * value
-        return found | {"unit": unit}
+            converted[key.replace("_per_mm", f"_per_{per}")] = (
+                value if scale is None or value is None else scale * value
+            )
+        return converted | {"unit": unit}
 
     return {"quantities": [entry(row) for row in numbers["quantities"]]}
 
@@ -79,8 +81,8 @@ def in_units(numbers: Sensitivity, system: System) -> dict[str, Any]:
 def blocks(numbers: Sensitivity) -> list[Block]:
     """Return the numbers for people: change for 1 mm or 1 in more, in percent per percent, and for the tolerances."""
     rows: list[tuple[Text, ...]] = []
-    within: list[tuple[Text, ...]] = []
-    kinks, plain = False, [*_LEFT_OUT, *(name for name, of in QUANTITIES.items() if of.plain)]
+    tolerance_rows: list[tuple[Text, ...]] = []
+    kinks, plain = False, [*_LEFT_OUT, *(name for name, quantity in QUANTITIES.items() if quantity.plain)]
     for row in numbers["quantities"]:
         slopes = [row[f"{name}_per_mm{side}"] for name in DIMENSIONS for side in ("", "_below")]
         if row["quantity"] in plain or row["value"] is None or (row["value"] == 0.0 and not any(slopes)):
@@ -96,15 +98,22 @@ def blocks(numbers: Sensitivity) -> list[Block]:
         rows.append((row["title"], value, Unit(kind), *cells))
         if any(row[f"{name}_tolerance"] for name in DIMENSIONS):
             changes = (_derivative(row, f"{name}_tolerance", kind, 4) for name in DIMENSIONS)
-            within.append((row["title"], *changes, Unit(kind)))
+            tolerance_rows.append((row["title"], *changes, Unit(kind)))
     heads = [head for name in DIMENSIONS for head in (column(name), column())]
     columns = column("quantity", left=True), column("value"), column("unit", left=True), *heads
     title = "Change of each quantity if a dimension grows by 1 {unit} (and in % if it grows by 1 %)"
-    found: list[Block] = [heading(title, unit=Unit(LENGTH)), Table(columns, tuple(rows))]
-    if within:
+    shown_blocks: list[Block] = [heading(title, unit=Unit(LENGTH)), Table(columns, tuple(rows))]
+    if tolerance_rows:
         columns = column("quantity", left=True), *map(column, DIMENSIONS), column("unit", left=True)
-        found += [heading("Change of each quantity for the tolerance of a dimension"), Table(columns, tuple(within))]
-    return [*found, note("a / b: at a kink, the derivative below and above the dimension")] if kinks else found
+        shown_blocks += [
+            heading("Change of each quantity for the tolerance of a dimension"),
+            Table(columns, tuple(tolerance_rows)),
+        ]
+    return (
+        [*shown_blocks, note("a / b: at a kink, the derivative below and above the dimension")]
+        if kinks
+        else shown_blocks
+    )
 
 
 def _per_length(kind: Kind) -> Kind:
@@ -123,10 +132,10 @@ def _derivative(row: dict[str, Any], key: str, kind: Kind, digits: int) -> Text:
             None if number is None else number / kind.metric.factor, kind, digits, sign=True, bare=True, missing="-"
         )
 
-    below, above = row[f"{key}_below"], row[key]
-    if below is None or above is None or abs(above - below) <= _SAME * max(abs(above), abs(below)):
-        return value(above)
-    return words("{below} / {above}", below=value(below), above=value(above))
+    lower, upper = row[f"{key}_below"], row[key]
+    if lower is None or upper is None or abs(upper - lower) <= _SAME * max(abs(upper), abs(lower)):
+        return value(upper)
+    return words("{below} / {above}", below=value(lower), above=value(upper))
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Callable[[System], Figure]:

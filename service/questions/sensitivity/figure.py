@@ -13,7 +13,7 @@ from ....model.machine.mechanism import Mechanism
 from ....model.swing.swing import Swing
 from ....objectives.kinds import System
 from ....objectives.tables.sensitivity import sensitivity
-from ...figures.style import BLUE, FRAME, INK, MUTED, SMALL, TEXT, VERMILION, dress, heading, new_figure, place
+from ...figures.style import BLUE, FRAME, INK, MUTED, SMALL, TEXT, VERMILION, add_axes, heading, new_figure, style_axes
 from ...render.numerals import shown
 from ..peaks import row_of
 
@@ -36,16 +36,16 @@ def tornado_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing | None = N
             table[f"offset_percent{side}"] = 100.0 * table[f"offset_per_mm{side}"] / sizes
     rows = table[["title", *columns]].dropna(subset=columns, how="all")
     rows.attrs["offset per mm"] = float(linkage.offset) == 0.0
-    most = rows[columns].abs().max(axis=1).sort_values(ascending=False, kind="stable")
-    return rows.loc[most.index].reset_index(drop=True)
+    largest = rows[columns].abs().max(axis=1).sort_values(ascending=False, kind="stable")
+    return rows.loc[largest.index].reset_index(drop=True)
 
 
-def tornado_figure(rows: pd.DataFrame, system: System = "metric", *, width: float = 10.6, most: int = 1000) -> Figure:
+def tornado_figure(rows: pd.DataFrame, system: System = "metric", *, width: float = 10.6, limit: int = 1000) -> Figure:
     """Return the figure in a system of units: a panel for each dimension, a bar for each quantity.
 
-    width: inches. most: quantities that are drawn, of those that change the most.
+    width: inches. limit: quantities that are drawn, of those that change the most.
     """
-    left_out, rows = len(rows) - most, rows.head(most)
+    left_out, rows = len(rows) - limit, rows.head(limit)
     step, millimetres = _STEPS[system]
     if rows.attrs.get("offset per mm", False):
         rows = rows.assign(**{name: millimetres * rows[name] for name in ("offset_percent", "offset_percent_below")})
@@ -55,17 +55,17 @@ def tornado_figure(rows: pd.DataFrame, system: System = "metric", *, width: floa
     note = "change in % if each dimension grows by 1 % (the offset: its size); "
     note += f"{left_out} others change less" if left_out > 0 else "at a kink: derivatives below and above"
     heading(figure, "Sensitivity", note)
-    each = (width - 2.56) / len(DIMENSIONS)
+    panel_width = (width - 2.56) / len(DIMENSIONS)
     columns = [f"{name}_percent" for name in DIMENSIONS]
-    both = [*columns, *(f"{column}_below" for column in columns)]
-    reach = 1.5 * float(np.nanmax(np.abs(rows[both].to_numpy()))) if len(rows) else 1.0
-    reach = reach or 1.0
+    all_columns = [*columns, *(f"{column}_below" for column in columns)]
+    half_width = 1.5 * float(np.nanmax(np.abs(rows[all_columns].to_numpy()))) if len(rows) else 1.0
+    half_width = half_width or 1.0
     places = np.arange(count)[::-1]
     for n, (name, column) in enumerate(zip(DIMENSIONS, columns, strict=True)):
-        panel = place(figure, 2.55 + each * n, 0.55, each - 0.18, height - 1.5)
-        dress(panel)
+        panel = add_axes(figure, 2.55 + panel_width * n, 0.55, panel_width - 0.18, height - 1.5)
+        style_axes(panel)
         panel.grid(False, axis="y")
-        panel.set_xlim(-reach, reach)
+        panel.set_xlim(-half_width, half_width)
         panel.set_ylim(-0.7, count - 0.3)
         panel.set_yticks(places, list(rows["title"]) if len(rows) else [""])
         panel.tick_params(labelleft=n == 0, left=False)
@@ -73,26 +73,26 @@ def tornado_figure(rows: pd.DataFrame, system: System = "metric", *, width: floa
         per_mm = name == "offset" and rows.attrs.get("offset per mm", False)
         panel.set_title(f"{name}, for {step}" if per_mm else name, fontsize=TEXT, color=INK, pad=4)
         panel.set_xlabel("%", fontsize=SMALL)
-        for at, above, below in zip(places, rows[column], rows[f"{column}_below"], strict=False):
-            if np.isnan(above):
+        for at, upper, lower in zip(places, rows[column], rows[f"{column}_below"], strict=False):
+            if np.isnan(upper):
                 continue
-            if abs(above - below) <= 1e-9 * max(abs(above), abs(below)):
-                _bar(panel, at, 0.62, float(above), reach)
+            if abs(upper - lower) <= 1e-9 * max(abs(upper), abs(lower)):
+                _bar(panel, at, 0.62, float(upper), half_width)
             else:  # a kink: below its own half of the row
-                _bar(panel, at - 0.19, 0.3, float(below), reach, "below ")
-                _bar(panel, at + 0.19, 0.3, float(above), reach, "above ")
+                _bar(panel, at - 0.19, 0.3, float(lower), half_width, "below ")
+                _bar(panel, at + 0.19, 0.3, float(upper), half_width, "above ")
         if rows[column].isna().all():
             panel.text(0.0, 0.5 * (count - 1), f"no {name}:\nnot defined", ha="center", fontsize=SMALL, color=MUTED)
     return figure
 
 
-def _bar(panel: Axes, at: float, height: float, value: float, reach: float, side: str = "") -> None:
+def _bar(panel: Axes, at: float, height: float, value: float, half_width: float, side: str = "") -> None:
     up = value >= 0.0
     panel.barh(at, value, height=height, color=BLUE if up else "white", edgecolor=BLUE if up else VERMILION)
     text = side + (f"{'+' if up else ''}{shown(value, 3)}" if abs(value) >= 5e-4 else "0")
     size = SMALL - (2.5 if side else 1.0)
     panel.text(
-        value + (0.02 if up else -0.02) * reach,
+        value + (0.02 if up else -0.02) * half_width,
         at,
         text,
         ha="left" if up else "right",

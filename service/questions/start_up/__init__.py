@@ -1,5 +1,5 @@
 """Start from rest: numbers, text and figure."""
 
-from ..question import Question
+from ..design_question import DesignQuestion
 
-QUESTION = Question(__name__, 90, "start from rest under [drive], steady running")
+QUESTION = DesignQuestion(__name__, 90, "start from rest under [drive], steady running")

@@ -14,10 +14,10 @@ from ....model.transient.forward import State, simulate
 from ....model.transient.record import Transient, Verdict
 from ....model.transient.steady import SteadyRunning, steady_running
 from ....objectives.kinds import ANGULAR_SPEED, TIME, TORQUE
-from ...figures.sheets import FAINT, Line, Panel, Sheet, over_turn
+from ...figures.panel_figure import FAINT, Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import Block, Table, Unit, column, recorded, sentence
 from ...render.numerals import shown
-from ..answers import Note, Record
+from ..answer_types import Note, Record
 
 
 class SteadyNumbers(Record):
@@ -155,33 +155,33 @@ def blocks(numbers: Start) -> list[Block]:
     if steady is not None:
         lines += [(title, recorded(steady, key, digits=4)) for key, title in steady_titles.items()]
     rows = tuple((title, value, Unit(value.kind)) for title, value in lines)
-    found: list[Block] = [
+    shown_blocks: list[Block] = [
         sentence("Start from rest: {message}.", message=numbers["message"]),
         Table((column(left=True), column(), column(left=True)), rows),
     ]
     if steady is None:
-        found.append(sentence("No steady running: {reason}.", reason=numbers["why_not_steady"] or ""))
-    return found
+        shown_blocks.append(sentence("No steady running: {reason}.", reason=numbers["why_not_steady"] or ""))
+    return shown_blocks
 
 
-def figure(mechanism: Mechanism, linkage: Linkage, **options: Any) -> Sheet:
+def figure(mechanism: Mechanism, linkage: Linkage, **options: Any) -> PanelFigure:
     """Return speed and torque over time, and over a turn of steady running if there is any.
 
     options: those of `simulate`. Raises `InputError` if the mechanism has no drive.
     """
     run, running, reason = start(mechanism, linkage, **options)
     message = run.message if not reason else f"{run.message}; no steady running"
-    speed = Panel("crank speed", "time", (Line("", run.time, run.speed),), kind=ANGULAR_SPEED, along=TIME)
+    speed = Panel("crank speed", "time", (Line("", run.time, run.speed),), kind=ANGULAR_SPEED, x_kind=TIME)
     torques = (Line("motor", run.time, run.motor_torque), Line("mechanism", run.time, run.torque, FAINT))
-    torque = Panel("torque on the crank", "time", torques, kind=TORQUE, along=TIME)
+    torque = Panel("torque on the crank", "time", torques, kind=TORQUE, x_kind=TIME)
     if running is None:
-        return Sheet("Start from rest", message, (speed, torque), width=9.6, height=2.3, stacked=True)
-    angle, (speeds, motor, taken) = in_order(running, running.speed, running.motor_torque, running.torque)
+        return PanelFigure("Start from rest", message, (speed, torque), width=9.6, height=2.3, stacked=True)
+    angle, (speeds, motor, mechanism_torque) = in_order(running, running.speed, running.motor_torque, running.torque)
     note = f"fluctuation {shown(running.fluctuation, 3)}"
-    turning = over_turn("speed in steady running", Line("", angle, speeds), kind=ANGULAR_SPEED, note=note)
-    pair = (Line("", angle, motor), Line("", angle, taken, FAINT))
-    panels = (speed, turning, torque, over_turn("torque in steady running", *pair, kind=TORQUE))
-    return Sheet("Start from rest", message, panels, columns=2, width=(5.9, 3.9), height=2.3, stacked=True)
+    turning = crank_angle_panel("speed in steady running", Line("", angle, speeds), kind=ANGULAR_SPEED, note=note)
+    pair = (Line("", angle, motor), Line("", angle, mechanism_torque, FAINT))
+    panels = (speed, turning, torque, crank_angle_panel("torque in steady running", *pair, kind=TORQUE))
+    return PanelFigure("Start from rest", message, panels, columns=2, width=(5.9, 3.9), height=2.3, stacked=True)
 
 
 def in_order(running: SteadyRunning, *columns: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:

@@ -1,5 +1,5 @@
 """Forces of the loads alone, without masses: numbers, text and figure."""
 
-from ..question import Question
+from ..design_question import DesignQuestion
 
-QUESTION = Question(__name__, 10, "static forces from the loads only; mechanical advantage")
+QUESTION = DesignQuestion(__name__, 10, "static forces from the loads only; mechanical advantage")

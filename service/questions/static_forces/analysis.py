@@ -19,7 +19,7 @@ from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
 from ....model.signals.signals import Signal
 from ....objectives.kinds import ANGLE, FORCE, TORQUE
-from ...figures.sheets import Line, Sheet, over_turn
+from ...figures.panel_figure import Line, PanelFigure, crank_angle_panel
 from ...render.blocks import (
     Block,
     Table,
@@ -33,7 +33,7 @@ from ...render.blocks import (
     sentence,
     words,
 )
-from ..answers import AngleOfPeak, Note, Record
+from ..answer_types import Note, PeakAngle, Record
 from ..peaks import peak
 
 
@@ -43,14 +43,14 @@ class StaticForces(Record):
     load: str
     """What acts on the slider."""
     peak_rod_force_N: float
-    peak_rod_force_angle_deg: AngleOfPeak
+    peak_rod_force_angle_deg: PeakAngle
     peak_guide_reaction_N: float
-    peak_guide_reaction_angle_deg: AngleOfPeak
+    peak_guide_reaction_angle_deg: PeakAngle
     peak_crank_torque_Nm: float
-    peak_crank_torque_angle_deg: AngleOfPeak
+    peak_crank_torque_angle_deg: PeakAngle
     least_mechanical_advantage: float
     """Slider load over tangential crank pin force."""
-    least_mechanical_advantage_angle_deg: AngleOfPeak
+    least_mechanical_advantage_angle_deg: PeakAngle
     crank_angle_deg: list[float]
     load_N: list[float]
     rod_force_N: list[float]
@@ -69,8 +69,8 @@ def massless(mechanism: Mechanism, load: float | None = None) -> Mechanism:
 
     Without loads of its own and without one given, the load is 1 N towards the crank pivot.
     """
-    own = _own(mechanism)
-    constant = -1.0 if load is None and not own else load
+    slider_loads = _own(mechanism)
+    constant = -1.0 if load is None and not slider_loads else load
     return replace(
         mechanism,
         acceleration=0.0,
@@ -80,7 +80,7 @@ def massless(mechanism: Mechanism, load: float | None = None) -> Mechanism:
         slider_mass=0.0,
         gravity=(0.0, 0.0),
         friction=Friction(),
-        loads=own if constant is None else (StrokeForce(outward=constant, inward=constant),),
+        loads=slider_loads if constant is None else (StrokeForce(outward=constant, inward=constant),),
     )
 
 
@@ -103,9 +103,9 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None
     loads = cycle(machine, linkage, np.radians(degrees)).load
     at = static_forces(linkage, np.radians(degrees), load=loads)
     advantage = [value if math.isfinite(value) else None for value in at.mechanical_advantage.tolist()]
-    own = load is None and bool(_own(mechanism))
+    uses_job_loads = load is None and bool(_own(mechanism))
     return {
-        "load": _OWN if own else f"{-1.0 if load is None else load:g} N, constant, positive outward",
+        "load": _OWN if uses_job_loads else f"{-1.0 if load is None else load:g} N, constant, positive outward",
         "peak_rod_force_N": rod.value,
         "peak_rod_force_angle_deg": rod.degrees,
         "peak_guide_reaction_N": guide.value,
@@ -135,23 +135,23 @@ def blocks(numbers: StaticForces) -> list[Block]:
         "mechanical_advantage": column("mechanical\nadvantage"),
     }
     rows = zip(*(recorded_all(numbers, key, digits=4, missing="unbounded") for key in columns), strict=True)
-    found: list[Block] = [
+    shown_blocks: list[Block] = [
         heading("Static forces, without masses and friction ({load})", load=_load(numbers)),
         Table(tuple(columns.values()), tuple(rows), ruled=True),
     ]
-    for what, key in (
+    for force, key in (
         ("rod force", "peak_rod_force_N"),
         ("guide reaction", "peak_guide_reaction_N"),
         ("crank torque", "peak_crank_torque_Nm"),
     ):
         at = recorded(numbers, f"{key.rpartition('_')[0]}_angle_deg", decimals=2)
-        found.append(sentence(f"greatest {what} {{value}} at {{at}}", value=recorded(numbers, key), at=at))
+        shown_blocks.append(sentence(f"greatest {force} {{value}} at {{at}}", value=recorded(numbers, key), at=at))
     least = sentence(
         "least mechanical advantage {value} at {at} (slider load over tangential crank pin force)",
         value=recorded(numbers, "least_mechanical_advantage"),
         at=recorded(numbers, "least_mechanical_advantage_angle_deg", decimals=2),
     )
-    return [*found, least]
+    return [*shown_blocks, least]
 
 
 def _load(numbers: StaticForces) -> Text:
@@ -160,7 +160,7 @@ def _load(numbers: StaticForces) -> Text:
     return words("{load}, constant, positive outward", load=recorded_all(numbers, "load_N")[0])
 
 
-def figure(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None) -> Sheet:
+def figure(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None) -> PanelFigure:
     """Return forces, torque and mechanical advantage over the cycle; load as in `numbers`."""
     machine = massless(mechanism, load)
     turns = cycle_turns(machine)
@@ -174,8 +174,10 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None)
         Line("guide", degrees, at.guide_reaction, 1),
     )
     panels = (
-        over_turn("forces", *forces, kind=FORCE),
-        over_turn("crank torque", Line("", degrees, at.crank_torque), kind=TORQUE),
-        over_turn(f"mechanical advantage, up to {_MOST_ADVANTAGE:g}", Line("", degrees, advantage)),
+        crank_angle_panel("forces", *forces, kind=FORCE),
+        crank_angle_panel("crank torque", Line("", degrees, at.crank_torque), kind=TORQUE),
+        crank_angle_panel(f"mechanical advantage, up to {_MOST_ADVANTAGE:g}", Line("", degrees, advantage)),
     )
-    return Sheet("Static forces", joined([dimensions(linkage), "without masses and friction"], "; "), panels, width=8.0)
+    return PanelFigure(
+        "Static forces", joined([dimensions(linkage), "without masses and friction"], "; "), panels, width=8.0
+    )

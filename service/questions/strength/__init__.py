@@ -1,7 +1,7 @@
 """Strength of crank and rod: numbers, text and figure."""
 
-from ..question import Question
+from ..design_question import DesignQuestion
 
-QUESTION = Question(
+QUESTION = DesignQuestion(
     __name__, 48, "stresses, safety factors, pins and wear of crank and rod, and the place of greatest stress"
 )

@@ -1,11 +1,11 @@
 """Quantities over one or two parameters: numbers, text and figure."""
 
 from ....objectives.kinds import LENGTH
+from ..front_or_job_question import FrontOrJobQuestion
 from ..inputs import Input
-from ..plain_input import Plain
-from ..wider import WiderQuestion
+from ..typed_input import TypedInput
 
-QUESTION = WiderQuestion(
+QUESTION = FrontOrJobQuestion(
     package=__name__,
     subject="job",
     place=1005,
@@ -13,7 +13,7 @@ QUESTION = WiderQuestion(
 
     Where the linkage cannot rotate fully, or friction locks it, there is no value; the reason is shown instead.""",
     inputs=(
-        Plain(
+        TypedInput(
             "over",
             type=list[str],
             help='Parameter to sweep: "offset=0 mm..20 mm:5" (5 values). Give it twice for a grid.',
@@ -21,7 +21,7 @@ QUESTION = WiderQuestion(
             metavar="RANGE",
             required=True,
         ),
-        Plain(
+        TypedInput(
             "of",
             type=list[str],
             help='Quantity or formula to compute, such as peak_torque or "crank + rod". May be repeated.',

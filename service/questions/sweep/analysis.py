@@ -14,13 +14,13 @@ from ....objectives.keys import kind_of_key
 from ....objectives.kinds import ANGULAR_SPEED, LENGTH
 from ....objectives.tables.sweep import Axis, Parameter, sweep
 from ....objectives.units import closest
-from ...designs.selection import value_of
-from ...designs.shown_units import rows_in
-from ...designs.turning import require_turning
+from ...designs.display_units import rows_in
+from ...designs.rotating_crank import require_rotating_crank
+from ...designs.selection import parse_value
 from ...render.blocks import Table, Value, column, recorded
 from ...runs.result import Row, rows_of
 from ...text.options import length_option
-from ..wider import Answer
+from ..front_or_job_question import Answer
 
 if TYPE_CHECKING:
     from ....objectives.quantity import Quantity
@@ -39,7 +39,7 @@ def answer(
     over: one or two of "offset=0 mm..20 mm:5". of: names and formulas, several in a text between commas. Raises
     `InputError`, also for a problem that swings.
     """
-    require_turning(problem.motion, "sweep")
+    require_rotating_crank(problem.motion, "sweep")
     axes = [parse_axis(text, words["over"]) for text in over]
     if len(axes) > 2:
         raise InputError(f"a sweep must have one or two parameters; got {len(axes)} {words['over']}; leave out some")
@@ -60,7 +60,7 @@ def answer(
         record=lambda units: {"rows": rows_in(rows, units)},
         blocks=[_table(rows, axes, quantities)],
         notes=[f"{len(stuck)} of {len(rows)} have no value; the first: {stuck[0]}"] if stuck else [],
-        found=(table, axes, quantities),
+        search_result=(table, axes, quantities),
     )
 
 
@@ -79,15 +79,17 @@ def _names(text: str) -> list[str]:
 def _table(rows: Sequence[Row], axes: Sequence[Axis], quantities: Sequence[Quantity]) -> Table:
     """Return a row for each point, from metric rows."""
 
-    def value(row: Row, of: Quantity) -> Value:
-        number = row[of.field]
+    def value(row: Row, quantity: Quantity) -> Value:
+        number = row[quantity.field]
         assert isinstance(number, float)
-        return Value(number / of.unit.factor, of.kind, missing="-")
+        return Value(number / quantity.unit.factor, quantity.kind, missing="-")
 
     keys = [f"{axis.parameter}_{'rpm' if axis.parameter == 'speed' else 'mm'}" for axis in axes]
     heads = [column(axis.parameter, kind_of_key(key)[1]) for axis, key in zip(axes, keys, strict=True)]
-    heads += [column(of.title, of.kind) for of in quantities]
-    cells = ((*(recorded(row, key) for key in keys), *(value(row, of) for of in quantities)) for row in rows)
+    heads += [column(quantity.title, quantity.kind) for quantity in quantities]
+    cells = (
+        (*(recorded(row, key) for key in keys), *(value(row, quantity) for quantity in quantities)) for row in rows
+    )
     return Table(tuple(heads), tuple(cells))
 
 
@@ -96,14 +98,14 @@ def parse_axis(text: str, word: str = "over") -> Axis:
 
     word: what the door calls it.
     """
-    known, asked = get_args(Parameter), text.partition("=")[0].strip()
+    parameters, parameter = get_args(Parameter), text.partition("=")[0].strip()
     example = f'{word} "offset=0 mm..20 mm:5" or {word} "offset=0 mm, 10 mm, 20 mm"'
-    if "=" in text and asked and asked not in known:
-        near = closest(asked, known)
-        meant = f"; did you mean {near}?" if near else ""
+    if "=" in text and parameter and parameter not in parameters:
+        near = closest(parameter, parameters)
+        suggestion = f"; did you mean {near}?" if near else ""
         raise InputError(
-            f"a sweep must be over one of {', '.join(known)}; got {asked!r}{meant}; set other numbers of a job with "
-            "analyse --set, or let them vary in [variables]"
+            f"a sweep must be over one of {', '.join(parameters)}; got {parameter!r}{suggestion}; set other numbers of "
+            "a job with analyse --set, or let them vary in [variables]"
         )
     match, several = _FORM.fullmatch(text), _LIST.fullmatch(text)
     if match is None and (several is None or not several[2].strip()):
@@ -116,9 +118,9 @@ def parse_axis(text: str, word: str = "over") -> Axis:
     option = f"{word} {name}"
     if match is None:
         assert several is not None
-        values = [value_of(option, part, kind, sign=sign) for part in several[2].split(",")]
+        values = [parse_value(option, part, kind, sign=sign) for part in several[2].split(",")]
         return Axis(name, tuple(values))  # type: ignore[arg-type]
-    first, last = (value_of(option, part, kind, sign=sign) for part in match.group(2, 3))
+    first, last = (parse_value(option, part, kind, sign=sign) for part in match.group(2, 3))
     count = int(match[4])
     if not 2 <= count <= MOST_VALUES or first == last:
         raise InputError(

@@ -16,7 +16,19 @@ from ....objectives.kinds import System, shown_in
 from ....objectives.quantity import Quantity
 from ....objectives.tables.sweep import Axis
 from ....optimise.front.constant import is_constant
-from ...figures.style import BLUE, MUTED, SHADE, TEXT, colours, dress, heading, limits, new_figure, place, title_panel
+from ...figures.style import (
+    BLUE,
+    MUTED,
+    SHADE,
+    TEXT,
+    add_axes,
+    colours,
+    heading,
+    new_figure,
+    padded_limits,
+    style_axes,
+    title_panel,
+)
 from ...render.numerals import with_unit
 
 Array = NDArray[np.float64]
@@ -38,8 +50,8 @@ def sweep_grid(table: pd.DataFrame, axes: Sequence[Axis], item: Quantity) -> tup
     values = np.where(np.isfinite(values), values, np.nan)
     grids = []
     for n, axis in enumerate(axes):
-        along = np.moveaxis(table[column_of(axis)].to_numpy(dtype=np.float64).reshape(shape), n, 0)
-        first = along.reshape(shape[n], -1)[:, 0]
+        axis_values = np.moveaxis(table[column_of(axis)].to_numpy(dtype=np.float64).reshape(shape), n, 0)
+        first = axis_values.reshape(shape[n], -1)[:, 0]
         order = np.argsort(first, kind="stable")
         grids.append(first[order])
         values = np.take(values, order, axis=n)
@@ -47,35 +59,35 @@ def sweep_grid(table: pd.DataFrame, axes: Sequence[Axis], item: Quantity) -> tup
 
 
 def sweep_figure(
-    table: pd.DataFrame, axes: Sequence[Axis], of: Sequence[Quantity], *, title: str, system: System = "metric"
+    table: pd.DataFrame, axes: Sequence[Axis], quantities: Sequence[Quantity], *, title: str, system: System = "metric"
 ) -> Figure:
     """Return the figure of a sweep over one or two axes: a panel for each quantity, six at most.
 
     An axis of a single value is named in the heading and not drawn. system: of the units that all is shown in.
     """
-    items = list(of)[:MOST]
+    items = list(quantities)[:MOST]
     drawn = [n for n, axis in enumerate(axes) if len(axis.values) > 1] or [0]
     columns = 2 if len(items) > 1 else 1
     rows = -(-len(items) // columns)
     figure = new_figure(0.4 + _WIDTH * columns, 0.75 + (_SIDE + 0.85) * rows)
     height = figure.get_size_inches()[1]
     names = " and ".join(axes[n].parameter for n in drawn)
-    told = [_told(axis, system) for axis in axes]
-    held = [
+    titles = [_told(axis, system) for axis in axes]
+    fixed_values = [
         f"{name} = {table[column_of(axis)].iloc[0] * factor:.6g}"
-        for n, (axis, (name, factor)) in enumerate(zip(axes, told, strict=True))
+        for n, (axis, (name, factor)) in enumerate(zip(axes, titles, strict=True))
         if n not in drawn
     ]
-    heading(figure, textwrap.shorten(title, 60, placeholder=" ..."), "; ".join([f"sweep over {names}", *held]))
+    heading(figure, textwrap.shorten(title, 60, placeholder=" ..."), "; ".join([f"sweep over {names}", *fixed_values]))
     for n, item in enumerate(items):
         left, foot = 0.95 + _WIDTH * (n % columns), height - 0.95 - _SIDE - (_SIDE + 0.85) * (n // columns)
         grids, values = sweep_grid(table, axes, item)
-        grids = [grid * factor for grid, (_, factor) in zip(grids, told, strict=True)]
+        grids = [grid * factor for grid, (_, factor) in zip(grids, titles, strict=True)]
         symbol, factor = shown_in(item.unit.symbol, system)
         values = factor * values.reshape([len(grids[k]) for k in drawn])
-        panel = place(figure, left, foot, _WIDTH - (1.15 if len(drawn) == 1 else 1.75), _SIDE)
-        dress(panel)
-        panel.set_xlabel(told[drawn[0]][0], fontsize=TEXT)
+        panel = add_axes(figure, left, foot, _WIDTH - (1.15 if len(drawn) == 1 else 1.75), _SIDE)
+        style_axes(panel)
+        panel.set_xlabel(titles[drawn[0]][0], fontsize=TEXT)
         missing, note = np.isnan(values), ""
         if missing.all():
             nowhere: Any = {"transform": panel.transAxes, "ha": "center", "color": MUTED, "fontsize": TEXT}
@@ -84,9 +96,9 @@ def sweep_figure(
             _line(panel, grids[drawn[0]], values)
             note = "shaded: no value"
         else:
-            scale = place(figure, left + _WIDTH - 1.6, foot, 0.13, _SIDE)
+            scale = add_axes(figure, left + _WIDTH - 1.6, foot, 0.13, _SIDE)
             _contour(panel, scale, grids, values)
-            panel.set_ylabel(told[1][0], fontsize=TEXT)
+            panel.set_ylabel(titles[1][0], fontsize=TEXT)
             note = "grey: no value"
         title_panel(panel, with_unit(item.title, symbol), note if missing.any() else "")
     return figure
@@ -101,8 +113,8 @@ def _told(axis: Axis, system: System) -> tuple[str, float]:
 def _line(panel: Axes, x: Array, values: Array) -> None:
     few = {"marker": "o", "markersize": 3.5} if len(x) <= 40 else {}
     panel.plot(x, values, color=BLUE, linewidth=1.5, **few)  # type: ignore[arg-type]
-    panel.set_xlim(limits(x.min(), x.max(), 0.02))
-    panel.set_ylim(limits(np.nanmin(values), np.nanmax(values)))
+    panel.set_xlim(padded_limits(x.min(), x.max(), 0.02))
+    panel.set_ylim(padded_limits(np.nanmin(values), np.nanmax(values)))
     for start in map(int, np.flatnonzero(np.isnan(values))):
         low = 0.5 * (x[start] + x[max(start - 1, 0)])
         high = 0.5 * (x[start] + x[min(start + 1, len(x) - 1)])
@@ -112,17 +124,17 @@ def _line(panel: Axes, x: Array, values: Array) -> None:
 def _contour(panel: Axes, scale: Axes, grids: list[Array], values: Array) -> None:
     panel.set_facecolor(SHADE)
     panel.grid(False)
-    shown: Any = np.ma.masked_invalid(values.T)
-    if is_constant(shown.compressed()):
-        panel.figure.colorbar(panel.pcolormesh(*grids, shown, cmap=colours(), shading="nearest"), cax=scale)
+    masked: Any = np.ma.masked_invalid(values.T)
+    if is_constant(masked.compressed()):
+        panel.figure.colorbar(panel.pcolormesh(*grids, masked, cmap=colours(), shading="nearest"), cax=scale)
     else:
-        filled = panel.contourf(*grids, shown, levels=_LEVELS, cmap=colours())
-        lines = panel.contour(*grids, shown, levels=list(filled.levels)[1::2], colors="white", linewidths=0.7)
+        filled = panel.contourf(*grids, masked, levels=_LEVELS, cmap=colours())
+        lines = panel.contour(*grids, masked, levels=list(filled.levels)[1::2], colors="white", linewidths=0.7)
         # Instead of labels, which crowd near locking.
         panel.figure.colorbar(filled, cax=scale).add_lines(lines)
     panel.set_xlim(grids[0].min(), grids[0].max())
     panel.set_ylim(grids[1].min(), grids[1].max())
-    dress(scale)
+    style_axes(scale)
     scale.grid(False)
     scale.xaxis.set_visible(False)
     scale.yaxis.tick_right()

@@ -2,10 +2,10 @@
 
 from ....model.swing.swing_types import Driver, Law, Side
 from ....objectives.kinds import ANGLE, LENGTH, TIME
+from ..design_question import DesignQuestion, QuestionCommand
 from ..inputs import Input
-from ..question import Command, Question
 
-QUESTION = Question(
+QUESTION = DesignQuestion(
     __name__,
     shows="swing of the crank between two angles, or two slider positions",
     inputs=(
@@ -39,7 +39,7 @@ QUESTION = Question(
             sign="zero or more",
         ),
     ),
-    command=Command(
+    command=QuestionCommand(
         help="""Analyse a swing of the crank between two angles, or two slider positions, and back.
 
     The linkage need not rotate fully, but it must close over the whole swing and, if the slider drives, must not pass

@@ -17,19 +17,19 @@ from ....model.swing.swing_types import Driver, Law, Side
 from ....objectives.keys import kind_of_key
 from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, FORCE, LENGTH, POWER, TORQUE
 from ....objectives.tables.cycle_curves import KINDS
-from ...designs.shown_units import rows_in
+from ...designs.display_units import rows_in
 from ...designs.swing_curves import (
     drive_kind,
-    driven,
+    driven_side,
     error_kind,
+    force_magnitudes,
     motion_and_drive,
-    sizes_of_forces,
     swing_rows,
 )
 from ...render.blocks import Block, NamedNumber, Text, heading, number_list, recorded, words
 from ...render.extremes import extremes_table
-from ...text.tables import plain
-from ..answers import Keys, Note, keys_of_kinds
+from ...text.tables import finite_or_none
+from ..answer_types import Keys, Note, keys_of_kinds
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -69,7 +69,7 @@ _KINDS = (*KINDS, ANGULAR_SPEED, ANGULAR_ACCELERATION)
 
 def _places(name: str, *, way: bool = True) -> dict[str, Any]:
     """Return the keys of where a value is."""
-    return {f"{name}_{of}": kind for of, kind in (_PLACES | ({"way": _Way} if way else {})).items()}
+    return {f"{name}_{place}": kind for place, kind in (_PLACES | ({"way": _Way} if way else {})).items()}
 
 
 def _optional(keys: dict[str, Any]) -> dict[str, Any]:
@@ -155,9 +155,9 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, units: System, **options: 
     return swing_figure(machine, linkage, swing, units)
 
 
-def swing_record(mechanism: Mechanism, found: SwingSummary) -> SwingNumbers:
+def swing_record(mechanism: Mechanism, summary: SwingSummary) -> SwingNumbers:
     """Return a swing in numbers, metric; null for what is undefined, and notes that say why."""
-    swing, linkage = found.swing, found.linkage
+    swing, linkage = summary.swing, summary.linkage
     drive, error = drive_kind(swing).metric, error_kind(swing).metric
     record: dict[str, Any] = {
         **{f"{name}_mm": 1e3 * float(getattr(linkage, name)) for name in ("crank", "rod", "offset")},
@@ -167,50 +167,52 @@ def swing_record(mechanism: Mechanism, found: SwingSummary) -> SwingNumbers:
         "duration_s": swing.duration,
         "start_crank_angle_deg": math.degrees(swing.start),
         "end_crank_angle_deg": math.degrees(swing.end),
-        "swing_angle_deg": math.degrees(found.swing_angle),
-        "start_slider_position_mm": 1e3 * found.slider_positions[0],
-        "end_slider_position_mm": 1e3 * found.slider_positions[1],
-        "travel_mm": 1e3 * found.travel,
-        **_value_and_place("least_transmission_angle_deg", found.least_transmission, ANGLE.metric.factor),
-        **_value_and_place(f"peak_drive{drive.suffix}", found.peak_drive, drive.factor, way=True),
+        "swing_angle_deg": math.degrees(summary.swing_angle),
+        "start_slider_position_mm": 1e3 * summary.slider_positions[0],
+        "end_slider_position_mm": 1e3 * summary.slider_positions[1],
+        "travel_mm": 1e3 * summary.travel,
+        **_value_and_place("least_transmission_angle_deg", summary.least_transmission, ANGLE.metric.factor),
+        **_value_and_place(f"peak_drive{drive.suffix}", summary.peak_drive, drive.factor, way=True),
     }
-    for end, pair in (("start", found.drive_start), ("end", found.drive_end)):
+    for end, pair in (("start", summary.drive_start), ("end", summary.drive_end)):
         for way, value in zip(("forth", "back"), pair, strict=True):
-            record[f"drive_at_{end}_{way}{drive.suffix}"] = plain(drive.factor * value + 0.0)
+            record[f"drive_at_{end}_{way}{drive.suffix}"] = finite_or_none(drive.factor * value + 0.0)
     record |= {
-        "holds_by_friction": found.holds,
-        "energy_forth_J": plain(found.energy_forth),
-        "energy_back_J": plain(found.energy_back),
-        "stored_energy_J": plain(found.stored),
-        "efficiency": found.efficiency,
+        "holds_by_friction": summary.holds,
+        "energy_forth_J": finite_or_none(summary.energy_forth),
+        "energy_back_J": finite_or_none(summary.energy_back),
+        "stored_energy_J": finite_or_none(summary.stored),
+        "efficiency": summary.efficiency,
     }
-    if found.peak_power is not None:
-        record |= _value_and_place("peak_power_W", found.peak_power, 1.0, way=True)
-    if found.position_error is not None:
-        record |= _value_and_place(f"{driven(swing)}_position_error{error.suffix}", found.position_error, error.factor)
-    return record | {"extremes": _extremes(mechanism, found), "notes": _notes(mechanism, found)}
+    if summary.peak_power is not None:
+        record |= _value_and_place("peak_power_W", summary.peak_power, 1.0, way=True)
+    if summary.position_error is not None:
+        record |= _value_and_place(
+            f"{driven_side(swing)}_position_error{error.suffix}", summary.position_error, error.factor
+        )
+    return record | {"extremes": _extremes(mechanism, summary), "notes": _notes(mechanism, summary)}
 
 
-def _extremes(mechanism: Mechanism, found: SwingSummary) -> dict[str, Any]:
+def _extremes(mechanism: Mechanism, summary: SwingSummary) -> dict[str, Any]:
     """Return title, least and greatest value of each curve over both ways, and where; null if undefined.
 
     Left out: loads that are zero, errors without tolerances, forces where nothing acts.
     """
-    over = SwingCycle(mechanism, found.linkage, found.swing)
+    strokes = SwingCycle(mechanism, summary.linkage, summary.swing)
     entries: dict[str, Any] = {}
-    for curve in (*motion_and_drive(found.swing), *sizes_of_forces()):
-        least, most = over.ends_of(curve.attribute)
+    for curve in (*motion_and_drive(summary.swing), *force_magnitudes()):
+        least, greatest = strokes.ends_of(curve.attribute)
         acts = curve.kind not in (FORCE, TORQUE, POWER) and curve.attribute != "driven_error"
-        if curve.name == "crank_angle" or (not acts and least.value == most.value == 0.0):
+        if curve.name == "crank_angle" or (not acts and least.value == greatest.value == 0.0):
             continue
         entry: dict[str, Any] = {"title": curve.title}
-        for word, at in (("least", least), ("greatest", most)):
-            told = _value_and_place(
+        for word, at in (("least", least), ("greatest", greatest)):
+            fields = _value_and_place(
                 f"{word}{curve.kind.metric.suffix}", at, curve.kind.metric.factor, way=True, stem=word
             )
             # Next to a place where friction locks forces grow beyond all bounds.
-            known = found.locked is None or curve.kind not in (FORCE, TORQUE, POWER)
-            entry |= told if known and math.isfinite(at.value) else dict.fromkeys(told)
+            is_bounded = summary.locked is None or curve.kind not in (FORCE, TORQUE, POWER)
+            entry |= fields if is_bounded and math.isfinite(at.value) else dict.fromkeys(fields)
         entries[curve.name] = entry
     return entries
 
@@ -219,23 +221,23 @@ def _value_and_place(key: str, at: SwingPoint, factor: float, *, way: bool = Fal
     """Return a value and its places. stem: how the keys of these begin; the key without its unit if empty."""
     stem = stem or key.rpartition("_")[0]
     return {
-        key: plain(factor * at.value + 0.0),
+        key: finite_or_none(factor * at.value + 0.0),
         **({f"{stem}_way": "back" if at.back else "forth"} if way else {}),
         f"{stem}_at_crank_angle_deg": math.degrees(at.crank_angle),
         f"{stem}_at_slider_position_mm": 1e3 * at.slider_position,
     }
 
 
-def _notes(mechanism: Mechanism, found: SwingSummary) -> list[str]:
+def _notes(mechanism: Mechanism, summary: SwingSummary) -> list[str]:
     notes = []
-    if found.locked is not None:
-        way = "on the return stroke" if found.locked.back else "on the forward stroke"
-        notes.append(LOCKED.format(way=way, angle=math.degrees(found.locked.crank_angle)))
-    elif found.peak_drive.value == 0.0:
+    if summary.locked is not None:
+        way = "on the return stroke" if summary.locked.back else "on the forward stroke"
+        notes.append(LOCKED.format(way=way, angle=math.degrees(summary.locked.crank_angle)))
+    elif summary.peak_drive.value == 0.0:
         notes.append(WITHOUT_LOADS)
-    if found.position_error is not None and mechanism.tolerances.window != Window():
+    if summary.position_error is not None and mechanism.tolerances.window != Window():
         notes.append(WINDOW)
-    if found.swing.law == "constant":
+    if summary.swing.law == "constant":
         notes.append(COASTS)
     return notes
 
@@ -248,13 +250,13 @@ def swing_title(record: Mapping[str, Any]) -> str:
 
 def swing_numbers(record: Mapping[str, Any]) -> list[NamedNumber]:
     """Return the numbers of a metric record but its extremes, each with where it is."""
-    shown: list[NamedNumber] = []
+    lines: list[NamedNumber] = []
     for key, value in record.items():
         name, _ = kind_of_key(key)
-        other = isinstance(value, str | list | dict | bool) or key == "duration_s"
-        if not other and "_at_crank_angle" not in name and "_at_slider_position" not in name:
-            shown.append((_TITLES.get(name, name.replace("_", " ")), recorded(record, key), _place(record, name)))
-    return [*shown, ("held by friction alone, everywhere", "yes" if record["holds_by_friction"] else "no", "")]
+        is_excluded = isinstance(value, str | list | dict | bool) or key == "duration_s"
+        if not is_excluded and "_at_crank_angle" not in name and "_at_slider_position" not in name:
+            lines.append((_TITLES.get(name, name.replace("_", " ")), recorded(record, key), _place(record, name)))
+    return [*lines, ("held by friction alone, everywhere", "yes" if record["holds_by_friction"] else "no", "")]
 
 
 def blocks(record: Mapping[str, Any]) -> list[Block]:

@@ -1,8 +1,8 @@
 """Position error from tolerances: numbers, text and figure."""
 
 from ....objectives.kinds import LENGTH
+from ..design_question import DesignQuestion
 from ..inputs import Input
-from ..question import Question
 
 LIMIT = Input(
     "limit",
@@ -12,7 +12,7 @@ LIMIT = Input(
     sign="positive",
     drawn=False,
 )
-QUESTION = Question(
+QUESTION = DesignQuestion(
     __name__,
     50,
     "position error: exact worst case, simulated machines, yield, contributions",

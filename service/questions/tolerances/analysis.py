@@ -19,7 +19,7 @@ from ....model.tolerance.monte_carlo import simulate, summarise, variances, yiel
 from ....model.tolerance.sources import SOURCES, limits, source_influences
 from ....objectives.kinds import LENGTH, System
 from ...render.blocks import Block, Table, Text, Value, column, heading, joined, note, recorded, words
-from ..answers import Note, Record
+from ..answer_types import Note, Record
 from ..peaks import row_of
 
 if TYPE_CHECKING:
@@ -102,8 +102,8 @@ def numbers(
     their greatest error, in even bins from 0. Raises `InputError` if there are
     no tolerances.
     """
-    reach = limits(mechanism, linkage)
-    if not np.any(reach):
+    source_limits = limits(mechanism, linkage)
+    if not np.any(source_limits):
         raise InputError('a position error needs tolerances; got none; add for example [tolerances] crank = "0.05 mm"')
     signals = (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
     (worst_case, at), (rss, at_square) = (
@@ -114,7 +114,7 @@ def numbers(
         exact = worst(mechanism, linkage)
     except AssemblyError:
         exact = None
-    parts = (np.abs(source_influences(mechanism, linkage, at)) * reach[:, None])[:, :1]
+    parts = (np.abs(source_influences(mechanism, linkage, at)) * source_limits[:, None])[:, :1]
     of_worst = 100.0 * shares(parts)[:, 0]
     of_variance = 100.0 * shares(variances(mechanism, linkage, at))[:, 0]
     simulation = simulate(mechanism, linkage, samples=samples, seed=seed)
@@ -131,14 +131,14 @@ def numbers(
         "contributions": [
             {
                 "source": name,
-                "limit_mm": None if name == "crank angle" else 1e3 * float(reach[n]),
-                "limit_deg": float(np.degrees(reach[n])) if name == "crank angle" else None,
+                "limit_mm": None if name == "crank angle" else 1e3 * float(source_limits[n]),
+                "limit_deg": float(np.degrees(source_limits[n])) if name == "crank angle" else None,
                 "contribution_mm": 1e3 * float(parts[n, 0]),
                 "share_of_worst_case_percent": float(of_worst[n]),
                 "share_of_variance_percent": float(of_variance[n]),
             }
             for n, name in enumerate(SOURCES)
-            if reach[n] > 0.0
+            if source_limits[n] > 0.0
         ],
         "monte_carlo": {
             "samples": len(simulation.greatest),
@@ -155,12 +155,12 @@ def numbers(
             {
                 "limit": name,
                 "limit_mm": 1e3 * value,
-                "yield_percent": 100.0 * found.share,
-                "yield_low_percent": 100.0 * found.low,
-                "yield_high_percent": 100.0 * found.high,
-                "confidence_percent": 100.0 * found.confidence,
+                "yield_percent": 100.0 * share.share,
+                "yield_low_percent": 100.0 * share.low,
+                "yield_high_percent": 100.0 * share.high,
+                "confidence_percent": 100.0 * share.confidence,
             }
-            for name, value, found in yields
+            for name, value, share in yields
         ],
     }
 
@@ -177,7 +177,7 @@ def _histogram(greatest: np.ndarray) -> Histogram | None:
 def blocks(numbers: PositionError) -> list[Block]:
     """Return the numbers for people."""
 
-    def at(name: str) -> Text:
+    def size_and_angle(name: str) -> Text:
         size, angle = (recorded(numbers, f"{name}_{unit}", digits=4) for unit in ("mm", "angle_deg"))
         if size.number is None:
             return "undefined: a linkage within the tolerances does not rotate fully"
@@ -189,30 +189,32 @@ def blocks(numbers: PositionError) -> list[Block]:
         for percent, value in simulation["percentiles_greatest_mm"].items()
     ]
     rows: list[tuple[Text, ...]] = [
-        ("worst case, first order", at("worst_case")),
-        ("worst case, exact", at("exact_worst_case")),
-        ("root-sum-square", at("root_sum_square")),
+        ("worst case, first order", size_and_angle("worst_case")),
+        ("worst case, exact", size_and_angle("exact_worst_case")),
+        ("root-sum-square", size_and_angle("root_sum_square")),
         (f"{simulation['samples']:,} random machines", joined(spread) or "-"),
     ]
     if simulation["stuck"]:
         rows.append(("", f"{simulation['stuck']:,} of them do not rotate fully"))
-    for found in numbers["yields"]:
-        low, high = found["yield_low_percent"], found["yield_high_percent"]
-        share = f"{found['yield_percent']:.2f} %, between {low:.2f} and {high:.2f} %"
-        limit = words("yield at {size} ({name})", size=recorded(found, "limit_mm", digits=4), name=found["limit"])
-        rows.append((limit, f"{share} at {found['confidence_percent']:g} % confidence"))
-    shown: list[Block] = [
+    for yield_record in numbers["yields"]:
+        low, high = yield_record["yield_low_percent"], yield_record["yield_high_percent"]
+        share = f"{yield_record['yield_percent']:.2f} %, between {low:.2f} and {high:.2f} %"
+        limit = words(
+            "yield at {size} ({name})", size=recorded(yield_record, "limit_mm", digits=4), name=yield_record["limit"]
+        )
+        rows.append((limit, f"{share} at {yield_record['confidence_percent']:g} % confidence"))
+    shown_blocks: list[Block] = [
         heading("Position error from tolerances: greatest over the counted part of the cycle"),
         Table((column(left=True), column(left=True)), tuple(rows)),
     ]
     if any(row["source"].endswith("clearance") for row in numbers["contributions"]):
-        shown.append(
+        shown_blocks.append(
             note(
                 "Root-sum-square treats a clearance as three standard deviations; pins pressed to either side scatter "
                 "more widely, as the random machines show."
             )
         )
-    return [*shown, _sources(numbers["contributions"])]
+    return [*shown_blocks, _sources(numbers["contributions"])]
 
 
 def _sources(contributions: list[Contribution]) -> Table:

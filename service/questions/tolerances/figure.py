@@ -55,7 +55,7 @@ def error_bands(mechanism: Mechanism, linkage: Linkage, *, samples: int = SAMPLE
         least, greatest = exact.least, exact.greatest
     linear = cycle(mechanism, linkage, theta)
     simulated = simulate(mechanism, linkage, theta, samples=samples, seed=seed)
-    there = limits(mechanism, linkage) > 0.0
+    has_tolerance = limits(mechanism, linkage) > 0.0
     return Bands(
         np.degrees(theta),
         linear.position_error,
@@ -63,8 +63,8 @@ def error_bands(mechanism: Mechanism, linkage: Linkage, *, samples: int = SAMPLE
         least,
         greatest,
         np.nanpercentile(simulated.errors, PERCENTS, axis=0),
-        tuple(name for name, given in zip(SOURCES, there, strict=True) if given),
-        100.0 * shares(variances(mechanism, linkage, theta))[there],
+        tuple(name for name, is_toleranced in zip(SOURCES, has_tolerance, strict=True) if is_toleranced),
+        100.0 * shares(variances(mechanism, linkage, theta))[has_tolerance],
         simulated.greatest[np.isfinite(simulated.greatest)],
     )
 
@@ -75,10 +75,10 @@ def tolerances_figure(bands: Bands, system: System = "metric") -> Figure:
     figure = style.new_figure(9.2, 7.2)
     note = "Monte Carlo: normal errors, limits at three standard deviations; pins pressed to either side"
     style.heading(figure, "Slider position error from tolerances", note)
-    upper, lower = style.place(figure, 0.8, 3.35, 5.9, 3.25), style.place(figure, 0.8, 0.65, 5.9, 2.2)
+    upper, lower = style.add_axes(figure, 0.8, 3.35, 5.9, 3.25), style.add_axes(figure, 0.8, 0.65, 5.9, 2.2)
     for panel in (upper, lower):
-        style.dress(panel, up=6)
-        style.over_turn(panel)
+        style.style_axes(panel, most_y_ticks=6)
+        style.show_full_turn(panel)
     low, inner_low, inner_high, high = unit.factor * bands.percentiles
     upper.fill_between(bands.angles, low, high, color="#e4e4e4", linewidth=0, label="Monte Carlo, 99.73 %")
     upper.fill_between(bands.angles, inner_low, inner_high, color="#bdbdbd", linewidth=0, label="Monte Carlo, 90 %")
@@ -97,8 +97,8 @@ def tolerances_figure(bands: Bands, system: System = "metric") -> Figure:
     lower.set_xlabel("crank angle, deg", fontsize=style.TEXT)
     lower.set_ylim(0, 100)
     style.draw_stack(lower, bands.angles, bands.shares, bands.sources)
-    counts = style.place(figure, 7.25, 3.75, 1.7, 1.3)
-    style.dress(counts, across=3)
+    counts = style.add_axes(figure, 7.25, 3.75, 1.7, 1.3)
+    style.style_axes(counts, most_x_ticks=3)
     counts.hist(unit.factor * bands.machines, bins=40, color="#bdbdbd")
     counts.set_yticks([])
     counts.set_xlabel(with_unit("greatest error of a machine", unit.symbol), fontsize=style.SMALL)

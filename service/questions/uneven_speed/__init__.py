@@ -1,5 +1,5 @@
 """A crank speed that varies over the turn: numbers, text and figure."""
 
-from ..question import Question
+from ..design_question import DesignQuestion
 
-QUESTION = Question(__name__, 92, "torque, forces and shaking with the job's speed profile")
+QUESTION = DesignQuestion(__name__, 92, "torque, forces and shaking with the job's speed profile")

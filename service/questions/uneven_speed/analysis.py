@@ -16,9 +16,9 @@ from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
 from ....model.transient.speed_profile_cycle import speed_profile_curves, speed_profile_cycle
 from ....objectives.kinds import ACCELERATION, ANGULAR_SPEED, FORCE, POWER, SPEED, TIME, TORQUE, Kind
-from ...figures.sheets import DASHED, Line, Panel, Sheet, over_turn, turn
+from ...figures.panel_figure import DASHED, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, Value, compared, joined, named_number, number_list
-from ..answers import AngleOfPeak, Keys, Locked, Note
+from ..answer_types import Keys, Note, NullIfLocked, PeakAngle
 
 _RPM = 30.0 / math.pi
 _KINDS = {
@@ -49,13 +49,13 @@ UnevenSpeed = Annotated[
             "speed_fluctuation": Annotated[float, Note("greatest less least speed over the mean over time")],
             "period_s": float,
             "peak_crank_acceleration_rad_s2": float,
-            "mean_torque_Nm": Annotated[Locked, Note("over the crank angle; null where friction locks")],
-            "rms_torque_Nm": Locked,
-            "rms_torque_at_constant_speed_Nm": Locked,
-            "mean_power_W": Locked,
-            **{f"peak_{name}{kind.metric.suffix}": Locked for name, kind in _KINDS.items()},
-            **{f"peak_{name}_angle_deg": AngleOfPeak for name in _KINDS},
-            **{f"peak_{name}_at_constant_speed{kind.metric.suffix}": Locked for name, kind in _KINDS.items()},
+            "mean_torque_Nm": Annotated[NullIfLocked, Note("over the crank angle; null where friction locks")],
+            "rms_torque_Nm": NullIfLocked,
+            "rms_torque_at_constant_speed_Nm": NullIfLocked,
+            "mean_power_W": NullIfLocked,
+            **{f"peak_{name}{kind.metric.suffix}": NullIfLocked for name, kind in _KINDS.items()},
+            **{f"peak_{name}_angle_deg": PeakAngle for name in _KINDS},
+            **{f"peak_{name}_at_constant_speed{kind.metric.suffix}": NullIfLocked for name, kind in _KINDS.items()},
         },
     ),
 ]
@@ -72,25 +72,27 @@ def _require(mechanism: Mechanism) -> None:
 def numbers(mechanism: Mechanism, linkage: Linkage) -> UnevenSpeed:
     """Return speeds, period and peaks at the profile, and the peaks at constant speed. Raises without a profile."""
     _require(mechanism)
-    found, even = (speed_profile_cycle(each, linkage) for each in (mechanism, replace(mechanism, speed_profile=None)))
+    profile, even = (
+        speed_profile_cycle(machine, linkage) for machine in (mechanism, replace(mechanism, speed_profile=None))
+    )
     record: dict[str, Any] = {
-        "least_speed_rpm": _RPM * found.least_speed.value,
-        "least_speed_angle_deg": math.degrees(found.least_speed.angle),
-        "greatest_speed_rpm": _RPM * found.greatest_speed.value,
-        "greatest_speed_angle_deg": math.degrees(found.greatest_speed.angle),
-        "mean_speed_over_time_rpm": _RPM * found.mean_speed,
-        "speed_fluctuation": abs(found.fluctuation),
-        "period_s": found.period,
-        "peak_crank_acceleration_rad_s2": found.acceleration.value,
-        "mean_torque_Nm": found.mean_torque,
-        "rms_torque_Nm": found.rms_torque,
+        "least_speed_rpm": _RPM * profile.least_speed.value,
+        "least_speed_angle_deg": math.degrees(profile.least_speed.angle),
+        "greatest_speed_rpm": _RPM * profile.greatest_speed.value,
+        "greatest_speed_angle_deg": math.degrees(profile.greatest_speed.angle),
+        "mean_speed_over_time_rpm": _RPM * profile.mean_speed,
+        "speed_fluctuation": abs(profile.fluctuation),
+        "period_s": profile.period,
+        "peak_crank_acceleration_rad_s2": profile.acceleration.value,
+        "mean_torque_Nm": profile.mean_torque,
+        "rms_torque_Nm": profile.rms_torque,
         "rms_torque_at_constant_speed_Nm": even.rms_torque,
-        "mean_power_W": found.mean_power,
+        "mean_power_W": profile.mean_power,
     }
     for name, kind in _KINDS.items():
         suffix = kind.metric.suffix
-        record[f"peak_{name}{suffix}"] = found.peaks[name].value
-        record[f"peak_{name}_angle_deg"] = math.degrees(found.peaks[name].angle)
+        record[f"peak_{name}{suffix}"] = profile.peaks[name].value
+        record[f"peak_{name}_angle_deg"] = math.degrees(profile.peaks[name].angle)
         record[f"peak_{name}_at_constant_speed{suffix}"] = even.peaks[name].value
     return record
 
@@ -99,7 +101,7 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
     """Return the numbers for people."""
     even = "at constant speed"
     rms = joined(["over time", compared(numbers, "rms_torque_at_constant_speed_Nm", even)])
-    shown = [
+    lines = [
         *(named_number(numbers, key) for key in ("least_speed_rpm", "greatest_speed_rpm", "mean_speed_over_time_rpm")),
         named_number(numbers, "speed_fluctuation", "(greatest - least) / mean over time"),
         ("period", Value(numbers["period_s"], TIME), "of a turn"),
@@ -111,28 +113,30 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
     for name, kind in _KINDS.items():
         suffix = kind.metric.suffix
         remark = compared(numbers, f"peak_{name}_at_constant_speed{suffix}", even)
-        shown.append(named_number(numbers, f"peak_{name}{suffix}", remark))
-    return number_list("With the speed profile (constant speed: the mean over the crank angle)", shown)
+        lines.append(named_number(numbers, f"peak_{name}{suffix}", remark))
+    return number_list("With the speed profile (constant speed: the mean over the crank angle)", lines)
 
 
-def figure(mechanism: Mechanism, linkage: Linkage) -> Sheet:
+def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return speed, torque and shaking force over a turn, at the profile and at constant speed."""
     _require(mechanism)
     knots = np.mod(speed_knots(mechanism), 2.0 * np.pi)
-    theta = turn(breakpoints(mechanism, linkage), knots, turns=cycle_turns(mechanism))
+    theta = sampled_turn(breakpoints(mechanism, linkage), knots, turns=cycle_turns(mechanism))
     degrees = np.degrees(theta)
     now, even = (
-        speed_profile_curves(each, linkage, theta) for each in (mechanism, replace(mechanism, speed_profile=None))
+        speed_profile_curves(machine, linkage, theta) for machine in (mechanism, replace(mechanism, speed_profile=None))
     )
 
-    def both(title: str, kind: Kind, first: Any, second: Any) -> Panel:
+    def comparison_panel(title: str, kind: Kind, first: Any, second: Any) -> Panel:
         lines = Line("profile", degrees, first), Line("constant speed", degrees, second, DASHED)
-        return over_turn(title, *lines, kind=kind)
+        return crank_angle_panel(title, *lines, kind=kind)
 
     panels = (
-        both("crank speed", ANGULAR_SPEED, now.speed, even.speed),
-        both("drive torque", TORQUE, now.curves.torque, even.curves.torque),
-        both("slider acceleration", ACCELERATION, now.curves.slider_acceleration, even.curves.slider_acceleration),
-        both("shaking force", FORCE, now.others["shaking_force"], even.others["shaking_force"]),
+        comparison_panel("crank speed", ANGULAR_SPEED, now.speed, even.speed),
+        comparison_panel("drive torque", TORQUE, now.curves.torque, even.curves.torque),
+        comparison_panel(
+            "slider acceleration", ACCELERATION, now.curves.slider_acceleration, even.curves.slider_acceleration
+        ),
+        comparison_panel("shaking force", FORCE, now.others["shaking_force"], even.others["shaking_force"]),
     )
-    return Sheet("Uneven crank speed", "", panels, width=6.4, height=2.25, stacked=True)
+    return PanelFigure("Uneven crank speed", "", panels, width=6.4, height=2.25, stacked=True)

@@ -1,10 +1,10 @@
 """The optimal design that comes nearest to what is wished: numbers and text."""
 
-from ..plain_input import Plain
-from ..wider import WiderQuestion
+from ..front_or_job_question import FrontOrJobQuestion
+from ..typed_input import TypedInput
 
 _EXAMPLE = {"time_ratio": "1.2", "transmission_angle": "45 deg"}
-QUESTION = WiderQuestion(
+QUESTION = FrontOrJobQuestion(
     package=__name__,
     subject="front",
     row="may",
@@ -16,7 +16,7 @@ QUESTION = WiderQuestion(
     If every target can be met, they are exceeded together; otherwise the conflicting ones are relaxed in equal
     proportion to their ranges over the front. Objectives that are not named are free.""",
     inputs=(
-        Plain(
+        TypedInput(
             "at",
             type=dict[str, str | float],
             help='OBJECTIVE=VALUE, a desired value rather than a bound, such as "peak_torque=110 N m"; or improve, '

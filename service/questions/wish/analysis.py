@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from ....objectives.kinds import System, shown_in
 from ....optimise.decisions.wish import Wishes
-from ...designs.shown_units import row_in
+from ...designs.display_units import row_in
 from ...render.blocks import Block, Phrase, Sentence, Table, Text, column, heading, recorded, words
 from ...runs.result import json_ready, rows_of
 from ..design_table import title_and_unit
-from ..wider import Answer
+from ..front_or_job_question import Answer
 
 if TYPE_CHECKING:
     from ....optimise.decisions.wished import Outcome, Wished
@@ -27,33 +27,33 @@ def answer(front: ParetoFront, *, row: int | None, at: Mapping[str, object], **_
     return answered(Wishes(front).wish(at, row=row), at)
 
 
-def answered(found: Wished, at: Mapping[str, object]) -> Answer:
+def answered(wished: Wished, at: Mapping[str, object]) -> Answer:
     """Return a solved wish as an answer. at: by objective, as it was asked for.
 
     Of its numbers: possible, whether everything wished is reached. sentences: the answer in words. achievement: value
     of the achievement function. objectives: of each, wish and outcome, in its unit. design: the row of a front's table,
     null where no design stays within what is allowed.
     """
-    rows = rows_of(found.found.columns) if len(found) else []
+    rows = rows_of(wished.found.columns) if len(wished) else []
 
     def record(units: System) -> dict[str, Any]:
         return {
-            "number": None if found.row is None else found.row + 1,
-            "possible": found.possible,
-            "sentences": found.sentences(units),
-            "achievement": json_ready(found.value),
-            "objectives": [_outcome(outcome, units) for outcome in found.outcomes],
+            "number": None if wished.row is None else wished.row + 1,
+            "possible": wished.possible,
+            "sentences": wished.sentences(units),
+            "achievement": json_ready(wished.value),
+            "objectives": [_outcome(outcome, units) for outcome in wished.outcomes],
             "design": json_ready(row_in(rows[0], units)) if rows else None,
         }
 
-    told = told_wish(at, found.row)
-    title = heading("{name}: wished {told}", name=found.found.problem.name, told=told)
+    description = told_wish(at, wished.row)
+    title = heading("{name}: wished {told}", name=wished.found.problem.name, told=description)
     return Answer(
         record=record,
-        blocks=[title, *(_blocks(found, rows[0]) if rows else [])],
-        met=bool(rows),
-        message=found.message,
-        found=found,
+        blocks=[title, *(_blocks(wished, rows[0]) if rows else [])],
+        is_satisfied=bool(rows),
+        message=wished.message,
+        search_result=wished,
     )
 
 
@@ -63,35 +63,44 @@ def told_wish(at: Mapping[str, object], row: int | None) -> str:
     return ", ".join([*(f"{name} {value}" for name, value in at.items()), *design])
 
 
-def sentences(found: Wished) -> list[Phrase]:
+def sentences(wished: Wished) -> list[Phrase]:
     """Return whether a wish can be had, then wish and outcome of each objective, for people."""
-    return [Phrase(*both) for both in zip(found.sentences("metric"), found.sentences("inch"), strict=True)]
+    return [Phrase(*pair) for pair in zip(wished.sentences("metric"), wished.sentences("inch"), strict=True)]
 
 
-def _blocks(found: Wished, row: Mapping[str, Any]) -> list[Block]:
+def _blocks(wished: Wished, row: Mapping[str, Any]) -> list[Block]:
     """Return the answer in words, then the design as a table."""
-    head, *outcomes = sentences(found)
+    head, *outcomes = sentences(wished)
     begin = f"{head.metric[0].upper()}{head.metric[1:]}:"
-    objectives = {outcome.quantity.title for outcome in found.outcomes}
+    objectives = {outcome.quantity.title for outcome in wished.outcomes}
     rows: list[tuple[Text, ...]] = []
     for key, value in row.items():
         undefined = isinstance(value, float) and not math.isfinite(value)
         if not undefined and not key.startswith("slack_") and key not in ("residual", "status"):
-            shown = recorded(row, key) if isinstance(value, float) else str(value)
-            rows.append((*title_and_unit(key, row), shown))
+            cell = recorded(row, key) if isinstance(value, float) else str(value)
+            rows.append((*title_and_unit(key, row), cell))
     bold = tuple(place for place, (title, *_) in enumerate(rows) if title in objectives)
     columns = (column("quantity", left=True), column("unit", left=True), column("value"))
     return [
-        Sentence(begin, apart=True),
+        Sentence(begin, space_before=True),
         *(Sentence(words("  {outcome}", outcome=outcome)) for outcome in outcomes),
-        Table(columns, tuple(rows), ruled=True, apart=True, bold=bold),
+        Table(columns, tuple(rows), ruled=True, space_before=True, bold=bold),
         Sentence(f"{row['status']}: residual {row['residual']:.1e}"),
     ]
 
 
 def _outcome(outcome: Outcome, units: System) -> dict[str, Any]:
-    of = outcome.quantity
-    unit, factor = shown_in(of.unit.symbol, units)
+    quantity = outcome.quantity
+    unit, factor = shown_in(quantity.unit.symbol, units)
     numbers = {name: getattr(outcome, name) for name in ("wished", "reached", "before", "short", "changed")}
-    told = {name: None if value is None else value * of.unit.factor * factor for name, value in numbers.items()}
-    return {"quantity": of.name, "title": of.title, "unit": unit, "wish": outcome.kind, "met": outcome.met, **told}
+    converted = {
+        name: None if value is None else value * quantity.unit.factor * factor for name, value in numbers.items()
+    }
+    return {
+        "quantity": quantity.name,
+        "title": quantity.title,
+        "unit": unit,
+        "wish": outcome.kind,
+        "met": outcome.met,
+        **converted,
+    }

@@ -115,12 +115,12 @@ def test_what_is_no_wider_limit_is_refused(
 
 def test_numbers_that_vary_deep_in_a_job_are_widened_where_they_stand() -> None:
     from slidercrank.optimise.job import parse_job
-    from slidercrank.service.designs.binding import widened
+    from slidercrank.service.designs.active_limits import widen_limits
 
     tables = tomllib.loads(fronts.JOB)
     for place in ({"mechanism": {"slider": {"mass": ["1 kg", "2 kg"]}}}, {"mechanism.slider.mass": ["1 kg", "2 kg"]}):
         tables["variables"] = {**tomllib.loads(fronts.JOB)["variables"], **place}
-        made = widened(parse_job(tables), tables, [("variables.mechanism.slider.mass", "upper", 2.5)])
+        made = widen_limits(parse_job(tables), tables, [("variables.mechanism.slider.mass", "upper", 2.5)])
         expected = str(tables["variables"]).replace("2 kg", "2.5 kg")
         assert str(made["variables"]) == expected
         assert parse_job(made).mechanism.varying[0].upper == 2.5

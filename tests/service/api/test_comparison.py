@@ -12,7 +12,7 @@ from typing import Any
 import httpx
 import pytest
 
-from slidercrank.service.designs.comparing import NEAR
+from slidercrank.service.designs.front_comparison import NEAR
 from slidercrank.service.jobs.differences import differences
 from slidercrank.service.store import Store
 from tests.service import fronts

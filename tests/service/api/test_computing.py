@@ -37,7 +37,7 @@ pytestmark = pytest.mark.skipif(not hasattr(psutil.Process, "rlimit"), reason="l
 @pytest.fixture(scope="module")
 def client() -> Iterator[httpx.Client]:
     """Return a client of an application whose requests take what they name, more or less than they may."""
-    with client_of(Computing(demanding, most=MOST, modules=[demanding.__module__])) as client:
+    with client_of(Computing(demanding, limits=MOST, modules=[demanding.__module__])) as client:
         yield client
 
 
@@ -101,7 +101,7 @@ def test_quick_requests_do_not_wait_for_long_ones(client: httpx.Client, monkeypa
 def test_opening_the_page_starts_one_process_ahead(store: Store, tmp_path: Path) -> None:
     started = tmp_path / "started"
     started.mkdir()
-    computing = Computing(partial(noted, started), most=MOST, modules=[demanding.__module__])
+    computing = Computing(partial(noted, started), limits=MOST, modules=[demanding.__module__])
     with (
         contextlib.closing(computing),
         serving(create_app(store, computing=computing)) as address,
@@ -115,7 +115,7 @@ def test_opening_the_page_starts_one_process_ahead(store: Store, tmp_path: Path)
 
 
 def test_closing_ends_every_process() -> None:
-    with client_of(Computing(demanding, most=MOST, modules=[demanding.__module__])) as client:
+    with client_of(Computing(demanding, limits=MOST, modules=[demanding.__module__])) as client:
         process = _process(client)
     process.wait(10.0)
 
@@ -124,7 +124,7 @@ def test_closing_ends_every_process() -> None:
 def test_an_analysis_has_no_more_time_than_its_limit(store: Store, tmp_path: Path) -> None:
     settings = Settings()
     make = partial(computing_app, str(tmp_path / "store.db"), settings, most_queued=1, log_format="text")
-    computing = Computing(make, most=replace(MOST_OF_AN_ANSWER, seconds=1.5), modules=MODULES)
+    computing = Computing(make, limits=replace(MOST_OF_AN_ANSWER, seconds=1.5), modules=MODULES)
     job = EXAMPLE | {"friction": {"guide": 0.1}}  # its flywheel takes seconds
     design = {"job": job, "crank": "120 mm", "rod": "400 mm", "offset": "30 mm"}
     with (

@@ -16,7 +16,7 @@ from ezdxf.filemanagement import read as read_dxf
 
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.designs.columns import find_column
-from slidercrank.service.designs.shown_units import row_in
+from slidercrank.service.designs.display_units import row_in
 from slidercrank.service.runs.result import rows_from_csv
 from slidercrank.service.store import Store
 from tests.service import fronts

@@ -245,14 +245,14 @@ def test_a_follower_that_is_slow_at_the_end_does_not_end_the_streams_of_the_resu
 
     async def follow() -> list[int]:
         feed = events.Feed(store)
-        slow = feed.follow(job.id, 0, last=1, heartbeat=30.0)
+        slow = feed.stream(job.id, 0, last=1, heartbeat=30.0)
         await anext(slow)
         store.cancel(job.id)
         while (await anext(slow)) is None:
             pass  # it has the event of the end, and does not come back
         store.resume(job.id)
         found = []
-        async for event in feed.follow(job.id, 1, last=3, heartbeat=30.0):
+        async for event in feed.stream(job.id, 1, last=3, heartbeat=30.0):
             assert event is not None
             found.append(event.number)
             if event.number == 3:
@@ -269,7 +269,7 @@ def test_the_feed_ends_all_streams_when_the_service_stops(store: Store) -> None:
     async def follow() -> list[int]:
         feed = events.Feed(store)
         found = []
-        async for event in feed.follow(job.id, 0, last=1, heartbeat=30.0):
+        async for event in feed.stream(job.id, 0, last=1, heartbeat=30.0):
             assert event is not None
             found.append(event.number)
             asyncio.get_running_loop().call_later(0.05, feed.close)

@@ -22,7 +22,7 @@ from slidercrank.optimise.solve import solve
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.designs.cycle_table import cycle_table
 from slidercrank.service.designs.stored_designs import design_of, front_of
-from slidercrank.service.questions.design_analysis import numbers_of
+from slidercrank.service.questions.design_analysis import quantities_of_design
 from slidercrank.service.runs.result import result_of
 from tests.service import fronts, test_variables
 from tests.service.api.fixed_front import API, Solved, client_of
@@ -210,7 +210,7 @@ def test_stored_designs_have_the_choices_and_the_varying_numbers_of_their_rows()
         stored = design_of(problem, given)
         assert stored.part.rod == front.part(row).rod
         assert stored.mechanism == again.mechanism(row)
-        for key, value in numbers_of(stored.mechanism, stored.linkage)[0].items():
+        for key, value in quantities_of_design(stored.mechanism, stored.linkage)[0].items():
             expected = (
                 pytest.approx(given[key], rel=1e-9, abs=1e-12, nan_ok=True) if isinstance(value, float) else value
             )

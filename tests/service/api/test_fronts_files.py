@@ -24,7 +24,7 @@ from slidercrank.service.api import exports
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.client import Client
-from slidercrank.service.designs.selection import numbered
+from slidercrank.service.designs.selection import numbered_rows
 from slidercrank.service.runs.result import csv_text, json_ready, rows_from_csv
 from slidercrank.service.store import Store
 from tests.service import fronts
@@ -66,7 +66,7 @@ def test_a_design_has_the_same_numbers_everywhere(solved: Solved, tmp_path: Path
 
 def test_exports_are_those_of_the_command_line_but_for_formulas(solved: Solved, client: httpx.Client) -> None:
     csv = client.get(f"{solved.path}/export.csv")
-    assert csv.text == csv_text(numbered(solved.result.designs))
+    assert csv.text == csv_text(numbered_rows(solved.result.designs))
     assert csv.headers["content-type"] == "text/csv; charset=utf-8"
     assert csv.headers["content-disposition"] == f'attachment; filename="short-test-job-{solved.number}.csv"'
     whole = client.get(f"{solved.path}/export.json").text

@@ -13,7 +13,7 @@ import pytest
 
 from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import parse_job
-from slidercrank.service.api.job_requests import EXAMPLE, merged
+from slidercrank.service.api.job_requests import EXAMPLE, merge_patch
 from slidercrank.service.store import Artefact, Limits, Store
 from tests.service import fronts
 from tests.service.api.conftest import Serve
@@ -268,7 +268,7 @@ def test_a_copy_has_the_changes_and_the_rest_of_the_job(client: httpx.Client, st
     ],
 )
 def test_a_merge_patch_does_what_its_standard_says(value: Any, changes: Any, becomes: Any) -> None:
-    assert merged(value, changes) == becomes
+    assert merge_patch(value, changes) == becomes
 
 
 def test_a_place_that_is_not_there_and_a_method_it_does_not_know_are_told(shared: httpx.Client) -> None:

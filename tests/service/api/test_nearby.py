@@ -11,7 +11,7 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.optimise.job import parse_job
-from slidercrank.service.designs.nearby import nearby
+from slidercrank.service.designs.nearby_job import job_near_lengths
 from slidercrank.service.store import Store
 from slidercrank.service.store.backup import back_up
 from tests.service import fronts
@@ -33,7 +33,7 @@ def test_the_ranges_hold_the_design_in_their_middle_and_all_else_stays() -> None
     for _ in range(20):
         lengths = (chance.uniform(100, 200), chance.uniform(300, 900), chance.uniform(-250, 250))
         share = chance.uniform(0.02, 0.5)
-        made = nearby(problem, tables, lengths, share=share)
+        made = job_near_lengths(problem, tables, lengths, share=share)
         part = parse_job(made)
         for name, length in zip(("crank", "rod", "offset"), lengths, strict=True):
             of = getattr(part, name)
@@ -46,11 +46,11 @@ def test_the_ranges_hold_the_design_in_their_middle_and_all_else_stays() -> None
 def test_what_the_job_fixes_stays_fixed() -> None:
     tables = {**tomllib.loads(fronts.JOB), "constraints": {}}
     tables["variables"]["crank"] = "140 mm"
-    made = nearby(parse_job(tables), tables, (120.0, 400.0, 60.0))
+    made = job_near_lengths(parse_job(tables), tables, (120.0, 400.0, 60.0))
     assert made["variables"]["crank"] == "140 mm"
     tables["variables"] |= {"rod": "400 mm", "offset": "60 mm"}
     with pytest.raises(InputError, match="this job fixes all three"):
-        nearby(parse_job(tables), tables, (120.0, 400.0, 60.0))
+        job_near_lengths(parse_job(tables), tables, (120.0, 400.0, 60.0))
 
 
 def test_the_copy_is_queued_and_knows_where_it_is_from(client: httpx.Client, solved: Solved) -> None:

@@ -82,7 +82,7 @@ def test_a_cylinder_reaches_from_the_slider_into_its_barrel_all_over_the_swing(c
     _, linkage, swing = case
     for angle in np.linspace(swing.start, swing.end, 5):
         if swing.driver == "crank":
-            assert swing_drawing(*case, name="Support", crank_angle=float(angle)).on("ACTUATOR") == []
+            assert swing_drawing(*case, name="Support", crank_angle=float(angle)).shapes_on("ACTUATOR") == []
             continue
         found = read(case, crank_angle=float(angle))
         outlines = found.modelspace().query('LWPOLYLINE[layer=="ACTUATOR"]')
@@ -163,8 +163,8 @@ def test_the_words_of_the_swing_angle_do_not_lie_on_the_crank(case: Case) -> Non
         shape for shape in drawing.shapes if isinstance(shape, Label) and re.fullmatch(r"[\d.]+ deg", shape.text)
     )
     long = WIDE * words.height * len(words.text)
-    left = words.at[0] - {"start": 0.0, "middle": 0.5, "end": 1.0}[words.anchor] * long
+    left = words.position[0] - {"start": 0.0, "middle": 0.5, "end": 1.0}[words.anchor] * long
     along = np.linspace(0.0, 1e3 * float(linkage.crank), 400)
     angle = 0.5 * (swing.start + swing.end)
-    x, y = along * math.cos(angle), along * math.sin(angle) - words.at[1]
+    x, y = along * math.cos(angle), along * math.sin(angle) - words.position[1]
     assert not np.any((x > left) & (x < left + long) & (y > -0.3 * words.height) & (y < words.height))

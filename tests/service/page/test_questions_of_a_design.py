@@ -10,7 +10,7 @@ import httpx
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from slidercrank.service.questions.discovery import COMMANDS, OF_DESIGNS, TOPICS
+from slidercrank.service.questions.discovery import DESIGN_QUESTIONS, QUESTION_COMMANDS, TOPICS
 from slidercrank.service.store import Store
 from tests.service import sized
 from tests.service.api.fixed_front import API
@@ -166,7 +166,7 @@ def test_a_command_has_a_form_and_its_answer_on_the_page(
         values = [value for row in rows for cell in row for value in plain(cell)[1]]
         assert any(value == pytest.approx(size, rel=5e-4) for value in values), (size, rows)
     labels = place.locator("form label").all_inner_texts()
-    declared = OF_DESIGNS[name].inputs
+    declared = DESIGN_QUESTIONS[name].inputs
     assert len(labels) == len(declared)
     assert all(one.title in label for one, label in zip(declared, labels, strict=True))
     require_accessible(page)
@@ -208,8 +208,10 @@ def test_the_swing_of_a_design_is_that_of_its_job_until_another_is_asked(opened:
 def test_the_service_lists_every_question_with_its_inputs(opened: tuple[Page, str]) -> None:
     _, address = opened
     listed = httpx.get(f"{address}{API}/topics", timeout=60.0).json()
-    for of, names in (("topics", TOPICS), ("questions", COMMANDS)):
+    for of, names in (("topics", TOPICS), ("questions", QUESTION_COMMANDS)):
         assert [one["name"] for one in listed[of]] == list(names)
         for one in listed[of]:
-            assert [given["key"] for given in one["inputs"]] == [given.key for given in OF_DESIGNS[one["name"]].inputs]
+            assert [given["key"] for given in one["inputs"]] == [
+                given.key for given in DESIGN_QUESTIONS[one["name"]].inputs
+            ]
             assert one["shows"]

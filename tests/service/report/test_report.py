@@ -77,7 +77,7 @@ def text_of(page: str) -> str:
 
 def texts(part: Report) -> list[str]:
     """Return everything that a report says."""
-    found = [part.title, part.subtitle, part.made, *part.signatures]
+    found = [part.title, part.subtitle, part.date, *part.signatures]
     for section in part.sections:
         found.append(section.title)
         for block in section.blocks:

@@ -10,7 +10,7 @@ from slidercrank.model.errors import RunError
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
-from slidercrank.service.designs.selection import part_of
+from slidercrank.service.designs.selection import result_part
 from slidercrank.service.designs.stored_designs import design_of, front_of, stored_design
 from slidercrank.service.designs.trade_offs import trade_offs_of
 from slidercrank.service.runs.result import Exact, Result, result_of
@@ -98,7 +98,7 @@ def test_a_stored_front_is_the_one_that_was_found(front: ParetoFront, stored: tu
 
 def test_a_part_of_a_front_has_the_exact_designs_of_its_rows(front: ParetoFront, stored: tuple[Path, Result]) -> None:
     rows = [len(front) - 1, 0]
-    part = part_of(stored[1], rows)
+    part = result_part(stored[1], rows)
     assert part.exact is not None
     assert part.exact.dimensions.tobytes() == front.dimensions[rows].tobytes()
 

@@ -53,7 +53,7 @@ def result_in(result: Result, system: System, problem: Problem | None = None) ->
         return result
     return replace(
         result,
-        objectives=tuple(wanted_in(wanted, system) for wanted in result.objectives),
+        objectives=tuple(objective_in(objective, system) for objective in result.objectives),
         designs=rows_in(result.designs, system),
         violated=record_in(result.violated, system),
         discrete=record_in(result.discrete, system),
@@ -61,11 +61,11 @@ def result_in(result: Result, system: System, problem: Problem | None = None) ->
     )
 
 
-def wanted_in(wanted: Wanted, system: System) -> Wanted:
+def objective_in(objective: Wanted, system: System) -> Wanted:
     """Return an objective in the units of a system."""
-    column, factor = key_in(wanted.column, system)
-    target = None if wanted.target is None else wanted.target * factor
-    return replace(wanted, column=column, unit=shown_in(wanted.unit, system)[0], target=target)
+    column, factor = key_in(objective.column, system)
+    target = None if objective.target is None else objective.target * factor
+    return replace(objective, column=column, unit=shown_in(objective.unit, system)[0], target=target)
 
 
 def _trade_offs(problem: Problem, result: Result, system: System) -> list[str]:

@@ -10,9 +10,9 @@ if TYPE_CHECKING:
     from ...model.swing.swing import Swing
 
 
-def require_turning(swing: Swing | None, what: str) -> None:
-    """Refuse a crank that swings. what: it is of a full turn, as the subject of the sentence."""
+def require_rotating_crank(swing: Swing | None, subject: str) -> None:
+    """Refuse a crank that swings. subject: it is of a full turn, as the subject of the sentence."""
     if swing is not None:
         raise InputError(
-            f"{what} needs a rotating crank; the crank of this job swings; use swing to analyse its designs"
+            f"{subject} needs a rotating crank; the crank of this job swings; use swing to analyse its designs"
         )

@@ -24,7 +24,7 @@ _HALVINGS = 12
 Lengths = tuple[float, float, float]
 
 
-def held(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
+def hold_equalities(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
     """Return lengths, m, near the given ones, the moved one as given, that meet every equality of the job.
 
     Newton's method in the other lengths that the job leaves free, each step the shortest that meets the linearised
@@ -63,8 +63,8 @@ def _misses(design: StoredDesign, equal: list[Constraint], values: Array) -> tup
     targets = np.array([constraint.lower or 0.0 for constraint in equal])
     part, names = design.part, [constraint.quantity for constraint in equal]
     # Not `Problem.evaluate`, which warns of lengths that people give: these are on the way to others.
-    found, slopes = evaluated(part.mechanism, values[None], names, gradients=True, own=part.own, swing=part.motion)
-    return found[0] - targets, slopes[0], np.maximum(np.abs(targets), 1e-6)
+    reached, slopes = evaluated(part.mechanism, values[None], names, gradients=True, own=part.own, swing=part.motion)
+    return reached[0] - targets, slopes[0], np.maximum(np.abs(targets), 1e-6)
 
 
 def _moves(part: Problem, values: Array) -> bool:
@@ -78,10 +78,11 @@ def _moves(part: Problem, values: Array) -> bool:
 def _refused(design: StoredDesign, equal: list[Constraint], moved: str, value: float) -> InputError:
     rules = []
     for constraint in equal:
-        of = design.part.quantity(constraint.quantity)
-        rules.append(f"{of.title} exactly {(constraint.lower or 0.0) * of.unit.factor:.6g} {of.unit.symbol}".strip())
-    others = " and ".join(name for name in _LENGTHS if name != moved)
+        quantity = design.part.quantity(constraint.quantity)
+        target = (constraint.lower or 0.0) * quantity.unit.factor
+        rules.append(f"{quantity.title} exactly {target:.6g} {quantity.unit.symbol}".strip())
+    other_lengths = " and ".join(name for name in _LENGTHS if name != moved)
     return InputError(
-        f"{others} must change so that {' and '.join(rules)} still holds; for {moved} {1e3 * value:.6g} mm no design "
-        "was found; change it less, or allow the rules to be broken"
+        f"{other_lengths} must change so that {' and '.join(rules)} still holds; for {moved} {1e3 * value:.6g} mm no "
+        "design was found; change it less, or allow the rules to be broken"
     )

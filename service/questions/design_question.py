@@ -8,7 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_type_hints
 
-from ..designs.turning import require_turning
+from ..designs.rotating_crank import require_rotating_crank
 from ..runs.result import json_ready
 from .inputs import Input, read_inputs
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from ...model.machine.mechanism import Mechanism
     from ...objectives.kinds import System
     from ...optimise.problem.problem import Problem
-    from ..figures.panels import Drawn
+    from ..figures.panels import FigureSource
     from ..render.blocks import Block
 
 
 @dataclass(frozen=True, kw_only=True)
-class Command:
+class QuestionCommand:
     """What a question says that is a command, with an address of its own, and no topic of `analyse --show`.
 
     help: what it answers, the first sentence in a paragraph of its own. endpoint: name of the endpoint. job, alone:
@@ -47,7 +47,7 @@ class Command:
 
 
 @dataclass(frozen=True)
-class Question:
+class DesignQuestion:
     """A question, declared by its folder, whose module `analysis` has the functions `numbers`, `blocks` and `figure`.
 
     What `numbers` returns is the type of the answer (`answers`), from which its JSON Schema follows.
@@ -69,7 +69,7 @@ class Question:
     needs_job: bool = True
     tells: tuple[str, ...] = ()
     inputs: tuple[Input, ...] = ()
-    command: Command | None = None
+    command: QuestionCommand | None = None
 
     @property
     def analysis(self) -> Any:
@@ -86,14 +86,14 @@ class Question:
         """Name in `--show`, in JSON and of the figure's file."""
         return self.package.rpartition(".")[2]
 
-    def asked(
+    def for_problem(
         self,
         mechanism: Mechanism,
         linkage: Linkage,
         problem: Problem | None,
         inputs: Mapping[str, object],
         words: Mapping[str, str] | None = None,
-    ) -> QuestionOfDesign:
+    ) -> BoundQuestion:
         """Return the question to a design. problem: that it answers. inputs: by name, in SI or as text with a unit.
 
         words: what the door calls the inputs, if not by their names. Raises `InputError` for a problem that swings,
@@ -101,13 +101,17 @@ class Question:
         """
         swing = None if problem is None else problem.motion
         if self.command is None:
-            require_turning(swing, f"the topic {self.name}")
-            return self.of(mechanism, linkage, read_inputs(self.inputs, inputs, f"the topic {self.name}", words))
-        of: dict[str, object] = {"swing": swing}
+            require_rotating_crank(swing, f"the topic {self.name}")
+            return self.for_design(
+                mechanism, linkage, read_inputs(self.inputs, inputs, f"the topic {self.name}", words)
+            )
+        context: dict[str, object] = {"swing": swing}
         if self.command.sizes:
-            require_turning(swing, self.command.called or self.name)
-            of = {"problem": problem}
-        return self.of(mechanism, linkage, {**of, "words": words, **read_inputs(self.inputs, inputs, self.name, words)})
+            require_rotating_crank(swing, self.command.called or self.name)
+            context = {"problem": problem}
+        return self.for_design(
+            mechanism, linkage, {**context, "words": words, **read_inputs(self.inputs, inputs, self.name, words)}
+        )
 
     def answer(
         self, mechanism: Mechanism, linkage: Linkage, problem: Problem | None, inputs: Mapping[str, object]
@@ -115,22 +119,24 @@ class Question:
         """Return the numbers as JSON has them, metric: a question of `optimise.problem.questions`."""
         from ...model.linkage.single import single
 
-        found = self.asked(mechanism, linkage, problem, inputs)
+        bound = self.for_problem(mechanism, linkage, problem, inputs)
         if self.command is None:
             single(mechanism, linkage)
-        answer: dict[str, Any] = json_ready(found.numbers())
-        return answer
+        record: dict[str, Any] = json_ready(bound.numbers())
+        return record
 
-    def of(self, mechanism: Mechanism, linkage: Linkage, options: dict[str, Any] | None = None) -> QuestionOfDesign:
+    def for_design(
+        self, mechanism: Mechanism, linkage: Linkage, options: dict[str, Any] | None = None
+    ) -> BoundQuestion:
         """Return the question to one design. options: of its `numbers`."""
-        return QuestionOfDesign(self, mechanism, linkage, dict(options or {}))
+        return BoundQuestion(self, mechanism, linkage, dict(options or {}))
 
 
 @dataclass(frozen=True)
-class QuestionOfDesign:
+class BoundQuestion:
     """A question to one design, with its options."""
 
-    question: Question
+    question: DesignQuestion
     mechanism: Mechanism
     linkage: Linkage
     options: dict[str, Any]
@@ -143,26 +149,26 @@ class QuestionOfDesign:
     def numbers(self, cancelled: Callable[[], bool] = lambda: False) -> dict[str, Any]:
         """Return the numbers, ready for JSON. Raises `InputError` where the design has none."""
         self._prepare(cancelled)
-        found: dict[str, Any] = self._analysis.numbers(self.mechanism, self.linkage, **self.options)
-        return found
+        record: dict[str, Any] = self._analysis.numbers(self.mechanism, self.linkage, **self.options)
+        return record
 
     def numbers_in(self, numbers: dict[str, Any], units: System) -> dict[str, Any]:
         """Return the numbers, metric as they are, in a system of units, for JSON."""
-        from ..designs.shown_units import record_in
+        from ..designs.display_units import record_in
 
-        found: dict[str, Any] = getattr(self._analysis, "in_units", record_in)(numbers, units)
-        return found
+        converted: dict[str, Any] = getattr(self._analysis, "in_units", record_in)(numbers, units)
+        return converted
 
     def blocks(self, numbers: dict[str, Any]) -> list[Block]:
         """Return the numbers, metric as they are, for people."""
-        found: list[Block] = self._analysis.blocks(numbers)
-        return found
+        shown_blocks: list[Block] = self._analysis.blocks(numbers)
+        return shown_blocks
 
     def notes(self, numbers: dict[str, Any]) -> list[str]:
         """Return what is to be said of the numbers besides: what is undefined, or not proven."""
         if hasattr(self._analysis, "notes"):
-            found: list[str] = self._analysis.notes(numbers)
-            return found
+            remarks: list[str] = self._analysis.notes(numbers)
+            return remarks
         return [note for note in numbers.get("notes", [numbers.get("note")]) if note]
 
     def written(self, name: str, units: System) -> Any:
@@ -171,10 +177,10 @@ class QuestionOfDesign:
 
     def draw(self, folder: Path, units: System = "metric") -> Path:
         """Write the figure into a folder, after its numbers; return the file."""
-        from ..figures.panels import save_sheet
+        from ..figures.panels import save_figure
 
         file = folder / f"{self.name}.png"
-        save_sheet(self._drawn(), file, units)
+        save_figure(self._drawn(), file, units)
         return file
 
     def figure(self, cancelled: Callable[[], bool], units: System = "metric") -> Figure:
@@ -190,11 +196,11 @@ class QuestionOfDesign:
                 self._analysis.prepare(self.mechanism, self.linkage, **{**self.options, "cancelled": cancelled})
             )
 
-    def _drawn(self) -> Drawn:
-        hidden = {one.name for one in self.question.inputs if not one.drawn}
+    def _drawn(self) -> FigureSource:
+        hidden = {item.name for item in self.question.inputs if not item.drawn}
         options = {name: value for name, value in self.options.items() if name not in hidden}
-        found: Drawn = self._analysis.figure(self.mechanism, self.linkage, **options)
-        return found
+        source: FigureSource = self._analysis.figure(self.mechanism, self.linkage, **options)
+        return source
 
     @property
     def _analysis(self) -> Any:

@@ -50,41 +50,47 @@ class Limit:
         return f"{self.title} {_WORDS[self.side]} {_said(self.value, self.unit)}"
 
 
-def binding_limits(problem: Problem, result: Result, tables: Mapping[str, Any]) -> list[Limit]:
+def active_limits(problem: Problem, result: Result, tables: Mapping[str, Any]) -> list[Limit]:
     """Return the limits on which designs of a front rest, those with most designs first. tables: of the job.
 
     Values that the job fixes, or requires exactly, are no limits: every design rests on them.
     """
     variants = range(max(1, len(problem.variants)))
     limits = {variant: _limits(problem.part(variant), tables) for variant in variants}
-    own = (
+    variants_of_designs = (
         (result.exact.variants if result.exact is not None else ()) if problem.variants else (0,) * len(result.designs)
     )
-    found: dict[tuple[str, Side], tuple[Limit, list[int]]] = {}
+    designs_at_limit: dict[tuple[str, Side], tuple[Limit, list[int]]] = {}
     for number, row in enumerate(result.designs, 1):
-        variant = own[number - 1] if own else stored_design(problem, result, number).variant
+        variant = (
+            variants_of_designs[number - 1] if variants_of_designs else stored_design(problem, result, number).variant
+        )
         for limit in limits[variant]:
             value = row.get(limit.column)
             if isinstance(value, float) and abs(value - limit.value) <= _REST * limit.size:
-                found.setdefault((limit.of, limit.side), (limit, []))[1].append(number)
-    resting = [replace(limit, designs=tuple(numbers)) for limit, numbers in found.values()]
+                designs_at_limit.setdefault((limit.of, limit.side), (limit, []))[1].append(number)
+    resting = [replace(limit, designs=tuple(numbers)) for limit, numbers in designs_at_limit.values()]
     return sorted(resting, key=lambda limit: -len(limit.designs))
 
 
-def widened(problem: Problem, tables: Mapping[str, Any], wanted: Sequence[tuple[str, Side, float]]) -> dict[str, Any]:
+def widen_limits(
+    problem: Problem, tables: Mapping[str, Any], new_values: Sequence[tuple[str, Side, float]]
+) -> dict[str, Any]:
     """Return the tables of a job with other limits, each by its place, side and value in its unit.
 
     Raises `InputError` for a limit that the job does not have, or that another number cannot take the place of.
     """
-    known = {(limit.of, limit.side): limit for part in problem.parts() for limit in _limits(part, tables)}
+    limits = {(limit.of, limit.side): limit for part in problem.parts() for limit in _limits(part, tables)}
     job = deepcopy(dict(tables))
-    said = []
-    for of, side, value in wanted:
-        limit = known.get((of, side))
+    changes = []
+    for limit_path, side, value in new_values:
+        limit = limits.get((limit_path, side))
         if limit is None or limit.wider is None:
-            places = ", ".join(f"{place} ({end})" for (place, end), one in known.items() if one.wider is not None)
+            places = ", ".join(
+                f"{place} ({end})" for (place, end), known_limit in limits.items() if known_limit.wider is not None
+            )
             raise InputError(
-                f"a limit of the job must be named by its place; got {of!r} ({side}); choose from {places}"
+                f"a limit of the job must be named by its place; got {limit_path!r} ({side}); choose from {places}"
             )
         further = value < limit.value if side == "lower" else value > limit.value
         if not (further and math.isfinite(value)):
@@ -93,28 +99,28 @@ def widened(problem: Problem, tables: Mapping[str, Any], wanted: Sequence[tuple[
                 f"a wider limit must be {way} {limit.value:g} {limit.unit}; got {value:g}; give another one"
             )
         text: str | float = f"{value:.12g} {limit.unit}" if limit.unit else value
-        table, _, path = of.partition(".")
+        table, _, path = limit_path.partition(".")
         if table == "variables":
             holder, key = _place(job[table], path)
             holder[key] = [text, holder[key][1]] if side == "lower" else [holder[key][0], text]
         else:
             job.setdefault(table, {}).setdefault(path, {})["min" if side == "lower" else "max"] = text
-        said.append(f"{limit.title} {_WORDS[side]} {_said(value, limit.unit)}")
-    name = f"{tables['name']}, {', '.join(said)}"
+        changes.append(f"{limit.title} {_WORDS[side]} {_said(value, limit.unit)}")
+    name = f"{tables['name']}, {', '.join(changes)}"
     job["name"] = name if len(name) <= _LONGEST_NAME else tables["name"]
     return job
 
 
 def _limits(part: Problem, tables: Mapping[str, Any]) -> list[Limit]:
     """Return every limit of a problem without choices."""
-    found = []
-    for of, column, title, unit, low, high in _ranges(part):
+    limits = []
+    for path, column, title, unit, low, high in _ranges(part):
         if low == high:
             continue
-        holder, key = _place(tables.get("variables", {}), of)
-        given = holder.get(key)
-        about: dict[str, Any] = {
-            "of": f"variables.{of}",
+        holder, key = _place(tables.get("variables", {}), path)
+        stated_range = holder.get(key)
+        range_fields: dict[str, Any] = {
+            "of": f"variables.{path}",
             "column": column,
             "title": title,
             "unit": unit,
@@ -125,8 +131,8 @@ def _limits(part: Problem, tables: Mapping[str, Any]) -> list[Limit]:
             if side == "lower" and value > 0.0:
                 step = min(step, _WIDER * value)  # a length stays one
             wider = _round(value - step if side == "lower" else value + step, step)
-            changed = wider if isinstance(given, list | tuple) and len(given) == 2 else None
-            found.append(Limit(side=side, value=value, wider=changed, **about))
+            changed = wider if isinstance(stated_range, list | tuple) and len(stated_range) == 2 else None
+            limits.append(Limit(side=side, value=value, wider=changed, **range_fields))
     for item in requirements_of(part):
         if item.lower is not None and item.lower == item.upper:
             continue
@@ -135,7 +141,7 @@ def _limits(part: Problem, tables: Mapping[str, Any]) -> list[Limit]:
         for side, bound in _sides(item.lower, item.upper):
             step = _FURTHER * abs(bound)
             changed = _round(bound - step if side == "lower" else bound + step, step) if stated and step else None
-            found.append(
+            limits.append(
                 Limit(
                     of=f"constraints.{item.quantity}",
                     side=side,
@@ -145,21 +151,21 @@ def _limits(part: Problem, tables: Mapping[str, Any]) -> list[Limit]:
                     **named,
                 )
             )
-    return found
+    return limits
 
 
 def _ranges(part: Problem) -> list[tuple[str, str, str, str, float, float]]:
     """Return the variables: place in [variables], column, title, unit, and both ends in that unit."""
-    found = [(name, f"{name}_mm", name, "mm", getattr(part, name), 1e3) for name in DIMENSIONS]
+    ranges = [(name, f"{name}_mm", name, "mm", getattr(part, name), 1e3) for name in DIMENSIONS]
     for item in part.mechanism.varying:
-        key, face = varying_column(item)
-        found.append((item.name, key, find_column(key, [key]).title, face.symbol, item, face.factor))
-    return [(of, *words, factor * ends.lower, factor * ends.upper) for of, *words, ends, factor in found]
+        key, unit = varying_column(item)
+        ranges.append((item.name, key, find_column(key, [key]).title, unit.symbol, item, unit.factor))
+    return [(path, *words, factor * ends.lower, factor * ends.upper) for path, *words, ends, factor in ranges]
 
 
 def _sides(lower: float | None, upper: float | None) -> list[tuple[Side, float]]:
-    both: tuple[tuple[Side, float | None], ...] = (("lower", lower), ("upper", upper))
-    return [(side, bound) for side, bound in both if bound is not None]
+    ends: tuple[tuple[Side, float | None], ...] = (("lower", lower), ("upper", upper))
+    return [(side, bound) for side, bound in ends if bound is not None]
 
 
 def _place(table: Any, path: str) -> tuple[Any, str]:

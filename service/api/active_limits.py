@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from ..designs.binding import binding_limits
+from ..designs.active_limits import active_limits
 from .computing import QuickRoute
 from .problems import problem_responses
 from .settings import StoreDep
@@ -15,7 +15,7 @@ from .stored_fronts import FrontDep
 
 router = APIRouter(route_class=QuickRoute, tags=["fronts"])
 
-OF = Annotated[str, Field(max_length=500, description="its place in the job", examples=["variables.rod"])]
+LIMIT_PATH = Annotated[str, Field(max_length=500, description="its place in the job", examples=["variables.rod"])]
 Side = Literal["lower", "upper"]
 
 
@@ -25,7 +25,7 @@ class LimitModel(BaseModel):
     words: in metric units. wider is null where the job says the limit in a way that another number cannot replace.
     """
 
-    of: OF
+    of: LIMIT_PATH
     side: Side = Field(examples=["upper"])
     column: str = Field(examples=["rod_mm"])
     title: str = Field(examples=["rod"])
@@ -36,7 +36,7 @@ class LimitModel(BaseModel):
     designs: list[int] = Field(examples=[[1, 2, 7]])
 
 
-class BindingModel(BaseModel):
+class ActiveLimitsModel(BaseModel):
     """The limits on which designs of a front rest, those with most designs first."""
 
     job: int = Field(examples=[7])
@@ -45,10 +45,10 @@ class BindingModel(BaseModel):
 
 
 @router.get("/jobs/{number}/binding", responses=problem_responses(409))
-def list_binding(found: FrontDep, store: StoreDep) -> BindingModel:
+def list_active_limits(stored_front: FrontDep, store: StoreDep) -> ActiveLimitsModel:
     """Give the limits of a job on which designs of its front rest: what a wider one may gain."""
-    limits = binding_limits(found.problem, found.result, store.tables(found.job.id))
-    told = [
+    limits = active_limits(stored_front.problem, stored_front.result, store.tables(stored_front.job.id))
+    models = [
         LimitModel(
             words=limit.words,
             designs=list(limit.designs),
@@ -56,4 +56,4 @@ def list_binding(found: FrontDep, store: StoreDep) -> BindingModel:
         )
         for limit in limits
     ]
-    return BindingModel(job=found.job.id, count=len(found.result.designs), limits=told)
+    return ActiveLimitsModel(job=stored_front.job.id, count=len(stored_front.result.designs), limits=models)

@@ -18,7 +18,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
 from ..designs.cycle_table import CurveColumn, cycle_table
 from ..drawings import layers as on
-from ..drawings.parts import Look, bar, block, lengths_in_words, look_of, scenery
+from ..drawings.parts import Look, bar, block, fixed_shapes, lengths_in_words, look_of
 from ..drawings.shapes import Circle, Shape
 
 ANGLES = 360
@@ -34,17 +34,17 @@ _READOUT = (
 
 
 @dataclass(frozen=True)
-class Words:
+class PlayerText:
     """Words of a page. control: label of what sets the place. times: of the speeds. over: what the curves are over."""
 
     control: str
     times: str
-    over: str
+    span_name: str
     note: str
 
 
 @dataclass(frozen=True)
-class Play:
+class Playback:
     """A motion as a page plays it, over and over.
 
     summary: a line on the linkage. record: numbers for the script, with the places of slider and rod. columns: the
@@ -61,21 +61,21 @@ class Play:
     moving: Mapping[str, list[Shape]]
     extent: tuple[float, float, float, float]
     size: float
-    words: Words
+    words: PlayerText
     turns: int = 1
 
 
-SHOWN = "Pivots are exact; {}, and so are the widths of links that the job does not describe by a section."
-_TURNS = Words(
+EXACT_PARTS = "Pivots are exact; {}, and so are the widths of links that the job does not describe by a section."
+_TURNS = PlayerText(
     control="Crank angle",
     times="turns a minute",
-    over="a turn of the crank",
+    span_name="a turn of the crank",
     note="Dead centres are dashed in the drawing and dotted lines in the curves. "
-    + SHOWN.format("slider and pins\nare for show"),
+    + EXACT_PARTS.format("slider and pins\nare for show"),
 )
 
 
-def play_of_turn(mechanism: Mechanism, linkage: Linkage) -> Play:
+def turn_playback(mechanism: Mechanism, linkage: Linkage) -> Playback:
     """Return the motion of a fully turning linkage. Raises `AssemblyError` for one that does not turn fully.
 
     It has both turns of a cycle of two.
@@ -88,10 +88,10 @@ def play_of_turn(mechanism: Mechanism, linkage: Linkage) -> Play:
     dead = [math.degrees(float(angle)) % 360.0 for angle in linkage.dead_centre_angles]
     rpm = mechanism.speed * 30.0 / math.pi
     turning = f"{abs(rpm):.6g} rpm, {'clockwise' if rpm < 0.0 else 'counter-clockwise'}" if rpm else "no crank speed"
-    return Play(
+    return Playback(
         summary=f"{lengths_in_words(linkage, digits=6, stroke=True)}; {turning}",
         record={
-            **places(look, turn.slider_position, turn.rod_angle),
+            **place_record(look, turn.slider_position, turn.rod_angle),
             "direction": -1 if mechanism.speed < 0.0 else 1,
             "perSecond": 1.0 / turn_time(mechanism),
         },
@@ -100,13 +100,13 @@ def play_of_turn(mechanism: Mechanism, linkage: Linkage) -> Play:
             *_pressures(mechanism, linkage, angles),
         ],
         marks=tuple(angle + 360.0 * number for number in range(turns) for angle in dead),
-        still=scenery(linkage, look, below=True),
-        moving=links_of(look),
+        still=fixed_shapes(linkage, look, bearing_below=True),
+        moving=moving_link_shapes(look),
         extent=look.extent,
         size=look.size,
         words=replace(
             _TURNS,
-            over=_TURNS.over if turns == 1 else f"{turns} turns of the crank",
+            span_name=_TURNS.span_name if turns == 1 else f"{turns} turns of the crank",
             note=f"{_TURNS.note} Bore and clearance of the cylinder are exact." if look.barrels else _TURNS.note,
         ),
         turns=turns,
@@ -115,19 +115,19 @@ def play_of_turn(mechanism: Mechanism, linkage: Linkage) -> Play:
 
 def _pressures(mechanism: Mechanism, linkage: Linkage, angles: Array) -> list[CurveColumn]:
     """Return the pressure in each cylinder at crank angles, rad."""
-    found = cylinders(mechanism)
+    loads = cylinders(mechanism)
     return [
         CurveColumn(
             f"pressure_{place + 1}_bar",
-            "pressure" if len(found) == 1 else f"pressure, load {place + 1}",
+            "pressure" if len(loads) == 1 else f"pressure, load {place + 1}",
             "bar",
             (1e-5 * indicator(mechanism, linkage, load, angles).pressure).tolist(),
         )
-        for place, load in found
+        for place, load in loads
     ]
 
 
-def places(look: Look, slider: Any, rod: Any) -> dict[str, Any]:
+def place_record(look: Look, slider: Any, rod: Any) -> dict[str, Any]:
     """Return crank and offset, mm, and for the places of a motion slider positions, mm, and rod angles, deg.
 
     slider: m. rod: rad.
@@ -141,7 +141,7 @@ def places(look: Look, slider: Any, rod: Any) -> dict[str, Any]:
     }
 
 
-def links_of(look: Look) -> dict[str, list[Shape]]:
+def moving_link_shapes(look: Look) -> dict[str, list[Shape]]:
     """Return slider, rod, crank and pins, each in its own coordinates."""
     pin = (0.0, 0.0)
     return {

@@ -10,20 +10,20 @@ from typing import Annotated, Any
 import typer
 
 from ...objectives.kinds import System
-from ..designs.shown_units import record_in
-from ..questions.discovery import COMMANDS, OF_DESIGNS
-from ..questions.question import QuestionOfDesign
+from ..designs.display_units import record_in
+from ..questions.design_question import BoundQuestion
+from ..questions.discovery import DESIGN_QUESTIONS, QUESTION_COMMANDS
 from ..runs.result import csv_text
 from ..runs.run_folder import write_file
 from ..text.options import DesignOfRun, Dimensions, JobFile, JobOrRun, Json, Runs, Units, drawable, require_ending
-from ..text.screen import answer, say, waiting, write_figure
+from ..text.screen import print_answer, print_message, show_activity, write_figure
 from .input_options import option_of
 from .job_or_run import machine_of, turning_problem
 
 
-def command_of(name: str) -> Callable[..., None]:
+def design_command(name: str) -> Callable[..., None]:
     """Return the command of a question, for `for_typer`."""
-    question, says = OF_DESIGNS[name], COMMANDS[name]
+    question, says = DESIGN_QUESTIONS[name], QUESTION_COMMANDS[name]
 
     def command(
         job: JobOrRun = None,
@@ -40,16 +40,16 @@ def command_of(name: str) -> Callable[..., None]:
         require_ending("--curves", curves, ".csv")
         require_ending("--figure", figure, ".png")
         mechanism, linkage, problem = machine_of(name, job, size, design, runs)
-        words = {one.name: one.flag for one in question.inputs}
-        asked = question.asked(mechanism, linkage, problem, inputs, words)
-        notes = _print_answer(asked, units, json)
+        words = {item.name: item.flag for item in question.inputs}
+        bound_question = question.for_problem(mechanism, linkage, problem, inputs, words)
+        notes = _print_answer(bound_question, units, json)
         for note in () if json else notes:
-            say(note)
+            print_message(note)
         if curves is not None:
-            write_file(curves, csv_text(asked.written("curves", units)))
-            say(f"{curves}: {says.curves}")
+            write_file(curves, csv_text(bound_question.written("curves", units)))
+            print_message(f"{curves}: {says.curves}")
         if figure is not None:
-            write_figure(figure, lambda: asked.written("figure", units))
+            write_figure(figure, lambda: bound_question.written("figure", units))
 
     helps = (
         {"curves": f"Write {says.curves} as CSV.", "figure": "Draw the curves to a PNG file."} if says.curves else {}
@@ -64,9 +64,9 @@ def command_of(name: str) -> Callable[..., None]:
     return command
 
 
-def sizing_of(name: str) -> Callable[..., None]:
+def sizing_command(name: str) -> Callable[..., None]:
     """Return the command of a question that sizes, for `for_typer`."""
-    question, says = OF_DESIGNS[name], COMMANDS[name]
+    question, says = DESIGN_QUESTIONS[name], QUESTION_COMMANDS[name]
 
     def command(
         job: JobFile,
@@ -79,12 +79,12 @@ def sizing_of(name: str) -> Callable[..., None]:
     ) -> None:
         folder = drawable(files.get("figures"))
         problem = turning_problem(job, says.called or name)
-        words = {one.name: one.flag for one in question.inputs}
-        asked = question.asked(problem.mechanism.nominal, size.linkage(problem), problem, inputs, words)
-        for note in _print_answer(asked, units, json):
-            say(note)
+        words = {item.name: item.flag for item in question.inputs}
+        bound_question = question.for_problem(problem.mechanism.nominal, size.linkage(problem), problem, inputs, words)
+        for note in _print_answer(bound_question, units, json):
+            print_message(note)
         if folder is not None and says.figure is not None:
-            write_figure(folder / f"{says.figure[0]}.png", lambda: asked.written("figure", units), units)
+            write_figure(folder / f"{says.figure[0]}.png", lambda: bound_question.written("figure", units), units)
 
     draws = [f"Save a figure of {says.figure[1]} as {says.figure[0]}.png in this folder."] if says.figure else []
     command.__doc__ = says.help
@@ -96,14 +96,16 @@ def sizing_of(name: str) -> Callable[..., None]:
     return command
 
 
-def _print_answer(asked: QuestionOfDesign, units: System, json: bool) -> list[str]:
+def _print_answer(bound_question: BoundQuestion, units: System, json: bool) -> list[str]:
     """Print the answer; return what is to be said besides."""
     from ..render.terminal import print_blocks
 
-    with waiting("computing"):
-        record = asked.numbers()
-    answer(json, record_in(record, units), lambda screen: print_blocks(screen, asked.blocks(record), units))
-    return asked.notes(record)
+    with show_activity("computing"):
+        record = bound_question.numbers()
+    print_answer(
+        json, record_in(record, units), lambda screen: print_blocks(screen, bound_question.blocks(record), units)
+    )
+    return bound_question.notes(record)
 
 
 def _file_option(name: str, help: str, metavar: str = "FILE") -> inspect.Parameter:
@@ -111,5 +113,5 @@ def _file_option(name: str, help: str, metavar: str = "FILE") -> inspect.Paramet
     return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=hint)
 
 
-inverse, swing = map(command_of, ("inverse", "swing"))
-allocate, balance, sections = map(sizing_of, ("allocate", "counterweight", "sections"))
+inverse, swing = map(design_command, ("inverse", "swing"))
+allocate, balance, sections = map(sizing_command, ("allocate", "counterweight", "sections"))

@@ -23,7 +23,7 @@ NEAR = 0.02
 _TO = f"to {100 * NEAR:g} % of each range"
 
 
-def compared_in_words(names: Sequence[str], results: Sequence[Result], system: System = "metric") -> list[str]:
+def comparison_sentences(names: Sequence[str], results: Sequence[Result], system: System = "metric") -> list[str]:
     """Compare fronts with each other in sentences.
 
     names: of the runs. results: with designs. Only objectives that all runs have, in the same sense, are compared.
@@ -34,17 +34,21 @@ def compared_in_words(names: Sequence[str], results: Sequence[Result], system: S
     fronts = [_values(result, shared) for result in results]
     span = np.ptp(np.concatenate(fronts), axis=0)
     span[span == 0.0] = 1.0
-    said = [_best(names, results, wanted, index, fronts, span, system) for index, wanted in enumerate(shared)]
+    sentences = [
+        _best(names, results, objective, index, fronts, span, system) for index, objective in enumerate(shared)
+    ]
     for a in range(len(names)):
         for b in range(len(names)):
             if a != b:
-                said += _against(names[a], names[b], results[a], shared, fronts[a] / span, fronts[b] / span, system)
-    return said
+                sentences += _against(
+                    names[a], names[b], results[a], shared, fronts[a] / span, fronts[b] / span, system
+                )
+    return sentences
 
 
 def _shared(results: Sequence[Result]) -> list[Wanted]:
     kinds = [{(item.quantity, item.sense, item.target): item for item in result.objectives} for result in results]
-    return [item for key, item in kinds[0].items() if all(key in other for other in kinds[1:])]
+    return [item for key, item in kinds[0].items() if all(key in objectives for objectives in kinds[1:])]
 
 
 def _values(result: Result, shared: Sequence[Wanted]) -> Array:
@@ -57,7 +61,7 @@ def _values(result: Result, shared: Sequence[Wanted]) -> Array:
 def _best(
     names: Sequence[str],
     results: Sequence[Result],
-    wanted: Wanted,
+    objective: Wanted,
     index: int,
     fronts: Sequence[Array],
     span: Array,
@@ -67,10 +71,11 @@ def _best(
     rows = [int(np.argmin(front[:, index])) for front in fronts]
     least = np.array([front[row, index] for front, row in zip(fronts, rows, strict=True)])
     values = [
-        _said(result.designs[row][wanted.column], wanted, system) for result, row in zip(results, rows, strict=True)
+        _said(result.designs[row][objective.column], objective, system)
+        for result, row in zip(results, rows, strict=True)
     ]
     first = [n for n in range(len(names)) if least[n] <= least.min() + _SAME * span[index]]
-    title = f"best {wanted.title}"
+    title = f"best {objective.title}"
     if len(first) == len(names):
         return f"{title}: all reach {values[0]}"
     rest = [f"{values[n]} of {names[n]}" for n in range(len(names)) if n not in first]
@@ -78,37 +83,45 @@ def _best(
 
 
 def _against(
-    name: str, other: str, result: Result, shared: Sequence[Wanted], own: Array, others: Array, system: System
+    name: str,
+    other_name: str,
+    result: Result,
+    shared: Sequence[Wanted],
+    front: Array,
+    other_front: Array,
+    system: System,
 ) -> list[str]:
     """Return how many designs of one front the other one does not match, and where these are."""
-    free = unmatched(own, others)
-    count, total = int(free.sum()), len(own)
+    free = unmatched(front, other_front)
+    count, total = int(free.sum()), len(front)
     if count == 0:
-        return [f"{other} matches or beats every design of {name}, {_TO}"]
+        return [f"{other_name} matches or beats every design of {name}, {_TO}"]
     if count == total:
-        return [f"{other} matches none of the {counted(total, 'design')} of {name}, {_TO}"]
-    where = [text for n, wanted in enumerate(shared) if (text := _where(result, free, wanted, own[:, n], system))]
-    place = f": where {', '.join(where)}" if where else ", spread over the whole front"
-    return [f"{name} has {count} of {counted(total, 'design')} that {other} does not match, {_TO}{place}"]
+        return [f"{other_name} matches none of the {counted(total, 'design')} of {name}, {_TO}"]
+    parts = [
+        text for n, objective in enumerate(shared) if (text := _where(result, free, objective, front[:, n], system))
+    ]
+    place = f": where {', '.join(parts)}" if parts else ", spread over the whole front"
+    return [f"{name} has {count} of {counted(total, 'design')} that {other_name} does not match, {_TO}{place}"]
 
 
-def unmatched(own: Array, others: Array) -> NDArray[np.bool_]:
+def unmatched(front: Array, other_front: Array) -> NDArray[np.bool_]:
     """Return which designs (n, m) no other one (k, m) matches or beats; scaled objectives, as they are minimised."""
-    return np.array([not bool((others <= point + NEAR).all(axis=1).any()) for point in own])
+    return np.array([not bool((other_front <= point + NEAR).all(axis=1).any()) for point in front])
 
 
-def _where(result: Result, free: NDArray[np.bool_], wanted: Wanted, values: Array, system: System) -> str:
+def _where(result: Result, free: NDArray[np.bool_], objective: Wanted, values: Array, system: System) -> str:
     """Return in which part of an objective's range the chosen designs are; empty if in most of it."""
     low, high = values[free].min(), values[free].max()
-    inside = (values >= low) & (values <= high)
-    if inside.mean() > 0.7:
+    is_between = (values >= low) & (values <= high)
+    if is_between.mean() > 0.7:
         return ""
-    cells = [result.designs[row][wanted.column] for row in np.flatnonzero(free)]
+    cells = [result.designs[row][objective.column] for row in np.flatnonzero(free)]
     numbers = [float(cell) for cell in cells if isinstance(cell, float)]
-    ends = [_said(end, wanted, system) for end in (min(numbers), max(numbers))]
-    return f"{wanted.title} is {ends[0]}" if ends[0] == ends[1] else f"{wanted.title} is {ends[0]} to {ends[1]}"
+    ends = [_said(end, objective, system) for end in (min(numbers), max(numbers))]
+    return f"{objective.title} is {ends[0]}" if ends[0] == ends[1] else f"{objective.title} is {ends[0]} to {ends[1]}"
 
 
-def _said(value: object, wanted: Wanted, system: System) -> str:
-    unit, factor = shown_in(wanted.unit, system)
+def _said(value: object, objective: Wanted, system: System) -> str:
+    unit, factor = shown_in(objective.unit, system)
     return f"{value * factor:.4g} {unit}".rstrip() if isinstance(value, float) else "not defined"

@@ -15,7 +15,7 @@ SHARE = 0.1
 _LONGEST_NAME = 80  # of a job
 
 
-def nearby(
+def job_near_lengths(
     problem: Problem, tables: Mapping[str, Any], lengths: tuple[float, float, float], *, share: float = SHARE
 ) -> dict[str, Any]:
     """Return the tables of a job whose crank, rod and offset vary around lengths, mm. What the job fixes stays so.
@@ -24,17 +24,17 @@ def nearby(
     the job fixes all three.
     """
     part = problem.parts()[0]
-    free = [name for name in DIMENSIONS if (of := getattr(part, name)).lower < of.upper]
+    free = [name for name in DIMENSIONS if (bounds := getattr(part, name)).lower < bounds.upper]
     if not free:
         raise InputError("a search near a design needs a variable length; this job fixes all three; give one a range")
     job = deepcopy(dict(tables))
-    given = dict(zip(DIMENSIONS, lengths, strict=True))
+    length_of = dict(zip(DIMENSIONS, lengths, strict=True))
     for name in free:
-        room = share * max(abs(given[name]), given[DIMENSIONS[0]])
+        margin = share * max(abs(length_of[name]), length_of[DIMENSIONS[0]])
         if name != DIMENSIONS[2]:
-            room = share * given[name]
-        job["variables"][name] = [f"{given[name] - room:.6g} mm", f"{given[name] + room:.6g} mm"]
-    sizes = ", ".join(f"{given[name]:.4g}" for name in DIMENSIONS)
+            margin = share * length_of[name]
+        job["variables"][name] = [f"{length_of[name] - margin:.6g} mm", f"{length_of[name] + margin:.6g} mm"]
+    sizes = ", ".join(f"{length_of[name]:.4g}" for name in DIMENSIONS)
     name = f"{tables['name']}, near {sizes} mm"
     job["name"] = name if len(name) <= _LONGEST_NAME else tables["name"]
     return job

@@ -25,22 +25,22 @@ class Answer:
 
     record: Callable[[System], dict[str, Any]]
     blocks: Sequence[Block]
-    met: bool = True
+    is_satisfied: bool = True
     message: str = ""
     notes: Sequence[str] = ()
-    found: Any = None
+    search_result: Any = None
 
 
 @dataclass(frozen=True, kw_only=True)
-class Watch:
+class SearchListener:
     """Who waits for an answer. cancelled: asked now and then. tell: hears in words where the search is."""
 
     cancelled: Callable[[], bool] = lambda: False
-    tell: Callable[[str], None] = lambda _: None
+    report: Callable[[str], None] = lambda _: None
 
 
 @dataclass(frozen=True, kw_only=True)
-class WiderQuestion:
+class FrontOrJobQuestion:
     """A question, declared by its folder, whose module `analysis` has the function `answer`.
 
     It takes the subject, for a front also `row`, `watch`, `words`, what the door calls the inputs, and the inputs by
@@ -68,7 +68,7 @@ class WiderQuestion:
     @property
     def flags(self) -> dict[str, str]:
         """What the command line calls the inputs."""
-        return {one.name: one.flag for one in self.inputs}
+        return {item.name: item.flag for item in self.inputs}
 
     def read(
         self, inputs: Mapping[str, object], row: int | None, words: Mapping[str, str] | None = None
@@ -86,21 +86,21 @@ class WiderQuestion:
         *,
         row: int | None = None,
         words: Mapping[str, str] | None = None,
-        watch: Watch | None = None,
+        watch: SearchListener | None = None,
     ) -> Answer:
         """Return the answer. inputs: by name. row: of a front. words: what the door calls the inputs, if not so.
 
         Raises as `read` does, and what the answer raises.
         """
         values = self.read(inputs, row, words)
-        more: dict[str, Any] = {"row": row} if self.row != "none" else {}
-        said = {one.name: one.name for one in self.inputs} | dict(words or {})
+        options: dict[str, Any] = {"row": row} if self.row != "none" else {}
+        labels = {item.name: item.name for item in self.inputs} | dict(words or {})
         answer: Answer = import_module(f"{self.package}.analysis").answer(
-            subject, **more, words=said, watch=watch or Watch(), **values
+            subject, **options, words=labels, watch=watch or SearchListener(), **values
         )
         return answer
 
     def answer_of(self, subject: object, row: int | None, inputs: Mapping[str, object]) -> dict[str, Any]:
         """Return the numbers as JSON has them, metric: a question of `optimise.problem.questions`."""
-        answer: dict[str, Any] = json_ready(self.ask(subject, inputs, row=row).record("metric"))
-        return answer
+        record: dict[str, Any] = json_ready(self.ask(subject, inputs, row=row).record("metric"))
+        return record

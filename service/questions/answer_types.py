@@ -34,10 +34,10 @@ class _Boundless:
         return {"anyOf": [handler(core), {"enum": ["inf", "-inf"]}]}
 
 
-Boundless = Annotated[float | None, _Boundless()]
+PossiblyInfinite = Annotated[float | None, _Boundless()]
 """A number that may be infinite: JSON has "inf" and "-inf" for that."""
-AngleOfPeak = Annotated[float | None, Note("null where the curve is constant or not determined")]
-Locked = Annotated[float | None, Note("null where friction locks or may jam the linkage")]
+PeakAngle = Annotated[float | None, Note("null where the curve is constant or not determined")]
+NullIfLocked = Annotated[float | None, Note("null where friction locks or may jam the linkage")]
 
 
 class Record(TypedDict):
@@ -46,9 +46,9 @@ class Record(TypedDict):
 
 def _title(key: str, _: object = None) -> str:
     """Return what a key says in words: "peak torque, N m"."""
-    of, per, below = key.partition("_per_")
-    name, unit, _factor = split_unit(of)
-    words = [name.replace("_", " "), *([f"per {below.replace('_', ' ')}"] if per else [])]
+    numerator, per, denominator = key.partition("_per_")
+    name, unit, _factor = split_unit(numerator)
+    words = [name.replace("_", " "), *([f"per {denominator.replace('_', ' ')}"] if per else [])]
     if unit:
         words[0] += f", {unit}"
     return " ".join(words)
@@ -82,11 +82,11 @@ class Keys:
 
 def keys_of_kinds(names: Iterable[str], kinds: Iterable[Kind]) -> dict[str, Any]:
     """Return keys of numbers, each name with the unit of one of some kinds."""
-    return {f"{name}{kind.metric.suffix}": NotRequired[Locked] for name in names for kind in kinds}
+    return {f"{name}{kind.metric.suffix}": NotRequired[NullIfLocked] for name in names for kind in kinds}
 
 
 @dataclass(frozen=True)
-class Answering:
+class AnswerSchema:
     """Schema of a record of JSON that answers one of some questions, in metric or in inch units.
 
     types: gives those of the answers. names: of the answers in a metric record that has some of them beside others;
@@ -99,16 +99,16 @@ class Answering:
     def __get_pydantic_json_schema__(self, core: Any, handler: _Handler) -> dict[str, Any]:
         from pydantic import TypeAdapter
 
-        cores = [{"type": "list", "items_schema": TypeAdapter(one).core_schema} for one in self.types()]
-        answers = [handler(one)["items"] for one in cores]  # what is in a list is described once, and referred to
+        cores = [{"type": "list", "items_schema": TypeAdapter(type_).core_schema} for type_ in self.types()]
+        answers = [handler(type_)["items"] for type_ in cores]  # what is in a list is described once, and referred to
         if self.names:
             return {**handler(core), "properties": dict(zip(self.names, answers, strict=True))}
         inches = {"type": "object", "description": "in inch units: the same with keys that end in those"}
         return {"anyOf": [*answers, inches]}
 
 
-def schema_of(answer: Any) -> dict[str, Any]:
+def schema_of(type_: Any) -> dict[str, Any]:
     """Return the JSON Schema of a metric answer."""
     from pydantic import TypeAdapter
 
-    return TypeAdapter(answer).json_schema(mode="serialization")
+    return TypeAdapter(type_).json_schema(mode="serialization")

@@ -44,10 +44,10 @@ class Panel:
     """
 
     title: Text
-    across: Text
+    x_title: Text
     lines: tuple[Line, ...]
     kind: Kind | None = None
-    along: Kind | None = None
+    x_kind: Kind | None = None
     names: tuple[tuple[str, float, float], ...] = ()
     equal: bool = False
     turns: bool = False
@@ -57,7 +57,7 @@ class Panel:
 
 
 @dataclass(frozen=True)
-class Sheet:
+class PanelFigure:
     """Panels row by row, `columns` in each row. subtitle: what the mechanism is.
 
     width: of a panel with its margins, or of those of each column; height: likewise; inches. stacked: panels of a
@@ -73,41 +73,43 @@ class Sheet:
     stacked: bool = False
 
 
-def over_turn(
+def crank_angle_panel(
     title: Text, *lines: Line, kind: Kind | None = None, level: tuple[str, float] | None = None, note: Text = ""
 ) -> Panel:
     """Return a panel of lines over the crank angle, deg. kind: of the numbers y, in SI; see `Panel`."""
     return Panel(title, CRANK_ANGLE, lines, kind, turns=True, level=level, note=note)
 
 
-def panel_in(panel: Panel, system: System) -> Panel:
+def panel_in_units(panel: Panel, system: System) -> Panel:
     """Return a panel as it is drawn: its numbers in the units of a system, its texts with them."""
-    x, y = (None if kind is None else kind.display_unit(system) for kind in (panel.along, panel.kind))
-    across, up = (1.0 if face is None else face.factor for face in (x, y))
+    x, y = (None if kind is None else kind.display_unit(system) for kind in (panel.x_kind, panel.kind))
+    x_factor, y_factor = (1.0 if unit is None else unit.factor for unit in (x, y))
 
-    def text(of: Text, face: DisplayUnit | None = None) -> str:
-        words = format_text(of, system, printed=True)
-        return f"{words}, {unit_text(face.symbol)}" if face is not None and face.symbol else words
+    def text(title: Text, unit: DisplayUnit | None = None) -> str:
+        words = format_text(title, system, printed=True)
+        return f"{words}, {unit_text(unit.symbol)}" if unit is not None and unit.symbol else words
 
     return replace(
         panel,
         title=text(panel.title, y),
-        across=text(panel.across, x),
-        lines=tuple(replace(line, label=text(line.label), x=across * line.x, y=up * line.y) for line in panel.lines),
+        x_title=text(panel.x_title, x),
+        lines=tuple(
+            replace(line, label=text(line.label), x=x_factor * line.x, y=y_factor * line.y) for line in panel.lines
+        ),
         kind=None,
-        along=None,
-        names=tuple((name, across * at, up * height) for name, at, height in panel.names),
-        level=None if panel.level is None else (panel.level[0], up * panel.level[1]),
-        shaded=tuple((across * start, across * end) for start, end in panel.shaded),
+        x_kind=None,
+        names=tuple((name, x_factor * at, y_factor * height) for name, at, height in panel.names),
+        level=None if panel.level is None else (panel.level[0], y_factor * panel.level[1]),
+        shaded=tuple((x_factor * start, x_factor * end) for start, end in panel.shaded),
         note=text(panel.note),
     )
 
 
-def turn(*marked: Sequence[float] | Array, samples: int = 720, turns: int = 1) -> Array:
+def sampled_turn(*marked: Sequence[float] | Array, samples: int = 720, turns: int = 1) -> Array:
     """Return crank angles, rad, over a turn or two, with those marked just before and just after: jumps stay upright.
 
     samples: of a turn. What is marked on one turn is so on each.
     """
     every = [np.asarray(angles) + number * _TURN for angles in marked for number in range(turns)]
-    around = [np.mod(angles + side, turns * _TURN) for angles in every for side in (-1e-9, 1e-9)]
-    return np.unique(np.concatenate([np.linspace(0.0, turns * _TURN, turns * samples + 1), *around]))
+    beside_marks = [np.mod(angles + side, turns * _TURN) for angles in every for side in (-1e-9, 1e-9)]
+    return np.unique(np.concatenate([np.linspace(0.0, turns * _TURN, turns * samples + 1), *beside_marks]))

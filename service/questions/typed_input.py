@@ -11,7 +11,7 @@ from .inputs import Input
 
 
 @dataclass(frozen=True, kw_only=True)
-class Plain(Input):
+class TypedInput(Input):
     """An input without a kind.
 
     type: a number, `str`, a `list` of texts, or a `dict` of texts by name, of which a door of texts writes "name=text".
@@ -43,11 +43,11 @@ class Plain(Input):
         kind: Any = self.type if self.least is None else Annotated[self.type, Field(ge=self.least)]
         return TypeAdapter(kind)
 
-    def typed(self, number: Any) -> Any:
+    def with_unit(self, number: Any) -> Any:
         """Return what the API was given, as it is."""
         return number
 
-    def read(self, given: object, word: str) -> Any:
+    def read(self, raw: object, word: str) -> Any:
         """Return the number, the texts, or the texts by name. Raises `InputError` that begins with the word."""
         from pydantic import ValidationError
 
@@ -55,15 +55,15 @@ class Plain(Input):
         from ...optimise.job.messages import rule_of
 
         form = get_origin(self.type)
-        value: Any = [given] if isinstance(given, str) and form in (list, dict) else given
+        value: Any = [raw] if isinstance(raw, str) and form in (list, dict) else raw
         value = list(value) if isinstance(value, tuple) else value
         if form is dict and isinstance(value, list):
             value = texts_by_name(value, word, self.form, self.example)
         try:
             return self._adapter.validate_python(value, strict=True)
         except ValidationError as error:
-            rule, got = rule_of(error.errors(include_url=False)[0]), quote(given)
-            raise InputError(f"{word} {rule}; got {got}; write it like {self.usual or self.example}") from None
+            rule, received = rule_of(error.errors(include_url=False)[0]), quote(raw)
+            raise InputError(f"{word} {rule}; got {received}; write it like {self.usual or self.example}") from None
 
 
 def texts_by_name(texts: Sequence[object], word: str, form: str, example: str) -> dict[str, str]:
@@ -73,12 +73,12 @@ def texts_by_name(texts: Sequence[object], word: str, form: str, example: str) -
     """
     from ...objectives.units import quote
 
-    found: dict[str, str] = {}
+    text_of_name: dict[str, str] = {}
     for text in texts:
         name, equals, value = (piece.strip() for piece in str(text).rpartition("="))
         if not (equals and name and value):
             raise InputError(f"{word} must be {form}; got {quote(text)}; write it like {example}")
-        if name in found:
+        if name in text_of_name:
             raise InputError(f"{word} gives each name once; got {name} twice; leave out one")
-        found[name] = value
-    return found
+        text_of_name[name] = value
+    return text_of_name

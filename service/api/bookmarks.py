@@ -1,0 +1,209 @@
+"""Bookmarked designs of a front, with name, note, star and the reasons for a decision."""
+
+from __future__ import annotations
+
+from http import HTTPStatus
+from typing import TYPE_CHECKING, Annotated, Any
+
+from fastapi import APIRouter, Path, Response
+from pydantic import BaseModel, Field
+
+from ...model.errors import InputError
+from ...objectives.tables.varying_column import varying_column
+from ...optimise.problem.table_columns import choice_field
+from ..designs.columns import all_columns
+from ..designs.display_units import rows_in
+from ..designs.requirements import ranges_of
+from ..designs.stored_designs import StoredDesign, design_of, stored_design
+from ..designs.variation import Variation, variation_of, with_numbers
+from ..runs.result import csv_text, json_ready
+from ..store.bookmarks import Bookmark, bookmarks_of, change_kept, drop_kept, keep_design
+from .computing import QuickRoute
+from .exports import download, file_responses
+from .fronts import Cells, ColumnModel, column_models
+from .models import PLAIN_DIGITS, UnitsParameter
+from .problems import problem_responses
+from .settings import StoreDep
+from .stored_fronts import LONGEST, SHORTEST, FrontDep, StoredFront
+
+if TYPE_CHECKING:
+    from ..report.subject import Alternative
+    from ..store import Store
+
+router = APIRouter(route_class=QuickRoute, tags=["designs"], responses=problem_responses(409))
+
+_NAME = Annotated[str, Field(max_length=200)]
+_TEXT = Annotated[str, Field(max_length=4000)]
+_LENGTHS = ("crank_mm", "rod_mm", "offset_mm")
+BookmarkNumber = Annotated[
+    int, Path(ge=1, le=2**31, description="number of a bookmark, from 1", examples=[1]), PLAIN_DIGITS
+]
+
+
+class NewBookmark(BaseModel, extra="forbid", strict=True):
+    """A design to keep: one of the front, that with other dimensions, or one of dimensions alone.
+
+    design: its number. dimensions: of a row of a table of designs, in place of those of the design; without a design
+    all of the lengths, varying numbers and choices. Lengths outside of the ranges of the job are allowed.
+    """
+
+    design: int | None = Field(None, ge=1, le=2**31, examples=[1])
+    dimensions: dict[Annotated[str, Field(max_length=500)], float | Annotated[str, Field(max_length=500)]] = Field(
+        {}, max_length=200, examples=[{"rod_mm": 330.0}]
+    )
+    name: _NAME = Field("", examples=["Round numbers"])
+    note: _TEXT = Field("", examples=["rod from stock"])
+    star: bool = False
+
+
+class BookmarkChange(BaseModel, extra="forbid", strict=True):
+    """Changes to a bookmark; fields left out stay. decided: revokes an earlier decision. reason: why, or why not."""
+
+    name: Annotated[str, Field(min_length=1, max_length=200)] = Field("", examples=["Round numbers"])
+    note: _TEXT = Field("", examples=["rod from stock"])
+    star: bool = Field(False, examples=[True])
+    decided: bool = Field(False, examples=[True])
+    reason: _TEXT = Field("", examples=["the least torque of those with 45 deg"])
+
+
+class BookmarkedDesign(BaseModel):
+    """A bookmarked design. at: when it was bookmarked, seconds since 1970. design: its origin in the front.
+
+    changed: whether its dimensions are others than those of that design. cells: every quantity and the slacks. broken:
+    columns of the requirements that it does not meet. outside: of dimensions that are outside the job.
+    """
+
+    number: int = Field(ge=1, examples=[1])
+    name: str
+    note: str
+    star: bool
+    decided: bool
+    reason: str
+    design: int | None
+    changed: bool
+    at: float
+    cells: Cells
+    broken: list[str]
+    outside: list[str]
+
+
+class BookmarkList(BaseModel):
+    """The bookmarks of a job, oldest first."""
+
+    job: int = Field(examples=[7])
+    columns: list[ColumnModel]
+    designs: list[BookmarkedDesign]
+
+
+@router.get("/jobs/{number}/kept")
+def list_bookmarks(stored_front: FrontDep, store: StoreDep) -> BookmarkList:
+    """Return the bookmarked designs of a job with all their numbers."""
+    designs = [_shown(stored_front, bookmark) for bookmark in bookmarks_of(store, stored_front.job.id)]
+    columns = column_models(all_columns(designs[0].cells if designs else ()))
+    return BookmarkList(job=stored_front.job.id, columns=columns, designs=designs)
+
+
+@router.post("/jobs/{number}/kept", status_code=HTTPStatus.CREATED)
+def add_bookmark(stored_front: FrontDep, request: NewBookmark, store: StoreDep) -> BookmarkedDesign:
+    """Keep a design with a name, a note and a star."""
+    design = _asked(stored_front, request)
+    _varied(stored_front, design)  # refuse what cannot be computed before storing it
+    fields: dict[str, Any] = {
+        "name": request.name,
+        "note": request.note,
+        "star": request.star,
+        "design": request.design,
+    }
+    bookmark = keep_design(store, stored_front.job.id, dimensions=design.values, variant=design.variant, **fields)
+    return _shown(stored_front, bookmark)
+
+
+@router.patch("/jobs/{number}/kept/{kept}")
+def change_bookmark(
+    stored_front: FrontDep, kept: BookmarkNumber, change: BookmarkChange, store: StoreDep
+) -> BookmarkedDesign:
+    """Change a bookmark, or decide for its design."""
+    return _shown(stored_front, change_kept(store, stored_front.job.id, kept, **change.model_dump(exclude_unset=True)))
+
+
+@router.delete("/jobs/{number}/kept/{kept}", status_code=HTTPStatus.NO_CONTENT)
+def delete_bookmark(stored_front: FrontDep, kept: BookmarkNumber, store: StoreDep) -> None:
+    """Delete a bookmark."""
+    drop_kept(store, stored_front.job.id, kept)
+
+
+@router.get("/jobs/{number}/kept.csv", **file_responses("text/csv"))
+def export_bookmarks(stored_front: FrontDep, store: StoreDep, units: UnitsParameter = "metric") -> Response:
+    """Return the bookmarks as a table: names, notes and reasons, then all quantities at full precision."""
+    rows: list[Any] = []
+    for bookmark in bookmarks_of(store, stored_front.job.id):
+        varied = _varied(stored_front, _design(stored_front, bookmark))
+        head = {"number": bookmark.number, "name": bookmark.name, "star": bookmark.star, "decided": bookmark.decided}
+        head |= {"note": bookmark.note, "reason": bookmark.reason, "outside_the_job": ", ".join(varied.outside)}
+        rows.append(head | rows_in([varied.row], units)[0])
+    return download(csv_text(rows, spreadsheet=True), "text/csv; charset=utf-8", f"{stored_front.result.run}-kept.csv")
+
+
+def alternatives_of(stored_front: StoredFront, store: Store) -> list[Alternative]:
+    """Return the bookmarked designs of a job for a report."""
+    from ..report.subject import Alternative
+
+    alternatives = []
+    for bookmark in bookmarks_of(store, stored_front.job.id):
+        varied = _varied(stored_front, _design(stored_front, bookmark))
+        words: dict[str, Any] = {
+            "name": bookmark.name,
+            "note": bookmark.note,
+            "decided": bookmark.decided,
+            "reason": bookmark.reason,
+        }
+        alternatives.append(Alternative(**words, row=varied.row, broken=varied.broken, outside=varied.outside))
+    return alternatives
+
+
+def _asked(stored_front: StoredFront, request: NewBookmark) -> StoredDesign:
+    """Return the design to bookmark. Raises `InputError` for dimensions that the job does not have."""
+    if request.design is None and not request.dimensions:
+        raise InputError("a bookmark needs a design of the front or dimensions; got neither; give a design, or lengths")
+    row = {} if request.design is None else stored_front.row(request.design)
+    if request.design is not None and not request.dimensions:
+        return stored_design(stored_front.problem, stored_front.result, request.design)
+    allowed_keys = {*_LENGTHS, *(rule.column for rule in ranges_of(stored_front.problem.parts()[0]))}
+    allowed_keys |= {choice_field(name) for name in stored_front.problem.choices}
+    for key, value in request.dimensions.items():
+        if key not in allowed_keys:
+            raise InputError(f"dimensions must be {', '.join(sorted(allowed_keys))}; got {key!r}; leave it out")
+        if key in _LENGTHS and not (isinstance(value, float) and -LONGEST <= value <= LONGEST):
+            raise InputError(f"{key} must be a number up to {LONGEST:g}; got {value!r}; correct it")
+        if key in _LENGTHS[:2] and isinstance(value, float) and value < SHORTEST:
+            raise InputError(f"{key} must be at least {SHORTEST:g}; got {value:g}; correct it")
+    missing = sorted(allowed_keys - {*row, *request.dimensions})
+    if missing:
+        raise InputError(
+            f"a design without a number needs all dimensions; got none for {', '.join(missing)}; give them"
+        )
+    design = design_of(stored_front.problem, {**row, **request.dimensions})
+    varying = {varying_column(item)[0] for item in design.part.mechanism.varying}
+    values = {key: value for key, value in request.dimensions.items() if key in varying and isinstance(value, float)}
+    return with_numbers(design, design.values[:3], values)
+
+
+def _design(stored_front: StoredFront, bookmark: Bookmark) -> StoredDesign:
+    return StoredDesign(stored_front.problem.part(bookmark.variant), bookmark.dimensions, bookmark.variant)
+
+
+def _varied(stored_front: StoredFront, design: StoredDesign) -> Variation:
+    return variation_of(design, stored_front.result, stored_front.minimised)
+
+
+def _shown(stored_front: StoredFront, bookmark: Bookmark) -> BookmarkedDesign:
+    design = _design(stored_front, bookmark)
+    varied = _varied(stored_front, design)
+    same = (
+        bookmark.design is not None
+        and stored_design(stored_front.problem, stored_front.result, bookmark.design).values == bookmark.dimensions
+    )
+    fields = {name: value for name, value in vars(bookmark).items() if name not in ("job", "variant", "dimensions")}
+    return BookmarkedDesign(
+        **fields, changed=not same, cells=json_ready(varied.row), broken=varied.broken, outside=varied.outside
+    )
