@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -28,6 +29,9 @@ from .style import MUTED, SMALL
 Array = NDArray[np.float64]
 SAMPLES = 720
 _TURN = 2.0 * np.pi
+_BESIDE = 1e-7
+"""rad from a peak to the samples that show its height where the curve jumps there."""
+_STEP = 1e-5  # of the value: smooth curves change less between these samples
 
 
 @dataclass(frozen=True)
@@ -57,19 +61,22 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True)
     moving = mechanism if mechanism.speed else replace(mechanism, speed=1.0)
     inner, outer = (float(angle) for angle in linkage.dead_centre_angles)
 
-    def peak(machine: Mechanism, signal: Signal) -> float:
-        return float(first_peaks(machine, signal, dimensions)[1][0])
+    def peak(machine: Mechanism, signal: Signal) -> tuple[str, float, float | None]:
+        sizes, places = first_peaks(machine, signal, dimensions)
+        return "peak", float(places[0]), float(sizes[0])
 
-    extremes: dict[str, tuple[str, float] | None] = {
-        **({"torque": ("peak", peak(mechanism, Signal.TORQUE))} if torque else {}),
-        "transmission_angle": ("least", least_transmission_crank_angle(linkage)),
+    extremes: dict[str, tuple[str, float, float | None] | None] = {
+        **({"torque": peak(mechanism, Signal.TORQUE)} if torque else {}),
+        "transmission_angle": ("least", least_transmission_crank_angle(linkage), None),
         "slider_position": None,
-        "slider_velocity": ("peak", peak(moving, Signal.SLIDER_SPEED)),
-        "slider_acceleration": ("peak", peak(moving, Signal.SLIDER_ACCELERATION)),
+        "slider_velocity": peak(moving, Signal.SLIDER_SPEED),
+        "slider_acceleration": peak(moving, Signal.SLIDER_ACCELERATION),
     }
     kappa = crowding(*dimensions[0])
     crowded = [uncrowded(tau, kappa) for tau in np.linspace(0.0, 2.0 * np.pi, SAMPLES // 2)]
-    marked = [inner, outer, *(extreme[1] for extreme in extremes.values() if extreme)]
+    # Where a load steps, the curve has another value on either side of the peak.
+    beside = [extreme[1] + side for extreme in extremes.values() if extreme for side in (-_BESIDE, 0.0, _BESIDE)]
+    marked = [inner, outer, *(angle for angle in beside if angle >= 0.0)]
     even, turns = np.linspace(0.0, _TURN, SAMPLES + 1), cycle_turns(mechanism)
     turn_angles = [*np.mod(crowded, _TURN), *even, inner, outer]
     angles = np.unique(np.concatenate([*(np.add(turn_angles, number * _TURN) for number in range(turns)), marked]))
@@ -89,17 +96,19 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True)
         computed_curve = computed[name]
         lines, note = [Line("", degrees, computed_curve.values)], words("dead centres at {ends}", ends=ends)
         if extreme is not None:
-            word, angle = extreme
+            word, angle, size = extreme
             at = int(np.searchsorted(angles, angle))
-            lines.append(Line("", degrees[at : at + 1], computed_curve.values[at : at + 1], points=True))
-            peaked = Value(float(computed_curve.values[at]), computed_curve.kind, 4, bare=True)
-            note = words(f"{word} {{value}} at {shown(degrees[at])}°", value=peaked)
-        panels.append(
-            replace(
-                crank_angle_panel(computed_curve.title, *lines, kind=computed_curve.kind, note=note),
-                x_title=x_title,
-                shaded=shaded,
+            value = float(computed_curve.values[at])
+            around = computed_curve.values[max(at - 1, 0) : at + 2]
+            highest = float(around[np.argmax(np.abs(around))])
+            if size is not None and abs(highest) > (1.0 + _STEP) * abs(value):
+                value = math.copysign(size, highest)
+            lines.append(Line("", degrees[at : at + 1], np.array([value]), points=True))
+            note = words(
+                f"{word} {{value}} at {shown(degrees[at])}°", value=Value(value, computed_curve.kind, 4, bare=True)
             )
+        panels.append(
+            replace(over_turn(found.title, *lines, kind=computed_curve.kind, note=note), across=across, shaded=shaded)
         )
     return Curves(degrees, tuple(panels), *dead)
 

@@ -17,6 +17,8 @@ from matplotlib.text import Text
 
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.linkage.linkage import Linkage
+from slidercrank.model.machine.loads.load import Datum
+from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.mechanism import Mechanism, Tolerances
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.tables.analysis import analyse
@@ -106,6 +108,24 @@ def test_marked_values_are_those_of_the_table(name: str) -> None:
     assert abs(acceleration[1]) == pytest.approx(row["peak_slider_acceleration_m_s2"], rel=1e-12)
     assert curves.inner == pytest.approx(row["inner_dead_centre_deg"], rel=1e-12)
     assert curves.outer == pytest.approx(row["outer_dead_centre_deg"], rel=1e-12)
+
+
+@pytest.mark.parametrize("datum", ["inner dead centre", "outer dead centre"])
+@pytest.mark.parametrize("speed", [-7.0, 7.0])
+def test_a_peak_on_a_step_of_the_load_is_marked_at_its_height(datum: Datum, speed: float) -> None:
+    """The tool bites 8 mm before the dead centre: the torque jumps there, to its peak."""
+    load = PositionTable(
+        positions=(0.0, 0.008, 0.008), forces=(-1500.0, -1500.0, 0.0), datum=datum, during="outward stroke"
+    )
+    mechanism, random = Mechanism(speed=speed, slider_mass=6.0, loads=(load,)), np.random.default_rng(6)
+    for _ in range(20):
+        crank, offset = random.uniform(0.03, 0.06), random.uniform(-0.05, 0.05)
+        linkage = Linkage(crank, (crank + abs(offset)) * random.uniform(1.3, 3.0), offset)
+        row = analyse(mechanism, np.array([[linkage.crank, linkage.rod, linkage.offset]])).iloc[0]
+        point = point_of(panel_in(cycle_curves(mechanism, linkage).panels[0], "metric"))
+        assert point is not None
+        assert abs(point[1]) == pytest.approx(row["peak_torque_Nm"], rel=1e-9)
+        assert point[0] == pytest.approx(row["peak_torque_angle_deg"], rel=1e-12)
 
 
 def test_dead_centres_are_the_ends_of_the_position_curve() -> None:
