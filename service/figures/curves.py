@@ -108,7 +108,11 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True)
                 f"{word} {{value}} at {shown(degrees[at])}°", value=Value(value, computed_curve.kind, 4, bare=True)
             )
         panels.append(
-            replace(over_turn(found.title, *lines, kind=computed_curve.kind, note=note), across=across, shaded=shaded)
+            replace(
+                crank_angle_panel(computed_curve.title, *lines, kind=computed_curve.kind, note=note),
+                x_title=x_title,
+                shaded=shaded,
+            )
         )
     return Curves(degrees, tuple(panels), *dead)
 

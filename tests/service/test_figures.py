@@ -122,7 +122,7 @@ def test_a_peak_on_a_step_of_the_load_is_marked_at_its_height(datum: Datum, spee
         crank, offset = random.uniform(0.03, 0.06), random.uniform(-0.05, 0.05)
         linkage = Linkage(crank, (crank + abs(offset)) * random.uniform(1.3, 3.0), offset)
         row = analyse(mechanism, np.array([[linkage.crank, linkage.rod, linkage.offset]])).iloc[0]
-        point = point_of(panel_in(cycle_curves(mechanism, linkage).panels[0], "metric"))
+        point = point_of(panel_in_units(cycle_curves(mechanism, linkage).panels[0], "metric"))
         assert point is not None
         assert abs(point[1]) == pytest.approx(row["peak_torque_Nm"], rel=1e-9)
         assert point[0] == pytest.approx(row["peak_torque_angle_deg"], rel=1e-12)
