@@ -51,12 +51,13 @@ const NAVIGATION = [
 
 let leaving = new AbortController();
 
-async function showView() {
+/** Show the view of the address. again: as it was, in other units. */
+async function showView({ again = false } = {}) {
   leaving.abort();
   leaving = new AbortController();
   const { signal } = leaving;
   const { parts, query } = read();
-  const found = restoreScroll(signal);
+  const restore = restoreScroll(signal);
   const main = byId("main");
   markNavigation();
   const place = h("div", { class: "view" }, h("p", { class: "quiet" }, "Loading …"));
@@ -70,9 +71,9 @@ async function showView() {
     if (signal.aborted) return;
     document.title = `${module.title} · slidercrank`;
     await module.show(place, { parts, query, signal });
-    found();
+    restore();
     // Who began to use the view before it was whole stays where they are: an open menu closes as the focus leaves it.
-    if (changed && !signal.aborted && !focused(main)) main.focus({ preventScroll: true });
+    if (changed && !again && !signal.aborted && !focused(main)) main.focus({ preventScroll: true });
   } catch (error) {
     if (signal.aborted || isAbort(error)) return;
     document.title = "slidercrank";
@@ -126,7 +127,7 @@ function showPreferences() {
         ["inch", "inch, lbf"],
       ],
       system(),
-      (name) => chooseSystem(name).catch(sayProblem),
+      (name) => chooseSystem(name).then(() => showView({ again: true }), sayProblem),
     ),
     choice(
       "Colours",
@@ -149,10 +150,10 @@ document.querySelector(".skip")?.addEventListener("click", (event) => {
   event.preventDefault(); // the address belongs to the views
   byId("main").focus();
 });
-window.addEventListener("hashchange", showView);
+window.addEventListener("hashchange", () => showView());
 watchDownloads();
 rememberScroll();
 showPreferences();
 const units = Promise.all([readySystem(), readyKinds()]).catch(() => {}); // what is wrong with the service, the view says
-if (system() === "inch") units.then(showView);
+if (system() === "inch") units.then(() => showView());
 else showView();

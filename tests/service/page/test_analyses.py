@@ -149,7 +149,7 @@ def test_what_is_printed_is_whole(opened: tuple[Page, str], solved: Solved) -> N
     page.wait_for_function("() => window.left !== undefined", timeout=60_000)
     assert page.evaluate("window.left") == 0
     page.emulate_media(media="print")
-    expect(page.get_by_role("heading", name="What it is sensitive to")).to_be_visible()
+    expect(page.get_by_role("heading", name="Sensitivity")).to_be_visible()
     assert page.locator(".analysis img").evaluate("image => image.complete && image.naturalWidth") > 100
     expect(page.get_by_role("button")).to_have_count(0)
     page.goto(f"{address}/#/jobs/{solved.number}")

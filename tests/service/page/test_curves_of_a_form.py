@@ -80,8 +80,8 @@ def test_a_wanted_motion_begins_with_that_of_the_linkage_beside_the_form(form: O
         page.get_by_label("crank, from").fill("21")
     example = answered.value.json()["example"]
     expect(page.get_by_text(READY)).to_be_visible(timeout=30_000)
-    page.get_by_text("Wanted motion of the slider").click()
-    page.get_by_role("button", name="Give points of a motion").click()
+    page.get_by_text("Desired motion of the slider").click()
+    page.get_by_role("button", name="Add points of a motion").click()
     wanted = job_of(page)["target_motion"]
     lengths = (example[f"{name}_mm"] / 1e3 for name in ("crank", "rod", "offset"))
     linkage = Linkage(*lengths)
@@ -89,10 +89,10 @@ def test_a_wanted_motion_begins_with_that_of_the_linkage_beside_the_form(form: O
         degrees, millimetres = float(angle.split()[0]), float(position.split()[0])
         where = float(linkage.at([degrees * 3.141592653589793 / 180.0], speed=1.0).slider_position[0])
         assert abs(where * 1e3 - millimetres) <= 0.51
-    drawn = page.locator("details", has_text="Wanted motion of the slider").locator(".curve-drawn:visible")
+    drawn = page.locator("details", has_text="Desired motion of the slider").locator(".curve-drawn:visible")
     expect(drawn.get_by_role("slider")).to_have_count(8)
     expect(page.get_by_text(READY)).to_be_visible(timeout=30_000)
     page.get_by_label("phase", exact=True).select_option("free")
     assert job_of(page)["target_motion"]["phase"] == "free"
-    page.get_by_role("button", name="Remove the wanted motion").click()
+    page.get_by_role("button", name="Remove the desired motion").click()
     assert "target_motion" not in job_of(page)

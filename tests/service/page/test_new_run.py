@@ -112,7 +112,7 @@ def test_every_preset_and_a_copy_of_a_job_are_shown_whole_and_stay_as_they_are(
 ) -> None:
     page = form(store, "#/new")
     for name, job in shipped.items():
-        page.get_by_label("Begin with a shipped job").select_option(name)
+        page.get_by_label("Start from an example").select_option(name)
         ready(page)
         assert text_of(page) == job
         assert page.url.endswith(f"#/new?preset={name}")
@@ -221,11 +221,11 @@ def test_what_was_typed_survives_leaving_and_starting_over_is_asked_for(form: Op
     expect(page.get_by_label("crank, from")).to_have_value("25")
     page.get_by_role("button", name="Start over").click()
     expect(page.get_by_label("name", exact=True)).to_have_value("New slider-crank")
-    page.get_by_role("button", name="Bring back what was there").click()
+    page.get_by_role("button", name="Restore the previous job").click()
     expect(page.get_by_label("name", exact=True)).to_have_value("Mine")
     page.evaluate("location.hash = '#/new?preset=sieve'")  # as by a link
     expect(page.get_by_label("name", exact=True)).to_have_value("Vibrating sieve")
-    page.get_by_role("button", name="Bring back what was there").click()
+    page.get_by_role("button", name="Restore the previous job").click()
     page.reload()
     expect(page.get_by_label("name", exact=True)).to_have_value("Mine")
 

@@ -221,7 +221,7 @@ def test_a_run_that_is_deleted_elsewhere_while_it_is_watched_says_so(open_page: 
     expect(page.get_by_role("heading", name="Progress")).to_be_visible()
     with store.writing() as connection:  # cancelled and deleted before the page heard of either
         connection.execute(delete(jobs))
-    expect(page.get_by_role("heading", name="Run 1 is not there any more")).to_be_visible()
+    expect(page.get_by_role("heading", name="Run 1 no longer exists")).to_be_visible()
 
 
 def test_what_is_done_with_a_run_that_was_deleted_elsewhere_is_said(open_page: Open, store: Store) -> None:
@@ -232,7 +232,7 @@ def test_what_is_done_with_a_run_that_was_deleted_elsewhere_is_said(open_page: O
     expect(button).to_be_visible()
     store.delete(1)
     button.click()
-    expect(page.get_by_role("status").filter(has_text="not there any more")).to_be_visible()
+    expect(page.get_by_role("status").filter(has_text="no longer exists")).to_be_visible()
     expect(page.get_by_role("heading", name="No runs yet")).to_be_visible()
 
 

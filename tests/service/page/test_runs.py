@@ -129,7 +129,7 @@ def test_what_somebody_else_deleted_is_said_and_vanishes(open_page: Open, store:
     store.cancel(1)
     store.delete(1)
     button.click()
-    expect(page.get_by_role("status").filter(has_text="not there any more")).to_be_visible()
+    expect(page.get_by_role("status").filter(has_text="no longer exists")).to_be_visible()
     page.clock.run_for(5000)
     expect(page.get_by_role("listitem")).to_have_count(0)
 
@@ -148,7 +148,7 @@ def test_runs_are_found_by_name_and_state_and_a_link_finds_the_same(open_page: O
     expect(again.get_by_role("listitem")).to_contain_text("run 2")
     expect(again.get_by_label("Name")).to_have_value("sieve")
     again.get_by_label("Name").fill("loom")
-    expect(again.get_by_text("No run is like this")).to_be_visible()
+    expect(again.get_by_text("No run matches")).to_be_visible()
 
 
 def test_older_runs_are_on_further_pages(open_page: Open, store: Store) -> None:
@@ -314,4 +314,4 @@ def test_two_runs_are_compared(open_page: Open, store: Store, solved: Solved) ->
     expect(page.get_by_role("heading", level=1)).to_have_text("Help", timeout=30_000)
     store.delete(2)
     gone = open_page(store, "#/compare?jobs=1,2", expected=("404",))
-    expect(gone.get_by_text("Run 2 is not there any more.")).to_be_visible()
+    expect(gone.get_by_text("Run 2 no longer exists.")).to_be_visible()

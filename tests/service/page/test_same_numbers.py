@@ -171,7 +171,7 @@ def test_certify_has_a_tab_that_proves_what_the_command_line_does(
     page.locator(".analyses").scroll_into_view_if_needed(timeout=30_000)
     page.get_by_role("tab", name="Certify").press("Enter", timeout=30_000)
     panel = page.get_by_role("tabpanel")
-    share = panel.get_by_label("By at most, as a share of each objective's range")
+    share = panel.get_by_label("Largest gap, as a fraction of each objective's range")
     share.fill("0.2")
     share.press("Enter")
     expect(panel).to_contain_text("Design box", timeout=60_000)

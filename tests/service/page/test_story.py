@@ -22,7 +22,7 @@ def test_from_a_preset_to_drawing_table_report_and_a_link(form: Open, store: Sto
     page = form(store, "")
     expect(page.get_by_role("heading", name="No runs yet")).to_be_visible()
     page.get_by_role("navigation", name="Main").get_by_role("link", name="New run").click()
-    page.get_by_label("Begin with a shipped job").select_option("sieve")
+    page.get_by_label("Start from an example").select_option("sieve")
     page.get_by_label("stroke, exactly").fill("260")
     page.get_by_label("designs", exact=True).fill("12")
     expect(page.get_by_role("complementary").get_by_role("status")).to_have_text("Ready to start.", timeout=30_000)

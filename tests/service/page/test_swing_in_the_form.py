@@ -67,7 +67,7 @@ def test_a_crank_that_is_let_swing_keeps_what_fits_and_says_what_was_taken_out(f
     page.get_by_label("to crank angle", exact=True).fill("0")
     expect(page.get_by_text(re.compile("swing needs two different crank angles"))).to_be_visible()
     page.get_by_label("to crank angle", exact=True).fill("355")
-    expect(page.get_by_role("complementary")).to_contain_text("No linkage of these ranges makes the swing.")
+    expect(page.get_by_role("complementary")).to_contain_text("No linkage within these ranges makes the swing.")
     page.get_by_label("the crank", exact=True).select_option("")
     expect(page.get_by_role("complementary")).to_contain_text("turns fully")
     assert "motion" not in text_of(page)
@@ -100,7 +100,7 @@ def test_a_swing_is_offered_what_it_can_have(form: Open, store: Store) -> None:
     folds = page.locator("details.more > summary")
     of_a_turn = [
         "Several cylinders",
-        "Wanted motion",
+        "Desired motion",
         "Motor and flywheel",
         "Robust designs",
         "Loose joint",

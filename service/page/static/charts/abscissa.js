@@ -40,8 +40,8 @@ const ENDS = [
 
 /** Return the way of the slider from its inner dead centre at a crank angle, mm. @param {Curved} one @param {number} angle */
 export function wayAt({ curves, sliderEnds: [inner] }, angle) {
-  const at = between(curves.slider_position_mm, angle);
-  return at === null ? null : at - inner;
+  const position = between(curves.slider_position_mm, angle);
+  return position === null ? null : position - inner;
 }
 
 /**

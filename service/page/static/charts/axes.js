@@ -1,6 +1,7 @@
 /** The frame of a chart on canvas: grid, numbers, headings. */
 
 import { headed } from "../front/columns.js";
+import { FONT } from "./paint.js";
 
 /** Return the ticks of an axis of words: each at its place. @type {(words: string[]) => [number, string][]} */
 export function wordTicks(words) {
@@ -9,15 +10,17 @@ export function wordTicks(words) {
 
 /**
  * Draw axes {at, ticks: [[value, text]], column} around an area.
- * @param {Page.Canvas} context @param {{ x: Page.Axis, y: Page.Axis, area: Page.Room, width: number, height: number, ink: Page.Ink }} given
+ * @param {Page.Canvas} context @param {{ x: Page.Axis, y: Page.Axis, area: Page.Room, width: number, height: number, ink: Page.Ink }} options
  */
 export function drawAxes(context, { x, y, area, width, height, ink }) {
   const [right, bottom] = [width - area.right, height - area.bottom];
-  context.font = "12px Inter, system-ui, sans-serif";
-  context.strokeStyle = ink.line;
-  context.fillStyle = ink.quiet;
-  context.lineWidth = 1;
-  context.globalAlpha = 0.7;
+  Object.assign(context, {
+    font: FONT,
+    strokeStyle: ink.line,
+    fillStyle: ink.quiet,
+    lineWidth: 1,
+    globalAlpha: 0.7,
+  });
   context.beginPath();
   for (const [value] of x.ticks) {
     context.moveTo(x.at(value), area.top);
@@ -28,22 +31,17 @@ export function drawAxes(context, { x, y, area, width, height, ink }) {
     context.lineTo(right, y.at(value));
   }
   context.stroke();
-  context.globalAlpha = 1;
-  context.textAlign = "center";
-  context.textBaseline = "top";
+  Object.assign(context, { globalAlpha: 1, textAlign: "center", textBaseline: "top" });
   for (const [value, text] of x.ticks) context.fillText(text, x.at(value), bottom + 6);
   context.fillStyle = ink.text;
   context.fillText(titled(x), (area.left + right) / 2, bottom + 24, right - area.left);
-  context.fillStyle = ink.quiet;
-  context.textAlign = "right";
-  context.textBaseline = "middle";
+  Object.assign(context, { fillStyle: ink.quiet, textAlign: "right", textBaseline: "middle" });
   for (const [value, text] of y.ticks)
     context.fillText(text, area.left - 6, y.at(value), area.left - 22);
   context.save();
   context.translate(11, (area.top + bottom) / 2);
   context.rotate(-Math.PI / 2);
-  context.textAlign = "center";
-  context.fillStyle = ink.text;
+  Object.assign(context, { textAlign: "center", fillStyle: ink.text });
   context.fillText(titled(y), 0, 0, bottom - area.top);
   context.restore();
 }

@@ -14,24 +14,24 @@ const ARROWS = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"];
  * }} chart
  */
 export function byKeys(place, { mask, next, say, point, open, select }) {
-  const said = h("p", { class: "hidden", role: "status" });
+  const status = h("p", { class: "hidden", role: "status" });
   /** @type {number | null} */
   let here = null;
   place.tabIndex = 0;
   place.setAttribute("role", "application");
-  place.append(said);
+  place.append(status);
   place.addEventListener("keydown", (event) => {
     const { key } = event;
-    const own = mask();
-    if (here !== null && !own[here]) here = null;
+    const selectable = mask();
+    if (here !== null && !selectable[here]) here = null;
     if (ARROWS.includes(key)) {
       event.preventDefault();
-      const from = here ?? firstOf(own);
+      const from = here ?? firstOf(selectable);
       if (from === null) return;
       const way = here === null ? from : next(from, key);
-      here = typeof way === "number" ? way : following(from, own, way);
+      here = typeof way === "number" ? way : following(from, selectable, way);
       point(here);
-      said.textContent = say(here);
+      status.textContent = say(here);
     } else if (here !== null && (key === "Enter" || key === " ")) {
       event.preventDefault();
       (key === "Enter" ? open : select)(here);

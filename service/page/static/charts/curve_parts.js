@@ -54,16 +54,16 @@ export function centreLines({ x, abscissa, height }, first) {
   if (!first) return [];
   const again = first.turns === 2 ? first.centres.map((place) => place + 180) : [];
   return [...first.centres, ...again].map((angle, n) => {
-    const at = x.at(abscissa.place(first, angle) ?? NaN);
-    const share = (at - x.at(x.low)) / (x.at(x.high) - x.at(x.low));
+    const pixel = x.at(abscissa.place(first, angle) ?? NaN);
+    const share = (pixel - x.at(x.low)) / (x.at(x.high) - x.at(x.low));
     return svg(
       "g",
       { class: "centre" },
-      svg("line", { x1: at, x2: at, y1: ROOM.top, y2: height - ROOM.bottom }),
+      svg("line", { x1: pixel, x2: pixel, y1: ROOM.top, y2: height - ROOM.bottom }),
       svg(
         "text",
         {
-          x: at,
+          x: pixel,
           y: ROOM.top - 11,
           "text-anchor": share < 0.06 ? "start" : share > 0.94 ? "end" : "middle",
         },
@@ -96,20 +96,20 @@ export function line(one, { x, y, abscissa }) {
  */
 export function peaks(one, { x, y, abscissa }) {
   const { values, ends, series } = one;
-  const found = ends ?? extremes(values);
-  if (!found || found.low.value === found.high.value) return null;
+  const extremeValues = ends ?? extremes(values);
+  if (!extremeValues || extremeValues.low.value === extremeValues.high.value) return null;
   return /** @type {const} */ (["low", "high"]).map((end) => {
-    const { angle, value } = found[end];
-    const at = x.at(abscissa.place(one, angle) ?? NaN);
-    const share = (at - x.at(x.low)) / (x.at(x.high) - x.at(x.low));
+    const { angle, value } = extremeValues[end];
+    const pixel = x.at(abscissa.place(one, angle) ?? NaN);
+    const share = (pixel - x.at(x.low)) / (x.at(x.high) - x.at(x.low));
     const anchor = share > 0.83 ? "end" : share < 0.11 ? "start" : "middle";
     return svg(
       "g",
       { class: "peak" },
-      svg("circle", { cx: at, cy: y.at(value), r: 2.5, "data-series": series }),
+      svg("circle", { cx: pixel, cy: y.at(value), r: 2.5, "data-series": series }),
       svg(
         "text",
-        { x: at, y: y.at(value) + (end === "low" ? 13 : -5), "text-anchor": anchor },
+        { x: pixel, y: y.at(value) + (end === "low" ? 13 : -5), "text-anchor": anchor },
         `${ends ? "" : "≈ "}${text(value, "", 4)}`,
       ),
     );
@@ -123,12 +123,12 @@ export function peaks(one, { x, y, abscissa }) {
 export function summary(words, unit, series, key, abscissa) {
   const each = series.map((one) => {
     const { name, curves, exact } = one;
-    const found = exact?.[key] ?? extremes(curves[key]);
-    if (!found) return `${name}: not defined`;
-    /** @param {{ value: number, angle: number }} given */
-    const at = ({ value, angle }) =>
+    const extremeValues = exact?.[key] ?? extremes(curves[key]);
+    if (!extremeValues) return `${name}: not defined`;
+    /** @param {{ value: number, angle: number }} options */
+    const describe = ({ value, angle }) =>
       `${exact?.[key] ? "" : "about "}${withUnit(value, unit, 4)} at ${text(crankAt(one, angle), "", 4)}°`;
-    return `${series.length > 1 ? `${name}: ` : ""}least ${at(found.low)}, greatest ${at(found.high)}`;
+    return `${series.length > 1 ? `${name}: ` : ""}least ${describe(extremeValues.low)}, greatest ${describe(extremeValues.high)}`;
   });
   return `${words} over the ${abscissa.title}. ${each.join(". ")}.`;
 }

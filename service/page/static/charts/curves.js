@@ -27,7 +27,7 @@ const EVERY = 100; // ms between two readouts while it moves; faster ones cannot
  *   panels: each {key, title, unit}, a curve of the API; abscissa: what they are drawn over. - turn({angle, settled}). - close().
  * large: keys of the curves that are large, told(keys) as the reader chooses others.
  * @param {HTMLElement} place @param {(angle: number, taken: boolean) => void} turned
- * @param {{ large: string[], told: (large: string[]) => void }} sizes
+ * @param {{ large: string[], onChoice: (large: string[]) => void }} sizes
  */
 export function curveCharts(place, turned, sizes) {
   const [wide, grid] = ["curves large", "curves small"].map((name) => h("div", { class: name }));
@@ -35,12 +35,12 @@ export function curveCharts(place, turned, sizes) {
   let abscissa = abscissaOf("angle", 0);
   let { large } = sizes;
   /** @type {{ series: Shown[], panels: Panel[] } | null} */
-  let shown = null;
+  let content = null;
   /** @type {ReturnType<typeof chart>[]} */
   let charts = [];
   let width = 0;
-  let at = 0;
-  let told = 0;
+  let cycleAngle = 0;
+  let lastRead = 0;
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let later = 0;
   let observed = false;
@@ -48,8 +48,8 @@ export function curveCharts(place, turned, sizes) {
   const inSight = new Set(); // charts that the reader sees
 
   function arrange() {
-    if (!shown) return;
-    const { series, panels } = shown;
+    if (!content) return;
+    const { series, panels } = content;
     if (charts.map((one) => one.panel.key).join() !== panels.map((panel) => panel.key).join()) {
       charts = panels.map((panel) => chart(panel, turned, resize));
       sort();
@@ -64,7 +64,7 @@ export function curveCharts(place, turned, sizes) {
       one.stale = () => one.draw(panels[n], series, abscissa);
       if (!observed || inSight.has(one.figure)) drawn(one);
     });
-    turn({ angle: at, settled: true });
+    turn({ angle: cycleAngle, settled: true });
     clearTimeout(later);
     later = setTimeout(() => charts.forEach(drawn), SOON);
   }
@@ -91,7 +91,7 @@ export function curveCharts(place, turned, sizes) {
       .map((one) => one.panel.key);
     const rest = now.filter((one) => one !== key);
     large = now.includes(key) ? (rest.length ? rest : now) : [key, ...rest].slice(0, MOST_LARGE);
-    sizes.told(large);
+    sizes.onChoice(large);
     sort();
     arrange();
     charts.find((one) => one.panel.key === key)?.sizer.focus();
@@ -100,17 +100,17 @@ export function curveCharts(place, turned, sizes) {
   /** Draw a chart that has changed. @param {ReturnType<typeof chart>} one */
   function drawn(one) {
     one.stale?.();
-    if (one.stale) one.turn(at, true);
+    if (one.stale) one.turn(cycleAngle, true);
     one.stale = null;
   }
 
   /** @param {{ angle: number, settled: boolean }} turn */
   function turn({ angle, settled }) {
-    at = angle;
+    cycleAngle = angle;
     if (!width) return;
     const now = performance.now();
-    const read = settled || now - told > EVERY;
-    if (read) told = now;
+    const read = settled || now - lastRead > EVERY;
+    if (read) lastRead = now;
     for (const one of charts) if (settled || inSight.has(one.figure)) one.turn(angle, read);
   }
 
@@ -128,7 +128,7 @@ export function curveCharts(place, turned, sizes) {
   return {
     /** @param {Shown[]} series @param {Panel[]} panels @param {Abscissa} over */
     show(series, panels, over) {
-      shown = { series, panels };
+      content = { series, panels };
       abscissa = over;
       arrange();
     },
@@ -227,7 +227,7 @@ function chart(panel, turned, resize) {
     },
     /** @type {(() => void) | null} */
     stale: null, // draws what has changed
-    /** @param {Panel} given @param {Shown[]} all @param {Abscissa} over */
+    /** @param {Panel} options @param {Shown[]} all @param {Abscissa} over */
     draw({ key, title: words, unit }, all, over) {
       const width = Math.max(80, Math.round(plot.clientWidth));
       abscissa = over;

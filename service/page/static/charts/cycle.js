@@ -54,6 +54,6 @@ export function extremes(values) {
     if (high < 0 || value > most) [high, most] = [n, value];
   });
   /** @type {(n: number, value: number) => { angle: number, value: number }} */
-  const at = (n, value) => ({ angle: (360 * n) / values.length, value });
-  return low < 0 ? null : { low: at(low, least), high: at(high, most) };
+  const endAt = (n, value) => ({ angle: (360 * n) / values.length, value });
+  return low < 0 ? null : { low: endAt(low, least), high: endAt(high, most) };
 }

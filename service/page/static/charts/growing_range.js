@@ -10,10 +10,10 @@ const AHEAD = 0.2; // of the range, which is left free on the side where it had 
  */
 export function growingRange() {
   /** @type {Map<string, Page.Range>} */
-  const held = new Map();
+  const ranges = new Map();
   return (key, values) => {
     const { low, high } = range(values, 0);
-    const before = held.get(key);
+    const before = ranges.get(key);
     if (before && before.low <= low && high <= before.high) return before;
     const [least, most] = [Math.min(low, before?.low ?? low), Math.max(high, before?.high ?? high)];
     const ahead = AHEAD * (most - least);
@@ -21,7 +21,7 @@ export function growingRange() {
       low: !before || low < before.low ? least - ahead : least,
       high: !before || high > before.high ? most + ahead : most,
     };
-    held.set(key, now);
+    ranges.set(key, now);
     return now;
   };
 }

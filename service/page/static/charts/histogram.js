@@ -36,9 +36,9 @@ export function histograms(context, { axes, across, heights, height, ink }, mask
   context.fillStyle = ink.quiet;
   context.globalAlpha = 0.35;
   axes.forEach((_, axis) => {
-    const own = counts.subarray(axis * BINS, (axis + 1) * BINS);
-    const most = Math.max(...own);
-    own.forEach((count, bin) => {
+    const axisCounts = counts.subarray(axis * BINS, (axis + 1) * BINS);
+    const most = Math.max(...axisCounts);
+    axisCounts.forEach((count, bin) => {
       const wide = most ? (WIDE * count) / most : 0;
       context.fillRect(across[axis] - wide, top + bin * tall, wide, Math.max(1, tall - 1));
     });

@@ -20,7 +20,7 @@ export function history(points, heading, rounds) {
   const x = scale(1, Math.max(2, rounds), AREA.left, WIDTH - AREA.right, 8);
   const y = scale(up.low, up.high, HEIGHT - AREA.bottom, AREA.top, 4);
   const bottom = HEIGHT - AREA.bottom;
-  const at = points
+  const places = points
     .filter(isPoint)
     .map(([round, value]) => `${x.at(round).toFixed(1)} ${y.at(value).toFixed(1)}`);
   const [last] = points.slice(-1);
@@ -51,11 +51,11 @@ export function history(points, heading, rounds) {
       },
       "round",
     ),
-    at.length > 1 && svg("path", { class: "curve", d: `M${at.join("L")}` }),
+    places.length > 1 && svg("path", { class: "curve", d: `M${places.join("L")}` }),
     svg(
       "g",
       { class: "series-1" },
-      at.map((place) =>
+      places.map((place) =>
         svg("circle", { cx: place.split(" ")[0], cy: place.split(" ")[1], r: 2.6 }),
       ),
     ),

@@ -29,11 +29,9 @@ export function drawLasso(context, line, ink) {
   context.beginPath();
   line.forEach(([x, y], index) => (index ? context.lineTo(x, y) : context.moveTo(x, y)));
   context.closePath();
-  context.fillStyle = ink.mark;
+  Object.assign(context, { fillStyle: ink.mark, strokeStyle: ink.mark, lineWidth: 1.5 });
   context.globalAlpha = 0.12;
   context.fill();
   context.globalAlpha = 1;
-  context.strokeStyle = ink.mark;
-  context.lineWidth = 1.5;
   context.stroke();
 }

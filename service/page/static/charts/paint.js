@@ -2,6 +2,7 @@
 
 import { h } from "../lib/dom.js";
 
+export const FONT = "12px Inter, system-ui, sans-serif"; // of charts on canvas
 const VIRIDIS = [
   "#440154",
   "#482475",
@@ -82,6 +83,16 @@ export function squares(context, across, up, mask, of, colours) {
   context.putImageData(image, 0, 0);
 }
 
+/**
+ * Write words that stay readable on whatever is drawn, by an edge in the colour of the ground.
+ * @param {Page.Canvas} context @param {string} words @param {number} x @param {number} y @param {Page.Ink} ink @param {number} edge pixels
+ */
+export function writeOver(context, words, x, y, ink, edge = 3) {
+  Object.assign(context, { lineWidth: edge, strokeStyle: ink.panel, fillStyle: ink.text });
+  context.strokeText(words, x, y);
+  context.fillText(words, x, y);
+}
+
 /** Return [r, g, b] of a colour of the style, "#0b5c8a", or of a ramp. @param {string} colour @returns {number[]} */
 export function rgb(colour) {
   if (colour.startsWith("rgb")) return (colour.match(/\d+/g) ?? []).map(Number);
@@ -98,9 +109,9 @@ export function ramp(ink, count) {
   const dark = rgb(ink.panel).reduce((sum, part) => sum + part, 0) < 384;
   const stops = (dark ? VIRIDIS.slice(3) : VIRIDIS.slice(0, -2)).map(rgb);
   return Array.from({ length: count }, (_, index) => {
-    const at = (index / Math.max(1, count - 1)) * (stops.length - 1);
-    const left = Math.min(stops.length - 2, Math.floor(at));
-    const share = at - left;
+    const place = (index / Math.max(1, count - 1)) * (stops.length - 1);
+    const left = Math.min(stops.length - 2, Math.floor(place));
+    const share = place - left;
     const mixed = stops[left].map((part, channel) =>
       Math.round(part + share * (stops[left + 1][channel] - part)),
     );

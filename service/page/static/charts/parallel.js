@@ -5,7 +5,7 @@ import { wordTicks } from "./axes.js";
 import { Density } from "./density.js";
 import { histograms } from "./histogram.js";
 import { line, nearestLine } from "./lines.js";
-import { layers, rgb } from "./paint.js";
+import { FONT, layers, rgb, writeOver } from "./paint.js";
 import { byKeys } from "./by_keys.js";
 import { colours, logScale, scale } from "./scale.js";
 import { shadesOf } from "./shades.js";
@@ -180,13 +180,11 @@ export function parallel(chart) {
     const context = contexts[OVER];
     const { ink, axes, across, scales, heights, height } = view;
     histograms(context, view, chart.limits.mask, ROOM);
-    context.font = "12px Inter, system-ui, sans-serif";
-    context.textBaseline = "middle";
+    Object.assign(context, { font: FONT, textBaseline: "middle" });
     axes.forEach(({ key }, axis) => {
       const x = across[axis];
       const words = chart.data.words(key);
-      context.strokeStyle = ink.text;
-      context.lineWidth = 1;
+      Object.assign(context, { strokeStyle: ink.text, lineWidth: 1 });
       context.beginPath();
       context.moveTo(x, ROOM);
       context.lineTo(x, height - ROOM);
@@ -197,11 +195,7 @@ export function parallel(chart) {
         ? wordTicks(words)
         : ticks(chart.data.range(key), unit, chart.log(key))) {
         const y = scales[axis].at(value);
-        context.lineWidth = 3;
-        context.strokeStyle = ink.panel;
-        context.strokeText(label, x + 7, y);
-        context.fillStyle = ink.text;
-        context.fillText(label, x + 7, y);
+        writeOver(context, label, x + 7, y, ink);
         context.fillRect(x - 3, y - 0.5, 6, 1);
       }
     });
@@ -228,22 +222,12 @@ export function parallel(chart) {
   /** Write the values of a design at the axes, on the side where no ticks stand. @param {Page.Canvas} context @param {number} row */
   function drawValues(context, row) {
     const { ink, axes, across, heights, height } = view;
-    context.textAlign = "right";
-    context.font = "600 12px Inter, system-ui, sans-serif";
+    Object.assign(context, { textAlign: "right", font: `600 ${FONT}` });
     axes.forEach(({ key }, axis) => {
       const y = heights[row * axes.length + axis];
       if (y < 0) return;
       const words = text(chart.data.cell(key, row), chart.data.column(key).unit, 4);
-      const place = /** @type {const} */ ([
-        words,
-        across[axis] - 9,
-        Math.min(height - 8, Math.max(8, y)),
-      ]);
-      context.lineWidth = 5;
-      context.strokeStyle = ink.panel;
-      context.strokeText(...place);
-      context.fillStyle = ink.text;
-      context.fillText(...place);
+      writeOver(context, words, across[axis] - 9, Math.min(height - 8, Math.max(8, y)), ink, 5);
     });
     context.textAlign = "left";
   }
@@ -420,9 +404,9 @@ function strength(count) {
   return Math.min(0.6, 40 / Math.max(1, count) + 0.02);
 }
 
-/** @param {Page.Range} given @param {string} unit @param {boolean} log @returns {[number, string][]} */
+/** @param {Page.Range} options @param {string} unit @param {boolean} log @returns {[number, string][]} */
 function ticks({ low, high }, unit, log) {
-  const shown = (log ? logScale : scale)(inShown(low, unit), inShown(high, unit), 0, 1, 4);
+  const shownScale = (log ? logScale : scale)(inShown(low, unit), inShown(high, unit), 0, 1, 4);
   const factor = inShown(1, unit);
-  return shown.ticks.map((tick) => [tick / factor, shown.text(tick)]);
+  return shownScale.ticks.map((tick) => [tick / factor, shownScale.text(tick)]);
 }

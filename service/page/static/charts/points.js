@@ -22,9 +22,9 @@ const SHAPES = [
  * at, by its series and its place there, null for none; told.open: of one that is clicked on.
  * @param {{ points: Api.Row[string][][], name?: string }[]} series @param {Page.Heading} x @param {Page.Heading} y @param {string} label
  * @param {[Page.Range, Page.Range] | null} held
- * @param {{ at: (series: number | null, point: number) => void, open: (series: number, point: number) => void }} [told]
+ * @param {{ at: (series: number | null, point: number) => void, open: (series: number, point: number) => void }} [handlers]
  */
-export function points(series, x, y, label, held = null, told = undefined) {
+export function points(series, x, y, label, held = null, handlers = undefined) {
   const drawn = series.map((one) => one.points.filter(isPoint));
   const places = drawn.flat();
   /** @param {0 | 1} index @param {Page.Heading} column @param {number} start @param {number} end */
@@ -86,12 +86,12 @@ export function points(series, x, y, label, held = null, told = undefined) {
       ),
     ),
   );
-  if (told)
+  if (handlers)
     pointed(
       picture,
       series,
       (point) => [across.at(inShown(point[0], x.unit)), up.at(inShown(point[1], y.unit))],
-      told,
+      handlers,
     );
   return picture;
 }

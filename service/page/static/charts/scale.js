@@ -61,7 +61,7 @@ export function logScale(low, high, start, end, count = 5) {
   };
 }
 
-/** Whether an axis of a range may be logarithmic, and is another one then. @param {Page.Range} given */
+/** Whether an axis of a range may be logarithmic, and is another one then. @param {Page.Range} options */
 export function mayBeLog({ low, high }) {
   return low > 0 && high >= WIDE * low;
 }

@@ -3,7 +3,7 @@
 import { inShown } from "../lib/numbers.js";
 import { drawAxes, wordTicks } from "./axes.js";
 import { drawLasso, thinned } from "./lasso.js";
-import { layers, squares } from "./paint.js";
+import { FONT, layers, squares, writeOver } from "./paint.js";
 import { byKeys } from "./by_keys.js";
 import { colours, logScale, range, scale } from "./scale.js";
 import { shadesOf } from "./shades.js";
@@ -97,8 +97,7 @@ export function scatter(chart) {
     // Squares replace what is there, so they come first.
     if (many) squares(context, across, up, null, new Uint8Array(data.count), [view.ink.line]);
     drawAxes(context, { x, y, area: AREA, width, height, ink: view.ink });
-    context.strokeStyle = view.ink.quiet;
-    context.lineWidth = 1;
+    Object.assign(context, { strokeStyle: view.ink.quiet, lineWidth: 1 });
     for (const cells of chart.behind()) {
       const [a, b] = placeOf({ cells, colour: "" });
       context.beginPath();
@@ -119,10 +118,10 @@ export function scatter(chart) {
     const log = chart.log(key) && bare.low > 0; // a design beside the front may be below
     const spread = log ? (bare.high / bare.low) ** ROOM : 1;
     const { low, high } = log ? { low: bare.low / spread, high: bare.high * spread } : reach;
-    const made = log ? logScale : scale;
-    const drawn = made(low, high, start, end);
+    const makeScale = log ? logScale : scale;
+    const drawn = makeScale(low, high, start, end);
     const factor = inShown(1, column.unit);
-    const shown = made(
+    const shownScale = makeScale(
       inShown(drawn.low, column.unit),
       inShown(drawn.high, column.unit),
       start,
@@ -131,8 +130,8 @@ export function scatter(chart) {
     );
     const ticks = words
       ? wordTicks(words)
-      : shown.ticks.map(
-          (tick) => /** @type {[number, string]} */ ([tick / factor, shown.text(tick)]),
+      : shownScale.ticks.map(
+          (tick) => /** @type {[number, string]} */ ([tick / factor, shownScale.text(tick)]),
         );
     return { ...drawn, column, ticks, better: data.better(key) };
   }
@@ -184,21 +183,16 @@ export function scatter(chart) {
       const { colour, name } = mark;
       const [x, y] = placeOf(mark);
       if (!Number.isFinite(x) || !Number.isFinite(y)) continue;
-      context.strokeStyle = colour;
-      context.lineWidth = 2.5;
+      Object.assign(context, { strokeStyle: colour, fillStyle: colour, lineWidth: 2.5 });
       context.beginPath();
       if (mark.cells) diamond(context, x, y, 7);
       else context.arc(x, y, 8, 0, 7);
-      if (mark.cells) {
-        context.fillStyle = colour;
-        context.fill();
-      }
+      if (mark.cells) context.fill();
       context.stroke();
       if (name) write(context, name, x, y, ink, written);
     }
     if (box) {
-      context.fillStyle = ink.mark;
-      context.globalAlpha = 0.18;
+      Object.assign(context, { fillStyle: ink.mark, globalAlpha: 0.18 });
       context.fillRect(box.x, box.y, box.right - box.x, box.bottom - box.y);
       context.globalAlpha = 1;
     }
@@ -207,8 +201,8 @@ export function scatter(chart) {
       lasso && lasso.x === chart.x() && lasso.y === chart.y()
         ? lasso.line.map(([a, b]) => /** @type {Page.Point} */ ([view.x.at(a), view.y.at(b)]))
         : null;
-    const shown = line ?? drawn;
-    if (shown) drawLasso(context, shown, ink);
+    const outline = line ?? drawn;
+    if (outline) drawLasso(context, outline, ink);
   }
 
   /**
@@ -217,7 +211,7 @@ export function scatter(chart) {
    * @param {{ start: number, end: number, y: number }[]} written
    */
   function write(context, name, x, y, ink, written) {
-    context.font = "12px Inter, system-ui, sans-serif";
+    context.font = FONT;
     const left = x > view.width * 0.7;
     const { width } = context.measureText(name);
     const start = left ? x - 9 - width : x + 9;
@@ -228,13 +222,8 @@ export function scatter(chart) {
     )
       return;
     written.push({ start, end: start + width, y });
-    context.textAlign = left ? "right" : "left";
-    context.textBaseline = "bottom";
-    context.lineWidth = 3;
-    context.strokeStyle = ink.panel;
-    context.strokeText(name, x + (left ? -9 : 9), y - 5);
-    context.fillStyle = ink.text;
-    context.fillText(name, x + (left ? -9 : 9), y - 5);
+    Object.assign(context, { textAlign: left ? "right" : "left", textBaseline: "bottom" });
+    writeOver(context, name, x + (left ? -9 : 9), y - 5, ink);
   }
 
   /** @param {MouseEvent} event */
@@ -243,7 +232,7 @@ export function scatter(chart) {
     return { x: event.clientX - left, y: event.clientY - above };
   }
 
-  /** Return the design that is pointed at, a chosen one, or null. @param {{ x: number, y: number }} given */
+  /** Return the design that is pointed at, a chosen one, or null. @param {{ x: number, y: number }} options */
   function under({ x, y }) {
     const { across, up } = view;
     const { mask } = chart.limits;

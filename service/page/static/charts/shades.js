@@ -19,8 +19,8 @@ export function shadesOf(data, key, ink) {
       colours: palette(ink, 6),
     };
   const { low, high } = data.range(key);
-  const of = new Uint8Array(numbers.length);
+  const shadeOf = new Uint8Array(numbers.length);
   for (let row = 0; row < numbers.length; row += 1)
-    of[row] = Math.min(SHADES - 1, ((numbers[row] - low) / (high - low || 1)) * SHADES);
-  return { of, colours: ramp(ink, SHADES) };
+    shadeOf[row] = Math.min(SHADES - 1, ((numbers[row] - low) / (high - low || 1)) * SHADES);
+  return { of: shadeOf, colours: ramp(ink, SHADES) };
 }

@@ -1,9 +1,7 @@
 /** Analyses of a design: some one below the other, the others a tab each; all that the service has, with text, tables and figure. */
 
-import { get } from "../lib/api.js";
-import { fill, h } from "../lib/dom.js";
 import { whenNear } from "../lib/deferred.js";
-import { sentenceOf } from "../lib/refusals.js";
+import { fill, h } from "../lib/dom.js";
 import { capital } from "../lib/words.js";
 import { question } from "./question.js";
 
@@ -12,12 +10,12 @@ const KEYS = { ArrowLeft: -1, ArrowRight: 1 };
 /** Titles of those that are always in sight, by name. @type {Record<string, string>} */
 const TITLES = {
   extremes: "Extreme values over the turn",
-  sensitivity: "What it is sensitive to",
-  tolerances: "What tolerances do to the slider's position",
+  sensitivity: "Sensitivity",
+  tolerances: "Effect of tolerances on the slider position",
 };
 /** The only one of a design that swings. @type {Record<string, string>} */
 const TITLES_OF_SWING = { swing: "The swing" };
-const WITHOUT = "This job has no tolerances. Give it some under “Tolerances”.";
+const WITHOUT = "This job has no tolerances. Add some under “Tolerances”.";
 const ELSEWHERE = ["inverse"]; // questions with a view of their own
 const CERTIFY = {
   name: "certify",
@@ -27,8 +25,8 @@ const CERTIFY = {
   shows: "how far the front can be from the true one, whatever the design",
   figure: false,
   inputs: [
-    ["epsilon", "By at most, as a share of each objective's range", "", "0.01"],
-    ["seconds", "Time for it", "s", "10"],
+    ["epsilon", "Largest gap, as a fraction of each objective's range", "", "0.01"],
+    ["seconds", "Time limit", "s", "10"],
   ].map(([key, title, unit, usual]) => ({
     ...{ key, title, unit, usual },
     ...{ help: "", words: [], required: false, example: "" },
@@ -36,12 +34,16 @@ const CERTIFY = {
 };
 
 /**
- * Put the analyses into two places. swings: whether the crank does. tolerances: whether the job has any. tab: that is chosen; told(tab): another one is, "" for the first.
+ * Put the analyses into two places. questions: all of the service; swings: whether the crank does; tolerances: whether the job has any;
+ * tab: the chosen one; chooseTab(tab): another one is, "" for the first.
  * Returns show(lengths): of a changed design, null for the design itself.
  * @param {{ sections: HTMLElement, tabs: HTMLElement }} places
- * @param {{ job: string, number: number, swings: boolean, tolerances: boolean, tab: string, told: (tab: string) => void, signal: AbortSignal }} given
+ * @param {{ job: string, number: number, questions: Api.Topic[], swings: boolean, tolerances: boolean, tab: string, chooseTab: (tab: string) => void, signal: AbortSignal }} options
  */
-export function analyses(places, { job, number, swings, tolerances, tab, told, signal }) {
+export function analyses(
+  places,
+  { job, number, questions, swings, tolerances, tab, chooseTab, signal },
+) {
   const titles = swings ? TITLES_OF_SWING : TITLES;
   const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": "Analyses", onkeydown });
   const panel = h("div", {
@@ -50,29 +52,30 @@ export function analyses(places, { job, number, swings, tolerances, tab, told, s
     id: "analysis",
     tabindex: 0,
   });
-  /** @type {(Api.Topic & { view: ReturnType<typeof question> })[]} */
-  let listed = [];
-  let chosen = 0;
-  /** @type {Page.Numbers | null} */
-  let lengths = null;
-  const all = get("topics", {}, signal).then(({ topics, questions }) => [...topics, ...questions]);
-  all.catch(() => {}); // whoever needs them says so
-
   /** @param {Api.Topic} of */
   const withView = (of) => ({
     ...of,
     view: question(of, { path: `jobs/${job}/designs/${number}/${of.path}`, job, signal }),
   });
+  const proof = question(CERTIFY, {
+    path: `jobs/${job}/certificate`,
+    job,
+    button: "Prove it",
+    signal,
+  });
+  const listed = [
+    ...questions.filter(({ name }) => !(name in titles || ELSEWHERE.includes(name))).map(withView),
+    { ...CERTIFY, view: proof },
+  ];
+  let chosen = Math.max(
+    listed.findIndex(({ name }) => name === tab),
+    0,
+  );
+  /** @type {Page.Numbers | null} */
+  let lengths = null;
+  let near = false; // whether the tabs are, or have been, in sight
 
-  /** Begin a part once it comes near; what goes wrong is said there. @param {Element} body @param {() => Promise<unknown>} begin */
-  const later = (body, begin) =>
-    whenNear(
-      body,
-      () => begin().catch((error) => fill(body, h("p", { class: "error" }, sentenceOf(error)))),
-      signal,
-    );
-
-  function draw() {
+  async function draw() {
     const { name, shows, command, view } = listed[chosen];
     fill(
       tabs,
@@ -99,20 +102,20 @@ export function analyses(places, { job, number, swings, tolerances, tab, told, s
       h(
         "p",
         { class: "quiet hint" },
-        `${capital(shows)}${lengths && name !== CERTIFY.name ? "; of the changed design" : ""}. As `,
+        `${capital(shows)}${lengths && name !== CERTIFY.name ? "; of the changed design" : ""}. The same as `,
         h("code", {}, `slidercrank ${command}`),
-        " tells it.",
+        ".",
       ),
       view.node,
     );
-    return name === CERTIFY.name ? null : view.ask(lengths); // a proof takes a while
+    if (name !== CERTIFY.name) await view.ask(lengths); // a proof takes a while
   }
 
   /** @param {number} n */
   function choose(n) {
     chosen = n;
-    told(n ? listed[n].name : "");
-    return draw();
+    chooseTab(n ? listed[n].name : "");
+    draw();
   }
 
   /** @param {KeyboardEvent} event */
@@ -125,44 +128,34 @@ export function analyses(places, { job, number, swings, tolerances, tab, told, s
   fill(
     places.sections,
     Object.entries(titles).map(([name, title]) => {
-      const body = h("div", { class: "panel" });
-      if (name === "tolerances" && !tolerances) fill(body, h("p", { class: "quiet" }, WITHOUT));
-      else
-        later(body, async () => {
-          const [{ view }] = (await all).filter((one) => one.name === name).map(withView);
-          fill(body, view.node);
-          await view.ask();
-        });
+      const [{ view }] = questions.filter((one) => one.name === name).map(withView);
+      const lacks = name === "tolerances" && !tolerances;
+      const body = h(
+        "div",
+        { class: "panel" },
+        lacks ? h("p", { class: "quiet" }, WITHOUT) : view.node,
+      );
+      if (!lacks) whenNear(body, () => view.ask(), signal);
       return h("section", { class: name }, h("h2", {}, title), body);
     }),
   );
   if (!swings) {
     fill(places.tabs, h("h2", {}, "Analyses"), tabs, panel);
-    later(panel, async () => {
-      const proof = question(CERTIFY, {
-        path: `jobs/${job}/certificate`,
-        job,
-        button: "Prove it",
-        signal,
-      });
-      const others = (await all).filter(
-        ({ name }) => !(name in titles || ELSEWHERE.includes(name)),
-      );
-      listed = [...others.map(withView), { ...CERTIFY, view: proof }];
-      await choose(
-        Math.max(
-          listed.findIndex(({ name }) => name === tab),
-          0,
-        ),
-      );
-    });
+    whenNear(
+      panel,
+      () => {
+        near = true;
+        return draw();
+      },
+      signal,
+    );
   }
   return {
     /** @param {Page.Numbers | null} now */
     show(now) {
       const same = JSON.stringify(now) === JSON.stringify(lengths);
       lengths = now;
-      if (listed.length && !same) draw();
+      if (near && !same) draw();
     },
   };
 }

@@ -2,14 +2,14 @@
 
 import { go, link } from "../lib/address.js";
 import { post } from "../lib/api.js";
-import { fill, h } from "../lib/dom.js";
-import { sayProblem } from "../lib/notices.js";
+import { fill, formOf, h } from "../lib/dom.js";
+import { attempt, sayProblem } from "../lib/notices.js";
 import { sentenceOf } from "../lib/refusals.js";
 
 /**
  * Return the node. design: of the front, that it began as; dimensions(): its cells, null for the design itself; kept(): it is.
  * lengths(): that a search may begin near to; without it none is offered.
- * @param {{ job: string, design: number, dimensions: () => Record<string, Api.Row[string]> | null, kept?: () => unknown, lengths?: () => Page.Lengths }} given
+ * @param {{ job: string, design: number, dimensions: () => Record<string, Api.Row[string]> | null, kept?: () => unknown, lengths?: () => Page.Lengths }} options
  */
 export function bookmarkForm({ job, design, dimensions, kept = () => {}, lengths }) {
   const name = h("input", {
@@ -19,46 +19,38 @@ export function bookmarkForm({ job, design, dimensions, kept = () => {}, lengths
     placeholder: "Kept",
   });
   const note = h("input", { type: "text", maxlength: 4000, autocomplete: "off" });
-  const said = h("p", { class: "quiet", role: "status" });
+  const status = h("p", { class: "quiet", role: "status" });
   const button = h("button", {}, "Keep");
-  const form = h(
-    "form",
-    {
-      onsubmit: (event) => {
-        event.preventDefault();
-        keep();
-      },
-    },
+  const form = formOf(
+    () => keep(),
     h("label", {}, "Name", name),
     h("label", {}, "Note", note),
     h("div", { class: "row" }, button),
-    said,
+    status,
   );
 
-  async function keep() {
-    if (button.getAttribute("aria-busy")) return;
-    button.setAttribute("aria-busy", "true"); // not disabled, which would take the focus away
-    try {
-      const found = await post(`jobs/${job}/kept`, {
-        design,
-        dimensions: dimensions() ?? {},
-        name: name.value.trim(),
-        note: note.value.trim(),
-      });
-      fill(
-        said,
-        `“${found.name}” is kept `,
-        h("a", { href: link(["jobs", job]) }, "beside the front"),
-        found.outside.length > 0 && "; it is outside the job",
-        ".",
-      );
-      kept();
-    } catch (error) {
-      said.textContent = sentenceOf(error);
-    } finally {
-      button.removeAttribute("aria-busy");
-    }
-  }
+  /** Keep the design, and say where it is. */
+  const keep = () =>
+    attempt(
+      async () => {
+        const bookmark = await post(`jobs/${job}/kept`, {
+          design,
+          dimensions: dimensions() ?? {},
+          name: name.value.trim(),
+          note: note.value.trim(),
+        });
+        fill(
+          status,
+          `“${bookmark.name}” is kept `,
+          h("a", { href: link(["jobs", job]) }, "beside the front"),
+          bookmark.outside.length > 0 && "; it is outside the job",
+          ".",
+        );
+        kept();
+      },
+      (problem) => (status.textContent = sentenceOf(problem)),
+      button,
+    );
   return h(
     "div",
     { class: "row keep-or-search" },
@@ -73,18 +65,7 @@ export function bookmarkForm({ job, design, dimensions, kept = () => {}, lengths
  * @param {string} job @param {() => Page.Lengths} lengths @param {{ title: string, name?: string, act?: string }} looks
  */
 export function searchButton(job, lengths, { title, name, act }) {
-  /** @param {HTMLButtonElement} near */
-  const search = async (near) => {
-    near.disabled = true;
-    try {
-      const { id } = await post(`jobs/${job}/nearby`, lengths());
-      go(["jobs", id]);
-    } catch (error) {
-      sayProblem(error);
-    } finally {
-      near.disabled = false;
-    }
-  };
+  const search = async () => go(["jobs", (await post(`jobs/${job}/nearby`, lengths())).id]);
   return h(
     "button",
     {
@@ -92,7 +73,7 @@ export function searchButton(job, lengths, { title, name, act }) {
       title: "A run of its own, whose lengths vary by a tenth around these",
       "aria-label": name,
       "data-act": act,
-      onclick: ({ currentTarget }) => search(currentTarget),
+      onclick: ({ currentTarget }) => attempt(search, sayProblem, currentTarget),
     },
     title,
   );

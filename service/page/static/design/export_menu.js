@@ -3,7 +3,7 @@
 import { address } from "../lib/api.js";
 import { h } from "../lib/dom.js";
 import { menu } from "../lib/menu.js";
-import { say } from "../lib/notices.js";
+import { attempt, say, sayProblem } from "../lib/notices.js";
 import { printWhole } from "../lib/deferred.js";
 import { apiSystem } from "../lib/numbers.js";
 
@@ -11,7 +11,7 @@ const FILES = [
   ["linkage.dxf", "DXF", "The linkage at true scale, for CAD"],
   ["linkage.svg", "SVG", "The linkage at true scale, as a picture"],
   ["motion.html", "Motion", "The motion in one HTML file"],
-  ["motion.gif", "GIF", "The motion as an animated picture"],
+  ["motion.gif", "GIF", "The motion as an animation"],
   ["report.html", "Report", "The report in one HTML file"],
   ["report.pdf", "PDF", "The report to print"],
 ];
@@ -21,11 +21,9 @@ const WITH_UNITS = /^(report|design_)/; // drawings are in millimetres
 /**
  * Return {node, show(lengths)}: links to the files of a design, once show was called to those of the design with other lengths, or of
  * itself again with null.
- * @param {string} job @param {number} number @param {{ signal?: AbortSignal }} options
+ * @param {string} job @param {number} number
  */
-export function exportMenu(job, number, { signal } = {}) {
-  /** @type {Page.Numbers | null} */
-  let lengths = null;
+export function exportMenu(job, number) {
   /** @param {string} path @param {string} title @param {string} words */
   const anchor = (path, title, words) => ({ path, node: h("a", { download: "" }, title), words });
   const links = [
@@ -40,37 +38,28 @@ export function exportMenu(job, number, { signal } = {}) {
       ),
     ),
   ];
-  const said = h("span", { class: "quiet", role: "status" });
+  const status = h("span", { class: "quiet", role: "status" });
   const print = h(
     "button",
     {
       type: "button",
       title: "The whole view on paper or as PDF, all of its parts computed",
-      onclick: async ({ currentTarget }) => {
-        currentTarget.setAttribute("aria-busy", "true");
-        try {
-          await printWhole();
-        } finally {
-          currentTarget.removeAttribute("aria-busy");
-        }
-      },
+      onclick: ({ currentTarget }) => attempt(printWhole, sayProblem, currentTarget),
     },
     "Print",
   );
   const copy = h("button", { type: "button", onclick: copyLink }, "Copy link");
-  /** @param {Page.Numbers | null} other */
-  const show = (other) => {
-    lengths = other;
+  /** @param {Page.Numbers | null} lengths */
+  const show = (lengths) => {
     for (const { path, node } of links) {
       const units = WITH_UNITS.test(path.slice(path.lastIndexOf("/") + 1))
         ? { units: apiSystem() }
         : {};
       node.href = address(path, { ...lengths, ...units });
     }
-    said.textContent = lengths ? `of design ${number}, changed` : "";
+    status.textContent = lengths ? `of design ${number}, changed` : "";
   };
   show(null);
-  window.addEventListener("units", () => show(lengths), { signal });
   const list = h(
     "ul",
     { class: "files" },
@@ -84,7 +73,7 @@ export function exportMenu(job, number, { signal } = {}) {
       button,
       print,
       copy,
-      said,
+      status,
     ),
     show,
   };
@@ -93,7 +82,7 @@ export function exportMenu(job, number, { signal } = {}) {
 async function copyLink() {
   try {
     await navigator.clipboard.writeText(location.href);
-    say("The link is copied; it shows the same to a colleague who may open this service.");
+    say("Link copied. It shows the same view to anyone with access to this service.");
   } catch {
     say(`The browser did not let the link be copied; it is ${location.href}`, "error");
   }

@@ -10,7 +10,7 @@ const ROOM = { left: 52, right: 12, top: 10, bottom: 24 };
 
 /**
  * Put the picture into `place`; returns {show(row, changed)}: the design, and the changed one or null.
- * @param {HTMLElement} place @param {{ objectives: Api.Objective[], front: Api.Row[] }} given
+ * @param {HTMLElement} place @param {{ objectives: Api.Objective[], front: Api.Row[] }} options
  */
 export function frontMap(place, { objectives, front }) {
   // The front is a picture of its own, so that thousands of points are not painted again as one moves.
@@ -47,7 +47,7 @@ export function frontMap(place, { objectives, front }) {
   /** @type {Page.Scale} */
   let y;
   /** @type {[Api.Row | null, Api.Row | null]} */
-  let shown = [null, null];
+  let rows = [null, null];
   fill(place, h("div", { class: "axes-choice" }, choice(0, "Across"), choice(1, "Up")), picture);
 
   /** @param {Api.Row | null} row @param {Api.Objective} objective @returns {number} */
@@ -61,13 +61,13 @@ export function frontMap(place, { objectives, front }) {
     const points = front
       .map((row) => [value(row, across), value(row, up)])
       .filter((point) => point.every(Number.isFinite));
-    const rows = shown.filter((row) => row !== null);
+    const drawnRows = rows.filter((row) => row !== null);
     const wide = range(
-      [...points.map(([one]) => one), ...rows.map((row) => value(row, across))],
+      [...points.map(([one]) => one), ...drawnRows.map((row) => value(row, across))],
       0.06,
     );
     const tall = range(
-      [...points.map(([, one]) => one), ...rows.map((row) => value(row, up))],
+      [...points.map(([, one]) => one), ...drawnRows.map((row) => value(row, up))],
       0.08,
     );
     x = scale(wide.low, wide.high, ROOM.left, WIDTH - ROOM.right, 5);
@@ -103,7 +103,7 @@ export function frontMap(place, { objectives, front }) {
 
   function move() {
     const [across, up] = chosen.map((n) => objectives[n]);
-    const [from, to] = shown.map((row) => row && [x.at(value(row, across)), y.at(value(row, up))]);
+    const [from, to] = rows.map((row) => row && [x.at(value(row, across)), y.at(value(row, up))]);
     const drawn = [];
     if (from && to && to.every(Number.isFinite))
       drawn.push(
@@ -114,7 +114,7 @@ export function frontMap(place, { objectives, front }) {
       drawn.push(svg("circle", { class: "own", cx: from[0], cy: from[1], r: 5 }));
     fill(moving, drawn);
     /** @param {Api.Row | null} row */
-    const at = (row) =>
+    const describe = (row) =>
       [across, up]
         .map(
           (objective) =>
@@ -123,24 +123,23 @@ export function frontMap(place, { objectives, front }) {
         .join(", ");
     picture.setAttribute(
       "aria-label",
-      `The front, ${counted(front.length, "design")}. This design: ${at(shown[0])}.${shown[1] ? ` Changed: ${at(shown[1])}.` : ""}`,
+      `The front, ${counted(front.length, "design")}. This design: ${describe(rows[0])}.${rows[1] ? ` Changed: ${describe(rows[1])}.` : ""}`,
     );
   }
 
   return {
     /** @param {Api.Row} row @param {Api.Row | null} changed */
     show(row, changed) {
-      shown = [row, changed];
+      rows = [row, changed];
       const inside =
         x &&
         (!changed ||
           [x, y].every((axis, n) => {
-            const one = value(changed, objectives[chosen[n]]);
-            return one >= axis.low && one <= axis.high;
+            const coordinate = value(changed, objectives[chosen[n]]);
+            return coordinate >= axis.low && coordinate <= axis.high;
           }));
       if (inside) move();
       else arrange();
     },
-    arrange,
   };
 }

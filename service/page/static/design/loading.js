@@ -60,8 +60,8 @@ export function cycleOf(cycle) {
  * @param {URLSearchParams} query @param {number} number
  */
 export function besideOf(query, number) {
-  const asked = (query.get("beside") ?? "").split(",").map(Number);
-  return [...new Set(asked)]
+  const numbers = (query.get("beside") ?? "").split(",").map(Number);
+  return [...new Set(numbers)]
     .filter((one) => Number.isInteger(one) && one > 0 && one !== number)
     .slice(0, 2);
 }

@@ -57,7 +57,7 @@ export function mechanismsPanel(place, strip, turning, turns) {
     onkeydown: byKey,
     oninput: (event) => hold(Number(event.currentTarget.value)),
   });
-  const told = h("output", { class: "number angle" });
+  const angleText = h("output", { class: "number angle" });
   const where = h("output", { class: "number where" });
   const pace = h(
     "select",
@@ -92,7 +92,7 @@ export function mechanismsPanel(place, strip, turning, turns) {
     strip,
     toggle,
     h("label", { class: "crank-angle" }, h("span", {}, named), angle),
-    told,
+    angleText,
     where,
   );
 
@@ -112,7 +112,7 @@ export function mechanismsPanel(place, strip, turning, turns) {
 
   function showForces() {
     legend.toggleAttribute("hidden", !forces.checked);
-    for (const one of drawings) one.forces(forces.checked);
+    for (const picture of drawings) picture.forces(forces.checked);
     const greatest = Math.max(...machines.map(({ curves }) => largestForce(curves)));
     fill(largest, forces.checked ? scaleOf(greatest) : "");
     showSizes(turning.angle);
@@ -146,20 +146,20 @@ export function mechanismsPanel(place, strip, turning, turns) {
     );
     const greatest = Math.max(...machines.map(({ curves }) => largestForce(curves)));
     machines.forEach(({ name, series, row, curves, centres, sliderEnds, outlines }, n) => {
-      const one = drawings[n];
-      const holder = /** @type {HTMLElement} */ (one.node.parentElement);
+      const picture = drawings[n];
+      const holder = /** @type {HTMLElement} */ (picture.node.parentElement);
       holder.dataset.series = String(series);
-      one.node.setAttribute(
+      picture.node.setAttribute(
         "aria-label",
         `${name}: crank ${withUnit(row.crank_mm, "mm", 4)}, rod ${withUnit(row.rod_mm, "mm", 4)}, offset ${withUnit(row.offset_mm, "mm", 4)}`,
       );
       if (machines.length > 1) {
         const title =
           holder.querySelector(".machine-name") ??
-          holder.insertBefore(h("p", { class: "machine-name" }), one.node);
+          holder.insertBefore(h("p", { class: "machine-name" }), picture.node);
         title.textContent = name;
       }
-      one.show(lengthsOf(row), curves, {
+      picture.show(lengthsOf(row), curves, {
         frame: machines.length > 1 ? frame : undefined,
         direction: turning.direction,
         dead_centres_deg: centres,
@@ -168,7 +168,7 @@ export function mechanismsPanel(place, strip, turning, turns) {
         turns,
         outlines,
       });
-      one.turn(turning.angle);
+      picture.turn(turning.angle);
     });
     showForces();
     tell(turning);
@@ -176,7 +176,7 @@ export function mechanismsPanel(place, strip, turning, turns) {
 
   /** @param {{ angle: number, playing: boolean }} state */
   function tell({ angle: at, playing }) {
-    for (const one of drawings) one.turn(at, !playing);
+    for (const picture of drawings) picture.turn(at, !playing);
     const now = performance.now();
     if (!machines.length || (playing && now - since < EVERY)) return;
     since = now;
@@ -185,7 +185,7 @@ export function mechanismsPanel(place, strip, turning, turns) {
       "-",
       "−",
     );
-    if (told.textContent !== words) told.textContent = words;
+    if (angleText.textContent !== words) angleText.textContent = words;
     const position = between(machines[0].curves.slider_position_mm, at);
     where.textContent = `slider at ${withUnit(position, "mm", 4)}`;
     showSizes(at);
@@ -212,20 +212,20 @@ export function mechanismsPanel(place, strip, turning, turns) {
 /** Let the crank of a drawing be dragged; hold(angle) is told. @param {ReturnType<typeof drawing>} one @param {(angle: number) => void} hold */
 function draggable(one, hold) {
   const { handle } = one;
-  let held = false;
+  let isDragged = false;
   one.node.classList.add("draggable");
   handle.addEventListener("pointerdown", (event) => {
     if (event.button !== 0) return;
     event.preventDefault();
     handle.setPointerCapture(event.pointerId);
-    held = true;
+    isDragged = true;
     hold(one.angleAt(event.clientX, event.clientY));
   });
   handle.addEventListener(
     "pointermove",
-    (event) => held && hold(one.angleAt(event.clientX, event.clientY)),
+    (event) => isDragged && hold(one.angleAt(event.clientX, event.clientY)),
   );
   for (const end of ["pointerup", "pointercancel"])
-    handle.addEventListener(end, () => (held = false));
+    handle.addEventListener(end, () => (isDragged = false));
   return one;
 }

@@ -14,16 +14,17 @@ const MET = 1e-8; // of a bound: designs meet their constraints to this
  * Put the numbers of designs into `place`. designs: each {name, row}, the first is what the others are compared with; columns: of
  * the first; requirements, slow (stroke): of the API; names: of quantities by column.
  * @param {HTMLElement} place
- * @param {{ designs: Shown[], columns: Api.Column[], requirements: Api.Requirement[], slow: string | null | undefined, names: Record<string, string> }} given
+ * @param {{ designs: Shown[], columns: Api.Column[], requirements: Api.Requirement[], slow: string | null | undefined, names: Record<string, string> }} options
  */
 export function showNumbers(place, { designs, columns, requirements, slow, names }) {
   /** @param {Api.Column} column */
-  const known = ({ key }) => designs.some(({ row }) => row[key] !== null && row[key] !== undefined);
+  const hasValue = ({ key }) =>
+    designs.some(({ row }) => row[key] !== null && row[key] !== undefined);
   const groups = groupsOf(columns);
   const shown = groups
-    .map(({ title, columns: own }) => ({ title, columns: own.filter(known) }))
+    .map(({ title, columns: own }) => ({ title, columns: own.filter(hasValue) }))
     .filter(({ columns: own }) => own.length > 0);
-  const missing = groups.flatMap(({ columns: own }) => own.filter((column) => !known(column)));
+  const missing = groups.flatMap(({ columns: own }) => own.filter((column) => !hasValue(column)));
   const several = designs.length > 1;
   const tables = several
     ? h("section", { class: "panel group together" }, table("All numbers", designs, shown, names))

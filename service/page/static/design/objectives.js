@@ -17,7 +17,7 @@ export function sense({ sense: way, target, unit }) {
  * Put the objectives of the design into `place`; front: values of every design by column; row: of the design; changed: of a what-if, see
  * `rankInFront`; whose: whose objectives they are, "" for those of the design that the page is of.
  * @param {HTMLElement} place
- * @param {{ objectives: Api.Objective[], front: Api.Row[], row: Api.Row, changed: { broken: boolean } | null, whose: string, names: Record<string, string> }} given
+ * @param {{ objectives: Api.Objective[], front: Api.Row[], row: Api.Row, changed: { broken: boolean } | null, whose: string, names: Record<string, string> }} options
  */
 export function showObjectives(place, { objectives, front, row, changed, whose, names }) {
   fill(

@@ -18,10 +18,10 @@ const LARGE_OF_SWING = ["slider_position_mm", "drive_N", "drive_Nm", "transmissi
  *   file; null for the design itself. - turn, close: of the charts.
  * @param {HTMLElement} place
  * rpm: cycles a minute; turns: of the crank in a cycle, 0 of a swing.
- * @param {{ path: string, rpm: number, turns: number, over: string, turned: (angle: number, taken: boolean) => void, told: (over: string) => void }} given
+ * @param {{ path: string, rpm: number, turns: number, over: string, turned: (angle: number, taken: boolean) => void, told: (over: string) => void }} options
  */
-export function overCycle(place, { path, rpm, turns, over, turned, told }) {
-  const kept = turns ? KEPT : KEPT_OF_SWING;
+export function overCycle(place, { path, rpm, turns, over, turned, told: choose }) {
+  const storageKey = turns ? KEPT : KEPT_OF_SWING;
   const choices = (turns ? OVER : OVER_SWING).filter(({ name }) => name !== "time" || rpm !== 0);
   let chosen = choices.some(({ name }) => name === over) ? over : "angle";
   const choice = h(
@@ -31,7 +31,7 @@ export function overCycle(place, { path, rpm, turns, over, turned, told }) {
       onchange: ({ currentTarget }) => {
         chosen = currentTarget.value;
         draw();
-        told(chosen === "angle" ? "" : chosen);
+        choose(chosen === "angle" ? "" : chosen);
       },
     },
     choices.map(({ name, title }) =>
@@ -57,13 +57,17 @@ export function overCycle(place, { path, rpm, turns, over, turned, told }) {
     ),
   );
   const charts = curveCharts(place, turned, {
-    large: largeKept(kept, turns ? LARGE : LARGE_OF_SWING),
-    told: (keys) => localStorage.setItem(kept, keys.join()),
+    large: largeKept(storageKey, turns ? LARGE : LARGE_OF_SWING),
+    onChoice: (keys) => localStorage.setItem(storageKey, keys.join()),
   });
   /** @type {Page.Machine[]} */
-  let shown = [];
+  let machines = [];
   const draw = () =>
-    charts.show(shown, panelsOf(shown[0].curveColumns, shown), abscissaOf(chosen, rpm, turns)); // in the units of now
+    charts.show(
+      machines,
+      panelsOf(machines[0].curveColumns, machines),
+      abscissaOf(chosen, rpm, turns),
+    ); // in the units of now
   /** @type {Page.Numbers | null} */
   let lengths = null;
   const link = () => (file.href = address(`${path}/cycle.csv`, { ...lengths, units: apiSystem() }));
@@ -71,7 +75,7 @@ export function overCycle(place, { path, rpm, turns, over, turned, told }) {
   return {
     /** @param {Page.Machine[]} series */
     show(series) {
-      shown = series;
+      machines = series;
       draw();
       link();
     },
@@ -87,6 +91,6 @@ export function overCycle(place, { path, rpm, turns, over, turned, told }) {
 
 /** @param {string} name @param {string[]} usual */
 function largeKept(name, usual) {
-  const kept = (localStorage.getItem(name) ?? "").split(",").filter(Boolean);
-  return kept.length ? kept : usual;
+  const storedKeys = (localStorage.getItem(name) ?? "").split(",").filter(Boolean);
+  return storedKeys.length ? storedKeys : usual;
 }

@@ -36,18 +36,18 @@ export function withResultants({ curves, columns, turns, slider_ends_mm: [inner]
   /** @type {Api.Curves} */
   const more = { ...curves };
   /** @type {Api.Column[]} */
-  const known = [...columns];
+  const allColumns = [...columns];
   for (const [key, title, x, y] of RESULTANTS) {
     if (!curves[x] || !curves[y]) continue;
     more[key] = curves[x].map((value, n) =>
       value === null || curves[y][n] === null ? null : Math.hypot(value, curves[y][n]),
     );
-    known.push({ key, title, unit: "N" });
+    allColumns.push({ key, title, unit: "N" });
   }
-  if (!turns) return { curves: more, columns: known };
+  if (!turns) return { curves: more, columns: allColumns };
   more.way_mm = curves.slider_position_mm.map((value) => (value === null ? null : value - inner));
-  known.push({ key: "way_mm", title: "displacement from inner dead centre", unit: "mm" });
-  return { curves: more, columns: known };
+  allColumns.push({ key: "way_mm", title: "displacement from inner dead centre", unit: "mm" });
+  return { curves: more, columns: allColumns };
 }
 
 /**
@@ -58,10 +58,10 @@ export function panelsOf(columns, designs) {
   /** @param {Api.Column} column */
   const some = ({ key }) =>
     designs.some(({ curves }) => curves[key]?.some((value) => value !== null && value !== 0));
-  const found = ORDER.flatMap(
+  const shownColumns = ORDER.flatMap(
     (start) => columns.find(({ key }) => key.startsWith(start)) ?? [],
   ).filter(some);
-  return found.map(({ key, title, unit }) => ({
+  return shownColumns.map(({ key, title, unit }) => ({
     key,
     title: capital(title),
     unit,

@@ -18,14 +18,14 @@ export function rankOf(value, { sense, target }) {
  * @param {Api.Objective} objective @param {Api.Row[]} front @param {Api.Row[string] | undefined} value @param {{ broken: boolean } | null} changed
  */
 export function rankInFront(objective, front, value, changed) {
-  const own = rankOf(value, objective);
+  const rank = rankOf(value, objective);
   const ranks = front.map((one) => rankOf(one[objective.column], objective));
   const [best, worst] = [Math.min(...ranks), Math.max(...ranks)];
   const size = objective.target ?? 0;
-  const better = ranks.filter((rank) => rank < own && !isConstant(rank, own, size)).length;
+  const better = ranks.filter((other) => other < rank && !isConstant(other, rank, size)).length;
   const share = isConstant(best, worst, size)
     ? Number(!better)
-    : Math.min(Math.max((worst - own) / (worst - best), 0), 1);
+    : Math.min(Math.max((worst - rank) / (worst - best), 0), 1);
   if (changed?.broken) return { share, words: "misses a requirement" };
   if (!better)
     return { share, words: changed ? "no design of the front is better" : "best of the front" };

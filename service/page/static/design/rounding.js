@@ -1,7 +1,7 @@
 /** Round numbers for a design: a step for each number, misses that are allowed, the best rounded neighbours and what each of them costs. */
 
 import { isAbort, postFollowed } from "../lib/api.js";
-import { fill, formOf, h, numberField } from "../lib/dom.js";
+import { fill, formOf, h, markInvalid, numberField } from "../lib/dom.js";
 import { inShownUnits, plainUnitOf, system, text, unitOf, withUnit } from "../lib/numbers.js";
 import { parseNumber } from "../lib/number_text.js";
 import { kindOf, measureOf } from "../lib/units.js";
@@ -14,16 +14,15 @@ import { headsOf, numberCell, scrolledTable } from "../lib/table.js";
 const USUAL = { si: "0.5", inch: "1/64" }; // mm, in: what drawings and stock are made to
 const COUNT = 5;
 
-/** @typedef {{ name: string, label: string, unit: string, input: HTMLInputElement, said: HTMLElement, wrong: () => string }} Field */
+/** @typedef {{ name: string, unit: string, input: HTMLInputElement, refuse: (sentence: string) => void, rule: string, node: HTMLElement }} Field */
 
 /**
- * Put the steps into `place`. base: row of the design; columns: of it; applied(row): the numbers of a row are to be shown. Returns {draw()}: anew,
- * in other units.
+ * Put the form into `place`. base: row of the design; columns: of it; applied(row): the numbers of a row are to be shown.
  * @param {HTMLElement} place
  * @param {{
  *   job: string, number: number, base: Api.Row, columns: Api.Column[], requirements: Api.Requirements, objectives: Api.Objective[],
  *   applied: (row: Api.Row) => void, signal: AbortSignal,
- * }} given
+ * }} options
  */
 export function rounding(
   place,
@@ -32,21 +31,48 @@ export function rounding(
   const { ranges } = requirements;
   const numbers = columns.filter(({ key }) => key in ranges);
   const free = numbers.filter(({ key }) => ranges[key][0] < ranges[key][1]);
-  const steps = h("div", { class: "steps" });
-  const misses = h("div", { class: "steps" });
-  const others = h("div", { class: "steps" });
   const wrong = h("p", { class: "bad", role: "alert", hidden: true });
   const answer = h("div", { "aria-live": "polite" });
   const button = h("button", {}, "Find round numbers");
-  const exact = requirements.requirements.filter(
-    ({ lower, upper }) => lower !== null && lower === upper,
+  const steps = free.map(({ key, title, unit }) => {
+    const kind = unit === "mm" ? "length" : "value";
+    const usual = unit === "mm" ? USUAL[system()] : "";
+    return field({
+      id: `step-${key}`,
+      name: key,
+      label: `${capital(title)}, step`,
+      unit,
+      value: usual,
+      rule: `The step of the ${title} is a ${kind} above 0${usual && `, such as ${usual}`}; leave it empty to keep the ${kind}.`,
+    });
+  });
+  const [exact, bounds] = [true, false].map((equal) =>
+    requirements.requirements
+      .filter(({ lower, upper }) => (lower !== null && lower === upper) === equal)
+      .map(({ quantity, column, title, unit }) =>
+        field({
+          id: `miss-${column}`,
+          name: quantity,
+          label: `${capital(title)}, allowed miss`,
+          unit,
+          value: "",
+          rule: `The allowed miss of the ${title} is a value above 0; leave it empty to allow none.`,
+        }),
+      ),
   );
-  const bounds = requirements.requirements.filter((one) => !exact.includes(one));
+  /** @param {Field[]} fields */
+  const fieldset = (fields) =>
+    h(
+      "div",
+      { class: "steps" },
+      fields.map(({ node }) => node),
+    );
   const form = formOf(
     ask,
-    steps,
-    misses,
-    bounds.length > 0 && h("details", {}, h("summary", {}, "Allow misses of bounds"), others),
+    fieldset(steps),
+    fieldset(exact),
+    bounds.length > 0 &&
+      h("details", {}, h("summary", {}, "Allow misses of bounds"), fieldset(bounds)),
     button,
     wrong,
   );
@@ -56,51 +82,15 @@ export function rounding(
     h(
       "p",
       { class: "quiet hint" },
-      "The best designs of round numbers near this one that keep every requirement, or miss it by no more than you allow. Without a step a number stays as it is.",
+      "Finds the best designs with round numbers near this one that meet every requirement, or miss it by no more than you allow. A number without a step stays as it is.",
     ),
     form,
     answer,
   );
   place.hidden = free.length === 0;
-  /** @type {{ steps: Field[], misses: Field[] }} */
-  let fields = { steps: [], misses: [] };
   /** @type {AbortController | null} */
   let search = null;
   signal.addEventListener("abort", () => search?.abort(), { once: true });
-
-  function draw() {
-    search?.abort();
-    fields = {
-      steps: free.map(({ key, title, unit }) => {
-        const kind = unit === "mm" ? "a length" : "a value";
-        return field({
-          id: `step-${key}`,
-          name: key,
-          label: `${capital(title)}, step`,
-          unit,
-          value: unit === "mm" ? USUAL[system()] : "",
-          wrong: () =>
-            `The step of the ${title} is ${kind} above 0${unit === "mm" ? `, such as ${USUAL[system()]}` : ""}; leave it empty to keep the ${kind.slice(2)}.`,
-        });
-      }),
-      misses: [...exact, ...bounds].map(({ quantity, column, title, unit }) =>
-        field({
-          id: `miss-${column}`,
-          name: quantity,
-          label: `${capital(title)}, allowed miss`,
-          unit,
-          value: "",
-          wrong: () =>
-            `The allowed miss of the ${title} is a value above 0; leave it empty to allow none.`,
-        }),
-      ),
-    };
-    fill(steps, fields.steps.map(shown));
-    fill(misses, fields.misses.slice(0, exact.length).map(shown));
-    fill(others, fields.misses.slice(exact.length).map(shown));
-    fill(answer);
-    refuse("");
-  }
 
   /** Say what is wrong with all of it; nothing with an empty sentence. @param {string} sentence */
   function refuse(sentence) {
@@ -109,39 +99,39 @@ export function rounding(
   }
 
   async function ask() {
-    const to = textsOf(fields.steps);
-    const allow = textsOf(fields.misses);
+    const to = textsOf(steps);
+    const allow = textsOf([...exact, ...bounds]);
     fill(answer);
     refuse(to?.length === 0 ? "No number has a step; write one of them." : "");
     if (!to?.length || !allow) return;
     search?.abort();
-    const own = new AbortController();
-    search = own;
+    const control = new AbortController();
+    search = control;
     button.disabled = true;
     const bar = h("progress", { "aria-label": "Progress of the search" });
-    const at = h("span", { class: "quiet" }, "Waiting for its turn");
-    const stop = h("button", { type: "button", onclick: () => own.abort() }, "Stop");
-    fill(answer, h("p", { class: "row searching" }, bar, at, stop));
+    const progress = h("span", { class: "quiet" }, "Waiting for its turn");
+    const stop = h("button", { type: "button", onclick: () => control.abort() }, "Stop");
+    fill(answer, h("p", { class: "row searching" }, bar, progress, stop));
     stop.focus();
     /** @param {Record<string, unknown>} progress */
     const told = ({ stage, step, steps: count }) => {
       bar.max = Math.max(1, Number(count));
       bar.value = Number(step);
-      at.textContent = `${capital(String(stage))}: ${text(Number(step), "", 7)} of ${text(Number(count), "", 7)}`;
+      progress.textContent = `${capital(String(stage))}: ${text(Number(step), "", 7)} of ${text(Number(count), "", 7)}`;
     };
     try {
-      const found = await postFollowed(
+      const event = await postFollowed(
         `jobs/${job}/designs/${number}/rounded`,
         { to, allow, count: COUNT },
-        { signal: own.signal, told },
+        { signal: control.signal, told },
       );
-      tell(/** @type {Api.Rounded} */ (/** @type {unknown} */ (found.rounded)));
+      tell(/** @type {Api.Rounded} */ (/** @type {unknown} */ (event.rounded)));
     } catch (error) {
-      if (own !== search || signal.aborted) return;
+      if (control !== search || signal.aborted) return;
       fill(answer, isAbort(error) && h("p", { class: "quiet" }, "Stopped."));
       if (!isAbort(error)) refuse(`${sentenceOf(error).replace(/^To must/, "A step must")}.`);
     } finally {
-      if (own === search) button.disabled = false;
+      if (control === search) button.disabled = false;
     }
   }
 
@@ -207,9 +197,6 @@ export function rounding(
     const title = requirements.requirements.find(({ quantity }) => quantity === tightest)?.title;
     return h("span", { class: "quiet" }, title ? `tightest: ${title}` : "all kept");
   }
-
-  draw();
-  return { draw };
 }
 
 /** @param {Api.Miss} miss */
@@ -225,52 +212,46 @@ function missed({ quantity, title, amount, unit, side, allowed }) {
   );
 }
 
-/** @param {{ id: string, name: string, label: string, unit: string, value: string, wrong: () => string }} of @returns {Field} */
-function field({ id, name, label, unit, value, wrong }) {
-  const said = h("p", { class: "bad", id: `${id}-wrong` });
+/** @param {{ id: string, name: string, label: string, unit: string, value: string, rule: string }} of @returns {Field} */
+function field({ id, name, label, unit, value, rule }) {
+  const error = h("p", { class: "bad", id: `${id}-wrong` });
+  /** @param {string} sentence */
+  const refuse = (sentence) => {
+    error.textContent = sentence;
+    markInvalid(input, sentence);
+  };
   /** @type {HTMLInputElement} */
   const input = numberField({
     id,
     value,
-    "aria-describedby": `${id}-wrong`,
-    oninput: () => say(input, said, ""),
+    "aria-describedby": error.id,
+    oninput: () => refuse(""),
   });
-  return { name, label, unit, input, said, wrong };
-}
-
-/** @param {Field} of */
-function shown({ input, said, unit, label }) {
-  return h(
+  const node = h(
     "div",
     { class: "step" },
-    h("label", { for: input.id }, label),
+    h("label", { for: id }, label),
     input,
     h("span", { class: "quiet" }, unitOf(unit)),
-    said,
+    error,
   );
-}
-
-/** @param {HTMLInputElement} input @param {HTMLElement} place @param {string} sentence */
-function say(input, place, sentence) {
-  place.textContent = sentence;
-  if (sentence) input.setAttribute("aria-invalid", "true");
-  else input.removeAttribute("aria-invalid");
+  return { name, unit, input, refuse, rule, node };
 }
 
 /** Return what fields say as the service takes it; null where one is wrong. @param {Field[]} fields @returns {string[] | null} */
 function textsOf(fields) {
-  let fine = true;
-  const found = fields.flatMap(({ name, unit, input, said, wrong }) => {
+  const values = fields.map(({ name, unit, input, refuse, rule }) => {
     const plain = plainUnitOf(unit);
     const typed = parseNumber(input.value, { unit: plain, ...measureOf(kindOf(plain)) });
-    if (typed.empty) return [];
-    const sentence =
-      typed.wrong ??
-      (Number(typed.number) > 0 && Number.isFinite(Number(typed.number)) ? "" : wrong());
-    say(input, said, sentence);
-    if (sentence && fine) input.focus();
-    fine &&= !sentence;
-    return [`${name}=${typed.number} ${typed.number === undefined ? "" : typed.unit}`.trim()];
+    const right =
+      typed.empty || (Number(typed.number) > 0 && Number.isFinite(Number(typed.number)));
+    refuse(typed.wrong ?? (right ? "" : rule));
+    if (typed.number === undefined) return typed.empty ? "" : false;
+    return right && `${name}=${typed.number} ${typed.unit}`.trim();
   });
-  return fine ? found : null;
+  const first = values.indexOf(false);
+  if (first >= 0) fields[first].input.focus();
+  return first < 0
+    ? values.filter((text) => typeof text === "string" && text !== "").map(String)
+    : null;
 }

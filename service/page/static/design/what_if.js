@@ -1,12 +1,12 @@
 /** Sliders for other lengths ("What if?"), and where the change leaves the front. */
 
 import { isAbort, post } from "../lib/api.js";
-import { fill, h, numberField } from "../lib/dom.js";
+import { fill, h, markInvalid, numberField } from "../lib/dom.js";
 import { parseQuantity } from "../lib/quantity_text.js";
 import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 import { link } from "../lib/address.js";
 import { frontMap } from "./front_map.js";
-import { difference } from "./numbers.js";
+import { difference, wanted } from "./numbers.js";
 import { lengthsOf } from "./loading.js";
 import { bookmarkForm } from "./bookmark_form.js";
 import { rankOf } from "./rank.js";
@@ -25,13 +25,13 @@ const SAME = 1e-9; // relative
 /**
  * Put the sliders into `place`. path: of the design in the API; base: its row; ranges, requirements: of the API; objectives, front:
  * of the job; start: lengths to begin with, or null; wrong: why those of the link are none. changed(answer, {lengths, impossible}): the answer of the API that is drawn
- * and its numbers, null for the design itself; impossible: since the change has no answer. Returns {draw()}: once more, in other units, and {apply(row)}: to the numbers of another design.
+ * and its numbers, null for the design itself; impossible: since the change has no answer. Returns {apply(row)}: to the numbers of another design.
  * @param {HTMLElement} place
  * @param {{
  *   job: string, path: `jobs/${string}/designs/${number}`, base: Api.Row, columns: Api.Column[], ranges: Api.Requirements["ranges"], requirements: Api.Requirement[],
  *   objectives: Api.Objective[], front: Api.Row[], start: Page.Numbers | null, wrong: string, signal: AbortSignal,
  *   changed: (answer: Api.WhatIf | null, how?: { lengths?: Page.Numbers, impossible?: boolean }) => void,
- * }} given
+ * }} options
  */
 export function whatIf(
   place,
@@ -50,8 +50,8 @@ export function whatIf(
     signal,
   },
 ) {
-  const own = lengthsOf(base);
-  const { value: linked = [], ...begun } = /** @type {Page.Numbers} */ (start ?? own);
+  const designLengths = lengthsOf(base);
+  const { value: linked = [], ...begun } = /** @type {Page.Numbers} */ (start ?? designLengths);
   /** @type {Page.Lengths} */
   const lengths = begun;
   const further = Object.keys(ranges).filter((key) => !LENGTHS.some(([length]) => length === key)); // numbers that vary besides
@@ -59,9 +59,14 @@ export function whatIf(
   let values = Object.fromEntries(
     linked.map((text) => text.split("=")).map(([key, value]) => [key, Number(value)]),
   );
-  /** @type {ReturnType<typeof lengthRow>[]} */
-  let rows = [];
-  const controls = h("div", { class: "lengths" });
+  const rows = LENGTHS.map(([key, title]) =>
+    lengthRow(key, title, ranges[key], (value) => {
+      if (value !== null) lengths[key] = value;
+      last = key.replace("_mm", "");
+      keepsLengths = false;
+      ask();
+    }),
+  );
   const besides = h("p", { class: "quiet besides", hidden: true });
   const verdict = h("div", { class: "verdict", "aria-live": "polite" });
   const equal = requirements.filter(({ lower, upper }) => lower !== null && lower === upper);
@@ -69,7 +74,7 @@ export function whatIf(
     type: "checkbox",
     checked: equal.length > 0,
     onchange: () => {
-      given = false;
+      keepsLengths = false;
       ask();
     },
   });
@@ -82,7 +87,7 @@ export function whatIf(
       )
     : null;
   let last = "crank"; // the length that was moved last
-  let given = start !== null; // the lengths of a link are shown as they are
+  let keepsLengths = start !== null; // the lengths of a link are shown as they are
   const results = h("div", { class: "results" });
   const picture = h("div", { class: "map" });
   const reset = h(
@@ -100,7 +105,11 @@ export function whatIf(
   fill(
     place,
     h("div", { class: "row heading" }, h("h2", {}, "What if?"), reset),
-    controls,
+    h(
+      "div",
+      { class: "lengths" },
+      rows.map((row) => row.node),
+    ),
     besides,
     rule,
     verdict,
@@ -118,7 +127,10 @@ export function whatIf(
   const wrong = () => rows.map((row) => row.wrong()).find(Boolean) ?? "";
   const moved = () =>
     Object.keys(values).length > 0 ||
-    LENGTHS.some(([key]) => Math.abs(lengths[key] - own[key]) > SAME * Math.abs(own[key] || 1));
+    LENGTHS.some(
+      ([key]) =>
+        Math.abs(lengths[key] - designLengths[key]) > SAME * Math.abs(designLengths[key] || 1),
+    );
 
   /** Go to the numbers of another design. @param {Api.Row} row */
   function apply(row) {
@@ -131,7 +143,7 @@ export function whatIf(
             Math.abs(Number(value) - Number(base[key])) > SAME * Math.abs(Number(base[key])),
         ),
     );
-    given = true;
+    keepsLengths = true;
     showLengths();
     ask();
   }
@@ -153,17 +165,17 @@ export function whatIf(
     }
     busy = true;
     try {
-      const found = await post(
+      const reply = await post(
         `${path}/what-if`,
-        { ...lengths, values, angles: 180, hold: holding.checked && !given ? last : null },
+        { ...lengths, values, angles: 180, hold: holding.checked && !keepsLengths ? last : null },
         { signal },
       );
       if (moved() && !wrong()) {
-        answer = found;
-        if (holding.checked && !given && !again) follow(found.design);
+        answer = reply;
+        if (holding.checked && !keepsLengths && !again) follow(reply.design);
         const others = Object.entries(values).map(([key, value]) => `${key}=${value}`);
-        changed(found, {
-          lengths: { ...lengthsOf(found.design), ...(others.length ? { value: others } : {}) },
+        changed(reply, {
+          lengths: { ...lengthsOf(reply.design), ...(others.length ? { value: others } : {}) },
         });
         tell();
       }
@@ -205,33 +217,13 @@ export function whatIf(
         verdict,
         unread
           ? h("p", { class: "bad", role: "alert" }, unread)
-          : h(
-              "p",
-              { class: "quiet" },
-              "Move a length; everything is computed anew as you move it.",
-            ),
+          : h("p", { class: "quiet" }, "Move a length; everything is recomputed as you move it."),
       );
       fill(results);
       return;
     }
     fill(verdict, sentences(answer, requirements, objectives, job));
     fill(results, comparison(objectives, base, answer.design));
-  }
-
-  function drawControls() {
-    rows = LENGTHS.map(([key, title]) =>
-      lengthRow(key, title, ranges[key], (value) => {
-        if (value !== null) lengths[key] = value;
-        last = key.replace("_mm", "");
-        given = false;
-        ask();
-      }),
-    );
-    fill(
-      controls,
-      rows.map((row) => row.node),
-    );
-    showLengths();
   }
 
   function showLengths() {
@@ -241,41 +233,45 @@ export function whatIf(
     besides.textContent = `Changed too: ${named.map(({ key, title, unit }) => `${title} ${withUnit(values[key], unit)}, was ${text(base[key], unit)}`).join("; ")}`;
   }
 
-  drawControls();
+  showLengths();
   tell();
   if (moved()) ask();
-  return {
-    apply,
-    draw() {
-      drawControls();
-      map.arrange();
-      tell();
-    },
-  };
+  return { apply };
 }
 
 /**
- * set(value): a length was chosen, null where what was typed is none.
+ * Return the controls of a length. set(value): a length was chosen, null where what was typed is none.
  * @param {keyof Page.Lengths} key @param {string} title @param {readonly number[]} ends @param {(value: number | null) => void} set
  */
 function lengthRow(key, title, [low, high], set) {
   const fixed = low === high;
-  /** @param {number} value */
-  const digits = (value) => Number(inShown(value, "mm").toPrecision(6));
   const id = `what-if-${key}`;
   const outside = h(
     "span",
     { class: "at-limit", role: "status", hidden: true },
     " · outside the job",
   );
-  let refused = ""; // why what was typed is no length
+  const understood = h("span", { class: "quiet ends", role: "status" }); // how a sum or another unit was read
+  let wrong = ""; // why what was typed is no length
   const number = numberField({
     id,
     disabled: fixed,
-    oninput: type,
-    onchange: order,
+    oninput: () => {
+      const { value, said = "", wrong: sentence = "" } = typed();
+      wrong = sentence;
+      markInvalid(number, wrong);
+      if (value !== undefined) slide(value);
+      understood.textContent = said;
+      set(value ?? null);
+    },
+    // Put the length that was understood in place of what was typed, and leave in sight how.
+    onchange: () => {
+      const { value, said = "" } = typed();
+      if (value === undefined) return;
+      show(value);
+      understood.textContent = said;
+    },
   });
-  const understood = h("span", { class: "quiet ends", role: "status" }); // how a sum or another unit was read
   const slider = h("input", {
     type: "range",
     min: 0,
@@ -284,62 +280,39 @@ function lengthRow(key, title, [low, high], set) {
     disabled: fixed,
     "aria-label": `${title}, slider`,
     oninput: () => {
-      const value = low + (Number(slider.value) / STEPS) * (high - low);
-      const at = slider.value;
+      const position = slider.value;
+      const value = low + (Number(position) / STEPS) * (high - low);
       show(value);
-      slider.value = at;
+      slider.value = position;
       set(value);
     },
   });
 
   /** Return what the field says, or why it is no length. @returns {{ value?: number, said?: string | null, wrong?: string }} */
   function typed() {
-    const found = parseQuantity(number.value, "mm");
-    if (found.value !== undefined && (found.value > 0 || key === "offset_mm")) return found;
+    const parsed = parseQuantity(number.value, "mm");
+    if (parsed.value !== undefined && (parsed.value > 0 || key === "offset_mm")) return parsed;
     return {
       wrong:
-        found.wrong ??
-        `${title} needs a length${key === "offset_mm" ? "" : " above 0"}${found.empty ? "" : `; got ${number.value.trim()}`}.`,
+        parsed.wrong ??
+        `${title} needs a length${key === "offset_mm" ? "" : " above 0"}${parsed.empty ? "" : `; got ${number.value.trim()}`}.`,
     };
   }
 
-  function type() {
-    const { value, said, wrong } = typed();
-    refused = wrong ?? "";
-    understood.textContent = said ?? "";
-    number.setAttribute("aria-invalid", String(value === undefined));
-    mark(value ?? low);
-    if (value !== undefined) slide(value);
-    set(value ?? null);
-  }
-
-  /** Put the length that was understood in place of what was typed, and leave in sight how. */
-  function order() {
-    const { value, said } = typed();
-    if (value === undefined) return;
-    show(value);
-    understood.textContent = said ?? "";
-  }
-
-  /** @param {number} value */
+  /** Show a length beside its field, and whether it is outside the ranges of the job. @param {number} value */
   function slide(value) {
     slider.value = String(high > low ? (STEPS * (value - low)) / (high - low) : 0);
     slider.setAttribute("aria-valuetext", withUnit(value, "mm", 5));
+    outside.hidden =
+      fixed || (value >= low - SAME * Math.abs(low) && value <= high + SAME * Math.abs(high));
   }
 
   /** @param {number} value */
   function show(value) {
-    refused = understood.textContent = "";
-    number.value = String(digits(value));
-    number.setAttribute("aria-invalid", "false");
-    mark(value);
+    wrong = understood.textContent = "";
+    number.value = String(Number(inShown(value, "mm").toPrecision(6)));
+    markInvalid(number, false);
     slide(value);
-  }
-
-  /** Say whether a length is outside of the ranges of the job. @param {number} value */
-  function mark(value) {
-    outside.hidden =
-      fixed || (value >= low - SAME * Math.abs(low) && value <= high + SAME * Math.abs(high));
   }
 
   return {
@@ -360,7 +333,7 @@ function lengthRow(key, title, [low, high], set) {
       understood,
     ),
     show,
-    wrong: () => refused,
+    wrong: () => wrong,
   };
 }
 
@@ -384,12 +357,15 @@ function comparison(objectives, before, after) {
     );
   });
   const heads = headsOf(["Objective", "before", "after", "change"], (n) => n === 1 || n === 2);
-  const found = table("Objectives before and after the change", heads, rows);
-  found.classList.add("before-after");
-  return found;
+  const node = table("Objectives before and after the change", heads, rows);
+  node.classList.add("before-after");
+  return node;
 }
 
-/** @param {Api.WhatIf} answer @param {Api.Requirement[]} requirements @param {Api.Objective[]} objectives @param {string} job */
+/**
+ * Return what is wrong with a changed design, and where it is beside the front.
+ * @param {Api.WhatIf} answer @param {Api.Requirement[]} requirements @param {Api.Objective[]} objectives @param {string} job
+ */
 function sentences(answer, requirements, objectives, job) {
   const {
     broken,
@@ -399,73 +375,45 @@ function sentences(answer, requirements, objectives, job) {
     design,
     undefined: missing,
   } = answer;
-  const found = broken.map((column) => {
-    if (column === "slow_stroke")
-      return h(
-        "p",
-        { class: "bad" },
-        design.slow_stroke === "equal"
-          ? "Misses a requirement: neither stroke is the slow one."
-          : `Misses a requirement: the slow stroke is the ${design.slow_stroke} one.`,
-      );
-    const asked = requirements.find((one) => one.column === column);
-    return asked
-      ? h(
-          "p",
-          { class: "bad" },
-          `Misses a requirement: ${asked.title} ${design[column] === null ? "has no value" : withUnit(design[column], asked.unit)}; must be ${bounds(asked)}.`,
-        )
-      : null;
-  });
   const reasons = [...broken, ...objectives.map(({ column }) => column)]
     .map((column) => missing[column])
     .filter(Boolean);
-  found.push(
-    ...[...new Set(reasons)].map((reason) => h("p", { class: "bad" }, `No value: ${reason}.`)),
-  );
-  if (count) {
-    const shown = better
-      .slice(0, 3)
-      .map((number, n) => [
-        n ? ", " : "",
-        h("a", { href: link(["jobs", job, "designs", number]) }, `design ${number}`),
-      ]);
-    found.push(
-      h(
-        "p",
-        {},
-        `Behind the front: ${count === 1 ? "one design is" : `${count} designs are`} at least as good in every objective: `,
-        shown,
+  const faults = [
+    ...broken.flatMap((column) => missed(column, design, requirements)),
+    ...[...new Set(reasons)].map((reason) => `No value: ${reason}.`),
+  ];
+  const verdict = count
+    ? [
+        `Dominated: ${count === 1 ? "one design of the front is" : `${count} designs of the front are`} at least as good in every objective: `,
+        better
+          .slice(0, 3)
+          .map((number, n) => [
+            n ? ", " : "",
+            h("a", { href: link(["jobs", job, "designs", number]) }, `design ${number}`),
+          ]),
         count > 3 ? ", …" : "",
-      ),
-    );
-  } else if (broken.length) {
-    found.push(
-      h(
-        "p",
-        {},
-        "No design of the front is better in every objective, but this one misses a requirement.",
-      ),
-    );
-  } else {
-    found.push(
-      h(
-        "p",
-        { class: "good" },
-        beaten
-          ? `Beyond the front: it beats ${beaten === 1 ? "one design" : `${beaten} designs`} of it in every objective.`
-          : "On the front as far as the objectives tell: no design of it is better in every objective.",
-      ),
-    );
-  }
-  return found;
+      ]
+    : broken.length
+      ? "No design of the front is better in every objective, but this one misses a requirement."
+      : beaten
+        ? `Beyond the front: it dominates ${beaten === 1 ? "one design" : `${beaten} designs`} of it.`
+        : "Pareto-optimal for these objectives: no design of the front is better in all of them.";
+  return [
+    faults.map((sentence) => h("p", { class: "bad" }, sentence)),
+    h("p", { class: count || broken.length ? null : "good" }, verdict),
+  ];
 }
 
-/** @param {Api.Requirement} requirement */
-function bounds({ lower, upper, unit }) {
-  if (lower === null) return `at most ${withUnit(upper, unit)}`;
-  if (upper === null) return `at least ${withUnit(lower, unit)}`;
-  return lower === upper
-    ? `exactly ${withUnit(lower, unit)}`
-    : `${text(lower, unit)} to ${withUnit(upper, unit)}`;
+/** Return what a design misses, in a sentence. @param {string} column @param {Api.Row} design @param {Api.Requirement[]} requirements */
+function missed(column, design, requirements) {
+  if (column === "slow_stroke")
+    return design.slow_stroke === "equal"
+      ? "Misses a requirement: neither stroke is the slow one."
+      : `Misses a requirement: the slow stroke is the ${design.slow_stroke} one.`;
+  return requirements
+    .filter((one) => one.column === column)
+    .map(
+      (one) =>
+        `Misses a requirement: ${one.title} ${design[column] === null ? "has no value" : withUnit(design[column], one.unit)}; must be ${wanted(one)}.`,
+    );
 }

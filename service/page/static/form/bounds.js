@@ -21,7 +21,7 @@ export const SAID = { equals: "exactly", min: "at least", max: "at most" };
 
 /**
  * Return the field of the requirement on a quantity {name, title, unit, sentence}.
- * @param {Form.Whole} form @param {Api.Quantity} quantity @param {{ label?: string, place?: Form.Path }} given
+ * @param {Form.Whole} form @param {Api.Quantity} quantity @param {{ label?: string, place?: Form.Path }} options
  */
 export function requirement(
   form,
@@ -29,29 +29,29 @@ export function requirement(
   { label = quantity.title, place = ["constraints"] } = {},
 ) {
   const path = [...place, quantity.name];
-  const here = () => replace(form, made, () => requirement(form, quantity, { label, place }));
+  const here = () => replace(form, node, () => requirement(form, quantity, { label, place }));
   const { controls, mode } = bounds(
     form,
     { path, id: path },
     { label, kind: kindOf(quantity.unit), any: true, again: () => form.redraw(), here },
   );
-  const made = field(form, path, label, controls, {
+  const node = field(form, path, label, controls, {
     sentence: quantity.sentence,
     name: quantity.name,
   });
-  made.classList.toggle("two", mode === "between");
-  return made;
+  node.classList.toggle("two", mode === "between");
+  return node;
 }
 
 /**
  * Return the controls of the bounds that stand at a spot, and what they are: {mode, keys, inputs, controls}.
- * @param {Form.Whole} form @param {Form.Spot} spot @param {{ label: string, kind: string | null, any?: boolean, again: () => void, here?: () => void }} given any: whether nothing may be asked; again: draws them anew; here: without what is around them
+ * @param {Form.Whole} form @param {Form.Spot} spot @param {{ label: string, kind: string | null, any?: boolean, again: () => void, here?: () => void }} options any: whether nothing may be asked; again: draws them anew; here: without what is around them
  */
 export function bounds(form, spot, { label, kind, any = false, again, here = again }) {
   const stated = form.at(spot.path);
   const ends = spread(at(stated, ["equals"]), kind);
-  const given = ends ? { min: ends[0], max: ends[1] } : stated;
-  const mode = modeOf(given);
+  const statedBounds = ends ? { min: ends[0], max: ends[1] } : stated;
+  const mode = modeOf(statedBounds);
   const select = h(
     "select",
     {
@@ -72,7 +72,7 @@ export function bounds(form, spot, { label, kind, any = false, again, here = aga
   const { inputs, units, read } = entries(
     keys.map((key) => ({
       id: idOf(spot.id, key),
-      given: at(given, [key]),
+      jobValue: at(statedBounds, [key]),
       title: `${label}, ${SAID[key]}`,
     })),
     { label, kind, range: ranges, unitId: idOf(spot.id, "u") },
@@ -82,14 +82,14 @@ export function bounds(form, spot, { label, kind, any = false, again, here = aga
   /** @param {string[]} names */
   const write = (names = keys) => {
     /** @type {Record<string, unknown>} */
-    const found = {};
+    const values = {};
     const both = between();
     (both && names.length ? KEYS.between : names).forEach((key, place) => {
       const n = Math.min(place, inputs.length - 1);
       const typed = both ? (kind ? both[place] : Number(both[place])) : n >= 0 && read(n).value;
-      found[key] = typed === false ? "" : (typed ?? ""); // the service says that it is missing
+      values[key] = typed === false ? "" : (typed ?? ""); // the service says that it is missing
     });
-    form.put(spot.path, names.length ? found : undefined);
+    form.put(spot.path, names.length ? values : undefined);
   };
   const drawn = () => {
     if (!select.isConnected) return; // drawn anew meanwhile
@@ -104,10 +104,10 @@ export function bounds(form, spot, { label, kind, any = false, again, here = aga
   return { mode, keys, inputs, controls };
 }
 
-/** Return which kind of requirement is given. @param {unknown} given */
-function modeOf(given) {
-  if (!isTable(given)) return "any";
-  if (given.equals !== undefined) return "equals";
-  if (given.min !== undefined && given.max !== undefined) return "between";
-  return given.max !== undefined ? "max" : "min";
+/** Return which kind of requirement is given. @param {unknown} requirement */
+function modeOf(requirement) {
+  if (!isTable(requirement)) return "any";
+  if (requirement.equals !== undefined) return "equals";
+  if (requirement.min !== undefined && requirement.max !== undefined) return "between";
+  return requirement.max !== undefined ? "max" : "min";
 }

@@ -12,8 +12,8 @@ const WHY =
 
 /** Return the fields of the choices, and a button for another one. @param {Form.Whole} form */
 export function choices(form) {
-  const given = form.at(["choice"]);
-  const all = Array.isArray(given) ? given : [];
+  const jobValue = form.at(["choice"]);
+  const all = Array.isArray(jobValue) ? jobValue : [];
   const add = h(
     "button",
     {
@@ -31,8 +31,8 @@ export function choices(form) {
 
 /** Return what there is to choose from, in a line. @param {Form.Whole} form */
 export function choicesGiven(form) {
-  const given = form.at(["choice"]);
-  return (Array.isArray(given) ? given : [])
+  const jobValue = form.at(["choice"]);
+  return (Array.isArray(jobValue) ? jobValue : [])
     .map((one) => `${at(one, ["name"])}: ${counted(one)}`)
     .join(", ");
 }
@@ -59,10 +59,10 @@ function row(form, one, place, all) {
   const names = optionsOf(one).map((option) => String(at(option, ["name"])));
   const more = names.length > SHOWN ? ` and ${names.length - SHOWN} more` : "";
   const has = h("p", { class: "quiet wide", role: "status" });
-  /** @param {unknown} given */
-  const say = (given) =>
+  /** @param {unknown} choice */
+  const say = (choice) =>
     has.replaceChildren(
-      `${counted(given)}${names.length ? `: ${names.slice(0, SHOWN).join(", ")}${more}` : ""}.`,
+      `${counted(choice)}${names.length ? `: ${names.slice(0, SHOWN).join(", ")}${more}` : ""}.`,
     );
   say(one);
   const text = h("textarea", {
@@ -81,13 +81,13 @@ function row(form, one, place, all) {
         file: ___,
         ...rest
       } = /** @type {Record<string, unknown>} */ (isTable(now) ? now : {});
-      const given = { ...rest, table: text.value };
-      form.put(path, given);
-      say(given);
+      const choice = { ...rest, table: text.value };
+      form.put(path, choice);
+      say(choice);
     },
   });
   text.value = String(at(one, ["table"]) ?? "");
-  const made = field(
+  const tableField = field(
     form,
     [...path, "table"],
     names.length ? "a table in place of these" : "table",
@@ -124,7 +124,7 @@ function row(form, one, place, all) {
         why: "Letters, digits, spaces, - and _; the table of designs has it.",
       }),
       has,
-      made,
+      tableField,
     ),
     h("p", {}, drop),
   );

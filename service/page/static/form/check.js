@@ -9,33 +9,33 @@ const AGAIN = 3000; // ms until the next try while the service does not answer
 
 /**
  * Return a function that asks about a job and how it is submitted; told({answer}) or told({problem}) with the latest; `signal` ends it.
- * @param {(said: { answer: Api.Preview, problem?: undefined } | { answer?: undefined, problem: unknown }) => void} told @param {AbortSignal} signal
+ * @param {(said: { answer: Api.Preview, problem?: undefined } | { answer?: undefined, problem: unknown }) => void} report @param {AbortSignal} signal
  */
-export function checker(told, signal) {
+export function checker(report, signal) {
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
   /** @type {AbortController | null} */
-  let asked = null;
-  /** @param {Asked} given */
-  const ask = async (given) => {
-    asked?.abort();
-    const mine = (asked = new AbortController());
+  let running = null;
+  /** @param {Asked} request */
+  const ask = async (request) => {
+    running?.abort();
+    const mine = (running = new AbortController());
     try {
-      const answer = await post("preview", given, { signal: mine.signal });
-      if (asked === mine && !signal.aborted) told({ answer });
+      const answer = await post("preview", request, { signal: mine.signal });
+      if (running === mine && !signal.aborted) report({ answer });
     } catch (problem) {
-      if (isAbort(problem) || asked !== mine || signal.aborted) return;
-      told({ problem });
-      if (statusOf(problem) === 0) timer = setTimeout(() => ask(given), AGAIN);
+      if (isAbort(problem) || running !== mine || signal.aborted) return;
+      report({ problem });
+      if (statusOf(problem) === 0) timer = setTimeout(() => ask(request), AGAIN);
     }
   };
   signal.addEventListener("abort", () => {
     clearTimeout(timer);
-    asked?.abort();
+    running?.abort();
   });
   return (/** @type {Asked} */ { job, submission }, { now = false } = {}) => {
     clearTimeout(timer);
-    asked?.abort(); // what it says is of another job by now
+    running?.abort(); // what it says is of another job by now
     timer = setTimeout(() => ask(structuredClone({ job, submission })), now ? 0 : WAIT);
   };
 }

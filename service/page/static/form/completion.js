@@ -8,7 +8,7 @@ const BEHIND_NUMBER = /[\d.]\s*$/; // what stands there is a unit
 
 /**
  * Return an input with the names that it may have below it, as {word, names}. number: it is one for numbers, in which formulas are rare.
- * @param {HTMLInputElement} input @param {Form.Whole} form @param {{ number?: boolean }} given
+ * @param {HTMLInputElement} input @param {Form.Whole} form @param {{ number?: boolean }} options
  */
 export function completing(input, form, { number = false } = {}) {
   const list = h("ul", {
@@ -22,7 +22,7 @@ export function completing(input, form, { number = false } = {}) {
       const place = [...list.children].findIndex(
         (one) => event.target instanceof Node && one.contains(event.target),
       );
-      if (place >= 0) take(shown[place]);
+      if (place >= 0) take(offered[place]);
     },
   });
   const node = h("span", { class: number ? "completed" : "completed wide" }, input, list);
@@ -36,13 +36,13 @@ export function completing(input, form, { number = false } = {}) {
   ])
     input.setAttribute(name, value);
   /** @type {Form.Name[]} */
-  let shown = [];
+  let offered = [];
   let active = -1;
   let typing = false; // a name whose list was not closed
 
   const close = () => {
     typing = false;
-    shown = [];
+    offered = [];
     active = -1;
     list.hidden = true;
     input.setAttribute("aria-expanded", "false");
@@ -58,19 +58,19 @@ export function completing(input, form, { number = false } = {}) {
   };
   const open = ({ all = false } = {}) => {
     const word = wordAt(input);
-    shown =
+    offered =
       word === null || (word === "" && !all)
         ? []
         : matching(word, form.names()).slice(0, all && word === "" ? undefined : MOST);
-    if (shown.length === 1 && shown[0].name === word) shown = [];
-    if (!shown.length) {
+    if (offered.length === 1 && offered[0].name === word) offered = [];
+    if (!offered.length) {
       close();
       typing = true;
       return;
     }
     fill(
       list,
-      shown.map(({ name, title, unit }, n) =>
+      offered.map(({ name, title, unit }, n) =>
         h(
           "li",
           { role: "option", id: `${list.id}-${n}`, "aria-selected": "false", "data-name": name },
@@ -109,10 +109,12 @@ export function completing(input, form, { number = false } = {}) {
       if (list.hidden) return;
       event.preventDefault();
       const by = event.key === "ArrowDown" ? 1 : -1;
-      point(active < 0 && by < 0 ? shown.length - 1 : (active + by + shown.length) % shown.length);
+      point(
+        active < 0 && by < 0 ? offered.length - 1 : (active + by + offered.length) % offered.length,
+      );
     } else if (event.key === "Enter" && active >= 0) {
       event.preventDefault();
-      take(shown[active]);
+      take(offered[active]);
     } else if (event.key === "Escape" && !list.hidden) {
       event.preventDefault();
       close();
@@ -135,14 +137,14 @@ function wordAt(input) {
 }
 
 /** Return the names that begin with a word, then those that have it elsewhere, in name or title. @param {string} word @param {Form.Name[]} names */
-export function matching(word, names) {
+function matching(word, names) {
   const sought = word.toLowerCase();
   /** @param {Form.Name} one */
   const rank = ({ name, title }) => {
-    const own = name.toLowerCase();
-    if (own.startsWith(sought)) return 0;
-    if (own.split(/[_.]/).some((part) => part.startsWith(sought))) return 1;
-    return own.includes(sought) || title.toLowerCase().includes(sought) ? 2 : 3;
+    const lowerName = name.toLowerCase();
+    if (lowerName.startsWith(sought)) return 0;
+    if (lowerName.split(/[_.]/).some((part) => part.startsWith(sought))) return 1;
+    return lowerName.includes(sought) || title.toLowerCase().includes(sought) ? 2 : 3;
   };
   return names
     .map((one) => ({ one, at: rank(one) }))

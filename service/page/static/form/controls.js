@@ -17,11 +17,11 @@ const MAKE = { quantity, choice, whole: plain, ratio: plain, text: plain, list }
 export function byschema(form, path, options = {}) {
   const node = form.schema.property(path);
   if (!node) return null;
-  const found = describe(node);
+  const described = describe(node);
   const label = options.label ?? words(path[path.length - 1]);
-  const why = options.why ?? found.description;
-  if (found.control === "table") {
-    const keys = (found.keys ?? []).filter(
+  const why = options.why ?? described.description;
+  if (described.control === "table") {
+    const keys = (described.keys ?? []).filter(
       (key) => key !== "file" || form.at([...path, key]) !== undefined,
     ); // a service opens no files
     const inner = keys.map((key) => byschema(form, [...path, key]));
@@ -32,33 +32,33 @@ export function byschema(form, path, options = {}) {
       h("div", { class: "fields" }, inner),
     );
   }
-  const make = MAKE[found.control];
-  return make ? make(form, path, { ...found, ...options, label, why }) : null;
+  const make = MAKE[described.control];
+  return make ? make(form, path, { ...described, ...options, label, why }) : null;
 }
 
 /** Return a field of a number with its unit. @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks */
 export function quantity(form, path, { kind, percent = false, label, why, wide }) {
-  const made = entries(
-    [{ id: idOf(path, "c"), given: form.at(path) }],
+  const entry = entries(
+    [{ id: idOf(path, "c"), jobValue: form.at(path) }],
     { label, kind: kind ?? null, percent, unitId: idOf(path, "u") },
-    () => form.put(path, made.read(0).value),
+    () => form.put(path, entry.read(0).value),
   );
-  return field(form, path, label, made.controls, why, { wide });
+  return field(form, path, label, entry.controls, why, { wide });
 }
 
 /**
  * Return inputs of numbers with a unit that they share, and what is typed in them: {inputs, units, controls, read(n)}. ones: of each its
  * value in the job and its name. range: whether a range may stand for a value. write: called whenever something else is typed.
- * @param {{ id: string, given: unknown, title?: string }[]} ones
+ * @param {{ id: string, jobValue: unknown, title?: string }[]} ones
  * @param {{ label: string, kind: string | null, percent?: boolean, range?: boolean, unitId: string }} looks @param {() => void} write
  */
 export function entries(ones, { label, kind, percent = false, range = false, unitId }, write) {
-  const parts = ones.map(({ given }) => split(given, kind));
+  const parts = ones.map(({ jobValue }) => split(jobValue, kind));
   const unit = parts.find((one) => one.number !== "")?.unit ?? split(undefined, kind).unit;
   const units = kind && ones.length ? unitSelect(label, kind, unit, percent, unitId) : null;
-  const inputs = ones.map(({ id, given, title }, n) => {
+  const inputs = ones.map(({ id, jobValue, title }, n) => {
     const input = numberInput(id, convert(parts[n].number, parts[n].unit, unit, kind), title);
-    drawnFrom(input, given, units);
+    drawnFrom(input, jobValue, units);
     input.addEventListener("input", () => write());
     return input;
   });
@@ -68,8 +68,8 @@ export function entries(ones, { label, kind, percent = false, range = false, uni
   });
   /** @param {number} n @returns {{ value?: string | number, ends?: string[] }} */
   const read = (n) => {
-    const found = entered(inputs[n], { kind, percent, select: units, range });
-    return kind || found.ends ? found : { value: number(inputs[n]) };
+    const entry = entered(inputs[n], { kind, percent, select: units, range });
+    return kind || entry.ends ? entry : { value: number(inputs[n]) };
   };
   return { inputs, units, controls: units ? [...inputs, units] : inputs, read };
 }
@@ -80,13 +80,13 @@ export function choice(
   path,
   { options = [], fallback, label, why, required = false, changed = () => {} },
 ) {
-  const given = form.at(path);
-  const known = given === undefined || options.some((one) => one === given);
-  const shown = [
+  const jobValue = form.at(path);
+  const isListed = jobValue === undefined || options.some((one) => one === jobValue);
+  const choices = [
     ...(required ? [] : [["", fallback === undefined ? "not given" : `${fallback} (usual)`]]),
     ...options.map((one) => [String(one), words(one)]),
   ];
-  if (!known) shown.push([String(given), String(given)]);
+  if (!isListed) choices.push([String(jobValue), String(jobValue)]);
   const select = h(
     "select",
     {
@@ -101,8 +101,8 @@ export function choice(
         changed(select.value);
       },
     },
-    shown.map(([value, text]) =>
-      h("option", { value, selected: value === String(given ?? "") }, text),
+    choices.map(([value, text]) =>
+      h("option", { value, selected: value === String(jobValue ?? "") }, text),
     ),
   );
   return field(form, path, label, [select], why);
@@ -113,8 +113,13 @@ export function choice(
  * @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks
  */
 export function plain(form, path, { control, label, why, wide = false, long = false, fallback }) {
-  const given = form.at(path);
-  const text = given === undefined ? "" : typeof given === "string" ? given : JSON.stringify(given);
+  const jobValue = form.at(path);
+  const text =
+    jobValue === undefined
+      ? ""
+      : typeof jobValue === "string"
+        ? jobValue
+        : JSON.stringify(jobValue);
   const input = long
     ? h("textarea", { rows: 2, id: idOf(path, "c"), value: text })
     : h("input", { type: "text", id: idOf(path, "c"), value: text, autocomplete: "off" });
@@ -138,12 +143,12 @@ export function plain(form, path, { control, label, why, wide = false, long = fa
 
 /** Return a field of a list, its entries separated by commas. @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks */
 export function list(form, path, { label, why, example }) {
-  const given = form.at(path);
-  const text = Array.isArray(given)
-    ? given.join(", ")
-    : given === undefined
+  const jobValue = form.at(path);
+  const text = Array.isArray(jobValue)
+    ? jobValue.join(", ")
+    : jobValue === undefined
       ? ""
-      : JSON.stringify(given);
+      : JSON.stringify(jobValue);
   const input = h("input", {
     type: "text",
     id: idOf(path, "c"),

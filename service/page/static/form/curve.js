@@ -19,7 +19,7 @@ const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDow
  * Return {node, draw()} of the curve. read(): its points; none while they cannot be read. write(points): they have been changed here.
  * titles(): of both axes, with units. centres(): the dead centres, in the unit of the first column. steps: whether two points may be at
  * one place.
- * @param {{ read: () => Page.Point[] | null, write: (points: Page.Point[]) => void, titles: () => string[], centres: () => Centre[], steps: boolean }} given
+ * @param {{ read: () => Page.Point[] | null, write: (points: Page.Point[]) => void, titles: () => string[], centres: () => Centre[], steps: boolean }} options
  */
 export function curve({ read, write, titles, centres, steps }) {
   const picture = svg("svg", {
@@ -127,8 +127,8 @@ export function curve({ read, write, titles, centres, steps }) {
         }),
       ),
     );
-    const held = focus < 0 ? null : picture.querySelector(`[data-n="${focus}"]`);
-    if (held instanceof SVGElement) held.focus();
+    const focusedPoint = focus < 0 ? null : picture.querySelector(`[data-n="${focus}"]`);
+    if (focusedPoint instanceof SVGElement) focusedPoint.focus();
   }
 
   /** Put a point elsewhere, between its neighbours, or at one of them where the curve may step. @param {number} n @param {Page.Point} to */
@@ -189,11 +189,13 @@ export function rounded(value, { low, high }) {
  */
 export function centresOf(said, { kind }, datum, unit) {
   const example = said?.example;
-  const found = example ? extremes(example.motion.slider_position_mm) : null;
-  if (!example || !found) return [];
+  const motionEnds = example ? extremes(example.motion.slider_position_mm) : null;
+  if (!example || !motionEnds) return [];
   const [inner, outer] = example.slider_ends_mm.map((end) => {
     const { angle } =
-      Math.abs(found.low.value - end) < Math.abs(found.high.value - end) ? found.low : found.high;
+      Math.abs(motionEnds.low.value - end) < Math.abs(motionEnds.high.value - end)
+        ? motionEnds.low
+        : motionEnds.high;
     return { angle, value: Math.abs(end) }; // a table has distances, also on the crossed branch
   });
   /** @type {(value: number) => number} */
@@ -210,11 +212,11 @@ export function centresOf(said, { kind }, datum, unit) {
       ? ["mm", /** @type {const} */ ("value")]
       : ["deg", /** @type {const} */ ("angle")];
   /** @param {string} name @param {typeof inner} end @returns {Centre} */
-  const shown = (name, end) => ({
+  const centre = (name, end) => ({
     name,
     at: Number(convert(String(counted(end[key])), mine, unit, kind)),
   });
-  return [shown("inner dead centre", inner), shown("outer dead centre", outer)].sort(
+  return [centre("inner dead centre", inner), centre("outer dead centre", outer)].sort(
     (one, other) => one.at - other.at,
   );
 }

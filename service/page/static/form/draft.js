@@ -5,8 +5,8 @@ const KEY = "new-run";
 /** Return the draft {job, submission, source, key}; null if there is none. @returns {Form.Draft | null} */
 export function kept() {
   try {
-    const found = JSON.parse(sessionStorage.getItem(KEY) ?? "null");
-    return found && typeof found.job === "object" ? found : null;
+    const draft = JSON.parse(sessionStorage.getItem(KEY) ?? "null");
+    return draft && typeof draft.job === "object" ? draft : null;
   } catch {
     return null;
   }

@@ -21,7 +21,7 @@ export function showFacts(place, { allowed, understood, swing }) {
         row("travel of the slider", between(swing.travel_mm, "mm")),
         row("meets everything", share(swing.feasible_share), `of ${swing.sampled} tried`),
       ),
-      told(swing.unchecked, understood),
+      notesOf(swing.unchecked, understood),
     );
     return;
   }
@@ -45,7 +45,7 @@ export function showFacts(place, { allowed, understood, swing }) {
       row("meets everything", share(allowed.feasible_share), `of ${allowed.sampled} tried`),
       allowed.slow_strokes.length ? row("slow stroke", allowed.slow_strokes.join(" or ")) : null,
     ),
-    told(allowed.unchecked, understood, allowed.said),
+    notesOf(allowed.unchecked, understood, allowed.said),
   );
 }
 
@@ -58,7 +58,7 @@ function row(title, value, note = null) {
 }
 
 /** @param {string[]} unchecked @param {Api.Understood | null} understood @param {string[]} said */
-function told(unchecked, understood, said = []) {
+function notesOf(unchecked, understood, said = []) {
   return [
     unchecked.length
       ? h(

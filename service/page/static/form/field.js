@@ -114,33 +114,37 @@ export function explanation(id, label, why) {
 /**
  * Show on fields what is wrong; return the sentences that belong to no field. What nobody has typed into yet is asked for, not blamed,
  * unless what is missing counts: once the search is to be started.
- * @param {Form.Field[]} fields @param {Api.Wrong[]} wrong @param {{ missing?: boolean }} given
+ * @param {Form.Field[]} fields @param {Api.Wrong[]} wrong @param {{ missing?: boolean }} options
  */
 export function showWrong(fields, wrong, { missing = false } = {}) {
-  for (const one of fields) say(one, []);
+  for (const item of fields) say(item, []);
   /** @type {Map<Form.Field, string[]>} */
-  const told = new Map();
+  const sentencesOf = new Map();
   /** @type {string[]} */
   const elsewhere = [];
   for (const { path, sentence, infeasible } of wrong) {
-    const found = path === "" ? null : nearest(fields, path);
+    const nearestField = path === "" ? null : nearest(fields, path);
     const text = inWords(sentence);
     const before = infeasible ? "Impossible: " : "";
-    if (!found) elsewhere.push(before + (path ? `${path}: ${text}` : text));
-    else told.set(found, [...(told.get(found) ?? []), before + below(found, path) + text]);
+    if (!nearestField) elsewhere.push(before + (path ? `${path}: ${text}` : text));
+    else
+      sentencesOf.set(nearestField, [
+        ...(sentencesOf.get(nearestField) ?? []),
+        before + below(nearestField, path) + text,
+      ]);
   }
-  for (const [one, sentences] of told) {
+  for (const [one, sentences] of sentencesOf) {
     if (missing) for (const { dataset } of one.controls) dataset.touched = "yes";
     say(one, sentences);
   }
-  return { elsewhere, first: fields.find((one) => told.has(one)) ?? null };
+  return { elsewhere, first: fields.find((one) => sentencesOf.has(one)) ?? null };
 }
 
 /** Say what is wrong with a field; of what cannot be read, that instead of what it leads to. @param {Form.Field} one @param {string[]} found */
 function say(one, found) {
   const unread = one.controls.flatMap(({ dataset }) => dataset.wrong ?? []);
   const sentences = unread.length ? unread : found;
-  const asked =
+  const isUntouched =
     !unread.length &&
     one.controls.some(
       (control) =>
@@ -149,9 +153,9 @@ function say(one, found) {
         control.value.trim() === "" &&
         !control.dataset.touched,
     );
-  const bad = sentences.length > 0 && !asked;
+  const bad = sentences.length > 0 && !isUntouched;
   one.error.hidden = !sentences.length;
-  one.error.classList.toggle("needed", asked);
+  one.error.classList.toggle("needed", isUntouched);
   one.error.textContent = sentences.map(capital).join(" ");
   for (const control of one.controls) {
     if (bad) {

@@ -15,7 +15,7 @@ const WHY =
 const NAME = /^[a-z][a-z0-9_]*$/;
 
 /** Return the formulas among the keys of a table of the job. @param {Form.Whole} form @param {string} table */
-export function formulasOf(form, table) {
+function formulasOf(form, table) {
   return Object.keys(form.at([table]) ?? {}).filter(
     (key) =>
       key !== "slow_stroke" &&
@@ -103,7 +103,7 @@ function row(form, table, key, place, asked, what) {
       else if (typed in /** @type {object} */ (form.at([table]) ?? {}))
         input.dataset.wrong = `Something is asked of “${typed}” already; change that one.`;
       else {
-        form.rename([table], before, typed, made);
+        form.rename([table], before, typed, node);
         spot.path = [table, typed];
         return;
       }
@@ -116,8 +116,8 @@ function row(form, table, key, place, asked, what) {
   const early = new Set(); // bounds that were typed before the kind of the formula was known
   /** Give a number that was typed without one the unit that its field begins with. @param {string} key @param {string} now */
   const withUnit = (key, now) => {
-    const given = form.at([...spot.path, key]);
-    if (typeof given === "number") form.put([...spot.path, key], join(String(given), usual(now)));
+    const bound = form.at([...spot.path, key]);
+    if (typeof bound === "number") form.put([...spot.path, key], join(String(bound), usual(now)));
   };
   const draw = () => {
     const focus = focused(below)?.id;
@@ -154,12 +154,12 @@ function row(form, table, key, place, asked, what) {
     },
     "Remove",
   );
-  const made = field(form, spot.path, label, [completing(input, form)], WHY, { wide: true });
-  made.querySelector(".field-controls")?.after(below);
+  const node = field(form, spot.path, label, [completing(input, form)], WHY, { wide: true });
+  node.querySelector(".field-controls")?.after(below);
   draw();
   watch(
     form,
-    made,
+    node,
     input,
     () => spot.path,
     (now) => {
@@ -170,7 +170,7 @@ function row(form, table, key, place, asked, what) {
       draw();
     },
   );
-  return made;
+  return node;
 }
 
 /**
@@ -179,26 +179,26 @@ function row(form, table, key, place, asked, what) {
  */
 function watch(form, made, input, path, changed) {
   const tell = () => {
-    const found = form.said?.formulas.find((one) => one.path === written(path()));
-    if (found?.kind)
-      input.dataset.said = !found.unit
+    const checkedFormula = form.said?.formulas.find((one) => one.path === written(path()));
+    if (checkedFormula?.kind)
+      input.dataset.said = !checkedFormula.unit
         ? "a number without a unit"
-        : kinds().includes(found.kind)
-          ? `${found.kind}, in ${found.unit}`
-          : found.kind;
+        : kinds().includes(checkedFormula.kind)
+          ? `${checkedFormula.kind}, in ${checkedFormula.unit}`
+          : checkedFormula.kind;
     else delete input.dataset.said;
     say(input);
-    if (found) changed(kindAt(form, path()));
+    if (checkedFormula) changed(kindAt(form, path()));
   };
-  const own = form.fields.find(({ node }) => node === made);
-  if (own) own.tell = tell;
+  const formulaField = form.fields.find(({ node }) => node === made);
+  if (formulaField) formulaField.tell = tell;
   tell();
 }
 
 /** Return the kind of the values of a formula, as the service said it; null while it is not known, and for one that no field has units of. @param {Form.Whole} form @param {Form.Path} path */
 function kindAt(form, path) {
-  const found = form.said?.formulas.find((one) => one.path === written(path));
-  return found?.kind && kinds().includes(found.kind) ? found.kind : null;
+  const checkedFormula = form.said?.formulas.find((one) => one.path === written(path));
+  return checkedFormula?.kind && kinds().includes(checkedFormula.kind) ? checkedFormula.kind : null;
 }
 
 /** Return the fields of the formulas that have names, and a button for another one. @param {Form.Whole} form */
@@ -269,12 +269,19 @@ function named(form, name, place) {
     oninput: ({ currentTarget }) =>
       form.put([...path, "formula"], currentTarget.value.trim().replace(/^=\s*/, "")),
   });
-  const made = field(form, [...path, "formula"], "formula", [completing(input, form)], WHY, {
-    wide: true,
-  });
+  const formulaField = field(
+    form,
+    [...path, "formula"],
+    "formula",
+    [completing(input, form)],
+    WHY,
+    {
+      wide: true,
+    },
+  );
   watch(
     form,
-    made,
+    formulaField,
     input,
     () => [...path, "formula"],
     () => {},
@@ -315,7 +322,7 @@ function named(form, name, place) {
         label: "shown in",
         why: "A unit such as mm; the usual one of its kind if left out.",
       }),
-      made,
+      formulaField,
     ),
     h("p", {}, drop),
   );
@@ -332,13 +339,13 @@ function callIt(form, before, after) {
         ? Object.fromEntries(Object.entries(part).map(([key, value]) => [key, inside(value)]))
         : part;
   for (const table of ["constraints", "objectives"]) {
-    const given = form.at([table]);
-    if (isTable(given))
+    const entries = form.at([table]);
+    if (isTable(entries))
       put(
         form.job,
         [table],
         Object.fromEntries(
-          Object.entries(given).map(([key, value]) => [
+          Object.entries(entries).map(([key, value]) => [
             form.quantities.has(key) ? key : key.replace(word, after),
             inside(value),
           ]),

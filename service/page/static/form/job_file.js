@@ -1,9 +1,9 @@
 /** The job as a file: its text beside the form, in step with it; taken in from a file, given out as one. */
 
 import { address, answered, get, post, Problem } from "../lib/api.js";
-import { h } from "../lib/dom.js";
+import { h, markInvalid } from "../lib/dom.js";
 import { download } from "../lib/download.js";
-import { say, sayProblem } from "../lib/notices.js";
+import { attempt, say } from "../lib/notices.js";
 import { sentenceOf } from "../lib/refusals.js";
 
 const WAIT = 300; // ms after the last letter until the text is taken into the form
@@ -38,8 +38,7 @@ export function jobFile(form, taken) {
     }
     wrong.textContent = problem;
     wrong.hidden = !problem;
-    if (problem) text.setAttribute("aria-invalid", "true");
-    else text.removeAttribute("aria-invalid");
+    markInvalid(text, problem);
     if (!problem) taken(job, null);
   }
 
@@ -51,35 +50,28 @@ export function jobFile(form, taken) {
     tabindex: "-1",
     "aria-label": "Job file to import",
     onchange: () => {
-      const [given] = file.files ?? [];
-      if (given) load(given);
+      const [chosenFile] = file.files ?? [];
+      if (chosenFile) load(chosenFile);
       file.value = "";
     },
   });
-  /** @param {File} given */
-  async function load(given) {
-    try {
-      taken(await jobOf(given), given.name);
-      say(`${given.name} is in the form.`);
-    } catch (error) {
-      sayProblem(error);
-    }
+  /** @param {File} chosenFile */
+  function load(chosenFile) {
+    return attempt(async () => {
+      taken(await jobOf(chosenFile), chosenFile.name);
+      say(`${chosenFile.name} is in the form.`);
+    });
   }
 
   /** @param {"json" | "toml"} kind */
-  const save = async (kind) => {
-    try {
-      const content =
-        kind === "json" ? `${JSON.stringify(form.job, null, 2)}\n` : await toml(form.job);
+  const save = (kind) =>
+    attempt(async () =>
       download(
-        content,
-        kind === "json" ? "application/json" : "application/toml",
+        kind === "json" ? `${JSON.stringify(form.job, null, 2)}\n` : await toml(form.job),
+        `application/${kind}`,
         `${slug(form.job.name)}.${kind}`,
-      );
-    } catch (error) {
-      sayProblem(error);
-    }
-  };
+      ),
+    );
   const node = h(
     "section",
     { class: "panel", "aria-labelledby": "s-file" },
@@ -114,7 +106,7 @@ export function jobFile(form, taken) {
       if (document.activeElement === text) return;
       text.value = JSON.stringify(form.job, null, 2);
       wrong.hidden = true;
-      text.removeAttribute("aria-invalid");
+      markInvalid(text, false);
     },
   };
 }

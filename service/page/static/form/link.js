@@ -27,11 +27,11 @@ const VARY = ["width", "depth"]; // of a bar
 
 /** Return the fields of crank or rod. @param {Form.Whole} form @param {Form.Path} path @param {string} label */
 export function link(form, path, label) {
-  const given = form.at(path);
+  const jobValue = form.at(path);
   const way =
-    given === undefined
+    jobValue === undefined
       ? "none"
-      : isTable(given) && ("width" in given || "depth" in given || "density" in given)
+      : isTable(jobValue) && ("width" in jobValue || "depth" in jobValue || "density" in jobValue)
         ? "section"
         : "mass";
   const select = h(

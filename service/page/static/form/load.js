@@ -15,8 +15,8 @@ import { capital } from "../lib/words.js";
  * @param {Form.Whole} form
  */
 export function loads(form) {
-  const given = form.at(["load"]);
-  const all = Array.isArray(given) ? given : [];
+  const jobValue = form.at(["load"]);
+  const all = Array.isArray(jobValue) ? jobValue : [];
   const add = h(
     "button",
     {
@@ -40,7 +40,7 @@ function one(form, load, place, all) {
   const path = ["load", place];
   const every = kinds(form);
   const kind = every.find(({ key }) => isTable(load) && key in load) ?? every[0];
-  const known = every.filter((one) => one === kind || fits(form, one));
+  const fitting = every.filter((one) => one === kind || fits(form, one));
   const select = h(
     "select",
     {
@@ -48,12 +48,12 @@ function one(form, load, place, all) {
       onchange: () => {
         form.put(
           path,
-          structuredClone((known.find(({ key }) => key === select.value) ?? known[0]).first),
+          structuredClone((fitting.find(({ key }) => key === select.value) ?? fitting[0]).first),
         );
         form.redraw();
       },
     },
-    known.map(({ key, title }) => h("option", { value: key, selected: key === kind.key }, title)),
+    fitting.map(({ key, title }) => h("option", { value: key, selected: key === kind.key }, title)),
   );
   const drop = h(
     "button",

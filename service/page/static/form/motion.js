@@ -44,23 +44,23 @@ export function fits(form, { motion }) {
 
 /** Return what states the ends of the swing of a job. @param {Form.Whole} form */
 function stated(form) {
-  const given = /** @param {string} key */ (key) => form.at([...PATH, key]) !== undefined;
-  if (given("slider_travel")) return "slider position and travel";
-  if (given("slider_from") || given("slider_to")) return "two slider positions";
-  return given("swing") ? "crank angle and swing" : "two crank angles";
+  const states = /** @param {string} key */ (key) => form.at([...PATH, key]) !== undefined;
+  if (states("slider_travel")) return "slider position and travel";
+  if (states("slider_from") || states("slider_to")) return "two slider positions";
+  return states("swing") ? "crank angle and swing" : "two crank angles";
 }
 
 /** State the ends of the swing in another way; a start of the same kind stays. @param {Form.Whole} form @param {string} how */
 function state(form, how) {
   const before = { .../** @type {Record<string, unknown>} */ (form.at(PATH)) };
-  const kept = Object.fromEntries(
+  const remaining = Object.fromEntries(
     Object.entries(before).filter(
       ([key]) => !(key in LABELS) && (key !== "crank_side" || how.includes("slider")),
     ),
   );
   const wanted = ENDS[how] ?? {};
   form.put(PATH, {
-    ...kept,
+    ...remaining,
     ...Object.fromEntries(
       Object.entries(wanted).map(([key, first]) => [key, before[key] ?? first]),
     ),
@@ -72,24 +72,24 @@ function state(form, how) {
 export function motion(form, turning) {
   const kind = choice({ ...form, put: (_, value) => change(form, value) }, [...PATH, "kind"], {
     options: ["swing"],
-    fallback: "turns through",
+    fallback: "rotates fully",
     label: "the crank",
-    why: "It turns through, at a speed; or it swings forth and back between two angles, and need not be able to turn.",
+    why: "It rotates fully at a speed, or swings back and forth between two angles and need not rotate fully.",
     changed: () => form.redraw(),
   });
   if (!swings(form)) return [kind, speed(form), turning];
   /** @param {string} key @param {string} label */
-  const own = (key, label) => byschema(form, [...PATH, key], { label });
+  const motionField = (key, label) => byschema(form, [...PATH, key], { label });
   const slow = (form.at([...PATH, "law"]) ?? "slow") === "slow";
   /** @param {string} key @param {string} label @param {(chosen: string) => string[]} gone what a choice leaves without a meaning */
   const choosing = (key, label, gone) => {
-    const made = own(key, label);
-    made?.querySelector("select")?.addEventListener("change", ({ currentTarget }) => {
+    const fieldNode = motionField(key, label);
+    fieldNode?.querySelector("select")?.addEventListener("change", ({ currentTarget }) => {
       for (const other of gone(/** @type {HTMLSelectElement} */ (currentTarget).value))
         form.put([...PATH, other], undefined);
       form.redraw();
     });
-    return made;
+    return fieldNode;
   };
   const how = stated(form);
   const [usual, ...others] = Object.keys(ENDS);
@@ -111,18 +111,18 @@ export function motion(form, turning) {
     kind,
     ways,
     ...Object.keys(ENDS[how] ?? {}).map((key) =>
-      own(key, LABELS[/** @type {keyof typeof LABELS} */ (key)]),
+      motionField(key, LABELS[/** @type {keyof typeof LABELS} */ (key)]),
     ),
-    how.includes("slider") ? own("crank_side", "side of the crank pin") : null,
+    how.includes("slider") ? motionField("crank_side", "side of the crank pin") : null,
     choosing("driver", "driven end", (driver) =>
       driver === "slider" ? [] : ["actuator_tolerance"],
     ),
-    own("margin", "margin from dead points"),
+    motionField("margin", "margin from dead points"),
     choosing("law", "motion over time", (law) => [
       ...(law === "" || law === "slow" ? ["duration"] : []),
       ...(law === "table" ? [] : ["law_times", "law_shares"]),
     ]),
-    slow ? null : own("duration", "duration of one way"),
+    slow ? null : motionField("duration", "duration of one way"),
     form.at([...PATH, "law"]) === "table"
       ? points(form, PATH, LAW, "Share of the way at shares of the time, both from 0 to 1", {
           optional: true,
@@ -131,13 +131,13 @@ export function motion(form, turning) {
         })
       : null,
     form.at([...PATH, "driver"]) === "slider"
-      ? own("actuator_tolerance", "tolerance of the actuator")
+      ? motionField("actuator_tolerance", "tolerance of the actuator")
       : null,
     turning,
     h(
       "details",
       { class: "more" },
-      h("summary", {}, "Crank speed, of no matter to a swing"),
+      h("summary", {}, "Crank speed (ignored for a swing)"),
       h("div", { class: "fields" }, speed(form)),
     ),
   ];
@@ -168,6 +168,6 @@ function change(form, kind) {
   }
   if (gone.length)
     say(
-      `Taken out, as they are of a crank that ${kind === undefined ? "swings" : "turns through"}: ${[...new Set(gone)].join(", ")}.`,
+      `Removed, as they apply to a crank that ${kind === undefined ? "swings" : "rotates fully"}: ${[...new Set(gone)].join(", ")}.`,
     );
 }

@@ -15,12 +15,12 @@ const SENSES = [
 /** Return the field of the objective of a quantity {name, title, unit, sentence}. @param {Form.Whole} form @param {Api.Quantity} quantity */
 export function objective(form, quantity) {
   const path = ["objectives", quantity.name];
-  const given = form.at(path);
+  const jobValue = form.at(path);
   const kind = kindOf(quantity.unit);
   const box = h("input", {
     type: "checkbox",
     id: idOf(path, "c"),
-    checked: given !== undefined,
+    checked: jobValue !== undefined,
     onchange: () => {
       form.put(
         path,
@@ -34,22 +34,22 @@ export function objective(form, quantity) {
     name: quantity.name,
   });
   const controls =
-    given === undefined
+    jobValue === undefined
       ? []
       : wanted(
           form,
           { path, id: path },
           { title: quantity.title, kind, again: () => form.redraw() },
         );
-  const made = field(form, path, quantity.title, [box, ...controls], "", { labelled: false });
-  made.classList.add("wanted");
-  made
+  const node = field(form, path, quantity.title, [box, ...controls], "", { labelled: false });
+  node.classList.add("wanted");
+  node
     .querySelector(".field-label")
     ?.replaceWith(
       h("div", { class: "wish" }, box, h("label", { for: box.id }, quantity.title), ask?.button),
     );
-  if (ask) made.querySelector(".field-controls")?.after(ask.text);
-  return made;
+  if (ask) node.querySelector(".field-controls")?.after(ask.text);
+  return node;
 }
 
 /**
@@ -57,11 +57,11 @@ export function objective(form, quantity) {
  * @param {Form.Whole} form @param {Form.Spot} spot @param {{ title: string, kind: string | null, again: () => void }} of
  */
 export function wanted(form, spot, { title, kind, again }) {
-  const given = form.at(spot.path);
+  const jobValue = form.at(spot.path);
   const sense =
-    typeof given === "object" && given !== null
+    typeof jobValue === "object" && jobValue !== null
       ? "target"
-      : String(given).replace("imize", "imise");
+      : String(jobValue).replace("imize", "imise");
   const select = h(
     "select",
     {
@@ -75,17 +75,17 @@ export function wanted(form, spot, { title, kind, again }) {
     SENSES.map(([value, text]) => h("option", { value, selected: value === sense }, text)),
   );
   if (sense !== "target") return [select];
-  const target = at(given, ["target"]);
-  const made = entries(
+  const target = at(jobValue, ["target"]);
+  const targetEntry = entries(
     [
       {
         id: idOf(spot.id, "t"),
-        given: target === "" ? undefined : target,
+        jobValue: target === "" ? undefined : target,
         title: `${title}: value to come near to`,
       },
     ],
     { label: title, kind, unitId: idOf(spot.id, "u") },
-    () => form.put(spot.path, { target: made.read(0).value ?? "" }),
+    () => form.put(spot.path, { target: targetEntry.read(0).value ?? "" }),
   );
-  return [select, ...made.controls];
+  return [select, ...targetEntry.controls];
 }

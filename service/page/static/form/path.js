@@ -83,8 +83,8 @@ export function isTable(part) {
  * @param {{ at: (path: Form.Path) => unknown }} form @param {string} name @returns {string | number | null}
  */
 export function valueOf(form, name) {
-  const found = [form.at(["constraints", name, "equals"]), form.at(["variables", name])].find(
+  const value = [form.at(["constraints", name, "equals"]), form.at(["variables", name])].find(
     (one) => typeof one === "number" || (typeof one === "string" && one !== "" && !isRange(one)),
   );
-  return typeof found === "string" || typeof found === "number" ? found : null;
+  return typeof value === "string" || typeof value === "number" ? value : null;
 }

@@ -2,7 +2,7 @@
 
 import { post } from "../lib/api.js";
 import { h } from "../lib/dom.js";
-import { sayProblem } from "../lib/notices.js";
+import { attempt } from "../lib/notices.js";
 import { unitSelect } from "./controls.js";
 import { centresOf, curve } from "./curve.js";
 import { field } from "./field.js";
@@ -23,8 +23,8 @@ export function points(
   why,
   { optional = false, title = "points, one a line", steps = false, files = true } = {},
 ) {
-  const given = columns.map(({ key }) => form.at([...path, key]));
-  const lists = given.map((one) => (Array.isArray(one) ? one : []));
+  const jobLists = columns.map(({ key }) => form.at([...path, key]));
+  const lists = jobLists.map((one) => (Array.isArray(one) ? one : []));
   const units = columns.map(({ label, kind }, n) =>
     kind
       ? unitSelect(
@@ -79,7 +79,7 @@ export function points(
       form.put(
         [...path, key],
         same
-          ? given[n]
+          ? jobLists[n]
           : none
             ? undefined
             : read.rows.map(
@@ -129,7 +129,7 @@ export function points(
     h("span", { class: "to" }, `${label} in`),
     units[n],
   ]);
-  const made = field(
+  const node = field(
     form,
     [...path, columns[0].key],
     title,
@@ -138,20 +138,20 @@ export function points(
     { wide: true },
   );
   const error = h("p", { class: "error", id: `${text.id}-other-error`, hidden: true });
-  made
+  node
     .querySelector(".field-controls")
     ?.append(...(files ? [fromFile(form, path, columns)] : []), picture.node);
-  made.append(error);
+  node.append(error);
   picture.draw();
   form.register({
     path: [...path, columns[1].key],
     key: written([...path, columns[1].key]),
-    node: made,
+    node,
     controls: [units[1] ?? text],
     error,
     tell: picture.draw,
   });
-  return made;
+  return node;
 }
 
 /** Return the button that reads points from a file, and what was read from one. @param {Form.Whole} form @param {Form.Path} path @param {Column[]} columns */
@@ -167,26 +167,24 @@ function fromFile(form, path, columns) {
       input.value = "";
       if (!file) return;
       const job = structuredClone(form.job);
-      const own = Object.entries(form.at(path) ?? {}).filter(
+      const otherEntries = Object.entries(form.at(path) ?? {}).filter(
         ([key]) => key !== "source" && !columns.some((one) => one.key === key),
       );
-      put(job, path, { ...Object.fromEntries(own), file: file.name });
-      try {
-        const found = await post("parse", { job, files: { [file.name]: await bytesOf(file) } });
-        form.put(path, at(found.job, path)); // the units of its columns say which table it is
+      put(job, path, { ...Object.fromEntries(otherEntries), file: file.name });
+      await attempt(async () => {
+        const parsed = await post("parse", { job, files: { [file.name]: await bytesOf(file) } });
+        form.put(path, at(parsed.job, path)); // the units of its columns say which table it is
         form.redraw();
-      } catch (problem) {
-        sayProblem(problem);
-      }
+      });
     },
   });
-  const said = form.at([...path, "source"]);
+  const source = form.at([...path, "source"]);
   return h(
     "p",
     { class: "row" },
     h("button", { type: "button", onclick: () => input.click() }, "Read a file …"),
     input,
-    said ? h("span", { class: "quiet" }, String(said)) : null,
+    source ? h("span", { class: "quiet" }, String(source)) : null,
   );
 }
 

@@ -30,9 +30,9 @@ export function range(
   path,
   { label, why, kind = "length", fixed = true, drop: text = "Remove", removed },
 ) {
-  const given = spread(form.at(path), kind) ?? form.at(path);
-  const mode = modeOf(given);
-  const begun = endsOf(given, mode);
+  const jobValue = spread(form.at(path), kind) ?? form.at(path);
+  const mode = modeOf(jobValue);
+  const begun = endsOf(jobValue, mode);
   const parts = begun.map((end) => split(end, kind));
   const unit = parts.find((one) => one.number !== "")?.unit || split(undefined, kind).unit;
   const numbers = parts.map((one) => convert(one.number, one.unit, unit, kind));
@@ -67,7 +67,7 @@ export function range(
       );
   const series =
     mode === "series"
-      ? seriesSelect(form, label, idOf(path, "series"), at(given, ["series"]))
+      ? seriesSelect(form, label, idOf(path, "series"), at(jobValue, ["series"]))
       : null;
   if (!list) inputs.forEach((input, place) => drawnFrom(input, begun[place], units));
   const typed = () => (list ? inputs[0].value.split(/[,;\n]/) : inputs.map((one) => one.value));
@@ -84,13 +84,13 @@ export function range(
         );
   /** @param {Mode} to */
   const write = (to = mode) => {
-    const found = values();
+    const enteredValues = values();
     const both = ends();
-    if (both) found.splice(0, 2, ...(units ? both : both.map(plain)));
-    const some = found.filter((one) => one !== undefined);
+    if (both) enteredValues.splice(0, 2, ...(units ? both : both.map(plain)));
+    const some = enteredValues.filter((one) => one !== undefined);
     const between = {
-      min: found[0] ?? "",
-      max: (list ? found.at(-1) : (found[1] ?? found[0])) ?? "",
+      min: enteredValues[0] ?? "",
+      max: (list ? enteredValues.at(-1) : (enteredValues[1] ?? enteredValues[0])) ?? "",
     };
     if (to === "range" || (to === "fixed" && both))
       form.put(path, some.length ? [between.min, between.max] : undefined);
@@ -98,7 +98,7 @@ export function range(
     else if (to === "step")
       form.put(path, {
         ...between,
-        step: mode === "step" ? (found[2] ?? "") : firstStep(inputs, units?.value ?? ""),
+        step: mode === "step" ? (enteredValues[2] ?? "") : firstStep(inputs, units?.value ?? ""),
       });
     else if (to === "series")
       form.put(path, { ...between, series: series?.value ?? seriesOf(form)[0] });
@@ -106,9 +106,9 @@ export function range(
   };
   inputs.forEach((input) => input.addEventListener("input", () => write()));
   const again = () => {
-    if (!made.isConnected) return; // drawn anew meanwhile
+    if (!node.isConnected) return; // drawn anew meanwhile
     write();
-    replace(form, made, () => range(form, path, { label, why, kind, fixed, drop: text, removed }));
+    replace(form, node, () => range(form, path, { label, why, kind, fixed, drop: text, removed }));
   };
   inputs.forEach((input) => input.addEventListener("change", () => ends() && setTimeout(again))); // once the next control has the focus
   series?.addEventListener("change", () => write());
@@ -135,26 +135,26 @@ export function range(
   const drop =
     removed &&
     h("button", { type: "button", "aria-label": `${text} ${label}`, onclick: removed }, text);
-  const made = field(form, path, label, drop ? [...controls, drop] : controls, why);
-  made.classList.add("range");
-  made.classList.toggle("two", mode === "step" || mode === "series" || drop !== undefined);
-  return made;
+  const node = field(form, path, label, drop ? [...controls, drop] : controls, why);
+  node.classList.add("range");
+  node.classList.toggle("two", mode === "step" || mode === "series" || drop !== undefined);
+  return node;
 }
 
-/** @param {unknown} given @returns {Mode} */
-function modeOf(given) {
-  if (given === undefined || Array.isArray(given)) return "range";
-  if (!isTable(given)) return "fixed";
-  return MODES.map(([mode]) => mode).find((mode) => mode in given) ?? "choices";
+/** @param {unknown} jobValue @returns {Mode} */
+function modeOf(jobValue) {
+  if (jobValue === undefined || Array.isArray(jobValue)) return "range";
+  if (!isTable(jobValue)) return "fixed";
+  return MODES.map(([mode]) => mode).find((mode) => mode in jobValue) ?? "choices";
 }
 
-/** Return the values of a number that fields show, in their order. @param {unknown} given @param {Mode} mode @returns {unknown[]} */
-function endsOf(given, mode) {
-  if (mode === "range") return [at(given, [0]), at(given, [1])];
-  if (mode === "fixed") return [given];
+/** Return the values of a number that fields show, in their order. @param {unknown} jobValue @param {Mode} mode @returns {unknown[]} */
+function endsOf(jobValue, mode) {
+  if (mode === "range") return [at(jobValue, [0]), at(jobValue, [1])];
+  if (mode === "fixed") return [jobValue];
   if (mode === "step" || mode === "series")
-    return ["min", "max", ...(mode === "step" ? ["step"] : [])].map((key) => at(given, [key]));
-  return [at(given, [mode]) ?? []].flat();
+    return ["min", "max", ...(mode === "step" ? ["step"] : [])].map((key) => at(jobValue, [key]));
+  return [at(jobValue, [mode]) ?? []].flat();
 }
 
 /** Return the names of the series of preferred numbers, as the schema of the dimensions has them. @param {Form.Whole} form */
@@ -162,15 +162,17 @@ function seriesOf(form) {
   return (form.schema.property(["variables", "crank", "series"])?.enum ?? []).map(String);
 }
 
-/** @param {Form.Whole} form @param {string} label @param {string} id @param {unknown} given */
-function seriesSelect(form, label, id, given) {
-  const known = seriesOf(form);
+/** @param {Form.Whole} form @param {string} label @param {string} id @param {unknown} chosen */
+function seriesSelect(form, label, id, chosen) {
+  const allSeries = seriesOf(form);
   const names =
-    given === undefined || known.includes(String(given)) ? known : [...known, String(given)];
+    chosen === undefined || allSeries.includes(String(chosen))
+      ? allSeries
+      : [...allSeries, String(chosen)];
   return h(
     "select",
     { id, "aria-label": `${label}, series of preferred numbers` },
-    names.map((one) => h("option", { value: one, selected: one === given }, one)),
+    names.map((one) => h("option", { value: one, selected: one === chosen }, one)),
   );
 }
 

@@ -76,7 +76,7 @@ export function sections(form) {
         byschema(form, ["mechanism", "branch"]),
       ),
       turning(form, "target_motion", () =>
-        more(["Wanted motion of the slider", wantedGiven(form)], targetMotion(form)),
+        more(["Desired motion of the slider", wantedGiven(form)], targetMotion(form)),
       ),
     ),
     section(
@@ -190,15 +190,15 @@ function turning(form, place, part) {
 /** Return what the job has at some places, in a line; "" for nothing. @param {Form.Whole} form @param {...string} places */
 function has(form, ...places) {
   /** @param {unknown} part @param {string} key @returns {string[]} */
-  const said = (part, key) => {
+  const entriesOf = (part, key) => {
     if (part === undefined) return [];
     if (Array.isArray(part)) return [`${key} ${part.join(", ")}`];
     return isTable(part)
-      ? Object.entries(part).flatMap(([inner, value]) => said(value, words(inner)))
+      ? Object.entries(part).flatMap(([inner, value]) => entriesOf(value, words(inner)))
       : [`${key} ${part}`];
   };
   const text = places
-    .flatMap((place) => said(form.at(place.split(".")), words(place.split(".").at(-1) ?? "")))
+    .flatMap((place) => entriesOf(form.at(place.split(".")), words(place.split(".").at(-1) ?? "")))
     .join("; ");
   return text.length > LINE ? `${text.slice(0, LINE)} …` : text;
 }
@@ -294,9 +294,9 @@ function pins(form) {
 
 /** @param {Form.Whole} form */
 function wishes(form) {
-  const given = Object.keys(form.at(["objectives"]) ?? {});
-  const main = new Set([...offered(form, "objective"), ...given]);
-  const all = form.judging().filter((one) => fits(form, one) || given.includes(one.name));
+  const objectives = Object.keys(form.at(["objectives"]) ?? {});
+  const main = new Set([...offered(form, "objective"), ...objectives]);
+  const all = form.judging().filter((one) => fits(form, one) || objectives.includes(one.name));
   return [
     h(
       "div",
@@ -376,7 +376,7 @@ function kept(form) {
     h(
       "p",
       {},
-      `This job has also ${names.join(", ")}. They are kept as they are; the job file below has them.`,
+      `This job also has ${names.join(", ")}. They stay as they are; see the job file below.`,
     ),
   );
 }

@@ -27,7 +27,7 @@ export function sketch(signal) {
   let angle = 40;
   /** @type {number | null} */
   let before = null;
-  let shown = false;
+  let hasLinkage = false;
   /** @type {[number, number] | null} */
   let ends = null; // of a swing, deg
   let share = 0; // of its ways forth and back
@@ -35,7 +35,7 @@ export function sketch(signal) {
   label();
   /** @param {number} now */
   function step(now) {
-    if (!moving || !shown || signal.aborted) {
+    if (!moving || !hasLinkage || signal.aborted) {
       before = null;
       return;
     }
@@ -51,54 +51,50 @@ export function sketch(signal) {
     if (before === null) requestAnimationFrame(step);
   };
   signal.addEventListener("abort", () => drawn.close());
+
+  /**
+   * Draw an example, null for none, with a sentence below it.
+   * @param {(Page.Lengths & { motion: Api.Curves, slider_ends_mm: Page.Point, feasible: boolean }) | null} example @param {string} sentence @param {{ direction: number, dead_centres_deg?: Page.Point }} options
+   */
+  function draw(example, sentence, options) {
+    hasLinkage = example !== null;
+    place.hidden = button.hidden = !hasLinkage;
+    caption.textContent = sentence;
+    if (!example) return;
+    const { crank_mm, rod_mm, offset_mm, motion, slider_ends_mm, feasible } = example;
+    drawn.show({ crank_mm, rod_mm, offset_mm }, motion, { ...options, slider_ends_mm, angle });
+    drawn.fade(!feasible);
+    drawn.turn(angle);
+    if (moving) start();
+  }
+
   return {
     node,
     /** @param {Api.Example | null} example */
     show(example) {
       if (ends) [ends, angle] = [null, 40];
       node.classList.remove("swinging");
-      shown = example !== null;
-      place.hidden = button.hidden = !shown;
-      if (!example) {
-        caption.textContent = "No linkage of these ranges turns fully.";
-        return;
-      }
-      way = example.clockwise ? -1 : 1;
-      caption.textContent = example.feasible
+      way = example?.clockwise ? -1 : 1;
+      const sentence = example?.feasible
         ? "One that meets all that was checked"
-        : "One that turns, but does not meet every requirement";
-      const { crank_mm, rod_mm, offset_mm, motion, slider_ends_mm } = example;
-      drawn.show({ crank_mm, rod_mm, offset_mm }, motion, {
+        : "One that rotates fully, but does not meet every requirement";
+      draw(example, example ? sentence : "No linkage within these ranges rotates fully.", {
         direction: way,
-        slider_ends_mm,
-        angle,
       });
-      drawn.fade(!example.feasible);
-      drawn.turn(angle);
-      if (moving) start();
     },
     /** @param {Api.SwingPreview} preview */
     swing({ example, from_deg, to_deg }) {
-      shown = example !== null;
-      place.hidden = button.hidden = !shown;
-      if (!example || from_deg === null || to_deg === null) {
-        caption.textContent = "No linkage of these ranges makes the swing.";
-        return;
-      }
+      if (!example || from_deg === null || to_deg === null)
+        return draw(null, "No linkage within these ranges makes the swing.", { direction: 0 });
       if (!ends || ends[0] !== from_deg || ends[1] !== to_deg) [angle, share] = [from_deg, 0];
       ends = [from_deg, to_deg];
       node.classList.add("swinging");
-      const { crank_mm, rod_mm, offset_mm, motion, feasible, travel_mm, slider_ends_mm } = example;
-      caption.textContent = `${feasible ? "One that meets all that was checked" : "One that makes the swing, but does not meet every requirement"}: from ${withUnit(from_deg, "deg")} to ${withUnit(to_deg, "deg")}, the slider travels ${withUnit(travel_mm, "mm")}`;
-      drawn.show({ crank_mm, rod_mm, offset_mm }, motion, {
-        direction: 0,
-        dead_centres_deg: [from_deg, to_deg],
-        slider_ends_mm,
-        angle,
-      });
-      drawn.fade(!feasible);
-      drawn.turn(angle);
-      if (moving) start();
+      const { feasible, travel_mm } = example;
+      draw(
+        example,
+        `${feasible ? "One that meets all that was checked" : "One that makes the swing, but does not meet every requirement"}: from ${withUnit(from_deg, "deg")} to ${withUnit(to_deg, "deg")}, the slider travels ${withUnit(travel_mm, "mm")}`,
+        { direction: 0, dead_centres_deg: ends },
+      );
     },
   };
 }

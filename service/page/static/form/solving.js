@@ -8,12 +8,12 @@ import { idOf } from "./path.js";
 /** Return the fields of the search. Priority and limits are of the submission, not of the job. @param {Form.Whole} form */
 export function solving(form) {
   /** @param {string} key @param {string} label @param {string} why @param {number} factor */
-  const own = (key, label, why, factor = 1) => {
+  const limitField = (key, label, why, factor = 1) => {
     const path = ["submission", key];
-    const given = form.submission[key];
+    const limit = form.submission[key];
     const input = numberInput(
       idOf(path, "c"),
-      given === undefined ? "" : String(typeof given === "number" ? given / factor : given),
+      limit === undefined ? "" : String(typeof limit === "number" ? limit / factor : limit),
     );
     input.addEventListener("input", () => {
       const typed = number(input);
@@ -36,18 +36,23 @@ export function solving(form) {
         { class: "fields" },
         byschema(form, ["optimiser", "samples"]),
         byschema(form, ["optimiser", "evaluations"]),
-        own("priority", "priority", "Jobs of higher priority are solved first; 0 is usual."),
-        own(
+        limitField("priority", "priority", "Jobs of higher priority are solved first; 0 is usual."),
+        limitField(
           "seconds",
           "time limit (s)",
           "The search ends after so many seconds with what it has found; left out, as long as the service allows.",
         ),
-        own(
+        limitField(
           "evaluations",
           "limit of designs",
           "The search ends after it has looked at so many designs.",
         ),
-        own("memory_bytes", "memory limit (MB)", "What the worker of this job may use.", 1e6),
+        limitField(
+          "memory_bytes",
+          "memory limit (MB)",
+          "What the worker of this job may use.",
+          1e6,
+        ),
       ),
     ),
   ];

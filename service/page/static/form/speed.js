@@ -62,14 +62,14 @@ export function speed(form) {
   const path = [...TABLE, key];
   const kind = KINDS[key];
   const signed = key === "speed"; // its sign is the direction
-  const given = form.at(path);
-  const backwards = signed ? /^\s*-/.test(String(given)) : form.at(DIRECTION) === "clockwise";
-  const made = entries(
-    [{ id: idOf(path, "c"), given: signed ? unsigned(given) : given }],
+  const jobValue = form.at(path);
+  const backwards = signed ? /^\s*-/.test(String(jobValue)) : form.at(DIRECTION) === "clockwise";
+  const speedEntry = entries(
+    [{ id: idOf(path, "c"), jobValue: signed ? unsigned(jobValue) : jobValue }],
     { label, kind, unitId: idOf(path, "u") },
     write,
   );
-  const [input] = made.inputs;
+  const [input] = speedEntry.inputs;
   const way = h(
     "select",
     { id: idOf([...TABLE, "speed"], "way"), onchange: write },
@@ -86,10 +86,10 @@ export function speed(form) {
       way.value = "-"; // as typed, so that nothing is turned round twice
       input.value = typed.slice(1);
     }
-    const found = made.read(0).value;
+    const value = speedEntry.read(0).value;
     form.put(DIRECTION, !signed && way.value ? "clockwise" : undefined);
-    if (signed) form.put(path, found && way.value + found);
-    else form.put(path, found ?? ""); // so that this one is reported as missing
+    if (signed) form.put(path, value && way.value + value);
+    else form.put(path, value ?? ""); // so that this one is reported as missing
   }
   const stated = choice(
     {
@@ -108,7 +108,7 @@ export function speed(form) {
   );
   return [
     stated,
-    field(form, path, label, made.controls, WHY[key]),
+    field(form, path, label, speedEntry.controls, WHY[key]),
     field(
       form,
       [...TABLE, "speed", "direction"],
@@ -120,10 +120,10 @@ export function speed(form) {
   ];
 }
 
-/** Return a speed of a job without its sign; a plain number is in rad/s. @param {unknown} given */
-function unsigned(given) {
-  if (typeof given === "number") return `${Math.abs(given)} rad/s`;
-  return typeof given === "string" ? given.replace(/^\s*[+-]/, "") : given;
+/** Return a speed of a job without its sign; a plain number is in rad/s. @param {unknown} speed */
+function unsigned(speed) {
+  if (typeof speed === "number") return `${Math.abs(speed)} rad/s`;
+  return typeof speed === "string" ? speed.replace(/^\s*[+-]/, "") : speed;
 }
 
 /** State the speed by another key, in the same direction. @param {Form.Whole} form @param {string} key @param {string} sign */

@@ -21,7 +21,7 @@ export function strength(form) {
       ...form,
       at: () => (on ? "yes" : undefined),
       put: (_, value) =>
-        given(
+        putSections(
           form,
           value
             ? { material: form.schema.property([...PATH, "material"])?.examples?.[0], pins: {} }
@@ -106,7 +106,7 @@ export function strength(form) {
 }
 
 /** Give material and pins, or take them away with what varies of them. @param {Form.Whole} form @param {unknown} table */
-function given(form, table) {
+function putSections(form, table) {
   if (table === undefined) form.put(["variables", ...PATH], undefined);
   form.put(PATH, table);
 }
@@ -147,7 +147,7 @@ function keysOf(form, path) {
 /** Return the field of a number that is held, with a button that lets it vary; or, once it does, its values too. @param {Form.Whole} form @param {Form.Path} path @param {string} label */
 export function held(form, path, label) {
   const varies = ["variables", ...path];
-  const own = byschema(form, path, { label, required: true });
+  const fixedField = byschema(form, path, { label, required: true });
   if (form.at(varies) === undefined) {
     const button = h(
       "button",
@@ -162,11 +162,11 @@ export function held(form, path, label) {
       },
       "Let it vary",
     );
-    own?.querySelector(".field-controls")?.append(button);
-    return [own];
+    fixedField?.querySelector(".field-controls")?.append(button);
+    return [fixedField];
   }
   return [
-    own,
+    fixedField,
     range(form, varies, {
       label: `${label}, varying`,
       drop: "Hold",

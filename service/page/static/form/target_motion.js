@@ -34,7 +34,7 @@ export function targetMotion(form) {
             form.redraw();
           },
         },
-        "Give points of a motion",
+        "Add points of a motion",
       ),
       h(
         "span",
@@ -55,7 +55,7 @@ export function targetMotion(form) {
           form.redraw("add-target-motion");
         },
       },
-      "Remove the wanted motion",
+      "Remove the desired motion",
     ),
   );
   const free = ["phase", "shift"].map((key) => byschema(form, [...PATH, key]));

@@ -7,16 +7,16 @@ import { join, measureOf } from "../lib/units.js";
 
 const NAME = /[a-z]{3,}(?:_[a-z]+)*/g;
 
-/** What the job had for an input, as it was drawn. @type {WeakMap<HTMLInputElement, { value: string, unit: string | undefined, given: unknown }>} */
+/** What the job had for an input, as it was drawn. @type {WeakMap<HTMLInputElement, { value: string, unit: string | undefined, jobValue: unknown }>} */
 const drawn = new WeakMap();
 
 /**
  * Remember what the job has for an input: as long as nothing else is typed it stays so, in its own unit.
- * @param {HTMLInputElement} input @param {unknown} given @param {HTMLSelectElement | null} [select]
+ * @param {HTMLInputElement} input @param {unknown} jobValue @param {HTMLSelectElement | null} [select]
  */
-export function drawnFrom(input, given, select) {
-  if (typeof given === "string" || typeof given === "number")
-    drawn.set(input, { value: input.value, unit: select?.value, given });
+export function drawnFrom(input, jobValue, select) {
+  if (typeof jobValue === "string" || typeof jobValue === "number")
+    drawn.set(input, { value: input.value, unit: select?.value, jobValue });
 }
 
 /**
@@ -36,7 +36,7 @@ export function entered(
   input,
   { kind = null, percent = false, select = null, range = false } = {},
 ) {
-  const found = parseNumber(valued(input), {
+  const parsed = parseNumber(valued(input), {
     unit: select?.value ?? "",
     ...measureOf(kind),
     percent,
@@ -47,24 +47,24 @@ export function entered(
   if (before && before.value === input.value && before.unit === select?.value) {
     for (const name of ["said", "number"]) delete input.dataset[name];
     say(input);
-    return { value: /** @type {string | number} */ (before.given) };
+    return { value: /** @type {string | number} */ (before.jobValue) };
   }
   if (input.value !== input.dataset.number)
     for (const name of ["said", "number"]) delete input.dataset[name]; // else it was put in order
-  if (found.wrong !== undefined) input.dataset.wrong = found.wrong;
-  if (found.ends) {
-    input.dataset.said = found.said;
+  if (parsed.wrong !== undefined) input.dataset.wrong = parsed.wrong;
+  if (parsed.ends) {
+    input.dataset.said = parsed.said;
     say(input);
-    return { ends: found.ends.map((end) => join(end, found.unit) ?? "") };
+    return { ends: parsed.ends.map((end) => join(end, parsed.unit) ?? "") };
   }
-  if (found.number === undefined) {
+  if (parsed.number === undefined) {
     say(input);
-    return { value: found.empty ? undefined : input.value.trim().replace(/^=\s*/, "") };
+    return { value: parsed.empty ? undefined : input.value.trim().replace(/^=\s*/, "") };
   }
-  if (select && found.unit !== select.value) select.value = select.dataset.from = found.unit; // to a share, or from one
-  if (found.said) [input.dataset.said, input.dataset.number] = [found.said, found.number];
+  if (select && parsed.unit !== select.value) select.value = select.dataset.from = parsed.unit; // to a share, or from one
+  if (parsed.said) [input.dataset.said, input.dataset.number] = [parsed.said, parsed.number];
   say(input);
-  return { value: join(found.number, found.unit) };
+  return { value: join(parsed.number, parsed.unit) };
 }
 
 /**
@@ -76,9 +76,9 @@ function valued(input) {
   const typed = input.value.trim();
   if (!typed.startsWith("=")) return input.value;
   return typed.replace(NAME, (name) => {
-    const asked = { name, value: /** @type {string | number | null} */ (null) };
-    input.dispatchEvent(new CustomEvent("value-of", { bubbles: true, detail: asked }));
-    return asked.value === null ? name : `(${asked.value})`;
+    const query = { name, value: /** @type {string | number | null} */ (null) };
+    input.dispatchEvent(new CustomEvent("value-of", { bubbles: true, detail: query }));
+    return query.value === null ? name : `(${query.value})`;
   });
 }
 
@@ -91,9 +91,9 @@ export function ordered(input) {
 export function say(input) {
   const place = input.closest(".field")?.querySelector(".understood");
   if (!(place instanceof HTMLElement)) return;
-  const said = [...(input.closest(".field")?.querySelectorAll("input") ?? [])].flatMap(
+  const readings = [...(input.closest(".field")?.querySelectorAll("input") ?? [])].flatMap(
     ({ dataset }) => dataset.said ?? [],
   );
-  place.textContent = said.join(" · ");
-  place.hidden = said.length === 0;
+  place.textContent = readings.join(" · ");
+  place.hidden = readings.length === 0;
 }

@@ -80,9 +80,9 @@ function roots(form) {
 
 /** Return where numbers vary: path in the job, and the name of the number. @param {Form.Whole} form */
 function leaves(form) {
-  const known = roots(form);
+  const tables = roots(form);
   /** @type {{ path: Form.Path, name: string }[]} */
-  const found = [];
+  const places = [];
   /** @param {unknown} part @param {Form.Path} path */
   const walk = (part, path) => {
     const table =
@@ -91,18 +91,18 @@ function leaves(form) {
       !Object.keys(part).some((key) => VALUES.includes(key));
     if (table && Object.keys(part).length)
       for (const [key, inner] of Object.entries(part)) walk(inner, [...path, key]);
-    else found.push({ path, name: path.slice(1).join(".") });
+    else places.push({ path, name: path.slice(1).join(".") });
   };
-  const given = form.at(["variables"]);
-  for (const [key, part] of Object.entries(isTable(given) ? given : {}))
-    if (known.includes(key.split(".")[0])) walk(part, ["variables", key]);
-  return found;
+  const variables = form.at(["variables"]);
+  for (const [key, part] of Object.entries(isTable(variables) ? variables : {}))
+    if (tables.includes(key.split(".")[0])) walk(part, ["variables", key]);
+  return places;
 }
 
 /** Return the numbers of the job that may vary: {name, value}. @param {Form.Whole} form */
 function numbers(form) {
   /** @type {{ name: string, value: string | number }[]} */
-  const found = [];
+  const candidates = [];
   /** @param {unknown} part @param {Form.Path} path */
   const walk = (part, path) => {
     if (isTable(part)) {
@@ -111,13 +111,17 @@ function numbers(form) {
     } else if (typeof part === "number" || typeof part === "string") {
       const node = form.schema.property(path);
       const control = node && describe(node).control;
-      const one = typeof path[path.length - 1] === "string"; // not of a table of points
-      if (one && (control === "quantity" || control === "ratio") && !/%\s*$/.test(String(part)))
-        found.push({ name: nameOf(path), value: part });
+      const isSingle = typeof path[path.length - 1] === "string"; // not of a table of points
+      if (
+        isSingle &&
+        (control === "quantity" || control === "ratio") &&
+        !/%\s*$/.test(String(part))
+      )
+        candidates.push({ name: nameOf(path), value: part });
     }
   };
   for (const root of roots(form)) walk(form.at([root]), [root]);
-  return found;
+  return candidates;
 }
 
 /** Return the name of a number as variables have it: places of lists count from 1. @param {Form.Path} path */
@@ -139,12 +143,12 @@ export function titleOf(name) {
 function looksOf(form, name) {
   const path = name.split(".").map((key) => (/^\d+$/.test(key) ? Number(key) - 1 : key));
   const node = form.schema.property(path);
-  const found = node && describe(node);
-  const given = at(form.job, path);
+  const described = node && describe(node);
+  const jobValue = at(form.job, path);
   return {
     label: titleOf(name),
-    kind: found?.kind ?? null,
-    why: `${found?.description ?? ""}; ${given === undefined ? "it needs a value in its own place too" : `${given} where single designs are analysed`}`.replace(
+    kind: described?.kind ?? null,
+    why: `${described?.description ?? ""}; ${jobValue === undefined ? "it needs a value in its own place too" : `${jobValue} where single designs are analysed`}`.replace(
       /^; /,
       "",
     ),

@@ -1,6 +1,6 @@
 /** Above and below every axis: its name, its place among the others, and its limits as fields. */
 
-import { fill, first, focused, h, numberField } from "../lib/dom.js";
+import { fill, first, focused, h, markInvalid, numberField } from "../lib/dom.js";
 import { ends, text } from "../lib/numbers.js";
 import { parseQuantity } from "../lib/quantity_text.js";
 import { headed, helpLink } from "./columns.js";
@@ -25,12 +25,12 @@ export function axisFields(explorer) {
     const { axes } = explorer.chosen;
     for (const place of [above, below])
       place.style.gridTemplateColumns = `repeat(${Math.max(1, axes.length)}, minmax(0, 1fr))`;
-    const held = focused(above)?.dataset.act;
+    const focusedAct = focused(above)?.dataset.act;
     fill(
       above,
       axes.map((axis, index) => head(axis, index, axes.length)),
     );
-    if (held) first(above, `[data-act="${CSS.escape(held)}"]:not(:disabled)`)?.focus();
+    if (focusedAct) first(above, `[data-act="${CSS.escape(focusedAct)}"]:not(:disabled)`)?.focus();
     fields = axes.map(({ key }) => field(key));
     fill(
       below,
@@ -39,7 +39,7 @@ export function axisFields(explorer) {
     limits();
   }
 
-  /** @param {Axis} given @param {number} index @param {number} count */
+  /** @param {Axis} options @param {number} index @param {number} count */
   function head({ key, flipped }, index, count) {
     const column = explorer.data.column(key);
     /** @param {string} sign @param {string} label @param {() => void} doing @param {boolean} disabled @param {boolean} [pressed] */
@@ -190,8 +190,7 @@ export function axisFields(explorer) {
  */
 function number(node, unit) {
   const { value, wrong } = parseQuantity(node.value, unit);
-  if (wrong === undefined) node.removeAttribute("aria-invalid");
-  else node.setAttribute("aria-invalid", "true");
+  markInvalid(node, wrong);
   node.title = wrong ?? "";
   return wrong === undefined ? (value ?? null) : undefined;
 }

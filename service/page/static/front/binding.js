@@ -1,8 +1,9 @@
 /** Limits of the job on which designs of the front rest; a wider one runs again, by one click. */
 
-import { get, isAbort, post } from "../lib/api.js";
+import { get, post } from "../lib/api.js";
 import { go } from "../lib/address.js";
-import { fill, h, numberField } from "../lib/dom.js";
+import { fill, h, markInvalid, numberField } from "../lib/dom.js";
+import { attempt } from "../lib/notices.js";
 import { counted, inShown, unitOf, withUnit } from "../lib/numbers.js";
 import { parseQuantity } from "../lib/quantity_text.js";
 import { sentenceOf } from "../lib/refusals.js";
@@ -14,7 +15,7 @@ const FEW = 4; // limits that are shown at once
 const WORDS = { lower: "at least", upper: "at most" };
 const REST = 1e-6; // of a limit: designs rest on it
 
-/** Return {place, draw(what)} for the limits of an explorer. @param {Explorer} explorer */
+/** Return the panel of the limits of an explorer. @param {Explorer} explorer */
 export function bindingPanel(explorer) {
   const { job, data } = explorer;
   const list = h("div", { class: "limits" });
@@ -22,26 +23,20 @@ export function bindingPanel(explorer) {
   const place = h(
     "section",
     { class: "panel binding", "aria-labelledby": "binding-title", hidden: true },
-    h("h2", { id: "binding-title" }, "Your limits bind"),
+    h("h2", { id: "binding-title" }, "Active constraints"),
     h(
       "p",
       { class: "quiet hint" },
-      "Designs that rest on a limit would go on if it let them. A wider one is tried by a run of its own; the front of this one stays behind the new one.",
+      "Designs at a limit of the job might improve beyond it. Widening one starts a new run, shown in front of this front.",
     ),
     list,
     wrong,
   );
-  /** @type {Api.Limit[]} */
-  let limits = [];
 
-  async function ask() {
-    try {
-      limits = (await get(`jobs/${job.id}/binding`, {}, explorer.signal)).limits;
-      show();
-    } catch (problem) {
-      if (!isAbort(problem)) refuse(sentenceOf(problem));
-    }
-  }
+  attempt(
+    async () => show((await get(`jobs/${job.id}/binding`, {}, explorer.signal)).limits),
+    (problem) => refuse(sentenceOf(problem)),
+  );
 
   /** @param {string} sentence */
   function refuse(sentence) {
@@ -50,7 +45,8 @@ export function bindingPanel(explorer) {
     wrong.textContent = sentence && `${capital(sentence)}.`;
   }
 
-  function show() {
+  /** @param {Api.Limit[]} limits */
+  function show(limits) {
     place.hidden = limits.length === 0;
     const [shown, rest] = [limits.slice(0, FEW), limits.slice(FEW)];
     fill(
@@ -71,7 +67,7 @@ export function bindingPanel(explorer) {
     const { title, side, value, unit, wider, column, designs } = limit;
     const id = `wider-${limit.of}-${side}`;
     const count = designs.length;
-    const words = `${count} of ${counted(data.count, "design")} ${count === 1 ? "rests" : "rest"} on ${title} ${WORDS[side]} ${withUnit(value, unit)}`;
+    const words = `${count} of ${counted(data.count, "design")} ${count === 1 ? "is" : "are"} at the limit ${title} ${WORDS[side]} ${withUnit(value, unit)}`;
     const those =
       data.knows(column) &&
       h(
@@ -79,7 +75,7 @@ export function bindingPanel(explorer) {
         {
           type: "button",
           class: "linked",
-          "aria-label": `Show the designs that rest on ${title} ${WORDS[side]} ${withUnit(value, unit)}`,
+          "aria-label": `Show the designs at the limit ${title} ${WORDS[side]} ${withUnit(value, unit)}`,
           onclick: () => {
             const near = REST * Math.abs(value);
             explorer.limit(
@@ -137,41 +133,25 @@ export function bindingPanel(explorer) {
   async function widen(limit, input, button) {
     const unit = unitOf(limit.unit);
     const { value, wrong } = parseQuantity(input.value, limit.unit);
+    markInvalid(input, value === undefined);
     if (value === undefined) {
-      input.setAttribute("aria-invalid", "true");
       refuse(
         `${limit.title} ${WORDS[limit.side]}: ${wrong?.replace(/\.$/, "") ?? `a number${unit && ` in ${unit}`} is needed`}`,
       );
       input.focus();
       return;
     }
-    input.removeAttribute("aria-invalid");
     refuse("");
-    button.disabled = true;
-    try {
-      const { id } = await post(
-        `jobs/${job.id}/widened`,
-        { limits: [{ of: limit.of, side: limit.side, value }] },
-        { signal: explorer.signal },
-      );
-      go(["jobs", id]);
-    } catch (problem) {
-      if (isAbort(problem)) return;
-      refuse(sentenceOf(problem));
-      input.focus();
-    } finally {
-      button.disabled = false;
-    }
+    const widened = { limits: [{ of: limit.of, side: limit.side, value }] };
+    await attempt(
+      async () => go(["jobs", (await post(`jobs/${job.id}/widened`, widened)).id]),
+      (problem) => {
+        refuse(sentenceOf(problem));
+        input.focus();
+      },
+      button,
+    );
   }
 
-  let drawn = "";
-  /** @param {string} what */
-  function draw(what) {
-    if (what !== "all" || drawn === unitOf("mm")) return;
-    const early = drawn === "";
-    drawn = unitOf("mm");
-    if (early) ask();
-    else show();
-  }
-  return { place, draw };
+  return place;
 }

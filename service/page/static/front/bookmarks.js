@@ -1,10 +1,10 @@
 /** The kept designs of a run beside its front: names, notes, stars, the decision and its reason, for all who see the run. */
 
 import { link } from "../lib/address.js";
-import { address, get, isAbort, patch, post, remove } from "../lib/api.js";
+import { address, get, patch, post, remove } from "../lib/api.js";
 import { fill, first, focused, h } from "../lib/dom.js";
-import { sayProblem } from "../lib/notices.js";
-import { apiSystem, unitOf, withUnit } from "../lib/numbers.js";
+import { attempt, sayProblem } from "../lib/notices.js";
+import { apiSystem, withUnit } from "../lib/numbers.js";
 import { searchButton } from "../design/bookmark_form.js";
 import { lengthsOf } from "../design/loading.js";
 import { LENGTHS } from "./linkages.js";
@@ -14,7 +14,7 @@ import { headsOf, numberCell, table as tableOf } from "../lib/table.js";
 
 const EVERY = 5_000; // ms between two looks at what others keep
 
-/** Return {place, file, draw(what), marks(), ask()} for the kept designs of an explorer. @param {Explorer} explorer */
+/** Return {place, file, draw(), marks(), ask()} for the kept designs of an explorer. @param {Explorer} explorer */
 export function bookmarksPanel(explorer) {
   const { data, job, chosen } = explorer;
   const table = h("div", {
@@ -28,8 +28,14 @@ export function bookmarksPanel(explorer) {
     { class: "quiet hint" },
     "None yet. Keep a what-if or rounded design in its view, a wished one above, or the designs that are ticked in the table.",
   );
-  const add = h("button", { type: "button", onclick: () => keepTicked().catch(sayProblem) });
-  const only = h("input", { type: "checkbox", onchange: () => draw("all") });
+  const add = h("button", {
+    type: "button",
+    onclick: ({ currentTarget }) => attempt(keepTicked, sayProblem, currentTarget),
+  });
+  const only = h("input", {
+    type: "checkbox",
+    onchange: () => [drawTable(), explorer.update("marks")],
+  });
   const stars = h("label", {}, only, " only with a star");
   const csv = h("a", { download: "" }, "Kept designs as CSV");
   const file = h("li", {}, csv);
@@ -48,35 +54,28 @@ export function bookmarksPanel(explorer) {
   let typing = false; // a note or a reason, which is not sent yet
   let late = false; // drawing waits until that is
 
-  /** Ask for the kept designs. complain(problem): of a failure. */
-  async function ask(complain = sayProblem) {
-    const own = (turn += 1);
-    try {
-      const marked = marks().length;
-      const found = (await get(`jobs/${job.id}/kept`, {}, explorer.signal)).designs;
-      if (own !== turn || JSON.stringify(found) === JSON.stringify(designs)) return;
-      designs = found;
-      if (marked || marks().length) show();
-      else drawTable(); // charts stay as they are, and what is typed at their axes
-    } catch (problem) {
-      if (!isAbort(problem)) complain(problem);
-    }
-  }
-
-  /** Draw, also the marks on the charts. */
-  function show() {
-    drawTable();
-    explorer.update("all");
+  /** Ask for the kept designs. refuse(problem): of a failure. */
+  async function ask(refuse = sayProblem) {
+    const request = (turn += 1);
+    await attempt(async () => {
+      const before = marks().length;
+      const answer = await get(`jobs/${job.id}/kept`, {}, explorer.signal);
+      if (request !== turn || JSON.stringify(answer.designs) === JSON.stringify(designs)) return;
+      designs = answer.designs;
+      drawTable();
+      if (before || marks().length) explorer.update("all"); // else what is typed at the axes stays
+    }, refuse);
   }
 
   /** @param {number} number @param {Partial<Api.Kept>} changes */
   async function change(number, changes) {
-    try {
-      await patch(`jobs/${job.id}/kept/${number}`, changes);
-    } catch (problem) {
-      sayProblem(problem);
-      if (changes.decided) drawTable(); // the mark is where it was; what was typed stays, to be sent again
-    }
+    await attempt(
+      () => patch(`jobs/${job.id}/kept/${number}`, changes),
+      (problem) => {
+        sayProblem(problem);
+        if (changes.decided) drawTable(); // the mark is where it was; what was typed stays, to be sent again
+      },
+    );
     await ask();
   }
 
@@ -95,11 +94,7 @@ export function bookmarksPanel(explorer) {
 
   /** @param {Api.Kept} one */
   async function drop({ number }) {
-    try {
-      await remove(`jobs/${job.id}/kept/${number}`);
-    } catch (problem) {
-      sayProblem(problem);
-    }
+    await attempt(() => remove(`jobs/${job.id}/kept/${number}`));
     await ask();
   }
 
@@ -236,10 +231,10 @@ export function bookmarksPanel(explorer) {
   function drawTable() {
     late = typing;
     if (late) return; // the field would be another one, without what stands in it
-    const held = focused(place)?.dataset.act;
-    const shown = only.checked ? designs.filter(({ star }) => star) : designs;
+    const focusedAct = focused(place)?.dataset.act;
+    const listed = only.checked ? designs.filter(({ star }) => star) : designs;
     none.hidden = designs.length > 0;
-    table.hidden = shown.length === 0;
+    table.hidden = listed.length === 0;
     for (const node of [stars, file]) node.hidden = designs.length === 0;
     csv.href = address(`jobs/${job.id}/kept.csv`, { units: apiSystem() });
     const decided = designs.find((one) => one.decided);
@@ -274,13 +269,13 @@ export function bookmarksPanel(explorer) {
       tableOf(
         "Kept designs",
         headsOf(heads, (n) => n > 1 && (n < words || n > words + 2) && n < heads.length - 2),
-        shown.map(line),
+        listed.map(line),
       ),
     );
-    if (held) first(place, `[data-act="${CSS.escape(held)}"]`)?.focus();
+    if (focusedAct) first(place, `[data-act="${CSS.escape(focusedAct)}"]`)?.focus();
   }
 
-  const look = () => document.hidden || drawn === "" || ask(() => {}); // the next one may be answered
+  const look = () => document.hidden || ask(() => {}); // the next one may be answered
   const watcher = setInterval(look, EVERY);
   explorer.signal.addEventListener("abort", () => clearInterval(watcher));
   for (const [from, name] of /** @type {const} */ ([
@@ -289,23 +284,11 @@ export function bookmarksPanel(explorer) {
   ]))
     from.addEventListener(name, look, { signal: explorer.signal });
 
-  let drawn = "";
-  let ticked = "-";
-  /** @param {string} what */
-  function draw(what) {
-    if (ticked !== chosen.selected.join()) {
-      ticked = chosen.selected.join();
-      add.textContent = ticked
-        ? `Keep design ${chosen.selected.join(", ")}`
-        : "Keep ticked designs";
-      add.disabled = !ticked;
-    }
-    const now = `${unitOf("mm")} ${only.checked}`;
-    if (what !== "all" || drawn === now) return;
-    const early = drawn === "";
-    drawn = now;
-    if (early) ask();
-    drawTable();
+  /** Draw the button for the ticked designs. */
+  function draw() {
+    const ticked = chosen.selected.join(", ");
+    add.textContent = ticked ? `Keep design ${ticked}` : "Keep ticked designs";
+    add.disabled = !ticked;
   }
 
   /** Return those that are none of the front, for the charts. */
@@ -313,5 +296,7 @@ export function bookmarksPanel(explorer) {
     designs
       .filter(({ changed, star }) => changed && (star || !only.checked))
       .map(({ cells, name }) => ({ cells, name }));
+  drawTable();
+  ask();
   return { place, file, draw, marks, ask };
 }

@@ -9,26 +9,26 @@
 export function marksOf(explorer, kind) {
   const { ink, front, picked, pointed, chosen } = explorer;
   /** @type {Page.Mark[]} */
-  const found = [];
+  const marks = [];
   if (kind === "dots")
     for (const [row, names] of namesOf(explorer))
-      found.push({ row, colour: ink.text, name: names[0] });
-  else if (front.knee !== null) found.push({ row: front.knee, colour: ink.text, width: 2 });
+      marks.push({ row, colour: ink.text, name: names[0] });
+  else if (front.knee !== null) marks.push({ row: front.knee, colour: ink.text, width: 2 });
   if (picked !== null)
-    found.push({ row: picked, colour: ink["series-3"], name: kind === "dots" ? "by weights" : "" });
+    marks.push({ row: picked, colour: ink["series-3"], name: kind === "dots" ? "by weights" : "" });
   for (const { cells, name } of othersOf(explorer))
-    found.push({ cells, colour: ink["series-4"], name, width: 3 });
+    marks.push({ cells, colour: ink["series-4"], name, width: 3 });
   for (const number of chosen.selected)
-    found.push({ row: number - 1, colour: ink["series-6"], name: `${number}`, width: 3 });
+    marks.push({ row: number - 1, colour: ink["series-6"], name: `${number}`, width: 3 });
   if (pointed !== null)
-    found.push({
+    marks.push({
       row: pointed,
       colour: ink.mark,
       width: 3.5,
       name: kind === "dots" ? `${pointed + 1}` : "",
       read: true,
     });
-  return found;
+  return marks;
 }
 
 /** Return the designs that are marked though they are none of the front, each with its name. @param {Explorer} explorer */

@@ -19,9 +19,9 @@ const MOST = 3; // designs side by side
 export function choicesFrom(query, front) {
   const keys = front.columns.map(({ key }) => key);
   /** @type {(key: string | null | undefined) => key is string} */
-  const known = (key) => typeof key === "string" && keys.includes(key);
+  const isColumn = (key) => typeof key === "string" && keys.includes(key);
   const objectives = front.objectives.map(({ column }) => column);
-  const sizes = ["crank_mm", "rod_mm", "offset_mm"].filter(known);
+  const sizes = ["crank_mm", "rod_mm", "offset_mm"].filter(isColumn);
   const first = keys.findIndex((key) => key.startsWith("choice_"));
   const labels = keys.filter(
     (key, place) =>
@@ -34,28 +34,28 @@ export function choicesFrom(query, front) {
   /** @param {string} name */
   const list = (name) => (query.get(name) ?? "").split(",").filter(Boolean);
   /** @param {string} name @param {string} otherwise */
-  const one = (name, otherwise) => {
-    const asked = query.get(name);
-    return known(asked) ? asked : otherwise;
+  const columnOf = (name, otherwise) => {
+    const key = query.get(name);
+    return isColumn(key) ? key : otherwise;
   };
   /** @type {Axis[]} */
   const axes = list("axes")
     .map((text) => ({ key: text.replace(/^-/, ""), flipped: text.startsWith("-") }))
-    .filter(({ key }) => known(key));
+    .filter(({ key }) => isColumn(key));
   const standard = [...sizes, ...labels, ...objectives];
-  const columns = list("columns").filter(known);
+  const columns = list("columns").filter(isColumn);
   const sort = (query.get("sort") ?? "").replace(/^-/, "");
   const weights = (query.get("weights") ?? "").split(",").map(Number);
   return {
     axes: axes.length ? axes : standard.map((key) => ({ key, flipped: false })),
-    limits: limitsFrom(query, known),
-    lasso: lassoFrom(query, known),
-    log: list("log").filter(known), // columns whose axes are logarithmic
-    x: one("x", objectives[0] ?? keys[0]),
-    y: one("y", objectives[1] ?? sizes[0] ?? keys[0]),
-    colour: query.get("colour") === "none" ? "" : one("colour", objectives[2] ?? ""),
+    limits: limitsFrom(query, isColumn),
+    lasso: lassoFrom(query, isColumn),
+    log: list("log").filter(isColumn), // columns whose axes are logarithmic
+    x: columnOf("x", objectives[0] ?? keys[0]),
+    y: columnOf("y", objectives[1] ?? sizes[0] ?? keys[0]),
+    colour: query.get("colour") === "none" ? "" : columnOf("colour", objectives[2] ?? ""),
     columns: columns.length ? columns : [...objectives, ...labels, ...sizes, ...strokes],
-    sort: known(sort) ? sort : "",
+    sort: isColumn(sort) ? sort : "",
     reverse: (query.get("sort") ?? "").startsWith("-"),
     page: Math.max(1, Math.trunc(Number(query.get("page"))) || 1),
     selected: list("selected")

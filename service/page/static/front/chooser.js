@@ -11,7 +11,6 @@ import { headed } from "./columns.js";
 export function chooser(heading, columns, chosen, choose) {
   const ticks = columns.map((column) => {
     const { key } = column;
-    const name = h("span", {}, headed(column));
     const tick = h("input", {
       type: "checkbox",
       value: key,
@@ -21,11 +20,7 @@ export function chooser(heading, columns, chosen, choose) {
         if (!chosen().includes(key)) tick.checked = false;
       },
     });
-    return {
-      tick,
-      label: h("label", {}, tick, " ", name),
-      show: () => (name.textContent = headed(column)),
-    };
+    return { tick, label: h("label", {}, tick, " ", headed(column)) };
   });
   const find = h("input", {
     type: "search",
@@ -47,10 +42,7 @@ export function chooser(heading, columns, chosen, choose) {
     ),
     {
       opened: () => {
-        for (const { tick, show } of ticks) {
-          tick.checked = chosen().includes(tick.value);
-          show(); // in the units of now
-        }
+        for (const { tick } of ticks) tick.checked = chosen().includes(tick.value);
       },
     },
   );

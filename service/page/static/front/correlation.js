@@ -19,14 +19,14 @@ const WORDS = /** @type {const} */ ([
  */
 export function ranks(numbers) {
   const order = Uint32Array.from(numbers, (_, n) => n).sort((a, b) => numbers[a] - numbers[b]);
-  const found = new Float64Array(numbers.length);
+  const rankOf = new Float64Array(numbers.length);
   for (let start = 0; start < order.length;) {
     let end = start;
     while (end < order.length && numbers[order[end]] === numbers[order[start]]) end += 1;
-    for (let n = start; n < end; n += 1) found[order[n]] = (start + 1 + end) / 2;
+    for (let n = start; n < end; n += 1) rankOf[order[n]] = (start + 1 + end) / 2;
     start = end;
   }
-  return found;
+  return rankOf;
 }
 
 /**
@@ -110,7 +110,7 @@ export function correlations(explorer) {
             data.numbers(up.column),
             limits.mask,
           );
-          const shown = value === null ? "–" : value.toFixed(2).replace("-", "−");
+          const valueText = value === null ? "–" : value.toFixed(2).replace("-", "−");
           const chosenNow = chosen.x === across.column && chosen.y === up.column;
           return h(
             "td",
@@ -120,10 +120,10 @@ export function correlations(explorer) {
               {
                 type: "button",
                 "aria-pressed": String(chosenNow),
-                "aria-label": `Show ${up.title} over ${across.title}, rank correlation ${shown}`,
+                "aria-label": `Show ${up.title} over ${across.title}, rank correlation ${valueText}`,
                 onclick: () => explorer.change({ x: across.column, y: up.column }, "all"),
               },
-              shown,
+              valueText,
             ),
           );
         }),

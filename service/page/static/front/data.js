@@ -8,6 +8,10 @@ import { withUnit } from "../lib/numbers.js";
 
 /** The front of a job: `front` is what /jobs/N/front says of it. */
 export class FrontData {
+  /** @type {Map<string, Kept>} */
+  kept = new Map();
+  /** @type {Map<string, Uint32Array>} */
+  orders = new Map();
   /** @param {number} job @param {Api.Front} front @param {AbortSignal} [signal] */
   constructor(job, front, signal) {
     this.job = job;
@@ -16,10 +20,6 @@ export class FrontData {
     this.columns = front.columns;
     this.objectives = front.objectives;
     this.signal = signal;
-    /** @type {Map<string, Kept>} */
-    this.kept = new Map();
-    /** @type {Map<string, Uint32Array>} */
-    this.orders = new Map();
     this.known = new Map(front.columns.map((column) => [column.key, column]));
   }
 

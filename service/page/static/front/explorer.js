@@ -4,10 +4,9 @@ import { parallel } from "../charts/parallel.js";
 import { scatter } from "../charts/scatter.js";
 import { colours } from "../charts/scale.js";
 import { keep, link } from "../lib/address.js";
-import { isAbort } from "../lib/api.js";
 import { h } from "../lib/dom.js";
 import { counted, grouped, withUnit } from "../lib/numbers.js";
-import { sayProblem } from "../lib/notices.js";
+import { attempt } from "../lib/notices.js";
 import { axisFields } from "./axes.js";
 import { previousFront } from "./previous_front.js";
 import { bindingPanel } from "./binding.js";
@@ -41,7 +40,7 @@ const ORDER = ["marks", "table", "chosen", "all"];
  * Fill a place with the explorer of a front; the promise is kept when it is drawn. values: columns that are here already. files: where the
  * files go that it makes.
  * @param {HTMLElement} place
- * @param {{ job: Api.Job, front: Api.Front, values: Api.Columns["values"], query: URLSearchParams, files: HTMLElement, signal: AbortSignal }} given
+ * @param {{ job: Api.Job, front: Api.Front, values: Api.Columns["values"], query: URLSearchParams, files: HTMLElement, signal: AbortSignal }} options
  */
 export async function explore(place, { job, front, values, query, files, signal }) {
   const data = new FrontData(job.id, front, signal);
@@ -54,7 +53,26 @@ export async function explore(place, { job, front, values, query, files, signal 
 
 /** Choices in a front, and the parts that show it; they tell it what the reader does. */
 export class Explorer {
-  /** @param {HTMLElement} place @param {{ job: Api.Job, data: FrontData, chosen: Chosen, limits: Limits, files: HTMLElement, signal: AbortSignal }} given */
+  /** @type {number | null} */
+  pointed = null;
+  /** @type {number | null} */
+  focused = null;
+  /** @type {number | null} */
+  picked = null; // by weights
+  /** @type {What | null} */
+  waiting = null;
+  frame = 0;
+  width = 0;
+  ink = colours();
+  tabled = -Infinity; // when the table was drawn last, ms
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  settling;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  tabling;
+  /** @type {Awaited<ReturnType<typeof previousFront>>} */
+  before = null; // the run that this one is a changed copy of
+  count = h("p", { class: "count", role: "status" });
+  /** @param {HTMLElement} place @param {{ job: Api.Job, data: FrontData, chosen: Chosen, limits: Limits, files: HTMLElement, signal: AbortSignal }} options */
   constructor(place, { job, data, chosen, limits, files, signal }) {
     this.place = place;
     this.job = job;
@@ -63,26 +81,7 @@ export class Explorer {
     this.data = data;
     this.chosen = chosen;
     this.limits = limits;
-    /** @type {number | null} */
-    this.pointed = null;
-    /** @type {number | null} */
-    this.focused = null;
-    /** @type {number | null} */
-    this.picked = null; // by weights
-    /** @type {What | null} */
-    this.waiting = null;
-    this.frame = 0;
-    this.width = 0;
-    this.ink = colours();
-    this.tabled = -Infinity; // when the table was drawn last, ms
-    /** @type {ReturnType<typeof setTimeout> | undefined} */
-    this.settling = undefined;
-    /** @type {ReturnType<typeof setTimeout> | undefined} */
-    this.tabling = undefined;
     this.linkages = linkages(data);
-    /** @type {Awaited<ReturnType<typeof previousFront>>} */
-    this.before = null; // the run that this one is a changed copy of
-    this.count = h("p", { class: "count", role: "status" });
     this.clearing = h(
       "button",
       { type: "button", onclick: () => this.clear() },
@@ -129,7 +128,6 @@ export class Explorer {
     this.linkagePanel = linkagePanel(this);
     this.selected = selectedBar(this);
     this.kept = bookmarksPanel(this);
-    this.binding = bindingPanel(this);
     this.wishing = wishingPanel(this);
     const columns = data.columns;
     files.replaceChildren(h("li", {}, this.saving.node), this.kept.file);
@@ -158,7 +156,7 @@ export class Explorer {
         h(
           "p",
           { class: "quiet hint" },
-          "Drag along an axis to keep a part of it; double click to let go. The fields below do the same.",
+          "Drag along an axis to set limits; double-click to clear them. The fields below do the same.",
         ),
         h(
           "div",
@@ -173,7 +171,7 @@ export class Explorer {
         ),
       ),
       this.scatterPanel.place,
-      this.binding.place,
+      bindingPanel(this),
       this.wishing.place,
       this.kept.place,
       h(
@@ -209,14 +207,13 @@ export class Explorer {
       clearTimeout(this.tabling);
       cancelAnimationFrame(this.frame);
     });
-    for (const name of ["units", "scheme"])
-      window.addEventListener(name, again, { signal: this.signal });
+    window.addEventListener("scheme", again, { signal: this.signal });
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again, {
       signal: this.signal,
     });
     this.draw("all");
-    if (job.origin)
-      this.lookBehind(job.origin).catch((problem) => isAbort(problem) || sayProblem(problem));
+    const { origin } = job;
+    if (origin) attempt(() => this.lookBehind(origin));
   }
 
   /** Show the front of the run before, once it is here. @param {number} run */
@@ -232,16 +229,13 @@ export class Explorer {
    */
   async change(choices, what) {
     Object.assign(this.chosen, choices);
-    try {
+    await attempt(async () => {
       await Promise.all([
         this.data.need(wanted(this.chosen, this.limits)),
         this.before?.need([this.chosen.x, this.chosen.y]),
       ]);
-    } catch (problem) {
-      sayProblem(problem);
-      return;
-    }
-    this.update(what);
+      this.update(what);
+    });
   }
 
   /** Set a limit, null to let go. @param {string} key @param {Page.Limit | null} limit */
@@ -310,9 +304,7 @@ export class Explorer {
     else this.drawTable(what === "chosen");
     this.marksPanel.draw(what);
     this.linkagePanel.draw(what);
-    this.binding.draw(what);
-    this.wishing.draw(what);
-    this.kept.draw(what);
+    this.kept.draw();
     this.selected.draw();
   }
 

@@ -11,13 +11,13 @@ const NEAR = 1e-9; // relative: a design on a limit is within it, also where the
  * some designs, {x, y, line}: the keys of two columns and its corners in their units; or null.
  */
 export class Limits {
-  /** @param {FrontData} data @param {Map<string, Page.Limit>} given @param {Page.Lasso | null} lasso */
-  constructor(data, given = new Map(), lasso = null) {
+  chosen = 0; // how many designs are within
+  /** @param {FrontData} data @param {Map<string, Page.Limit>} limits @param {Page.Lasso | null} lasso */
+  constructor(data, limits = new Map(), lasso = null) {
     this.data = data;
-    this.of = given;
+    this.of = limits;
     this.lasso = lasso;
     this.mask = new Uint8Array(data.count);
-    this.chosen = 0;
   }
 
   /** Set the limit of a column, or take it away with null. @param {string} key @param {Page.Limit | null} limit */
@@ -72,16 +72,16 @@ export class Limits {
   /** Return the limits as conditions of the API, which knows no line around designs. */
   conditions() {
     /** @type {string[]} */
-    const found = [];
+    const conditions = [];
     for (const [key, limit] of this.of) {
       if (limit.words) {
         const others = (this.data.words(key) ?? []).filter((word) => !limit.words.includes(word));
-        found.push(...others.map((word) => `${key} != ${word}`));
+        conditions.push(...others.map((word) => `${key} != ${word}`));
       } else {
-        if (limit.low !== null) found.push(`${key} >= ${limit.low}`);
-        if (limit.high !== null) found.push(`${key} <= ${limit.high}`);
+        if (limit.low !== null) conditions.push(`${key} >= ${limit.low}`);
+        if (limit.high !== null) conditions.push(`${key} <= ${limit.high}`);
       }
     }
-    return found;
+    return conditions;
   }
 }

@@ -35,8 +35,8 @@ export function linkagePanel(explorer) {
   /** @type {ReturnType<typeof playback> | null} */
   let motion = null; // once the service said which way the crank turns
   /** @type {number | null} */
-  let shown = null;
-  let asked = false;
+  let shownRow = null;
+  let isAsked = false;
   const swings = !front.columns.some(({ key }) => key === "stroke_mm"); // every design that turns has one
   /** @type {Map<number, Promise<Api.Curves | null>>} */
   const cycles = new Map(); // of designs that swing, by their rows
@@ -57,7 +57,7 @@ export function linkagePanel(explorer) {
 
   /** Ask once for the speed of the crank; without an answer it turns counter-clockwise. */
   async function ask() {
-    asked = true;
+    isAsked = true;
     const rpm = await get(
       `jobs/${explorer.job.id}/designs/1/requirements`,
       {},
@@ -76,7 +76,7 @@ export function linkagePanel(explorer) {
   /** It moves while somebody points at a design, or at the panel. */
   function move() {
     const wanted = !still && (within || explorer.pointed !== null);
-    if (wanted && !asked) ask();
+    if (wanted && !isAsked) ask();
     if (!motion || wanted === motion.playing) return;
     if (wanted) motion.play();
     else motion.pause();
@@ -85,15 +85,15 @@ export function linkagePanel(explorer) {
   /** Draw a design that swings between its ends, once the service has said how it goes. @param {number} row */
   async function showSwing(row) {
     const path = /** @type {const} */ (`jobs/${explorer.job.id}/designs/${row + 1}/curves`);
-    const asked =
+    const cycle =
       cycles.get(row) ??
       get(path, { angles: TIMES }, explorer.signal).then(
         ({ curves }) => curves,
         () => null,
       );
-    cycles.set(row, asked);
-    const curves = await asked;
-    if (!curves || shown !== row || explorer.signal.aborted) return;
+    cycles.set(row, cycle);
+    const curves = await cycle;
+    if (!curves || shownRow !== row || explorer.signal.aborted) return;
     drawn.show(explorer.linkages.of(row), curves, {
       frame: explorer.linkages.frame(),
       direction: 0,
@@ -107,9 +107,9 @@ export function linkagePanel(explorer) {
   /** @param {string} what */
   function draw(what) {
     const row =
-      explorer.pointed ?? shown ?? (explorer.chosen.selected[0] ?? (front.knee ?? 0) + 1) - 1;
-    if (row !== shown || what === "all") {
-      shown = row;
+      explorer.pointed ?? shownRow ?? (explorer.chosen.selected[0] ?? (front.knee ?? 0) + 1) - 1;
+    if (row !== shownRow || what === "all") {
+      shownRow = row;
       const linkage = explorer.linkages.of(row);
       const names = namesOf(explorer).get(row) ?? [];
       fill(

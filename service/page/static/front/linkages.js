@@ -16,26 +16,26 @@ export function linkages(data) {
   let frame = null;
   const [crank, rod, offset] = LENGTHS.map((key) => data.numbers(key));
   /** @param {number} row @returns {Page.Lengths} */
-  const of = (row) => ({ crank_mm: crank[row], rod_mm: rod[row], offset_mm: offset[row] });
+  const lengthsAt = (row) => ({ crank_mm: crank[row], rod_mm: rod[row], offset_mm: offset[row] });
 
   /** Return the frame that holds every design. */
   function all() {
     if (frame) return frame;
     /** @type {Frame[]} */
-    const found = [];
+    const frames = [];
     for (let row = 0; row < data.count; row += 1) {
-      const { inner, outer } = deadCentresOf(of(row));
-      const { crank_mm: r } = of(row);
-      found.push(
+      const { inner, outer } = deadCentresOf(lengthsAt(row));
+      const { crank_mm: r } = lengthsAt(row);
+      frames.push(
         frameWithin(
-          of(row),
+          lengthsAt(row),
           Number.isFinite(inner) ? inner : 0,
           Number.isFinite(outer) ? outer : r,
         ),
       ); // of one that need not turn
     }
-    frame = around(found);
+    frame = around(frames);
     return frame;
   }
-  return { of, frame: all };
+  return { of: lengthsAt, frame: all };
 }

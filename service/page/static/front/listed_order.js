@@ -41,8 +41,8 @@ export function neighbours(job, number, all) {
 /** @param {string | number} job @returns {number[]} */
 function kept(job) {
   try {
-    const found = JSON.parse(sessionStorage.getItem(key(job)) ?? "[]");
-    return Array.isArray(found) ? found : [];
+    const numbers = JSON.parse(sessionStorage.getItem(key(job)) ?? "[]");
+    return Array.isArray(numbers) ? numbers : [];
   } catch {
     return [];
   }
@@ -55,9 +55,9 @@ function kept(job) {
  */
 export function linesOf(table, numbers) {
   const [head, ...lines] = table.trimEnd().split(/\r?\n/);
-  const found = new Map(lines.map((line) => [Number.parseInt(line, 10), line]));
-  const wanted = numbers.map((number) => found.get(number));
-  if (!head.startsWith("number") || found.size !== lines.length || wanted.includes(undefined))
+  const lineOf = new Map(lines.map((line) => [Number.parseInt(line, 10), line]));
+  const wanted = numbers.map((number) => lineOf.get(number));
+  if (!head.startsWith("number") || lineOf.size !== lines.length || wanted.includes(undefined))
     throw new Error(
       "The table of the service has not one line for each design; download all of it instead.",
     );

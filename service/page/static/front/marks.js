@@ -48,10 +48,10 @@ export function marksPanel(explorer) {
   );
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
-  let asked = "";
+  let askedFor = "";
   explorer.signal.addEventListener("abort", () => clearTimeout(timer));
 
-  /** @param {Api.Objective} given @param {number} index */
+  /** @param {Api.Objective} options @param {number} index */
   function slider({ title }, index) {
     const value = h("output", { class: "number" });
     const input = h("input", {
@@ -79,7 +79,7 @@ export function marksPanel(explorer) {
     clearTimeout(timer);
     const { weights } = chosen;
     if (!weights || weights.every((weight) => weight === 0)) {
-      asked = "";
+      askedFor = "";
       if (explorer.picked !== null) {
         explorer.picked = null;
         explorer.update("marks");
@@ -92,16 +92,16 @@ export function marksPanel(explorer) {
       .join(", ");
     const where = explorer.limits.conditions();
     const question = JSON.stringify([topsis, where]);
-    if (question === asked) return;
+    if (question === askedFor) return;
     timer = setTimeout(async () => {
-      asked = question;
+      askedFor = question;
       try {
         const { number } = await get(
           `jobs/${explorer.job.id}/pick`,
           { topsis, where },
           explorer.signal,
         );
-        if (asked !== question) return;
+        if (askedFor !== question) return;
         explorer.picked = number - 1;
         fill(
           picked,
@@ -110,7 +110,7 @@ export function marksPanel(explorer) {
           ".",
         );
       } catch (problem) {
-        if (asked !== question || isAbort(problem)) return;
+        if (askedFor !== question || isAbort(problem)) return;
         explorer.picked = null;
         if (statusOf(problem) === 404) picked.textContent = "No design is within all limits.";
         else sayProblem(problem);

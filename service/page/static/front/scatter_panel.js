@@ -85,10 +85,10 @@ export function scatterPanel(explorer, dots) {
   );
 
   function draw() {
-    for (const one of picks) {
-      one.select.value = chosen[one.name];
-      one.logs.hidden = !mayBeLogged(explorer, chosen[one.name]);
-      one.log.checked = logged(explorer, chosen[one.name]);
+    for (const picker of picks) {
+      picker.select.value = chosen[picker.name];
+      picker.logs.hidden = !mayBeLogged(explorer, chosen[picker.name]);
+      picker.log.checked = logged(explorer, chosen[picker.name]);
     }
   }
 
@@ -97,7 +97,7 @@ export function scatterPanel(explorer, dots) {
     const { before: run } = explorer;
     before.hidden = !run;
     if (!run || before.firstChild) return;
-    const shown = h("input", {
+    const toggle = h("input", {
       type: "checkbox",
       checked: chosen.behind,
       onchange: ({ currentTarget }) => explorer.change({ behind: currentTarget.checked }, "all"),
@@ -107,7 +107,7 @@ export function scatterPanel(explorer, dots) {
       h(
         "label",
         {},
-        shown,
+        toggle,
         h("span", { class: "ring", "aria-hidden": "true" }),
         ` Behind it: the front of run ${run.run}`,
       ),

@@ -9,12 +9,12 @@ import { fill, h } from "../lib/dom.js";
 export function selectedBar(explorer) {
   const place = h("div", { class: "row selected-designs" });
   /** @type {string | null} */
-  let shown = null;
+  let shownNumbers = null;
 
   function draw() {
     const { selected } = explorer.chosen;
-    if (shown === selected.join()) return;
-    shown = selected.join();
+    if (shownNumbers === selected.join()) return;
+    shownNumbers = selected.join();
     const [first, ...others] = selected;
     fill(
       place,

@@ -27,27 +27,27 @@ export function designTable(explorer) {
   function rows() {
     const { chosen, data, limits } = explorer;
     const { mask } = limits;
-    const found = new Uint32Array(limits.chosen);
+    const rowNumbers = new Uint32Array(limits.chosen);
     let count = 0;
     if (!chosen.sort || !data.has(chosen.sort)) {
-      for (let row = 0; row < mask.length; row += 1) if (mask[row]) found[count++] = row;
-      return found;
+      for (let row = 0; row < mask.length; row += 1) if (mask[row]) rowNumbers[count++] = row;
+      return rowNumbers;
     }
     const numbers = data.numbers(chosen.sort);
-    for (const row of data.order(chosen.sort)) if (mask[row]) found[count++] = row;
+    for (const row of data.order(chosen.sort)) if (mask[row]) rowNumbers[count++] = row;
     let defined = count;
-    while (defined > 0 && Number.isNaN(numbers[found[defined - 1]])) defined -= 1; // these stay last, whichever way
-    if (chosen.reverse) found.subarray(0, defined).reverse();
-    return found;
+    while (defined > 0 && Number.isNaN(numbers[rowNumbers[defined - 1]])) defined -= 1; // these stay last, whichever way
+    if (chosen.reverse) rowNumbers.subarray(0, defined).reverse();
+    return rowNumbers;
   }
 
   function draw() {
     const { chosen, data, limits } = explorer;
-    const found = rows();
-    const last = Math.max(1, Math.ceil(found.length / PAGE));
+    const listedRows = rows();
+    const last = Math.max(1, Math.ceil(listedRows.length / PAGE));
     const page = Math.min(chosen.page, last);
     const columns = chosen.columns.filter((key) => data.has(key));
-    const held = focused(place)?.dataset.act;
+    const focusedAct = focused(place)?.dataset.act;
     fill(
       head,
       h(
@@ -61,9 +61,9 @@ export function designTable(explorer) {
     const names = namesOf(explorer);
     fill(
       body,
-      [...found.slice((page - 1) * PAGE, page * PAGE)].map((row) => line(row, columns, names)),
+      [...listedRows.slice((page - 1) * PAGE, page * PAGE)].map((row) => line(row, columns, names)),
     );
-    if (!found.length)
+    if (!listedRows.length)
       fill(
         body,
         h("tr", {}, h("td", { colspan: columns.length + 2 }, "No design is within all limits.")),
@@ -89,14 +89,15 @@ export function designTable(explorer) {
       h(
         "span",
         {},
-        found.length
-          ? `${first + 1}–${Math.min(found.length, first + PAGE)} of ${grouped(limits.chosen)}`
+        listedRows.length
+          ? `${first + 1}–${Math.min(listedRows.length, first + PAGE)} of ${grouped(limits.chosen)}`
           : "0",
       ),
       turn("›", "Next page", page + 1, page === last),
       turn("»", "Last page", last, page === last),
     );
-    if (held) firstOf(place, `[data-act="${CSS.escape(held)}"]:not(:disabled)`)?.focus();
+    if (focusedAct)
+      firstOf(place, `[data-act="${CSS.escape(focusedAct)}"]:not(:disabled)`)?.focus();
     mark();
   }
 
@@ -185,9 +186,9 @@ export function designTable(explorer) {
   /** Arrows go from row to row, Enter opens, the space bar selects. @param {KeyboardEvent} event */
   function keys(event) {
     const step = STEPS[event.key];
-    const at = event.target instanceof Element ? event.target : body;
-    const row = at.closest("tr");
-    if (event.key === " " && row && at.matches("a")) {
+    const target = event.target instanceof Element ? event.target : body;
+    const row = target.closest("tr");
+    if (event.key === " " && row && target.matches("a")) {
       event.preventDefault();
       explorer.select(Number(row.dataset.row));
     }

@@ -14,16 +14,18 @@ const CLASSES = ["improve", "keep"];
 /** Return the wishes that an address has; null without any. @param {URLSearchParams} query @param {readonly { quantity: string }[]} objectives @returns {Wishes | null} */
 export function wishesFrom(query, objectives) {
   /** @type {Map<string, Wish>} */
-  const of = new Map();
+  const byQuantity = new Map();
   for (const { quantity } of objectives) {
     const text = query.get(`wish.${quantity}`) ?? "";
     const [, limit, number] = /^(to )?(.+)$/.exec(text) ?? [];
-    if (CLASSES.includes(text)) of.set(quantity, { kind: /** @type {Kind} */ (text) });
+    if (CLASSES.includes(text)) byQuantity.set(quantity, { kind: /** @type {Kind} */ (text) });
     else if (number && Number.isFinite(Number(number)))
-      of.set(quantity, { kind: limit ? "limit" : "value", value: Number(number) });
+      byQuantity.set(quantity, { kind: limit ? "limit" : "value", value: Number(number) });
   }
   const design = Number(query.get("wish.design"));
-  return of.size ? { of, design: Number.isInteger(design) && design > 0 ? design : null } : null;
+  return byQuantity.size
+    ? { of: byQuantity, design: Number.isInteger(design) && design > 0 ? design : null }
+    : null;
 }
 
 /** Return the part of an address that has wishes. @param {Wishes | null} wishes */
@@ -43,14 +45,14 @@ export function wishQuery(wishes) {
  */
 export function asked({ of, design }, objectives) {
   const units = new Map(objectives.map(({ quantity, unit }) => [quantity, unit]));
-  const at = [...of].map(([quantity, { kind, value }]) => {
+  const texts = [...of].map(([quantity, { kind, value }]) => {
     const number = `${value} ${units.get(quantity) ?? ""}`.trim();
     return [
       quantity,
       kind === "value" ? number : kind === "limit" ? `may worsen to ${number}` : kind,
     ];
   });
-  return { at: Object.fromEntries(at), design: relative({ of, design }) ? design : null };
+  return { at: Object.fromEntries(texts), design: relative({ of, design }) ? design : null };
 }
 
 /** Whether any wish speaks of a design. @param {Wishes} wishes */
@@ -65,31 +67,34 @@ export function relative({ of }) {
 export function wrongIn(wishes, objectives, count) {
   const { of, design } = wishes;
   /** @type {Problem[]} */
-  const found = [];
+  const problems = [];
   for (const [quantity, { kind, value }] of of) {
     if ((kind === "value" || kind === "limit") && !Number.isFinite(value ?? NaN))
-      found.push({ id: quantity, text: "A number is needed here; write one, or choose “free”." });
+      problems.push({
+        id: quantity,
+        text: "A number is needed here; write one, or choose “free”.",
+      });
   }
   const kinds = objectives.map(({ quantity }) => of.get(quantity)?.kind ?? "free");
   if (
     relative(wishes) &&
     (design === null || !Number.isInteger(design) || design < 1 || design > count)
   )
-    found.push({
+    problems.push({
       id: "design",
-      text: `“Improve” and “keep” speak of a design of the front; give its number, 1 to ${count}.`,
+      text: `“Improve” and “keep” refer to a design of the front; give its number, 1 to ${count}.`,
     });
   if (!kinds.some((kind) => kind === "value" || kind === "improve"))
-    found.push({
+    problems.push({
       id: "",
       text: "Nothing is wished yet; give one objective a value, or let it improve.",
     });
   else if (kinds.every((kind) => CLASSES.includes(kind)))
-    found.push({
+    problems.push({
       id: "",
       text: "Nothing can improve unless another objective is freed or allowed to worsen.",
     });
-  return found;
+  return problems;
 }
 
 /** Return where a refusal of the service belongs: to the objective that it names first. @param {string} detail @param {readonly { quantity: string }[]} objectives @returns {Problem} */
@@ -104,14 +109,14 @@ export function placed(detail, objectives) {
 
 /** Return wishes that somebody made, as the service has them. @param {Api.MadeWish} made @returns {Wishes} */
 export function wishesOf({ wishes, design }) {
-  const of = Object.entries(wishes).map(
+  const byQuantity = Object.entries(wishes).map(
     ([quantity, { wish, value }]) =>
       /** @type {[string, Wish]} */ ([
         quantity,
         value === null ? { kind: wish } : { kind: wish, value },
       ]),
   );
-  return { of: new Map(of), design };
+  return { of: new Map(byQuantity), design };
 }
 
 /**

@@ -2,8 +2,8 @@
 
 import { link } from "../lib/address.js";
 import { get, isAbort, post } from "../lib/api.js";
-import { fill, first, formOf, h, numberField } from "../lib/dom.js";
-import { sayProblem } from "../lib/notices.js";
+import { fill, first, formOf, h, markInvalid, numberField } from "../lib/dom.js";
+import { attempt } from "../lib/notices.js";
 import { parseQuantity } from "../lib/quantity_text.js";
 import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
 import { bookmarkForm } from "../design/bookmark_form.js";
@@ -20,14 +20,14 @@ import { headedRow, headsOf, numberCell, scrolledTable } from "../lib/table.js";
 /** @type {[Kind, string][]} */
 const KINDS = [
   ["free", "is free"],
-  ["value", "is wished"],
+  ["value", "should reach"],
   ["improve", "improves"],
   ["keep", "keeps"],
   ["limit", "may worsen to"],
 ];
 const APART = 1e-9; // of a number: less is rounding
 
-/** Return {place, draw(what), cells()} for wishes on the front of an explorer. @param {Explorer} explorer */
+/** Return {place, cells()} for wishes on the front of an explorer. @param {Explorer} explorer */
 export function wishingPanel(explorer) {
   const { data, chosen, job } = explorer;
   const { objectives } = data;
@@ -44,7 +44,7 @@ export function wishingPanel(explorer) {
   const from = h(
     "div",
     { class: "wish-from" },
-    h("label", { for: "wish-design" }, "“Improves” and “keeps” speak of design "),
+    h("label", { for: "wish-design" }, "“Improves” and “keeps” refer to design "),
     design,
     wrongDesign,
   );
@@ -71,19 +71,19 @@ export function wishingPanel(explorer) {
     h(
       "p",
       { class: "quiet hint" },
-      "Say what you would like to have. The optimal design that comes nearest is solved anew; it need not be one of the list. A wished value is no bound.",
+      "State the values you would like. The nearest Pareto-optimal design is computed; it need not be in the list. A value to reach is not a bound.",
     ),
     h("div", { class: "wish-columns" }, form, answer),
     before,
   );
   place.hidden = objectives.length < 2 || data.count === 0;
   /** @type {Api.Wished | null} */
-  let found = null;
+  let answered = null;
   let near = 0; // the number of the nearest design of the front
   let way = ""; // the link of the design
   let turn = 0; // of the latest question
   /** @type {Wishes[]} */
-  let made = []; // of the run, by anybody
+  let earlierWishes = []; // of the run, by anybody
 
   /** @param {Api.Objective} objective */
   function row({ quantity, title, unit }) {
@@ -147,11 +147,14 @@ export function wishingPanel(explorer) {
   /** Return what the fields say. @returns {Wishes} */
   function said() {
     /** @type {[string, Wish][]} */
-    const of = rows.flatMap((one) => {
+    const entries = rows.flatMap((one) => {
       const wish = one.get();
       return wish ? [[one.quantity, wish]] : [];
     });
-    return { of: new Map(of), design: design.value.trim() === "" ? null : Number(design.value) };
+    return {
+      of: new Map(entries),
+      design: design.value.trim() === "" ? null : Number(design.value),
+    };
   }
 
   /** Show the wishes of the address, or none, in the fields. */
@@ -171,18 +174,17 @@ export function wishingPanel(explorer) {
   /** Say at each field what is wrong with it. @param {Problem[]} problems */
   function tell(problems) {
     /** @param {string} id */
-    const of = (id) =>
+    const textsAt = (id) =>
       problems
         .filter((one) => one.id === id)
         .map((one) => one.text)
         .join(" ");
     for (const one of [...rows, { quantity: "design", value: design, refused: wrongDesign }]) {
-      one.refused.textContent = of(one.quantity);
-      if (of(one.quantity)) one.value.setAttribute("aria-invalid", "true");
-      else one.value.removeAttribute("aria-invalid");
+      one.refused.textContent = textsAt(one.quantity);
+      markInvalid(one.value, textsAt(one.quantity));
     }
-    wrong.textContent = of("");
-    rows.find(({ quantity }) => of(quantity))?.value.focus();
+    wrong.textContent = textsAt("");
+    rows.find(({ quantity }) => textsAt(quantity))?.value.focus();
   }
 
   function submit() {
@@ -204,24 +206,24 @@ export function wishingPanel(explorer) {
 
   async function ask() {
     const { wish } = chosen;
-    const own = (turn += 1);
+    const request = (turn += 1);
     if (!wish) {
-      found = null;
+      answered = null;
       return show();
     }
     solve.setAttribute("aria-busy", "true"); // not disabled: whoever has changed a wish meanwhile asks again
     try {
-      const given = await post(`jobs/${job.id}/wish`, asked(wish, objectives), {
+      const reply = await post(`jobs/${job.id}/wish`, asked(wish, objectives), {
         signal: explorer.signal,
       });
-      if (own !== turn) return;
-      if (given.design) await locate(given.design);
-      found = given;
+      if (request !== turn) return;
+      if (reply.design) await locate(reply.design);
+      answered = reply;
       show();
       askBefore();
     } catch (problem) {
-      if (own !== turn || isAbort(problem)) return;
-      found = null;
+      if (request !== turn || isAbort(problem)) return;
+      answered = null;
       show();
       tell([
         {
@@ -230,7 +232,7 @@ export function wishingPanel(explorer) {
         },
       ]);
     } finally {
-      if (own === turn) solve.removeAttribute("aria-busy");
+      if (request === turn) solve.removeAttribute("aria-busy");
     }
   }
 
@@ -274,26 +276,22 @@ export function wishingPanel(explorer) {
 
   function drawAnswer() {
     none.hidden = !chosen.wish;
-    if (!found) return fill(answer);
-    const [head] = found.sentences;
-    const sentence = h("p", { class: found.possible ? "good" : null }, `${capital(head)}.`);
-    const { design: wished } = found;
+    if (!answered) return fill(answer);
+    const [head] = answered.sentences;
+    const sentence = h("p", { class: answered.possible ? "good" : null }, `${capital(head)}.`);
+    const { design: wished } = answered;
     if (!wished) return fill(answer, h("p", { class: "bad" }, `${sentence.textContent}`));
     const nearby = h("a", { href: explorer.hrefOf(near - 1) }, `design ${near}`);
     fill(
       answer,
       sentence,
-      outcomes(found, nearby),
+      outcomes(answered, nearby),
       h(
         "div",
         { class: "row" },
         way
           ? h("a", { class: "button primary", href: way }, "Open the wished design")
-          : h(
-              "span",
-              { class: "quiet" },
-              "More than its lengths is new, so all of its numbers are here.",
-            ),
+          : h("span", { class: "quiet" }, "More than the lengths changed; all values are shown."),
         bookmarkForm({
           job: `${job.id}`,
           design: near,
@@ -302,13 +300,18 @@ export function wishingPanel(explorer) {
           lengths: () => lengthsOf(wished),
         }),
       ),
-      h("details", { open: !way }, h("summary", {}, "All of its numbers"), numbers(found, wished)),
+      h(
+        "details",
+        { open: !way },
+        h("summary", {}, "All of its numbers"),
+        numbers(answered, wished),
+      ),
     );
   }
 
-  /** @param {Api.Wished} given @param {Node} nearby */
-  function outcomes(given, nearby) {
-    const lines = given.objectives.map((one) => {
+  /** @param {Api.Wished} wished @param {Node} nearby */
+  function outcomes(wished, nearby) {
+    const lines = wished.objectives.map((one) => {
       const objective = objectives.find(({ quantity }) => quantity === one.quantity);
       const value = objective && Number(beside[objective.column]);
       const words = {
@@ -351,13 +354,13 @@ export function wishingPanel(explorer) {
     );
   }
 
-  /** @param {Api.Wished} given @param {Api.Row} wished */
+  /** @param {Api.Wished} options @param {Api.Row} wished */
   function numbers({ columns }, wished) {
-    const shown = columns.filter(({ key }) => !key.startsWith("slack_"));
+    const shownColumns = columns.filter(({ key }) => !key.startsWith("slack_"));
     return scrolledTable(
       "All numbers of the wished design",
       headsOf(["Quantity", "wished design", `design ${near}`], (n) => n),
-      shown.map(({ key, title, unit }) =>
+      shownColumns.map(({ key, title, unit }) =>
         headedRow(
           title,
           numberCell(key, wished[key], withUnit(wished[key], unit)),
@@ -369,18 +372,16 @@ export function wishingPanel(explorer) {
 
   /** Ask for the wishes that anybody made of the run. */
   async function askBefore() {
-    try {
-      made = (await get(`jobs/${job.id}/wishes`, {}, explorer.signal)).made.map(wishesOf);
+    await attempt(async () => {
+      earlierWishes = (await get(`jobs/${job.id}/wishes`, {}, explorer.signal)).made.map(wishesOf);
       drawBefore();
-    } catch (problem) {
-      if (!isAbort(problem)) sayProblem(problem);
-    }
+    });
   }
 
   /** Offer the wishes that were made before. */
   function drawBefore() {
     const open = first(before, "details")?.hasAttribute("open");
-    const items = made.map((wishes) =>
+    const items = earlierWishes.map((wishes) =>
       h(
         "li",
         {},
@@ -398,7 +399,7 @@ export function wishingPanel(explorer) {
           "details",
           { open },
           h("summary", {}, `Wishes so far (${items.length})`),
-          h("p", { class: "quiet hint" }, "By all who see this run, the latest first."),
+          h("p", { class: "quiet hint" }, "From everyone with access, newest first."),
           h("ol", {}, items),
         ),
     );
@@ -417,21 +418,11 @@ export function wishingPanel(explorer) {
     return `${parts.join(", ")}${wishes.design ? `, from design ${wishes.design}` : ""}`;
   }
 
-  let units = ""; // that the answer is drawn in
-  /** @param {string} what */
-  function draw(what) {
-    const now = unitOf("mm");
-    if (what !== "all" || units === now) return;
-    const early = units === "";
-    units = now;
-    showFields();
-    drawAnswer();
-    drawBefore();
-    if (early && chosen.wish) ask();
-    else if (early && !place.hidden) askBefore();
-  }
-
-  return { place, draw, cells: () => found?.design ?? null };
+  showFields();
+  drawAnswer();
+  if (chosen.wish) ask();
+  else if (!place.hidden) askBefore();
+  return { place, cells: () => answered?.design ?? null };
 }
 
 /** Return by how much a value is from another, with its sign; of rounding alone, that they are equal. @param {number} value @param {number} other @param {string} unit */

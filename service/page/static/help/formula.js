@@ -77,23 +77,23 @@ export function formula(text) {
  */
 export function symbolsOf(text, quantities) {
   /** @type {typeof SYMBOLS} */
-  const known = { ...SYMBOLS };
+  const symbols = { ...SYMBOLS };
   for (const { name, title, formula: own } of quantities) {
     const symbol = OWN.exec(own)?.[1];
-    if (symbol) known[symbol] ??= [title, name];
+    if (symbol) symbols[symbol] ??= [title, name];
   }
   const names = [
     ...new Set(
       tokensOf(text).map((token) =>
-        token in known
+        token in symbols
           ? token
           : token.replace(/'+$/, (primes) => (token.startsWith("x") && primes ? "'" : "")),
       ),
     ),
   ];
   return names
-    .filter((name) => name in known)
-    .map((name) => [drawn({ tag: "math", parts: parsed(name) }), ...known[name]]);
+    .filter((name) => name in symbols)
+    .map((name) => [drawn({ tag: "math", parts: parsed(name) }), ...symbols[name]]);
 }
 
 /** Return the parts of a formula. @param {string} text @returns {Part[]} */
@@ -104,18 +104,18 @@ export function parsed(text) {
   /** @param {string} closing @returns {Part[]} */
   const sum = (closing) => {
     /** @type {Part[]} */
-    const found = [];
+    const parts = [];
     while (place < tokens.length && next() !== closing) {
       const token = next();
       if (token === "/") {
         place += 1;
-        found.push(...fraction(found, closing));
+        parts.push(...fraction(parts, closing));
       } else if (/^[-+=,:;)]$|^\+-$/.test(token)) {
         place += 1;
-        found.push({ tag: "mo", text: SIGNS.get(token) ?? token });
-      } else found.push(factor());
+        parts.push({ tag: "mo", text: SIGNS.get(token) ?? token });
+      } else parts.push(factor());
     }
-    return found;
+    return parts;
   };
   /** Take a factor and its exponent. @returns {Part} */
   const factor = () => {
@@ -174,21 +174,22 @@ export function parsed(text) {
 /** @param {string} text @returns {string[]} */
 function tokensOf(text) {
   /** @type {string[]} */
-  const found = [];
+  const tokens = [];
   TOKEN.lastIndex = 0;
-  for (let match = TOKEN.exec(text); match; match = TOKEN.exec(text)) found.push(match[1]);
-  return found;
+  for (let match = TOKEN.exec(text); match; match = TOKEN.exec(text)) tokens.push(match[1]);
+  return tokens;
 }
 
 /** Return a name: a symbol with its index and its primes, or a word. @param {string} token @returns {Part} */
 function symbol(token) {
   const [, name, index, primes = ""] = /^([A-Za-z]+)(?:_([A-Za-z]+))?('+)?$/.exec(token) ?? [];
-  const known =
+  const letterName =
     name &&
     (GREEK.get(name) ?? (index || name.length === 1 || /^d[a-zA-Z]$/.test(name) ? name : null));
-  if (!known || (known === "a" && !index)) return { tag: "mtext", text: token, prose: true };
+  if (!letterName || (letterName === "a" && !index))
+    return { tag: "mtext", text: token, prose: true };
   /** @type {Part} */
-  const letter = { tag: "mi", text: known };
+  const letter = { tag: "mi", text: letterName };
   /** @type {Part[]} */
   const primed = primes ? [{ tag: "mo", text: "′".repeat(primes.length) }] : []; // which stands high by itself
   if (!index) return row([letter, ...primed]);

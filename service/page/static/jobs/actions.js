@@ -14,20 +14,20 @@ import { ENDED } from "./states.js";
  * @param {Api.JobRow} job @param {(job: Api.Job | null) => unknown} changed @param {{ primary?: boolean }} looks primary: of the view of this job
  */
 export function actions(job, changed, { primary = false } = {}) {
-  const of = `run ${job.id}, ${job.name}`;
-  /** @param {string} label @param {"cancel" | "resume"} path @param {string} told @param {string} name */
-  const act = (label, path, told, name = path) =>
+  const runName = `run ${job.id}, ${job.name}`;
+  /** @param {string} label @param {"cancel" | "resume"} path @param {string} sentence @param {string} name */
+  const act = (label, path, sentence, name = path) =>
     h(
       "button",
       {
         type: "button",
         class: primary && name === path ? "primary" : null,
         "data-act": name,
-        "aria-label": `${label} ${of}`,
+        "aria-label": `${label} ${runName}`,
         onclick: (event) =>
           run(event.currentTarget, async () => {
             const now = await post(`jobs/${job.id}/${path}`);
-            say(told);
+            say(sentence);
             changed(now);
           }),
       },
@@ -39,7 +39,7 @@ export function actions(job, changed, { primary = false } = {}) {
     if (
       !(await confirmed(
         `Delete run ${job.id}?`,
-        `“${job.name}” and everything it found will be gone for good.`,
+        `“${job.name}” and all its results will be deleted permanently.`,
         "Delete",
       ))
     ) {
@@ -59,7 +59,7 @@ export function actions(job, changed, { primary = false } = {}) {
       await doing();
     } catch (problem) {
       if (statusOf(problem) === 404) {
-        say(`Run ${job.id} is not there any more: somebody deleted it.`);
+        say(`Run ${job.id} no longer exists: somebody deleted it.`);
         changed(null);
       } else sayProblem(problem);
     } finally {
@@ -74,7 +74,7 @@ export function actions(job, changed, { primary = false } = {}) {
       act(
         "Pause",
         "cancel",
-        `Run ${job.id} pauses after its round; Resume goes on from there.`,
+        `Run ${job.id} pauses after this round; Resume continues from there.`,
         "pause",
       ),
     !ended &&
@@ -83,14 +83,14 @@ export function actions(job, changed, { primary = false } = {}) {
         ? act(
             "Finish now",
             "cancel",
-            `Run ${job.id} ends with what it has found; it can go on from there later.`,
+            `Run ${job.id} ends with the designs found so far; it can be resumed later.`,
           )
-        : act("Cancel", "cancel", `Run ${job.id} does not begin.`)),
+        : act("Cancel", "cancel", `Run ${job.id} will not start.`)),
     ["cancelled", "failed"].includes(job.state) &&
-      act("Resume", "resume", `Run ${job.id} goes on.`),
+      act("Resume", "resume", `Run ${job.id} continues.`),
     h(
       "a",
-      { class: "button", href: link(["new"], { from: job.id }), "aria-label": `Clone ${of}` },
+      { class: "button", href: link(["new"], { from: job.id }), "aria-label": `Clone ${runName}` },
       "Clone",
     ),
     ended &&
@@ -105,13 +105,13 @@ export function actions(job, changed, { primary = false } = {}) {
               type: "button",
               class: "danger",
               "data-act": "delete",
-              "aria-label": `Delete ${of}`,
+              "aria-label": `Delete ${runName}`,
               onclick: gone,
             },
             "Delete this run",
           ),
         ),
-        { name: `More for ${of}`, act: "more" },
+        { name: `More for ${runName}`, act: "more" },
       ),
   ].filter(Boolean);
 }

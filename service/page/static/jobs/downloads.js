@@ -3,6 +3,7 @@
 import { address, get } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { menu } from "../lib/menu.js";
+import { attempt } from "../lib/notices.js";
 import { apiSystem } from "../lib/numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
 
@@ -12,21 +13,19 @@ const FRONT = { csv: "Designs as CSV", json: "Front as JSON", parquet: "Designs 
 /**
  * Return a list of files behind a button; those that have to be asked for are asked for when it opens.
  * own: what those who show the front put among its files.
- * @param {Api.Job} job @param {{ designs: boolean, own: HTMLElement, signal: AbortSignal }} given
+ * @param {Api.Job} job @param {{ designs: boolean, own: HTMLElement, signal: AbortSignal }} options
  */
 export function downloads(job, { designs, own, signal }) {
   /** @param {string} path @param {string} name */
   const file = (path, name) =>
     h("li", {}, h("a", { href: address(`jobs/${job.id}/${path}`), download: "" }, name));
-  // In the units that the reader prefers at the moment.
-  /** @param {string} path @param {Dom.Attributes<HTMLAnchorElement>} attributes @param {string | undefined} name */
-  const shown = (path, attributes, name) => {
-    const link = h("a", { ...attributes }, name);
-    const renew = () => (link.href = address(`jobs/${job.id}/${path}`, { units: apiSystem() }));
-    renew();
-    window.addEventListener("units", renew, { signal });
-    return link;
-  };
+  /** Return a link to a file in the units that the reader prefers. @param {string} path @param {Dom.Attributes<HTMLAnchorElement>} attributes @param {string | undefined} name */
+  const convertedLink = (path, attributes, name) =>
+    h(
+      "a",
+      { ...attributes, href: address(`jobs/${job.id}/${path}`, { units: apiSystem() }) },
+      name,
+    );
   const files = h("ul");
   const exported = h("ul");
   const figures = h("ul");
@@ -38,55 +37,48 @@ export function downloads(job, { designs, own, signal }) {
     files,
     designs && [h("h2", {}, "Figures"), figures],
   );
-  let asked = false;
+  let isListed = false;
   const node = menu("Download", list, {
     opened: () => {
-      if (asked) return;
-      asked = true;
-      listFiles();
-      if (designs) listFigures();
+      if (isListed) return;
+      isListed = true;
+      attempt(listFiles, (problem) => fill(files, h("li", {}, sentenceOf(problem))));
+      if (designs)
+        attempt(listFigures, (problem) => fill(figures, h("li", {}, sentenceOf(problem))));
     },
   });
 
-  async function listFiles() {
-    try {
-      const found = await get(`jobs/${job.id}/files`, {}, signal);
-      fill(
-        exported,
-        found.exports.map((ending) =>
-          h("li", {}, shown(`export.${ending}`, { download: "" }, FRONT[ending])),
-        ),
-      );
-      fill(
-        files,
-        found.files.map((name) => file(`files/${encodeURIComponent(name)}`, name)),
-      );
-    } catch (problem) {
-      fill(files, h("li", {}, sentenceOf(problem)));
-    }
-  }
+  const listFiles = async () => {
+    const answer = await get(`jobs/${job.id}/files`, {}, signal);
+    fill(
+      exported,
+      answer.exports.map((ending) =>
+        h("li", {}, convertedLink(`export.${ending}`, { download: "" }, FRONT[ending])),
+      ),
+    );
+    fill(
+      files,
+      answer.files.map((name) => file(`files/${encodeURIComponent(name)}`, name)),
+    );
+  };
 
-  async function listFigures() {
+  const listFigures = async () => {
     fill(figures, h("li", { class: "quiet" }, "Looking …"));
-    try {
-      const found = await get(`jobs/${job.id}/figures`, {}, signal);
-      /** @param {string} name @param {string} kind */
-      const as = (name, kind) =>
-        shown(
-          `figures/${name}.${kind}`,
-          { download: `${name}.${kind}`, "aria-label": `${name} as ${kind.toUpperCase()}` },
-          kind.toUpperCase(),
-        );
-      fill(
-        figures,
-        found.figures.map(({ name, title }) =>
-          h("li", {}, `${title} `, as(name, "png"), " ", as(name, "svg")),
-        ),
+    const answer = await get(`jobs/${job.id}/figures`, {}, signal);
+    /** @param {string} name @param {string} kind */
+    const as = (name, kind) =>
+      convertedLink(
+        `figures/${name}.${kind}`,
+        { download: `${name}.${kind}`, "aria-label": `${name} as ${kind.toUpperCase()}` },
+        kind.toUpperCase(),
       );
-    } catch (problem) {
-      fill(figures, h("li", {}, sentenceOf(problem)));
-    }
-  }
+    fill(
+      figures,
+      answer.figures.map(({ name, title }) =>
+        h("li", {}, `${title} `, as(name, "png"), " ", as(name, "svg")),
+      ),
+    );
+  };
 
   return node;
 }

@@ -7,12 +7,12 @@ const ROUNDS = 10;
  * @param {readonly (number | null)[]} hypervolumes of the rounds, in order
  */
 export function growth(hypervolumes) {
-  const known = hypervolumes.filter((one) => one !== null && one > 0).slice(-1 - ROUNDS);
-  if (known.length < 2) return null;
-  const percent = 100 * (Number(known[known.length - 1]) / Number(known[0]) - 1);
+  const volumes = hypervolumes.filter((one) => one !== null && one > 0).slice(-1 - ROUNDS);
+  if (volumes.length < 2) return null;
+  const percent = 100 * (Number(volumes[volumes.length - 1]) / Number(volumes[0]) - 1);
   const places = percent >= 10 ? 0 : percent >= 1 ? 1 : 2;
   return {
-    rounds: known.length - 1,
+    rounds: volumes.length - 1,
     text:
       percent === 0
         ? "nothing"

@@ -25,7 +25,7 @@ const AT_LEAST = 5000; // ms that this takes at least
 /**
  * Fill a place with a job's progress until it has ended. changed(job) is called when its state changes, and with null once the job
  * is gone.
- * @param {HTMLElement} place @param {Api.Job} job @param {{ signal: AbortSignal, changed: (job: Api.Job | null) => unknown }} given
+ * @param {HTMLElement} place @param {Api.Job} job @param {{ signal: AbortSignal, changed: (job: Api.Job | null) => unknown }} options
  */
 export function watch(place, job, { signal, changed }) {
   const bar = h("progress", { "aria-label": "Rounds", max: 1, value: 0 });
@@ -35,7 +35,7 @@ export function watch(place, job, { signal, changed }) {
   const lost = h(
     "p",
     { class: "lost", role: "status", hidden: true },
-    "The connection to the service was lost. The page goes on when it is back.",
+    "The connection to the service was lost. This page continues when it is back.",
   );
   const curve = h("div", { class: "course" });
   const front = h("div");
@@ -63,7 +63,7 @@ export function watch(place, job, { signal, changed }) {
   let drawing = null;
 
   function rest() {
-    for (const one of [timer, silent, stale]) clearTimeout(one ?? undefined);
+    for (const pending of [timer, silent, stale]) clearTimeout(pending ?? undefined);
   }
 
   function explain() {
@@ -108,11 +108,11 @@ export function watch(place, job, { signal, changed }) {
   );
 
   /** @param {Api.Event} event */
-  function told(event) {
+  function takeEvent(event) {
     if (event.kind === "progress") {
       const data = /** @type {Api.Progress} */ (event.data);
       if (!data.steps) grow(data);
-      course.told(data);
+      course.add(data);
       why.hidden = true;
       clearTimeout(silent);
       silent = setTimeout(explain, LONG);
@@ -165,7 +165,7 @@ export function watch(place, job, { signal, changed }) {
     /** @param {number | null} left */
     function show(left) {
       const gained = growth(rounds.map(({ hypervolume }) => hypervolume));
-      const shown = [
+      const rows = [
         ["round", `${grouped(data.round)} of ${grouped(data.rounds)}`],
         ["evaluated", grouped(data.evaluations)],
         ["feasible", grouped(data.feasible)],
@@ -180,7 +180,7 @@ export function watch(place, job, { signal, changed }) {
       ];
       fill(
         figures,
-        shown.map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value))),
+        rows.map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value))),
       );
     }
   }
@@ -256,13 +256,13 @@ export function watch(place, job, { signal, changed }) {
       );
       return;
     }
-    const shown = found.points.map((point) => [point[axes.x], point[axes.y]]);
+    const frontPoints = found.points.map((point) => [point[axes.x], point[axes.y]]);
     /** @param {"x" | "y"} name @param {0 | 1} place */
-    const held = (name, place) => {
+    const heldRange = (name, place) => {
       const { title, unit } = columns[axes[name]];
       return extent(
         `${title} ${unitOf(unit)}`,
-        shown.map((point) =>
+        frontPoints.map((point) =>
           typeof point[place] === "number" ? inShown(point[place], unit) : null,
         ),
       );
@@ -270,11 +270,11 @@ export function watch(place, job, { signal, changed }) {
     fill(
       front,
       points(
-        [{ points: shown }],
+        [{ points: frontPoints }],
         columns[axes.x],
         columns[axes.y],
-        `The front so far: ${counted(shown.length, "design")}`,
-        [held("x", 0), held("y", 1)],
+        `The front so far: ${counted(frontPoints.length, "design")}`,
+        [heldRange("x", 0), heldRange("y", 1)],
       ),
     );
   }
@@ -305,12 +305,16 @@ export function watch(place, job, { signal, changed }) {
   // The events stop when the service is away, and when the job has ended: the look at the job tells which.
   /** @param {boolean} yes */
   const connected = (yes) => soon(yes ? OFTEN : 0);
-  const stop = follow(job.id, { after: Math.max(0, job.events - PAST), signal, told, connected });
+  const stop = follow(job.id, {
+    after: Math.max(0, job.events - PAST),
+    signal,
+    told: takeEvent,
+    connected,
+  });
   signal.addEventListener("abort", rest);
-  window.addEventListener("units", () => latest && drawFront(latest), { signal });
   noFront(job);
   if (job.progress) {
-    course.told(job.progress);
+    course.add(job.progress);
     stand(job.progress, job.state === "running");
     if (job.progress.front) drawFront(job.progress.front);
   } else fill(curve, h("p", { class: "quiet" }, "Nothing yet."));

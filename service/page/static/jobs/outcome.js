@@ -11,7 +11,7 @@ export function outcome(job) {
     { class: "button", href: link(["new"], { from: job.id }) },
     "Change the job",
   );
-  const found = job.summary?.designs ?? 0;
+  const designs = job.summary?.designs ?? 0;
   if (job.state === "infeasible") {
     return said("No design meets all requirements", job.reason, [
       "Relax one of them, or widen a range, and search again. ",
@@ -20,15 +20,15 @@ export function outcome(job) {
   }
   if (job.state === "failed") {
     return said("The run stopped with an error", job.reason, [
-      "Resume it, above, to go on from its last round. If it stops there again, download its file error.txt and tell whoever runs the service, or change the job. ",
+      "Resume it above to continue from its last round. If it stops there again, download its file error.txt and tell whoever runs the service, or change the job. ",
       again,
     ]);
   }
-  if (job.state === "cancelled" && found) {
+  if (job.state === "cancelled" && designs) {
     return said(
       "Stopped early",
-      `What it had found by then is below; a longer search finds better designs. ${capital(job.reason)}.`,
-      ["Resume it, above, to go on from where it was."],
+      `The designs found so far are below; a longer search finds better designs. ${capital(job.reason)}.`,
+      ["Resume it above to continue."],
     );
   }
   if (job.state === "cancelled") {
@@ -37,7 +37,7 @@ export function outcome(job) {
         ? "Stopped before its designs were gathered"
         : "The run was cancelled before it found a design",
       job.reason,
-      ["Resume it, above, to go on from where it was."],
+      ["Resume it above to continue."],
     );
   }
   return null;

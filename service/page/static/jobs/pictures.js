@@ -14,7 +14,7 @@ const MOST = 100; // runs that the service takes in one request
  */
 export function pictures(signal) {
   /** @type {Map<number, { events: number, points: Api.FrontPoints["points"] }>} */
-  const known = new Map(); // by the number of a run; events: how many it had
+  const loadedPoints = new Map(); // by the number of a run; events: how many it had
   /** @type {WeakMap<Element, Api.JobRow>} */
   const awaited = new WeakMap();
   /** @type {Set<Element>} */
@@ -31,7 +31,7 @@ export function pictures(signal) {
 
   /** @param {Api.JobRow} job */
   function picture(job) {
-    const before = known.get(job.id);
+    const before = loadedPoints.get(job.id);
     const node = drawn(before?.points ?? []);
     if (before?.events !== job.events) {
       awaited.set(node, job);
@@ -56,10 +56,10 @@ export function pictures(signal) {
         { job: jobs.map(({ id }) => String(id)) },
         signal,
       );
-      const found = new Map(fronts.map(({ job, points }) => [job, points]));
+      const pointsOf = new Map(fronts.map(({ job, points }) => [job, points]));
       for (const [index, { id, events }] of jobs.entries()) {
-        const points = found.get(id) ?? [];
-        known.set(id, { events, points });
+        const points = pointsOf.get(id) ?? [];
+        loadedPoints.set(id, { events, points });
         nodes[index].replaceWith(drawn(points));
       }
     } catch {
@@ -69,7 +69,7 @@ export function pictures(signal) {
     if (!signal.aborted) ask();
   }
 
-  return { picture, forget: (/** @type {number} */ number) => known.delete(number) };
+  return { picture, forget: (/** @type {number} */ number) => loadedPoints.delete(number) };
 }
 
 /** @param {Api.FrontPoints["points"]} points */

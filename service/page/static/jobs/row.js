@@ -12,7 +12,7 @@ import { moment } from "./times.js";
 /**
  * Return a run as an item of the list. picture: its front; compare(number, yes): it is ticked or not; changed(): something was done with it.
  * @param {Api.JobRow} job
- * @param {{ picture: Element, chosen: boolean, compare: (number: number, yes: boolean) => void, changed: (job: Api.JobRow | null) => unknown }} given
+ * @param {{ picture: Element, chosen: boolean, compare: (number: number, yes: boolean) => void, changed: (job: Api.JobRow | null) => unknown }} options
  */
 export function runRow(job, { picture, chosen, compare, changed }) {
   return h(

@@ -10,14 +10,14 @@ import { duration } from "./times.js";
 export function stages() {
   const node = h("ol", { class: "stages", "aria-label": "Stages" });
   /** @type {Stage[]} */
-  let known = [];
+  let stageList = [];
   let seconds = 0;
   let over = false;
   return {
     node,
     /** @param {Api.Progress} data */
-    told(data) {
-      known = taken(known, data, seconds);
+    add(data) {
+      stageList = taken(stageList, data, seconds);
       seconds = data.seconds ?? 0;
       draw();
     },
@@ -30,7 +30,7 @@ export function stages() {
   function draw() {
     fill(
       node,
-      known.map((one, place) => row(one, !over && place === known.length - 1)),
+      stageList.map((one, place) => row(one, !over && place === stageList.length - 1)),
     );
   }
 }
@@ -42,14 +42,20 @@ export function stages() {
 export function taken(before, data, seconds) {
   const { stage: name, round, step = 0, steps = 0 } = data;
   const now = data.seconds ?? 0;
-  const known = before.slice();
-  const last = known.at(-1);
+  const stageList = before.slice();
+  const last = stageList.at(-1);
   if (last && (now < last.from || round < last.rounds[0]))
     return taken([], data, Math.min(seconds, now));
   if (last?.name === name)
-    known[known.length - 1] = { ...last, rounds: [last.rounds[0], round], step, steps, to: now };
+    stageList[stageList.length - 1] = {
+      ...last,
+      rounds: [last.rounds[0], round],
+      step,
+      steps,
+      to: now,
+    };
   else
-    known.push({
+    stageList.push({
       name,
       rounds: [round, round],
       step,
@@ -57,7 +63,7 @@ export function taken(before, data, seconds) {
       from: Math.min(seconds, now),
       to: now,
     });
-  return known;
+  return stageList;
 }
 
 /** @param {Stage} stage @param {boolean} now */

@@ -8,8 +8,8 @@ const [MINUTE, HOUR, DAY] = [60, 3600, 86_400]; // s
 
 /** Return when a job ended, or since when it runs or waits, in words: exact when pointed at. @param {Api.JobRow} job */
 export function moment({ state, submitted, started, finished }) {
-  if (state === "running" && started) return ["begun ", ago(started)];
-  if (!finished) return ["asked for ", ago(submitted)];
+  if (state === "running" && started) return ["started ", ago(started)];
+  if (!finished) return ["submitted ", ago(submitted)];
   return [
     ago(finished),
     started && finished - started >= LEAST ? `, after ${duration(finished - started)}` : null,

@@ -36,8 +36,8 @@ export function isInfeasible(error) {
 export function address(path, query = {}) {
   const parameters = new URLSearchParams();
   for (const [key, value] of Object.entries(query)) {
-    for (const one of Array.isArray(value) ? value : [value]) {
-      if (one !== null && one !== undefined) parameters.append(key, String(one));
+    for (const item of Array.isArray(value) ? value : [value]) {
+      if (item !== null && item !== undefined) parameters.append(key, String(item));
     }
   }
   const text = parameters.toString();
@@ -84,7 +84,7 @@ export function post(path, body = undefined, { signal, headers } = {}) {
  * @param {{ query?: Api.Query, signal: AbortSignal, told: (data: Record<string, unknown>) => void }} options
  * @returns {Promise<Api.Answer<"post", Path>>}
  */
-export async function postFollowed(path, body, { query, signal, told }) {
+export async function postFollowed(path, body, { query, signal, told: onProgress }) {
   const headers = { Accept: "text/event-stream", "Content-Type": "application/json" };
   const response = await answered("POST", address(path, query), {
     headers,
@@ -101,7 +101,7 @@ export async function postFollowed(path, body, { query, signal, told }) {
     text = /** @type {string} */ (events.pop());
     for (const event of events) {
       const data = parsed(event.replace(/^.*?^data: /ms, ""));
-      if (event.startsWith("event: progress")) told(data);
+      if (event.startsWith("event: progress")) onProgress(data);
       else return data;
     }
   }
@@ -186,7 +186,7 @@ export async function answered(method, url, options = {}) {
     response = await fetch(url, { method, ...options });
   } catch (error) {
     if (isAbort(error)) throw error;
-    throw new Problem(0, "The service does not answer; the page goes on when it is back.");
+    throw new Problem(0, "The service does not answer; this page continues when it is back.");
   }
   return response.status === 401 && (await letIn()) ? answered(method, url, options) : response;
 }

@@ -4,43 +4,56 @@ import { h } from "./dom.js";
 import { apiSystem, text } from "./numbers.js";
 import { headsOf, scrolledTable } from "./table.js";
 
-/** Return the nodes of blocks. title: of tables that no heading precedes. @param {Api.Block[]} found @param {string} title */
-export function blocks(found, title) {
+/**
+ * Return the nodes of blocks. title: of tables that no heading precedes; action(n): what row n of a table ends with.
+ * @param {Api.Block[]} found @param {string} title @param {(n: number) => Dom.Child} [action]
+ */
+export function blocks(found, title, action = undefined) {
   const system = apiSystem() ?? "metric";
   /** @param {Api.Block["text"][number]} part */
-  const shown = (part) =>
+  const partText = (part) =>
     typeof part === "string"
       ? part
       : "sign" in part
         ? numberText(part, part[system])
         : part[system];
   /** @param {Api.Block["text"]} parts */
-  const words = (parts) => parts.map(shown).join("");
+  const words = (parts) => parts.map(partText).join("");
   let above = title;
   return found.map(({ text: parts, style, columns, rows }) => {
     if (style === "heading") return h("h3", {}, (above = words(parts)));
     if (!columns.length)
       return h("p", { class: style === "note" ? "quiet hint" : null }, words(parts));
-    const heads = columns.map((column) => words(column.title));
-    const lines = rows.map((cells) =>
+    const heads = [...columns.map((column) => words(column.title)), ...(action ? [""] : [])];
+    const lines = rows.map((cells, row) =>
       h(
         "tr",
         {},
         cells.map((cell, n) =>
           h(
             n ? "td" : "th",
-            { scope: n ? null : "row", class: columns[n].right ? "number" : null },
+            {
+              scope: n ? null : "row",
+              class: columns[n].right ? "number" : null,
+              "data-value": numberOf(cell),
+            },
             words(cell),
           ),
         ),
+        action && h("td", {}, action(row)),
       ),
     );
     return scrolledTable(
       heads[0] ? `${above}: ${heads[0]}` : above,
-      heads.some(Boolean) && headsOf(heads, (n) => columns[n].right),
+      heads.some(Boolean) && headsOf(heads, (n) => columns[n]?.right),
       lines,
     );
   });
+}
+
+/** Return the metric number that is all of a cell, which tests and scripts read; null for others. @param {Api.Block["text"]} cell */
+function numberOf([part, ...others]) {
+  return typeof part === "object" && "sign" in part && !others.length ? part.metric.number : null;
 }
 
 /** @param {Api.NumberPart} part @param {Api.NumberPart["metric"]} shown */

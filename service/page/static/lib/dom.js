@@ -52,6 +52,12 @@ export function numberField(attributes) {
   });
 }
 
+/** Mark a control as wrong, or as right again. @param {Element} control @param {unknown} wrong */
+export function markInvalid(control, wrong) {
+  if (wrong) control.setAttribute("aria-invalid", "true");
+  else control.removeAttribute("aria-invalid");
+}
+
 /** Return the element of the document that has an id; the document that comes with the page has it. @param {string} id */
 export function byId(id) {
   return /** @type {HTMLElement} */ (document.getElementById(id));

@@ -40,7 +40,7 @@ export function watchDownloads() {
 async function fetched(link) {
   link.setAttribute("aria-busy", "true");
   const title = link.getAttribute("aria-label") ?? link.textContent ?? "";
-  const told = setTimeout(() => say(`${title} is being made.`), SOON);
+  const notice = setTimeout(() => say(`${title} is being made.`), SOON);
   try {
     const response = await answered("GET", link.href);
     if (!response.ok) {
@@ -60,7 +60,7 @@ async function fetched(link) {
       ? new Problem(0, "The service does not answer; try again when it is back.")
       : error;
   } finally {
-    clearTimeout(told);
+    clearTimeout(notice);
     link.removeAttribute("aria-busy");
   }
 }

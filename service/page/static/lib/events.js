@@ -12,7 +12,7 @@ const AGAIN = 2000; // ms until the next try after the connection was refused
  * @param {{ after?: number, signal?: AbortSignal, told: (event: Api.Event) => void, connected?: (yes: boolean) => void }} Followed
  * @returns {() => void}
  */
-export function follow(job, { after = 0, signal, told, connected = () => {} }) {
+export function follow(job, { after = 0, signal, told: onEvent, connected = () => {} }) {
   let last = after;
   /** @type {EventSource | null} */
   let source = null;
@@ -31,7 +31,7 @@ export function follow(job, { after = 0, signal, told, connected = () => {} }) {
       const event = JSON.parse(message.data);
       if (event.number <= last) return;
       last = event.number;
-      told(event);
+      onEvent(event);
     };
     for (const kind of ["state", "progress", "message"]) opened.addEventListener(kind, take);
     opened.onerror = () => {

@@ -6,7 +6,7 @@ import { h } from "./dom.js";
  * Return a menu. title: of its button, "…" for what is dangerous or rare; name: what the button is called where the title does not say it;
  * content: what opens; opened(): called when it does.
  * @param {string} title @param {Dom.Child} content
- * @param {{ name?: string, opened?: () => void, act?: string }} given act: what the button is called in a list that is drawn anew
+ * @param {{ name?: string, opened?: () => void, act?: string }} options act: what the button is called in a list that is drawn anew
  */
 export function menu(title, content, { name, opened, act } = {}) {
   const summary = h("summary", { class: "button", "aria-label": name, "data-act": act }, title);

@@ -16,6 +16,25 @@ export function say(sentence, kind = "info") {
   if (kind === "info") setTimeout(() => notice.remove(), SHOWN);
 }
 
+/**
+ * Do something; a failure that was not an abort goes to `refuse`. busy: a button that is marked meanwhile; not disabled, which would take
+ * the focus away.
+ * @template Result
+ * @param {() => Promise<Result>} action @param {(problem: unknown) => unknown} refuse @param {HTMLElement} [busy]
+ * @returns {Promise<Result | undefined>}
+ */
+export async function attempt(action, refuse = sayProblem, busy = undefined) {
+  if (busy?.hasAttribute("aria-busy")) return undefined;
+  busy?.setAttribute("aria-busy", "true");
+  try {
+    return await action();
+  } catch (problem) {
+    if (!isAbort(problem)) refuse(problem);
+  } finally {
+    busy?.removeAttribute("aria-busy");
+  }
+}
+
 /** Say what went wrong; nothing for what was only given up. @param {unknown} error */
 export function sayProblem(error) {
   if (!isAbort(error)) say(sentenceOf(error), "error");

@@ -151,46 +151,46 @@ class Parser {
 
   /** @param {string | null} unit */
   factor(unit) {
-    const found = this.field.factors[unit ?? ""];
-    if (found === undefined)
+    const factor = this.field.factors[unit ?? ""];
+    if (factor === undefined)
       throw new Unreadable(`A share and a value cannot be added, as in ${shown(this.text)}.`);
-    return found;
+    return factor;
   }
 
   /** @returns {Part} */
   term() {
-    let found = this.parseQuantity(this.operand());
+    let product = this.withUnit(this.operand());
     for (let sign = this.taken(/^[*/×·÷]/); sign; sign = this.taken(/^[*/×·÷]/)) {
       const other = this.operand();
       const by = sign === "/" || sign === "÷";
-      if (other.unit !== null && (found.unit !== null || by))
+      if (other.unit !== null && (product.unit !== null || by))
         throw new Unreadable(
           `Only one part of a product has a unit, and not what it is divided by; got ${shown(this.text)}.`,
         );
       if (by && other.value === 0) throw new Unreadable(`${shown(this.text)} divides by zero.`);
-      found = this.parseQuantity({
-        value: by ? found.value / other.value : found.value * other.value,
-        unit: found.unit ?? other.unit,
+      product = this.withUnit({
+        value: by ? product.value / other.value : product.value * other.value,
+        unit: product.unit ?? other.unit,
       });
     }
-    return found;
+    return product;
   }
 
   /** Return a part with the unit behind it, if there is one. @param {Part} part @returns {Part} */
-  parseQuantity(part) {
-    const found = this.spellings.find(
+  withUnit(part) {
+    const match = this.spellings.find(
       ([spelling]) =>
         this.rest.startsWith(spelling) &&
         !(/\w$/.test(spelling) && /^[\w^]/.test(this.rest.slice(spelling.length))),
     );
-    if (!found) {
+    if (!match) {
       if (WORD.test(this.rest)) throw new Unknown();
       return part;
     }
-    this.rest = this.rest.slice(found[0].length).trimStart();
+    this.rest = this.rest.slice(match[0].length).trimStart();
     if (part.unit !== null)
       throw new Unreadable(`${shown(this.text)} has two units in one product.`);
-    return { value: part.value, unit: found[1] };
+    return { value: part.value, unit: match[1] };
   }
 
   /** @returns {Part} */
@@ -251,9 +251,9 @@ class Parser {
 
   /** Take what a pattern finds at the beginning of the rest, and the space behind it. @param {RegExp} pattern */
   matched(pattern) {
-    const found = pattern.exec(this.rest);
-    if (found) this.rest = this.rest.slice(found[0].length).trimStart();
-    return found;
+    const match = pattern.exec(this.rest);
+    if (match) this.rest = this.rest.slice(match[0].length).trimStart();
+    return match;
   }
 
   /** @param {RegExp} pattern */
@@ -266,7 +266,7 @@ class Parser {
 function spellingsOf({ factors, spoken, percent }) {
   const units = Object.keys(factors);
   /** @type {[string, string][]} */
-  const found = units.flatMap((unit) =>
+  const spellings = units.flatMap((unit) =>
     [
       unit,
       unit.replaceAll(" ", ""),
@@ -275,9 +275,9 @@ function spellingsOf({ factors, spoken, percent }) {
     ].map((one) => /** @type {[string, string]} */ ([one, unit])),
   );
   for (const [spelling, unit] of Object.entries({ ...SPELLINGS, ...spoken }))
-    if (unit in factors) found.push([spelling, unit]);
-  if (percent) found.push(["%", "%"]);
-  return found.sort(([one], [other]) => other.length - one.length);
+    if (unit in factors) spellings.push([spelling, unit]);
+  if (percent) spellings.push(["%", "%"]);
+  return spellings.sort(([one], [other]) => other.length - one.length);
 }
 
 /** Return a number as text, without what rounding adds. @param {number} value */

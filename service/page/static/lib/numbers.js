@@ -85,16 +85,15 @@ export function inShownUnits(sentence) {
   );
   return sentence.replace(
     values,
-    (_, given, unit) =>
-      `${given.replace(new RegExp(number, "g"), (/** @type {string} */ one) => text(Number(one.replace("−", "-")), unit))} ${unitOf(unit)}`,
+    (_, quantity, unit) =>
+      `${quantity.replace(new RegExp(number, "g"), (/** @type {string} */ one) => text(Number(one.replace("−", "-")), unit))} ${unitOf(unit)}`,
   );
 }
 
-/** Choose a system; everything that shows numbers is drawn again (event "units" of the window). @param {string} name */
+/** Choose a system; the view is to be shown again. @param {string} name */
 export async function chooseSystem(name) {
   await readySystem();
   localStorage.setItem("units", name);
-  window.dispatchEvent(new Event("units"));
 }
 
 /** Return the unit that is shown for one of the API, as job files write it: "in" for "mm". @param {string} unit @returns {string} */
@@ -165,7 +164,7 @@ export function withUnit(value, unit = "", digits = 5) {
 
 /**
  * Return the ends of an axis as text: a millionth of the axis is zero to every reader.
- * @param {Page.Range} given @param {string} unit @param {number} digits
+ * @param {Page.Range} options @param {string} unit @param {number} digits
  */
 export function ends({ low, high }, unit, digits = 4) {
   return [low, high].map((value) =>

@@ -11,18 +11,18 @@ import { kindOf, measureOf } from "./units.js";
  * @param {string} typed @param {string} unit of the API @returns {Measured}
  */
 export function parseQuantity(typed, unit) {
-  const shown = plainUnitOf(unit);
-  const kind = kindOf(shown);
-  const found = parseNumber(typed, { unit: shown, ...measureOf(kind) });
-  if (found.empty) return { empty: true };
+  const shownUnit = plainUnitOf(unit);
+  const kind = kindOf(shownUnit);
+  const parsed = parseNumber(typed, { unit: shownUnit, ...measureOf(kind) });
+  if (parsed.empty) return { empty: true };
   const value =
-    found.number !== undefined && found.unit === shown
-      ? fromShown(Number(found.number), unit)
+    parsed.number !== undefined && parsed.unit === shownUnit
+      ? fromShown(Number(parsed.number), unit)
       : NaN;
-  if (found.number !== undefined && Number.isFinite(value)) return { value, said: found.said };
+  if (parsed.number !== undefined && Number.isFinite(value)) return { value, said: parsed.said };
   return {
     wrong:
-      found.wrong ??
-      `“${typed.trim()}” is no ${kind ?? "number"}; write a number${shown ? `, in ${unitOf(unit)} or with its unit` : ""}.`,
+      parsed.wrong ??
+      `“${typed.trim()}” is no ${kind ?? "number"}; write a number${shownUnit ? `, in ${unitOf(unit)} or with its unit` : ""}.`,
   };
 }

@@ -26,10 +26,10 @@ export function refusalInWords(detail) {
 
 /** @param {string} line */
 function ofField(line) {
-  const found = OF_A_FIELD.exec(line);
-  if (!found) return line;
-  const { name, unit } = keyOf(found[1]);
-  const rule = found[2].replace(
+  const refusal = OF_A_FIELD.exec(line);
+  if (!refusal) return line;
+  const { name, unit } = keyOf(refusal[1]);
+  const rule = refusal[2].replace(
     VALUE,
     (_, word, value) => `${word} ${withUnit(Number(value), unit, 7)}`,
   );

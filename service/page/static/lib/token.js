@@ -1,6 +1,6 @@
 /** The token of the service, asked for in front of the view that lacks it: what was typed there stays. */
 
-import { h } from "./dom.js";
+import { formOf, h } from "./dom.js";
 
 /** @type {Promise<boolean> | null} */
 let asking = null;
@@ -13,7 +13,7 @@ export function letIn() {
 
 /** @returns {Promise<boolean>} */
 function ask() {
-  return new Promise((told) => {
+  return new Promise((resolve) => {
     const field = h("input", {
       id: "token",
       type: "password",
@@ -28,7 +28,7 @@ function ask() {
         "aria-labelledby": "locked",
         onclose: () => {
           dialog.remove();
-          told(dialog.returnValue === "in");
+          resolve(dialog.returnValue === "in");
         },
       },
       h("h2", { id: "locked" }, "This service asks for its token"),
@@ -37,18 +37,15 @@ function ask() {
         {},
         "It has started anew, or the browser has lost the token. The end of the address that the service printed has it; what you have typed here stays.",
       ),
-      h(
-        "form",
-        {
-          class: "row",
-          onsubmit: (event) => {
-            event.preventDefault();
-            send();
-          },
-        },
-        h("label", { for: "token" }, "Token"),
-        field,
-        h("button", { class: "primary" }, "Open"),
+      formOf(
+        send,
+        h(
+          "div",
+          { class: "row" },
+          h("label", { for: "token" }, "Token"),
+          field,
+          h("button", { class: "primary" }, "Open"),
+        ),
       ),
       wrong,
     );

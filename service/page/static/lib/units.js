@@ -48,7 +48,7 @@ export function kindOf(unit) {
 
 /**
  * Return the units of a kind, smallest system first; percent: with the share of a dimension.
- * @param {string} kind @param {{ percent?: boolean }} given
+ * @param {string} kind @param {{ percent?: boolean }} options
  */
 export function unitsOf(kind, { percent = false } = {}) {
   return [...Object.keys(KINDS[kind] ?? {}), ...(percent ? ["%"] : [])];
@@ -81,12 +81,12 @@ export function split(value, kind) {
  * @param {unknown} value @param {string | null | undefined} kind @returns {[string, string] | null}
  */
 export function spread(value, kind) {
-  const found =
+  const parsed =
     typeof value === "string"
       ? parseNumber(value, { unit: "", ...measureOf(kind), range: true })
       : {};
-  if (!found.ends || (kind && !found.unit)) return null;
-  const [low, high] = found.ends.map((end) => (found.unit ? `${end} ${found.unit}` : end));
+  if (!parsed.ends || (kind && !parsed.unit)) return null;
+  const [low, high] = parsed.ends.map((end) => (parsed.unit ? `${end} ${parsed.unit}` : end));
   return [low, high];
 }
 

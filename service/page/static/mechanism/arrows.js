@@ -45,10 +45,13 @@ export function forceAt({ along }, curves, angle) {
 
 /** Return the scale of arrows of which the longest is so many N: a bar of a round force. @param {number} greatest */
 export function scaleOf(greatest) {
-  const shown = inShown(greatest, "N");
-  if (!(shown > 0)) return "no force acts";
-  const power = 10 ** Math.floor(Math.log10(shown));
-  const round = fromShown(power * (shown / power >= 5 ? 5 : shown / power >= 2 ? 2 : 1), "N");
+  const greatestShown = inShown(greatest, "N");
+  if (!(greatestShown > 0)) return "no force acts";
+  const power = 10 ** Math.floor(Math.log10(greatestShown));
+  const round = fromShown(
+    power * (greatestShown / power >= 5 ? 5 : greatestShown / power >= 2 ? 2 : 1),
+    "N",
+  );
   const bar = h("span", { class: "force-scale", "aria-hidden": "true" });
   bar.style.width = `${((LONGEST * round) / greatest).toFixed(1)}px`;
   return h("span", {}, bar, ` ${withUnit(round, "N", 3)}; a dot: too small for an arrow`);

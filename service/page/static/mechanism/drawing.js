@@ -28,7 +28,7 @@ const EVERY = 100; // ms between two values while it moves; faster ones cannot b
  * - turn(angle, settled): set the crank to an angle in deg; settled: whether it stays there, so that what is written may be read. - fade(yes): show that it is not what was asked for.
  * - forces(yes): show the arrows. - angleAt(x, y): the crank angle that points to a place on the screen. - node: both pictures; handle: what
  *   lies over the crank circle, to be taken hold of. - close().
- * @param {HTMLElement} place @param {{ label: string }} given
+ * @param {HTMLElement} place @param {{ label: string }} options
  */
 export function drawing(place, { label }) {
   const parts = movingParts();
@@ -41,7 +41,7 @@ export function drawing(place, { label }) {
   const node = h("div", { class: "mechanism", role: "img", "aria-label": label }, still, moving);
   place.append(node);
   /** @type {{ linkage: Page.Lengths, motion: Api.Curves, options: Options } | null} */
-  let shown = null; // {linkage, motion, options}
+  let current = null; // {linkage, motion, options}
   /** @type {View | null} */
   let view = null;
   let angle = 0;
@@ -49,12 +49,12 @@ export function drawing(place, { label }) {
 
   function arrange() {
     const width = Math.round(place.clientWidth);
-    if (!shown || width < 60) return;
-    const { linkage, motion, options } = shown;
+    if (!current || width < 60) return;
+    const { linkage, motion, options } = current;
     const { outlines } = options;
-    const own = frameOf(linkage, motion, outlines);
-    const { block, tall } = own;
-    view = fitted(options.frame ?? own, width, options.small);
+    const machineFrame = frameOf(linkage, motion, outlines);
+    const { block, tall } = machineFrame;
+    view = fitted(options.frame ?? machineFrame, width, options.small);
     for (const one of [still, moving])
       one.setAttribute("viewBox", `0 0 ${view.width} ${view.height}`);
     const link = Math.min(Math.max(0.05 * (linkage.crank_mm + linkage.rod_mm) * view.unit, 7), 20);
@@ -95,11 +95,11 @@ export function drawing(place, { label }) {
   /** @param {number} to @param {boolean} settled */
   function turn(to, settled = true) {
     angle = to;
-    if (!view || !shown) return;
-    const { linkage, motion } = shown;
+    if (!view || !current) return;
+    const { linkage, motion } = current;
     const position = between(motion.slider_position_mm, angle) ?? NaN;
     const radians =
-      (crankAt({ curves: motion, turns: shown.options.turns ?? 1 }, angle) * Math.PI) / 180;
+      (crankAt({ curves: motion, turns: current.options.turns ?? 1 }, angle) * Math.PI) / 180;
     const pin = /** @type {Page.Point} */ ([
       view.x(linkage.crank_mm * Math.cos(radians)),
       view.y(linkage.crank_mm * Math.sin(radians)),
@@ -125,7 +125,7 @@ export function drawing(place, { label }) {
     handle,
     /** @param {Page.Lengths} linkage @param {Api.Curves} motion @param {Options} options */
     show(linkage, motion, options = {}) {
-      shown = { linkage, motion, options };
+      current = { linkage, motion, options };
       angle = options.angle ?? angle;
       arrange();
     },
@@ -156,8 +156,8 @@ export function drawing(place, { label }) {
 /** @param {Api.Curves} motion @param {Page.Point | undefined} angles @param {number} turns */
 function deadCentres(motion, angles, turns) {
   const { low, high } = reachOf(motion);
-  const found = angles ?? [low.angle, high.angle];
-  return found.map((angle) => ({
+  const places = angles ?? [low.angle, high.angle];
+  return places.map((angle) => ({
     angle: crankAt({ curves: motion, turns }, angle),
     position: between(motion.slider_position_mm, angle) ?? NaN,
   }));
@@ -199,13 +199,13 @@ function movingParts() {
   const marked = svg("g", {}, normal, arc, value);
   const forces = arrows();
   let radius = 0; // of the arc
-  let told = 0; // when the value was written last
+  let lastWritten = 0; // when the value was written last
   let side = ""; // on which it stands
   return {
     nodes: [more.rod, sliderGroup, rodGroup, crankGroup, marked, forces.node],
     forces,
     marked,
-    /** @param {{ linkage: Page.Lengths, view: View, block: number, tall: number, outlines: Api.Outlines | undefined, link: number, written: boolean, crossed: boolean }} given */
+    /** @param {{ linkage: Page.Lengths, view: View, block: number, tall: number, outlines: Api.Outlines | undefined, link: number, written: boolean, crossed: boolean }} options */
     size({ linkage, view, block: size, tall, outlines, link, written, crossed }) {
       const [wide, high] = [1.5 * size * view.unit, tall * view.unit];
       more.size(view, outlines, linkage.offset_mm);
@@ -259,8 +259,9 @@ function movingParts() {
       value.setAttribute("transform", `translate(${away * 6} ${up * (radius + 2) + 4})`);
       value.setAttribute("text-anchor", away > 0 ? "start" : "end");
     }
-    if (typeof degrees !== "number" || (!settled && performance.now() - told < EVERY)) return;
-    told = performance.now();
+    if (typeof degrees !== "number" || (!settled && performance.now() - lastWritten < EVERY))
+      return;
+    lastWritten = performance.now();
     value.textContent = `${text(degrees, "deg", 3)}°`;
   }
 }

@@ -16,10 +16,10 @@ const LOW = 96; // least height of a small drawing
  * @param {Api.Curves} motion
  */
 export function reachOf(motion) {
-  const found = extremes(motion.slider_position_mm);
-  if (!found)
+  const ends = extremes(motion.slider_position_mm);
+  if (!ends)
     throw new Error("A mechanism that is drawn must turn; this one has no slider position.");
-  return found;
+  return ends;
 }
 
 /**
@@ -29,12 +29,12 @@ export function reachOf(motion) {
  */
 export function frameOf(linkage, motion, outlines) {
   const { low, high } = reachOf(motion);
-  const own = frameWithin(linkage, low.value, high.value);
-  if (!outlines) return own;
+  const linkageFrame = frameWithin(linkage, low.value, high.value);
+  if (!outlines) return linkageFrame;
   const [left, bottom, right, top] = outlines.extent_mm;
   const [block, tall] = [outlines.slider_length_mm / 1.5, outlines.slider_height_mm];
   return around([
-    own,
+    linkageFrame,
     { left, low: bottom - 0.1 * block, right, high: top + 0.1 * block, block, tall },
   ]);
 }

@@ -29,8 +29,8 @@ export function playback(rpm, signal, cycle = "one turn") {
   };
 
   const tell = () =>
-    listeners.forEach((told) =>
-      told({ angle: state.angle, playing: state.playing, settled: !state.playing }),
+    listeners.forEach((listener) =>
+      listener({ angle: state.angle, playing: state.playing, settled: !state.playing }),
     );
   /** @param {number} now */
   const step = (now) => {
@@ -66,10 +66,10 @@ export function playback(rpm, signal, cycle = "one turn") {
     choose(pace) {
       state.pace = pace;
     },
-    /** @param {(turn: Page.Turn) => void} told */
-    listen(told) {
-      listeners.push(told);
-      told({ angle: state.angle, playing: state.playing, settled: !state.playing });
+    /** @param {(turn: Page.Turn) => void} listener */
+    listen(listener) {
+      listeners.push(listener);
+      listener({ angle: state.angle, playing: state.playing, settled: !state.playing });
     },
   });
 }

@@ -17,7 +17,7 @@ const PITCH = 9; // pixels between the strokes of a hatching
  * @param {{
  *   linkage: Page.Lengths, centres: Centre[], ends?: Page.Point, view: View, block: number, tall: number, link: number, direction: number, written: boolean,
  *   swings?: boolean, outlines?: Api.Outlines,
- * }} given
+ * }} options
  */
 export function scenery({
   linkage,
@@ -67,13 +67,13 @@ export function scenery({
 /** Way of the crank pin between the ends of a swing. @param {View} view @param {number} r @param {Centre[]} ends */
 function arcOf(view, r, ends) {
   const [first, last] = ends.map(({ angle }) => (angle * Math.PI) / 180).sort((a, b) => a - b);
-  const at = [first, last].map(
+  const arcEnds = [first, last].map(
     (angle) => `${view.x(r * Math.cos(angle))} ${view.y(r * Math.sin(angle))}`,
   );
   const radius = view.unit * r;
   return svg("path", {
     class: "path",
-    d: `M${at[0]}A${radius} ${radius} 0 ${last - first > Math.PI ? 1 : 0} 0 ${at[1]}`,
+    d: `M${arcEnds[0]}A${radius} ${radius} 0 ${last - first > Math.PI ? 1 : 0} 0 ${arcEnds[1]}`,
   });
 }
 
@@ -116,12 +116,12 @@ function ghost({ angle, position }, { crank_mm: r, offset_mm: e }, view, block, 
 function rotation(view, r, direction) {
   if (!direction) return null;
   /** @param {number} degrees @returns {Page.Point} */
-  const at = (degrees) => [
+  const pointAt = (degrees) => [
     view.x(0) + view.unit * r * Math.cos(degrees),
     view.y(0) - view.unit * r * Math.sin(degrees),
   ];
   const [from, to] = direction > 0 ? [2.0, 2.6] : [2.6, 2.0];
-  const [start, end] = [at(from), at(to)];
+  const [start, end] = [pointAt(from), pointAt(to)];
   const radius = view.unit * r;
   const head = to + (direction > 0 ? Math.PI / 2 : -Math.PI / 2); // which way it points there
   /** @param {number} by */

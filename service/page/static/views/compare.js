@@ -8,6 +8,7 @@ import { blocks } from "../lib/blocks.js";
 import { fill, h } from "../lib/dom.js";
 import { apiSystem, grouped, text, withUnit } from "../lib/numbers.js";
 import { headed, helpLink } from "../front/columns.js";
+import { attempt } from "../lib/notices.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { headedRow, numberCell, table as tableOf } from "../lib/table.js";
 
@@ -16,17 +17,17 @@ export const title = "Compare runs";
 const MOST = 6;
 const SHOWN = 300; // designs of each run in the picture
 
-/** Fronts of several runs over each other, and their best values side by side. @param {HTMLElement} place @param {Page.Visit} given */
+/** Fronts of several runs over each other, and their best values side by side. @param {HTMLElement} place @param {Page.Visit} options */
 export async function show(place, { query, signal }) {
-  const asked = [...new Set((query.get("jobs") ?? "").split(",").map(Number))].filter(
+  const numbers = [...new Set((query.get("jobs") ?? "").split(",").map(Number))].filter(
     (number) => Number.isInteger(number) && number > 0,
   );
-  if (asked.length < 2) throw new Error("Two runs or more are compared; tick them in the list.");
+  if (numbers.length < 2) throw new Error("Two runs or more are compared; tick them in the list.");
   /** @type {string[]} */
   const missing = [];
   const runs = (
     await Promise.all(
-      asked.slice(0, MOST).map(async (number) => {
+      numbers.slice(0, MOST).map(async (number) => {
         try {
           const [job, front] = await Promise.all([
             get(`jobs/${number}`, {}, signal),
@@ -37,16 +38,14 @@ export async function show(place, { query, signal }) {
         } catch (problem) {
           if (isAbort(problem)) throw problem;
           missing.push(
-            statusOf(problem) === 404
-              ? `Run ${number} is not there any more.`
-              : sentenceOf(problem),
+            statusOf(problem) === 404 ? `Run ${number} no longer exists.` : sentenceOf(problem),
           );
         }
         return [];
       }),
     )
   ).flat();
-  if (asked.length > MOST) missing.push(`At most ${MOST} runs are compared at once.`);
+  if (numbers.length > MOST) missing.push(`At most ${MOST} runs are compared at once.`);
 
   const objectives = new Map(
     runs.flatMap(({ front }) => front.objectives.map((objective) => [objective.column, objective])),
@@ -63,8 +62,8 @@ export async function show(place, { query, signal }) {
 
   /** Return the quantity that the address names for an axis, if the runs share it. @type {(name: string, otherwise: string) => string} */
   function chosen(name, otherwise) {
-    const asked = query.get(name);
-    return asked !== null && shared.includes(asked) ? asked : otherwise;
+    const wantedKey = query.get(name);
+    return wantedKey !== null && shared.includes(wantedKey) ? wantedKey : otherwise;
   }
 
   /** Return an objective of the runs. @type {(key: string) => Api.Objective} */
@@ -74,16 +73,16 @@ export async function show(place, { query, signal }) {
 
   function drawPicture() {
     const [x, y] = [axes.x, axes.y].map(known);
-    const shown = runs.map(({ data }) => spread(data.count));
+    const shownRows = runs.map(({ data }) => spread(data.count));
     const series = runs.map(({ data, job }, n) => ({
       name: job.name,
-      points: shown[n].map((row) => [data.cell(axes.x, row), data.cell(axes.y, row)]),
+      points: shownRows[n].map((row) => [data.cell(axes.x, row), data.cell(axes.y, row)]),
     }));
     fill(
       picture,
       points(series, x, y, `The fronts of ${runs.length} runs`, null, {
-        at: (n, place) => tell(n === null ? null : { n, row: shown[n][place] }),
-        open: (n, place) => go(["jobs", runs[n].job.id, "designs", shown[n][place] + 1]),
+        at: (n, place) => tell(n === null ? null : { n, row: shownRows[n][place] }),
+        open: (n, place) => go(["jobs", runs[n].job.id, "designs", shownRows[n][place] + 1]),
       }),
     );
     tell(null);
@@ -108,14 +107,14 @@ export async function show(place, { query, signal }) {
   function drawTable() {
     /** Return the design that is best in an objective of its own; null where the run has another. @param {(typeof runs)[0]} run @param {string} key */
     const bestDesign = ({ front }, key) => {
-      const own = front.objectives.find((objective) => objective.column === key);
-      return own ? front.extremes[own.quantity] : null;
+      const objective = front.objectives.find((objective) => objective.column === key);
+      return objective ? front.extremes[objective.quantity] : null;
     };
     /** @param {string} key @param {string} sense @param {number | null | undefined} target @returns {Api.Row[string][]} */
     const best = (key, sense, target) =>
       runs.map(({ front, data }) => {
-        const own = front.objectives.find((objective) => objective.column === key);
-        if (own) return data.cell(key, front.extremes[own.quantity]);
+        const objective = front.objectives.find((objective) => objective.column === key);
+        if (objective) return data.cell(key, front.extremes[objective.quantity]);
         const { low, high } = data.range(key);
         return target === undefined ? (sense === "maximise" ? high : low) : null;
       });
@@ -197,16 +196,11 @@ export async function show(place, { query, signal }) {
 
   /** Say who is better where, and what differs between the jobs. */
   async function drawWords() {
-    try {
-      const found = await get(
-        "comparison",
-        { job: runs.map(({ job }) => String(job.id)), units: apiSystem() },
-        signal,
-      );
-      fill(words, blocks(found.blocks, title));
-    } catch (problem) {
-      if (!isAbort(problem)) fill(words, h("p", { class: "error" }, sentenceOf(problem)));
-    }
+    const query = { job: runs.map(({ job }) => String(job.id)), units: apiSystem() };
+    await attempt(
+      async () => fill(words, blocks((await get("comparison", query, signal)).blocks, title)),
+      (problem) => fill(words, h("p", { class: "error" }, sentenceOf(problem))),
+    );
   }
 
   /** @param {string} label @param {"x" | "y"} name */
@@ -221,7 +215,7 @@ export async function show(place, { query, signal }) {
           name,
           onchange: (event) => {
             axes[name] = event.currentTarget.value;
-            keep({ jobs: asked.join(","), ...axes });
+            keep({ jobs: numbers.join(","), ...axes });
             drawPicture();
           },
         },
@@ -264,7 +258,7 @@ export async function show(place, { query, signal }) {
               : h(
                   "p",
                   {},
-                  "These runs share fewer than two objectives, so their fronts have no picture in common.",
+                  "These runs share fewer than two objectives, so their fronts cannot be drawn together.",
                 ),
           ),
           h(
@@ -276,25 +270,21 @@ export async function show(place, { query, signal }) {
           h(
             "section",
             { class: "panel", "aria-labelledby": "words-title" },
-            h("h2", { id: "words-title" }, "Who is better where"),
+            h("h2", { id: "words-title" }, "Which run is better where"),
             words,
           ),
         ),
   );
-  const draw = () => {
-    if (runs.length < 2) return;
-    if (shared.length > 1) drawPicture();
-    drawTable();
-    drawWords();
-  };
-  draw();
-  window.addEventListener("units", draw, { signal });
+  if (runs.length < 2) return;
+  if (shared.length > 1) drawPicture();
+  drawTable();
+  await drawWords();
 }
 
 /** Return at most `SHOWN` rows, evenly spread. @param {number} count */
 function spread(count) {
-  const shown = Math.min(count, SHOWN);
-  return Array.from({ length: shown }, (_, index) =>
-    Math.floor((index * (count - 1)) / Math.max(1, shown - 1)),
+  const number = Math.min(count, SHOWN);
+  return Array.from({ length: number }, (_, index) =>
+    Math.floor((index * (count - 1)) / Math.max(1, number - 1)),
   );
 }

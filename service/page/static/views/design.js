@@ -12,7 +12,7 @@ import { mechanismsPanel } from "../design/mechanisms.js";
 import { exportMenu } from "../design/export_menu.js";
 import { designHead, focusLastStep } from "../design/head.js";
 import { playback } from "../mechanism/playback.js";
-import { wayBack } from "../design/inverse.js";
+import { inverseForm } from "../design/inverse.js";
 import { whatIf } from "../design/what_if.js";
 import { placeOf } from "../charts/cycle.js";
 import { keep } from "../lib/address.js";
@@ -26,18 +26,20 @@ const SOON = 150; // ms
 const CYCLES = ["forth and back", "one turn", "two turns"];
 const LENGTHS = ["crank_mm", "rod_mm", "offset_mm"];
 
-/** Show the design that the address names. @param {HTMLElement} place @param {Page.Visit} given */
+/** Show the design that the address names. @param {HTMLElement} place @param {Page.Visit} options */
 export async function show(place, { parts, query, signal }) {
-  const [, job, , given] = parts;
-  const number = Number(given);
+  const [, job, , designText] = parts;
+  const number = Number(designText);
   if (!Number.isInteger(number) || number < 1)
-    throw new Problem(404, `A design is called by its number, from 1; got ${given}.`);
+    throw new Problem(404, `A design is called by its number, from 1; got ${designText}.`);
   const path = /** @type {const} */ (`jobs/${job}/designs/${number}`);
-  const [front, main, requirements] = await Promise.all([
+  const [front, main, requirements, asked] = await Promise.all([
     get(`jobs/${job}/front`, {}, signal),
     loadDesign(job, number, 1, signal),
     get(`${path}/requirements`, {}, signal),
+    get("topics", {}, signal),
   ]);
+  const questions = [...asked.topics, ...asked.questions];
   const { names } = requirements;
   const [rows, ...others] = await Promise.all([
     loadFront(job, front, signal),
@@ -74,14 +76,14 @@ export async function show(place, { parts, query, signal }) {
       "what-if",
       "rounding",
       "curves",
-      "way-back",
+      "inverse",
       "numbers",
       "trade-offs",
       "topics",
       "analyses",
     ].map((name) => [name, h("section", { class: name })]),
   );
-  const files = exportMenu(job, number, { signal });
+  const files = exportMenu(job, number);
   const [ofPlace, ofWay, ofTopics] = Array.from({ length: 3 }, () =>
     h(
       "p",
@@ -105,7 +107,7 @@ export async function show(place, { parts, query, signal }) {
     strip,
     places.curves,
     ofWay,
-    places["way-back"],
+    places.inverse,
     places.numbers,
     ofTopics,
     places.topics,
@@ -139,24 +141,25 @@ export async function show(place, { parts, query, signal }) {
   let later = 0;
   const linked = startOf(query);
   /** @type {Page.Numbers | null} */
-  let kept = linked.lengths ?? null; // of the changed design
+  let changedNumbers = linked.lengths ?? null; // of the changed design
   const keepAll = () =>
     keep({
       beside: others.map((one) => one.number).join(","),
       over,
       tab,
-      ...kept,
-      value: kept?.value?.join(","),
+      ...changedNumbers,
+      value: changedNumbers?.value?.join(","),
     });
   const further = analyses(
     { sections: places.topics, tabs: places.analyses },
     {
       job,
       number,
+      questions,
       swings: !turns,
       tolerances: requirements.tolerances,
       tab,
-      told: (now) => {
+      chooseTab: (now) => {
         tab = now;
         keepAll();
       },
@@ -198,24 +201,24 @@ export async function show(place, { parts, query, signal }) {
     for (const note of [ofPlace, ofWay, ofTopics]) note.hidden = shown === main;
   };
   const draw = () => {
-    const asked = changed?.cycle && {
+    const variant = changed?.cycle && {
       name: "What if",
       series: "what-if",
       row: changed.design,
       violations: changed.violations,
       ...cycleOf(changed.cycle),
     };
-    const moving = [asked ?? main, ...others];
+    const moving = [variant ?? main, ...others];
     glance(moving);
     machines.show(moving);
     machines.fade(refused);
-    series = asked ? [asked, main, ...others] : moving;
+    series = variant ? [variant, main, ...others] : moving;
     charts.show(series);
     legend(places.curves, series);
     return () => {
-      further.show(changed && kept);
+      further.show(changed && changedNumbers);
       showNumbers(places.numbers, {
-        designs: asked ? [main, asked, ...others] : moving,
+        designs: variant ? [main, variant, ...others] : moving,
         columns: main.columns,
         requirements: requirements.requirements,
         slow: requirements.slow_stroke,
@@ -241,12 +244,12 @@ export async function show(place, { parts, query, signal }) {
       refused = impossible;
       clearTimeout(later);
       later = setTimeout(draw(), SOON); // the tables, once the length rests
-      kept = lengths ?? null;
-      for (const each of [files.show, charts.of]) each(kept);
+      changedNumbers = lengths ?? null;
+      for (const each of [files.show, charts.of]) each(changedNumbers);
       keepAll();
     },
   });
-  const steps = rounding(places.rounding, {
+  rounding(places.rounding, {
     job,
     number,
     base: main.row,
@@ -256,20 +259,21 @@ export async function show(place, { parts, query, signal }) {
     applied: sliders.apply,
     signal,
   });
-  const drawAll = () => draw()();
-  drawAll();
+  draw()();
   const costs = question(
-    { title: "What it would cost", inputs: [], figure: false },
+    { title: "Cost of improvements", inputs: [], figure: false },
     { path: `${path}/trade-offs`, job, signal },
   );
-  fill(places["trade-offs"], h("h2", {}, "What it would cost"), costs.node);
+  fill(places["trade-offs"], h("h2", {}, "Cost of improvements"), costs.node);
   costs.ask();
-  wayBack(places["way-back"], {
-    path,
-    positions: main.curves.slider_position_mm,
-    turnTo: (at) => hold(placeOf(main, at, angle.angle), true),
-    signal,
-  });
+  for (const inverse of questions.filter(({ name }) => name === "inverse"))
+    inverseForm(places.inverse, inverse, {
+      path,
+      job,
+      positions: main.curves.slider_position_mm,
+      turnTo: (at) => hold(placeOf(main, at, angle.angle), true),
+      signal,
+    });
   if (turns)
     get(`${path}/analysis`, { show: "extremes" }, signal)
       .then(({ analysis }) => {
@@ -277,26 +281,21 @@ export async function show(place, { parts, query, signal }) {
         charts.show(series);
       })
       .catch(() => {}); // the analysis of that name says so
-  window.addEventListener(
-    "units",
-    () => [drawAll, sliders.draw, steps.draw].forEach((each) => each()),
-    { signal },
-  );
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) angle.play();
   focusLastStep(place);
 }
 
 /** Return the lengths of an address, or what is wrong with them; nothing without any. @param {URLSearchParams} query @returns {{ lengths?: Page.Numbers, wrong?: string }} */
 function startOf(query) {
-  const given = LENGTHS.map((key) => /** @type {const} */ ([key, query.get(key)?.trim() || null]));
-  if (given.every(([, text]) => text === null)) return {};
-  const bad = given.find(([, text]) => !Number.isFinite(Number(text ?? NaN)));
+  const texts = LENGTHS.map((key) => /** @type {const} */ ([key, query.get(key)?.trim() || null]));
+  if (texts.every(([, text]) => text === null)) return {};
+  const bad = texts.find(([, text]) => !Number.isFinite(Number(text ?? NaN)));
   const value = query.get("value")?.split(",");
   if (!bad)
     return {
       lengths: /** @type {Page.Numbers} */ (
         /** @type {unknown} */ ({
-          ...Object.fromEntries(given.map(([key, text]) => [key, Number(text)])),
+          ...Object.fromEntries(texts.map(([key, text]) => [key, Number(text)])),
           ...(value && { value }),
         })
       ),

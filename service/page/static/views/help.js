@@ -13,13 +13,13 @@ export const title = "Help";
 const STEPS = [
   [
     "Ask",
-    "Say what the machine must do: speed, stroke, loads, what the dimensions may be, and what is wanted. Begin with a shipped job if one is near.",
+    "State what the machine must do: speed, stroke, loads, ranges of the dimensions, and the objectives. Start from an example if one is similar.",
     "#/new",
     "New run",
   ],
   [
     "Watch",
-    "The search runs on its own. The front of best compromises grows while you look; it can be cancelled and goes on later.",
+    "The search runs by itself. The front of best compromises grows as you watch; you can cancel it and resume later.",
     "#/",
     "Runs",
   ],
@@ -31,7 +31,7 @@ const STEPS = [
   ],
   [
     "Decide",
-    "Take the design along: a drawing for CAD, its numbers, the motion, a report for the review.",
+    "Export the design: a drawing for CAD, its numbers, the motion, a report for the review.",
     null,
     null,
   ],
@@ -49,15 +49,15 @@ const DOCUMENTS = [
   ["docs/api.md", "the API that this page uses"],
 ];
 
-/** Show one quantity, or all with a field to search. @param {HTMLElement} place @param {Page.Visit} given */
+/** Show one quantity, or all with a field to search. @param {HTMLElement} place @param {Page.Visit} options */
 export async function show(place, { parts, query, signal }) {
   const { quantities } = await get("quantities", {}, signal);
   const name = parts[1];
   if (!name) return overview(place, quantities, query.get("search") ?? "");
-  const found = quantities.find((one) => one.name === name || one.column === name);
-  if (!found) throw new Error(`No quantity is called "${name}"; the help lists them all.`);
-  document.title = `${found.title} · slidercrank`;
-  one(place, found, quantities);
+  const quantity = quantities.find((one) => one.name === name || one.column === name);
+  if (!quantity) throw new Error(`No quantity is called "${name}"; the help lists them all.`);
+  document.title = `${quantity.title} · slidercrank`;
+  one(place, quantity, quantities);
 }
 
 /** @param {HTMLElement} place @param {Api.Quantity[]} quantities @param {string} sought */
@@ -77,7 +77,7 @@ function overview(place, quantities, sought) {
   });
   const draw = () => {
     const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
-    const found = quantities.filter((quantity) => {
+    const matches = quantities.filter((quantity) => {
       const all = [
         quantity.title,
         quantity.name,
@@ -89,9 +89,9 @@ function overview(place, quantities, sought) {
         .toLowerCase();
       return words.every((word) => all.includes(word));
     });
-    fill(list, found.map(card));
-    none.textContent = found.length
-      ? `${found.length} of ${quantities.length} quantities`
+    fill(list, matches.map(card));
+    none.textContent = matches.length
+      ? `${matches.length} of ${quantities.length} quantities`
       : "No quantity has these words.";
   };
   fill(

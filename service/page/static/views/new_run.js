@@ -26,7 +26,7 @@ const correction = (wrong) =>
     ? `${IMPOSSIBLE} Change the marked fields.`
     : "Correct the marked fields first.";
 
-/** Show the form: what was typed before, a preset, or a copy of a job. @param {HTMLElement} place @param {Page.Visit} given */
+/** Show the form: what was typed before, a preset, or a copy of a job. @param {HTMLElement} place @param {Page.Visit} options */
 export async function show(place, { query, signal }) {
   const [schema, { quantities, functions }, shipped] = await Promise.all([
     get("schema", {}, signal),
@@ -63,9 +63,9 @@ async function first(query, shipped, signal) {
       submission: history.state?.submission ?? {},
     };
   if (!preset) return begin(firstJob(system()), "");
-  const found = shipped.find(({ name }) => name === preset);
-  if (!found) throw new Error(`No shipped job is called "${preset}".`);
-  return begin(found.job, `preset ${preset}`);
+  const machine = shipped.find(({ name }) => name === preset);
+  if (!machine) throw new Error(`No shipped job is called "${preset}".`);
+  return begin(machine.job, `preset ${preset}`);
 }
 
 /** @param {Form.Job} job @param {string} source @returns {Form.Draft} */
@@ -81,7 +81,7 @@ function addressOf(source) {
 
 /**
  * @param {HTMLElement} place
- * @param {{ draft: Form.Draft, before: Form.Draft | null, schema: ReturnType<typeof reader>, quantities: Api.Quantity[], functions: Api.Function[], shipped: Api.Preset[], signal: AbortSignal }} given
+ * @param {{ draft: Form.Draft, before: Form.Draft | null, schema: ReturnType<typeof reader>, quantities: Api.Quantity[], functions: Api.Function[], shipped: Api.Preset[], signal: AbortSignal }} options
  */
 function build(place, { draft, before, schema, quantities, functions, shipped, signal }) {
   /** @type {Api.Preview | null} */
@@ -96,7 +96,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
   const undo = h(
     "button",
     { type: "button", hidden: undone === null, onclick: () => undone && take(undone) },
-    "Bring back what was there",
+    "Restore the previous job",
   );
   const body = h("div", { class: "sections" });
 
@@ -122,10 +122,10 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     rename: (path, from, to, within) => {
       const table = /** @type {Record<string, unknown>} */ (at(form.job, path));
       put(form.job, path, renamed(table, from, to));
-      for (const one of form.fields) {
-        if (!within.contains(one.node)) continue;
-        one.path = [...path, to, ...one.path.slice(path.length + 1)];
-        one.key = written(one.path);
+      for (const field of form.fields) {
+        if (!within.contains(field.node)) continue;
+        field.path = [...path, to, ...field.path.slice(path.length + 1)];
+        field.key = written(field.path);
       }
       changed();
     },
@@ -177,7 +177,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
   }
   /**
    * Put another draft in place of this one, which can be brought back.
-   * @param {Pick<Form.Draft, "job" | "submission" | "source">} other @param {{ text?: boolean }} given
+   * @param {Pick<Form.Draft, "job" | "submission" | "source">} other @param {{ text?: boolean }} options
    */
   function take(other, { text = false } = {}) {
     if (!text) undone = structuredClone({ ...draft });
@@ -197,9 +197,9 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     }
     check(form, { now: true });
   }
-  /** @param {Api.Wrong[]} wrong @param {{ missing?: boolean }} given */
-  function mark(wrong, given = {}) {
-    const { elsewhere, first: worst } = showWrong(form.fields, wrong, given);
+  /** @param {Api.Wrong[]} wrong @param {{ missing?: boolean }} options */
+  function mark(wrong, options = {}) {
+    const { elsewhere, first: worst } = showWrong(form.fields, wrong, options);
     fill(
       general,
       elsewhere.map((sentence) => h("li", {}, sentence)),
@@ -214,7 +214,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
   /** @param {Api.Preview} answer */
   function tell(answer) {
     form.said = answer;
-    for (const one of form.fields.slice()) one.tell?.();
+    for (const field of form.fields.slice()) field.tell?.();
     document.activeElement?.dispatchEvent(new Event("names")); // there may be others now
     mark(answer.wrong);
     const count = answer.wrong.filter(({ infeasible }) => !infeasible).length;
@@ -318,8 +318,8 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
       ondragover: (event) => event.preventDefault(),
       ondrop: (event) => {
         event.preventDefault();
-        const [given] = event.dataTransfer?.files ?? [];
-        if (given) file.load(given);
+        const [droppedFile] = event.dataTransfer?.files ?? [];
+        if (droppedFile) file.load(droppedFile);
       },
     },
     h(
@@ -329,7 +329,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
       h(
         "div",
         { class: "row" },
-        h("label", { for: "preset" }, "Begin with a shipped job"),
+        h("label", { for: "preset" }, "Start from an example"),
         from,
         over,
         undo,
@@ -358,8 +358,4 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
   file.refresh();
   say("Checking …");
   check(form, { now: true });
-  window.addEventListener("units", () => showFactsAgain(), { signal });
-  function showFactsAgain() {
-    if (checked) showFacts(facts, checked);
-  }
 }

@@ -12,7 +12,7 @@ export const title = "Run";
 
 const SIZES = ["crank_mm", "rod_mm", "offset_mm"];
 
-/** A run: while it goes on its progress, afterwards the explorer of its front. @param {HTMLElement} place @param {Page.Visit} given */
+/** A run: while it goes on its progress, afterwards the explorer of its front. @param {HTMLElement} place @param {Page.Visit} options */
 export async function show(place, { parts, signal }) {
   const number = Number(parts[1]);
   if (!Number.isInteger(number) || number < 1)
@@ -31,7 +31,7 @@ export async function show(place, { parts, signal }) {
       inner?.control.abort();
       fill(
         place,
-        h("h1", {}, `Run ${number} is not there any more`),
+        h("h1", {}, `Run ${number} no longer exists`),
         h("p", {}, "It was deleted, here or elsewhere."),
         h("p", {}, h("a", { class: "button", href: "#/" }, "All runs")),
       );
@@ -46,17 +46,18 @@ export async function show(place, { parts, signal }) {
       inner = { control, live };
       signal.addEventListener("abort", () => control.abort(), { signal: control.signal });
     }
-    const own = /** @type {{ control: AbortController }} */ (inner).control.signal;
-    const asked = live || !job.summary?.designs ? null : designs(job.id, job.summary.best, own); // on its way while the head is drawn
-    asked?.catch(() => {}); // who waits for it says so
-    const held = focused(head);
+    const bodySignal = /** @type {{ control: AbortController }} */ (inner).control.signal;
+    const pendingFront =
+      live || !job.summary?.designs ? null : designs(job.id, job.summary.best, bodySignal); // on its way while the head is drawn
+    pendingFront?.catch(() => {}); // who waits for it says so
+    const hadFocus = focused(head);
     drawHead(job);
-    if (held) first(head, "button:not(.skip), summary, a")?.focus();
+    if (hadFocus) first(head, "button:not(.skip), summary, a")?.focus();
     if (watched) return;
     if (live) {
       const [{ watch }] = await Promise.all([import("../jobs/live.js"), readySystem()]);
-      if (!own.aborted) watch(body, job, { signal: own, changed: stand });
-    } else await ended(job, asked, own);
+      if (!bodySignal.aborted) watch(body, job, { signal: bodySignal, changed: stand });
+    } else await ended(job, pendingFront, bodySignal);
   }
 
   /**

@@ -13,10 +13,10 @@ export const title = "Runs";
 const EACH = 2000; // ms between two looks while the page is seen
 const PAGE = 25;
 
-/** The list of runs, kept up to date while it is looked at. @param {HTMLElement} place @param {Page.Visit} given */
+/** The list of runs, kept up to date while it is looked at. @param {HTMLElement} place @param {Page.Visit} options */
 export async function show(place, { query, signal }) {
   /** @type {{ state: string, name: string, before: string }} */
-  const asked = {
+  const filters = {
     state: query.get("state") ?? "",
     name: query.get("name") ?? "",
     before: query.get("before") ?? "",
@@ -26,16 +26,14 @@ export async function show(place, { query, signal }) {
   const rows = new Map(); // number: {text, node}
   const { picture, forget } = pictures(signal);
   const list = h("ul", { class: "runs" });
-  const said = h("p", { class: "quiet", role: "status" });
+  const status = h("p", { class: "quiet", role: "status" });
   const pages = h("nav", { class: "row", "aria-label": "Pages" });
   const comparing = h("div", { class: "row" });
-  /** @type {Api.JobPage} */
-  let shown = { jobs: [], next: null };
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
 
   const changed = () => {
-    keep({ ...asked, jobs: [...compared].join(",") });
+    keep({ ...filters, jobs: [...compared].join(",") });
   };
   const search = h(
     "form",
@@ -47,7 +45,7 @@ export async function show(place, { query, signal }) {
       h("input", {
         type: "search",
         name: "name",
-        value: asked.name,
+        value: filters.name,
         maxlength: 200,
         oninput: (event) => choose("name", event.currentTarget.value),
       }),
@@ -61,7 +59,7 @@ export async function show(place, { query, signal }) {
         { name: "state", onchange: (event) => choose("state", event.currentTarget.value) },
         h("option", { value: "" }, "all"),
         STATES.map((state) =>
-          h("option", { value: state, selected: state === asked.state }, stateWord(state)),
+          h("option", { value: state, selected: state === filters.state }, stateWord(state)),
         ),
       ),
     ),
@@ -69,15 +67,15 @@ export async function show(place, { query, signal }) {
   );
   /** @param {"name" | "state"} key @param {string} value */
   const choose = (key, value) => {
-    asked[key] = value;
-    asked.before = "";
+    filters[key] = value;
+    filters.before = "";
     changed();
     clearTimeout(timer);
     timer = setTimeout(look, key === "name" ? 200 : 0);
   };
   /** @param {string} before */
   const turn = (before) => {
-    asked.before = before;
+    filters.before = before;
     changed();
     look().then(() => first(place, "h1")?.scrollIntoView());
   };
@@ -105,22 +103,21 @@ export async function show(place, { query, signal }) {
   /** Look once, and again after a while. */
   async function look() {
     clearTimeout(timer);
-    const before = asked.before || null;
+    const before = filters.before || null;
     try {
       const [page] = await Promise.all([
         get(
           "jobs",
-          { limit: PAGE, state: asked.state || null, name: asked.name || null, before },
+          { limit: PAGE, state: filters.state || null, name: filters.name || null, before },
           signal,
         ),
         readySystem(),
       ]);
-      if (before !== (asked.before || null)) return;
-      shown = page;
+      if (before !== (filters.before || null)) return;
       draw(page);
     } catch (problem) {
       if (isAbort(problem)) return;
-      said.textContent = sentenceOf(problem);
+      status.textContent = sentenceOf(problem);
     }
     if (!signal.aborted) timer = setTimeout(() => (document.hidden ? null : look()), EACH);
   }
@@ -129,25 +126,28 @@ export async function show(place, { query, signal }) {
   function draw(page) {
     const wanted = page.jobs.map((job) => {
       const text = `${JSON.stringify(job)}${Math.floor(Date.now() / 60_000)}`;
-      const known = rows.get(job.id);
-      if (known?.text === text) return known.node;
-      const held = (known && focused(known.node)?.dataset.act) ?? null;
+      const drawnRow = rows.get(job.id);
+      if (drawnRow?.text === text) return drawnRow.node;
+      const focusedAct = (drawnRow && focused(drawnRow.node)?.dataset.act) ?? null;
       const node = runRow(job, {
         picture: picture(job),
         chosen: compared.has(job.id),
         compare,
         changed: look,
       });
-      rows.set(job.id, { text, node, held });
+      rows.set(job.id, { text, node, held: focusedAct });
       return node;
     });
     const same =
       wanted.length === list.children.length &&
       wanted.every((node, index) => list.children[index] === node);
     if (!same) {
-      const held = page.jobs.map(({ id }) => rows.get(id)).find((row) => row?.held);
+      const focusedRow = page.jobs.map(({ id }) => rows.get(id)).find((row) => row?.held);
       fill(list, wanted);
-      if (held) (first(held.node, `[data-act="${held.held}"]`) ?? first(held.node, "a"))?.focus();
+      if (focusedRow)
+        (
+          first(focusedRow.node, `[data-act="${focusedRow.held}"]`) ?? first(focusedRow.node, "a")
+        )?.focus();
       for (const row of rows.values()) row.held = null;
     }
     for (const number of rows.keys()) {
@@ -155,23 +155,23 @@ export async function show(place, { query, signal }) {
       rows.delete(number);
       forget(number);
     }
-    const some = asked.name || asked.state || asked.before;
+    const some = filters.name || filters.state || filters.before;
     const empty = !page.jobs.length && !some;
     place.classList.toggle("empty", empty);
     search.hidden = empty;
     welcome.hidden = !empty;
     first(place, "h1")?.replaceChildren(empty ? "No runs yet" : title);
     if (empty) machines.begin();
-    said.textContent =
+    status.textContent =
       page.jobs.length || empty
         ? ""
-        : asked.before
+        : filters.before
           ? "There are no older runs."
-          : "No run is like this; change the name or the state.";
+          : "No run matches; change the name or the state.";
     const { next } = page;
     fill(
       pages,
-      asked.before && h("button", { type: "button", onclick: () => turn("") }, "Newest"),
+      filters.before && h("button", { type: "button", onclick: () => turn("") }, "Newest"),
       next !== null && h("button", { type: "button", onclick: () => turn(String(next)) }, "Older"),
     );
   }
@@ -183,13 +183,13 @@ export async function show(place, { query, signal }) {
     h(
       "p",
       { class: "lead" },
-      "Say what a slider-crank must do and what may vary: the search finds the designs that are worth having, and proves how good they are.",
+      "State what a slider-crank must do and what may vary: the search finds the best compromises and proves how good they are.",
     ),
     h(
       "p",
       { class: "row" },
       h("a", { class: "button primary", href: "#/new" }, "New run"),
-      h("span", { class: "quiet" }, "from nothing, or begin with a machine that ships:"),
+      h("span", { class: "quiet" }, "from scratch, or start from an example:"),
     ),
     machines.node,
   );
@@ -205,19 +205,13 @@ export async function show(place, { query, signal }) {
       search,
       welcome,
       list,
-      said,
+      status,
       pages,
     );
     showComparing();
     look().then(ready);
   });
   const seen = () => document.hidden || look();
-  const again = () => {
-    rows.clear();
-    draw(shown);
-    look();
-  };
   document.addEventListener("visibilitychange", seen, { signal });
-  window.addEventListener("units", again, { signal });
   signal.addEventListener("abort", () => clearTimeout(timer));
 }
