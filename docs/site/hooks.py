@@ -14,6 +14,7 @@ from mkdocs.structure.files import File, Files
 
 from docs.site.api_reference import api_reference
 from docs.site.job_reference import job_reference
+from docs.site.notebooks import notebook_files, notebook_page, notebook_pictures
 from docs.site.python_reference import folder_reference, front_door_reference
 from docs.site.quantity_reference import quantity_reference
 
@@ -29,6 +30,7 @@ def pages() -> dict[str, Callable[[], str]]:
     """Return what makes each page that is not in docs/, by its place in the site."""
     return {
         **{place: partial(_at_the_top, name) for name, place in _MOVED.items()},
+        **{f"notebooks/{file.stem}.md": partial(notebook_page, file) for file in notebook_files()},
         "reference/quantities.md": quantity_reference,
         "reference/job-file.md": job_reference,
         "reference/http-api.md": api_reference,
@@ -38,9 +40,12 @@ def pages() -> dict[str, Callable[[], str]]:
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
-    """Add the pages that are generated."""
+    """Add the pages that are generated, and the pictures of the notebooks."""
     for place, made in pages().items():
         files.append(File.generated(config, place, content=made()))
+    for notebook in notebook_files():
+        for name, picture in notebook_pictures(notebook).items():
+            files.append(File.generated(config, f"notebooks/{name}", content=picture))
     return files
 
 
