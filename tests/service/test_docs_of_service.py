@@ -12,6 +12,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,6 +20,7 @@ from typing import Any
 
 import cloudpickle  # type: ignore[import-untyped]
 import pytest
+import yaml  # type: ignore[import-untyped]
 from distributed import Client
 from sqlalchemy import create_engine
 from typer.testing import CliRunner
@@ -268,3 +270,63 @@ def test_the_container_file_copies_what_there_is_and_starts_the_service(docs: Pa
     (start,) = [json.loads(rest) for step, rest in steps if step == "CMD"]
     assert start[0] == "slidercrank"
     assert command(*start[1:], "--help").exit_code == 0
+
+
+@pytest.fixture
+def compose(docs: Path) -> dict[str, Any]:
+    """Return the services of docs/compose.yaml."""
+    services: dict[str, Any] = yaml.safe_load((docs / "compose.yaml").read_text(encoding="utf-8"))["services"]
+    return services
+
+
+def test_the_compose_file_names_what_there_is(docs: Path, compose: dict[str, Any], command: Command) -> None:
+    assert set(compose) == {"database", "service", "worker"}
+    for name, service in compose.items():
+        assert service["healthcheck"]["test"][0] == "CMD"
+        if name == "database":
+            assert service["environment"].keys() == {"POSTGRES_USER", "POSTGRES_DB", "POSTGRES_PASSWORD"}
+            continue
+        assert (docs / service["build"]["context"] / service["build"]["dockerfile"]).is_file()
+        assert service["depends_on"] == {"database": {"condition": "service_healthy"}}
+        program, *arguments = service["command"]
+        assert program == "slidercrank"
+        assert command(*arguments, "--help").exit_code == 0
+    user, database = (compose["database"]["environment"][f"POSTGRES_{key}"] for key in ("USER", "DB"))
+    assert compose["worker"]["environment"]["SLIDERCRANK_STORE"] == f"postgresql://{user}@database/{database}"
+    assert compose["service"]["ports"] == ["127.0.0.1:8765:8765"]
+
+
+@pytest.mark.slow
+def test_the_commands_of_the_compose_file_run_and_find_each_other(
+    compose: dict[str, Any], server: tuple[str, Path], tmp_path: Path, free_port: int
+) -> None:
+    address, programs = server
+    terminal = Terminal(tmp_path, programs)
+    terminal.changed |= {"SLIDERCRANK_STORE": address, "SLIDERCRANK_TOKEN": "a-token-of-enough-characters-for-all"}
+    host = address.partition("?host=")[2]
+    ready = [*compose["database"]["healthcheck"]["test"][1:], "--host", host]
+    terminal.run(shlex.join(word.replace("slidercrank", "tests") for word in ready))
+    port = str(free_port)
+    with contextlib.ExitStack() as running:
+        for name in ("service", "worker"):
+            line = shlex.join(compose[name]["command"]).replace("8765", port).replace("0.0.0.0", "127.0.0.1")
+            process = running.enter_context(terminal.stays(line))
+            if name == "service":
+                assert process.stdout is not None
+                process.stdout.readline()
+        check = shlex.join(compose["service"]["healthcheck"]["test"][1:]).replace("8765", port)
+        for attempt in range(10):  # as often as containers do while a service starts
+            with contextlib.suppress(AssertionError):
+                terminal.run(check)
+                break
+            time.sleep(1.0 + attempt)
+        else:
+            terminal.run(check)
+        _, program, *arguments = compose["worker"]["healthcheck"]["test"]
+        assert program == "slidercrank"
+        done = CliRunner().invoke(app, arguments, env=terminal.changed)
+        problems = [line for line in done.output.splitlines() if "problem " in line and not line.startswith(" ")]
+        assert [line for line in problems if "fsync is off" not in line] == [], (
+            done.output
+        )  # as the tests' server has it
+        assert "8 designs" in terminal.run("slidercrank submit runs/feeder.toml --watch")
