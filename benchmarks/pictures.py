@@ -36,7 +36,7 @@ from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import work
 from tests.service.page.browser import chromium
 
-from . import glossary_sketch, load_pictures
+from . import gallery_pictures, glossary_sketch, load_pictures
 from .moving_picture import exploring_front
 from .service_process import service
 
@@ -130,6 +130,7 @@ PICTURES: dict[str, Callable[[Path], None]] = {
     "page_front.png": page,
     "page_design.png": page,
     "methods.png": methods,
+    **gallery_pictures.drawers(),
     **dict.fromkeys(load_pictures.names(), load_pictures.draw),
 }
 

@@ -15,6 +15,7 @@ from PIL import Image
 from typer.testing import CliRunner
 
 import slidercrank
+from benchmarks.gallery_pictures import Machine, machines
 from benchmarks.moving_picture import visits
 from slidercrank.service.cli import app
 from tests.optimise.problems import shipped_front
@@ -125,6 +126,40 @@ def test_the_gallery_has_the_knee_of_each_front(job: str, root: Path) -> None:
         f"{front.columns[f'{name}_mm'][front.knee()]:#.4g}".removesuffix(".") for name in ("crank", "rod", "offset")
     ]
     assert list(told.groups()) == knee
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("machine", list(machines()), ids=lambda machine: machine.job["name"])
+def test_the_gallery_has_the_knee_and_the_numbers_of_each_job_of_the_page(machine: Machine, root: Path) -> None:
+    problem = slidercrank.problem(machine.job)
+    front = slidercrank.solve(problem)
+    lengths = [1e3, 1e3, 1e3, *[1.0] * (front.dimensions.shape[1] - 3)]
+    knee = front.dimensions[front.knee()] * lengths
+    assert machine.knee == [f"{number:#.4g}".removesuffix(".") for number in knee]
+    (learned,) = re.findall(
+        rf'^name = "{machine.job["name"]}"$.*?\*\*Learned\*\*: (.*?)\n\n',
+        page(root, "gallery.md"),
+        re.MULTILINE | re.DOTALL,
+    )
+    crank, rod, offset, *others = front.dimensions[front.knee()]
+    ends = front.designs.iloc[[0, -1]]
+    match machine.job["name"]:
+        case "Power hacksaw":
+            ratio, length = (ends[name].max() / ends[name].min() for name in ("time_ratio", "envelope_length_mm"))
+            numbers = [f"{100 * (ratio - 1):.0f} %", f"{100 * (length - 1):.0f} %"]
+        case "Four-stroke engine":
+            sizes = ((e, float(slidercrank.crank_from_stroke(0.086, rod=rod, offset=e))) for e in (0.0, offset, -0.008))
+            numbers = [f"{problem.analyse([r, rod, e])['peak_guide_force']:,.0f} N" for e, r in sizes]
+        case "Needle loom":
+            masses = (0.0, others[0], 8.5)
+            forces = (problem.analyse([crank, rod, offset, mass])["peak_shaking_force"] for mass in masses)
+            numbers = [f"{1e-3 * force:#.4g} kN" for force in forces]
+        case "Loom sley":
+            numbers = [f"{angle:.1f} deg" for angle in ends["dwell_angle_deg"]]
+            numbers += [f"{acceleration:.1f} m/s^2" for acceleration in ends["peak_slider_acceleration_m_s2"]]
+        case _:
+            numbers = [f"{error:.3f} mm" for error in ends["position_error_mm"]]
+    assert [number for number in numbers if number not in learned] == []
 
 
 def test_bibtex_says_what_the_citation_file_says(root: Path) -> None:
