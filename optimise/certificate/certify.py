@@ -23,9 +23,8 @@ from ...model.arrays import Array
 from ...model.errors import InputError
 from ..problem.problem import Problem
 from .certificate import Certificate, Step
+from .defaults import EPSILON, SECONDS
 from .search import Search
-
-EPSILON, SECONDS = 0.01, 60.0
 
 
 def certify_designs(

@@ -1,4 +1,4 @@
-"""Questions, asked by their names; installed packages announce them, this one for `service`.
+"""Questions by name; installed packages announce theirs, this package those of `service`.
 
 What interfaces ask stands above the problem, which therefore cannot import it. The entry points of the group
 `slidercrank.questions` invert that, as those of `slidercrank.quantities` do for quantities: each is a mapping from
@@ -76,7 +76,7 @@ def subject_of(name: str) -> str:
         near = difflib.get_close_matches(str(name), known, n=1)
         every = f"choose from {', '.join(known)}" if known else "no installed package has one; reinstall slidercrank"
         hint = f"did you mean {near[0]}?" if near else every
-        raise InputError(f"a question is asked by its name; got {name!r}; {hint}")
+        raise InputError(f"there is no question {name!r}; {hint}")
     return getattr(known[name], "subject", "design")
 
 
@@ -85,7 +85,7 @@ def question_to(subject: str, name: str) -> Any:
     if (of := subject_of(name)) != subject:
         if of == "design":
             raise InputError(
-                f"the question {name} is of one design; got none; name one, as a row of a front or lengths"
+                f"the question {name} needs one design; got none; name one, as a row of a front or lengths"
             )
-        raise InputError(f"the question {name} is asked of a {of}; got a {subject}; {_REMEDIES[of]}")
+        raise InputError(f"the question {name} needs a {of}; got a {subject}; {_REMEDIES[of]}")
     return questions()[name]

@@ -1,1 +1,1 @@
-"""What agents ask by the Model Context Protocol (MCP): a few tools over what the command line answers."""
+"""Tools for agents over the Model Context Protocol (MCP), with the answers of the command line."""

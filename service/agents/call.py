@@ -110,9 +110,9 @@ class Call:
 
 
 def tables_of(job: Job, files: Mapping[str, str]) -> dict[str, Any]:
-    """Return the tables of a job: of its TOML text, of a job that ships, or themselves, files in their places.
+    """Return the tables of a job with the contents of its files inserted. job: tables, TOML text, or an included job.
 
-    Raises `JobError`, also for a file that was not given: none is read.
+    Raises `JobError`, also for a file that was not given: no file is read.
     """
     if isinstance(job, str) and "=" not in job:
         jobs = shipped_jobs()
@@ -128,7 +128,7 @@ def tables_of(job: Job, files: Mapping[str, str]) -> dict[str, Any]:
 
 
 def text_of(show: Callable[[Console], None]) -> str:
-    """Return what is shown on a screen, as plain text."""
+    """Return the output of a function that writes to a console, as plain text."""
     from rich.console import Console
 
     out = io.StringIO()

@@ -44,9 +44,9 @@ _SHOWN += [
 ]
 _INPUTS: dict[str, dict[str, Any]] = {}
 for _topic in QUESTIONS.values():
-    for _one in _topic.inputs:
-        _said = _INPUTS.setdefault(_one.name, {"description": "", **_one.schema})
-        _said["description"] += f"{_topic.name}: {_one.remark}  "
+    for _input in _topic.inputs:
+        _input_schema = _INPUTS.setdefault(_input.name, {"description": "", **_input.schema})
+        _input_schema["description"] += f"{_topic.name}: {_input.remark}  "
 
 JobInput = Annotated[
     Job,
@@ -130,7 +130,7 @@ class Design:
     def problem(self, call: Call) -> Problem:
         """Return the problem of the job. Raises `InputError` for none."""
         if self.job is None or self.run is not None:
-            raise InputError("a question to a job needs one; got none; give a job, without a run")
+            raise InputError("this topic needs a job; got none; give a job, without a run")
         return call.problem(tables_of(self.job, self.files), feasible=False)
 
     @property
@@ -142,7 +142,7 @@ class Design:
         """Return the folder of the run, its front and the row of the design. Raises `InputError` for no run."""
         if self.run is None or self.job is not None:
             received = "a job" if self.job is not None else "none"
-            raise InputError(f"a front is of a run; got {received}; name a run, without a job")
+            raise InputError(f"this topic needs the front of a run; got {received}; name a run, without a job")
         self._require_no_lengths()
         folder, result = call.run(self.run)
         row = None
@@ -173,7 +173,7 @@ class Design:
 
 @dataclass(frozen=True)
 class TopicRequest:
-    """What a design is asked."""
+    """Topics to analyse, with their inputs."""
 
     topics: Topics = field(default_factory=list)
     inputs: TopicInputs = field(default_factory=dict)

@@ -1,9 +1,9 @@
-"""Tools that search nothing: what there is, what a name means, what a design does, whether a job can be met."""
+"""Tools that do not search: list and explain names, analyse designs, check jobs."""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Annotated, Any
@@ -30,6 +30,8 @@ from .call import Call, ToolAnswer, tables_of, text_of
 from .inputs import Design, Files, JobInput, TopicRequest
 
 if TYPE_CHECKING:
+    from ...objectives.kinds import System
+    from ..render.blocks import Block
     from .inputs import Machine
 
 _MOST_RUNS = 20
@@ -38,9 +40,9 @@ _OF_KEY = ("description", "examples", "default", "enum")
 
 
 def list_contents(call: Call) -> ToolAnswer:
-    """List what there is: jobs that ship, quantities, topics with their inputs, and the latest runs.
+    """List the included jobs, the quantities, the topics with their inputs, and the latest runs.
 
-    `describe` explains each. Start from a job that ships and is near to the task.
+    `describe` explains each. Start from the included job closest to the task.
     """
     jobs = [
         {"name": name, "title": job["name"], "sentence": job.get("description", "")}
@@ -75,7 +77,7 @@ def describe(
         ),
     ],
 ) -> ToolAnswer:
-    """Describe a quantity (meaning, formula, unit), a topic, a job that ships (its tables and TOML), a key of a job."""
+    """Describe a quantity (meaning, formula, unit), a topic, an included job (its tables and TOML), or a job key."""
     word = name.strip()
     facts = {item["name"]: item for item in facts_of_all()}
     record: dict[str, Any] = {}
@@ -114,7 +116,7 @@ def ask(call: Call, *, subject: Design, question: TopicRequest) -> ToolAnswer:
     the front of a run, such as wish, or of a job, such as sweep.
     """
     if question.alone in FRONT_OR_JOB_QUESTIONS:
-        return _wider(call, subject, question, FRONT_OR_JOB_QUESTIONS[question.alone])
+        return _ask_front_or_job(call, subject, question, FRONT_OR_JOB_QUESTIONS[question.alone])
     options = question.options()
     machine = subject.machine(call)
     with ending_own(machine.problem):
@@ -178,22 +180,21 @@ def _analyse_rotating(
 
 
 def _analyse_by_command(name: str, machine: Machine, question: TopicRequest) -> ToolAnswer:
-    """Ask a design what is a command of its own."""
+    """Ask a design a question that is a command of its own."""
     from ..designs.display_units import record_in
-    from ..render.terminal import print_blocks
 
     bound_question = DESIGN_QUESTIONS[name].for_problem(
         machine.mechanism, machine.linkage, machine.problem, question.inputs
     )
     record = bound_question.numbers(lambda: False)
-    text = text_of(lambda screen: print_blocks(screen, bound_question.blocks(record), question.units))
-    return ToolAnswer(record_in(record, question.units), "\n".join((text, *bound_question.notes(record))))
+    text = _answer_text(bound_question.blocks(record), bound_question.notes(record), question.units)
+    return ToolAnswer(record_in(record, question.units), text)
 
 
-def _wider(call: Call, subject: Design, question: TopicRequest, definition: FrontOrJobQuestion) -> ToolAnswer:
-    """Ask the front of a run, or a job."""
-    from ..render.terminal import print_blocks
-
+def _ask_front_or_job(
+    call: Call, subject: Design, question: TopicRequest, definition: FrontOrJobQuestion
+) -> ToolAnswer:
+    """Ask a question to the front of a run, or to a job."""
     place, row, inputs = dict[str, Any](), None, question.inputs
     if definition.subject == "job":
         target: Any = subject.problem(call)
@@ -202,10 +203,16 @@ def _wider(call: Call, subject: Design, question: TopicRequest, definition: Fron
         folder, target, row = subject.front(call)
         problem, place = target.problem, {"run": path_text(folder)}
     with ending_own(problem):
-        answer = definition.ask(target, inputs, row=row, watch=SearchListener(cancelled=call.cancelled))
-    text = text_of(lambda screen: print_blocks(screen, answer.blocks, question.units))
-    record = place | answer.record(question.units)
-    return ToolAnswer(record, "\n".join((text, *answer.notes)), is_error=not answer.is_satisfied)
+        result = definition.ask(target, inputs, row=row, listener=SearchListener(cancelled=call.cancelled))
+    text = _answer_text(result.blocks, result.notes, question.units)
+    return ToolAnswer(place | result.record(question.units), text, is_error=not result.is_satisfied)
+
+
+def _answer_text(blocks: Sequence[Block], notes: Sequence[str], units: System) -> str:
+    """Return the blocks of an answer as plain text, with its notes below."""
+    from ..render.terminal import print_blocks
+
+    return "\n".join((text_of(lambda screen: print_blocks(screen, blocks, units)), *notes))
 
 
 def _topic(question: DesignQuestion | FrontOrJobQuestion) -> dict[str, Any]:

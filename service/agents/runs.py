@@ -110,7 +110,7 @@ def optimise(call: Call, *, search: Search, settings: SettingOptions, part: Fron
 
 
 def front(call: Call, *, run: Run, selection: Selection, pick: Pick, part: FrontPart) -> ToolAnswer:
-    """Show the front of a run, a part of it, or one design chosen from it with all its quantities and trade-offs.
+    """Show the front of a run, part of it, or one chosen design with all its quantities and trade-offs.
 
     numbers are those of the designs; knee and extremes are their places in the answer.
     """
@@ -152,7 +152,7 @@ def files(
     as HTML or PDF, a drawing at true scale as DXF or SVG, its motion as HTML or GIF, its cycle as CSV.
     """
     if design is not None and _OF_RUN.issuperset(write):
-        raise InputError(f"{', '.join(write)} are of all designs of a run; got design {design}; leave it out")
+        raise InputError(f"{', '.join(write)} cover all designs of a run; got design {design}; leave it out")
     folder, result = call.front(run)
     picked = _chosen_number(result, [], Pick(design=design))
     number = 1 + ((result.knee or 0) if picked is None else picked)
@@ -200,7 +200,7 @@ def _chosen_number(result: Result, chosen: Sequence[int], pick: Pick) -> int | N
 
 
 def _trade_offs(call: Call, folder: Path, result: Result, row: int, units: System) -> list[str]:
-    """Return what one objective costs in the others at a design, in words; nothing where there are no such rates."""
+    """Return the trade-off rates at a design as sentences; empty if the design has none."""
     from ..designs.trade_offs import trade_offs_of
 
     try:

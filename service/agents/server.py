@@ -83,7 +83,7 @@ async def _serve(place: Path, allowed: frozenset[str], interrupted: Callable[[],
 
     async def on_call_tool(ctx: ServerRequestContext, params: CallToolRequestParams) -> CallToolResult:
         limiter = searches if params.name == "optimise" else other_calls
-        tool_answer = await _answer(ctx.session, partial(Call, place, allowed), params, limiter, stopping)
+        tool_answer = await _answer_call(ctx.session, partial(Call, place, allowed), params, limiter, stopping)
         content = [TextContent(type="text", text=tool_answer.text)]
         record = json_ready(tool_answer.record) or None
         return CallToolResult(content=[*content], structured_content=record, is_error=tool_answer.is_error)
@@ -102,7 +102,7 @@ async def _serve(place: Path, allowed: frozenset[str], interrupted: Callable[[],
         group.cancel_scope.cancel()
 
 
-async def _answer(
+async def _answer_call(
     session: ServerSession,
     make: Callable[[Callable[[], bool], Callable[[Progress], None]], Call],
     params: CallToolRequestParams,

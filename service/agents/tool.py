@@ -73,7 +73,7 @@ class Tool:
         return self.run(call, **values)
 
     def _sentence(self, details: Any) -> str:
-        """Return what is wrong with an input: rule, value, remedy."""
+        """Return the error message for an input: rule, value, remedy."""
         name, accepted = str(details["loc"][0]), list(self.inputs.model_fields)
         if details["type"] == "extra_forbidden":
             near = closest(name, accepted)

@@ -98,7 +98,7 @@ class BookmarkList(BaseModel):
 @router.get("/jobs/{number}/kept")
 def list_bookmarks(stored_front: FrontDep, store: StoreDep) -> BookmarkList:
     """Return the bookmarked designs of a job with all their numbers."""
-    designs = [_shown(stored_front, bookmark) for bookmark in bookmarks_of(store, stored_front.job.id)]
+    designs = [_bookmark_model(stored_front, bookmark) for bookmark in bookmarks_of(store, stored_front.job.id)]
     columns = column_models(all_columns(designs[0].cells if designs else ()))
     return BookmarkList(job=stored_front.job.id, columns=columns, designs=designs)
 
@@ -106,7 +106,7 @@ def list_bookmarks(stored_front: FrontDep, store: StoreDep) -> BookmarkList:
 @router.post("/jobs/{number}/kept", status_code=HTTPStatus.CREATED)
 def add_bookmark(stored_front: FrontDep, request: NewBookmark, store: StoreDep) -> BookmarkedDesign:
     """Keep a design with a name, a note and a star."""
-    design = _asked(stored_front, request)
+    design = _requested_design(stored_front, request)
     _varied(stored_front, design)  # refuse what cannot be computed before storing it
     fields: dict[str, Any] = {
         "name": request.name,
@@ -115,7 +115,7 @@ def add_bookmark(stored_front: FrontDep, request: NewBookmark, store: StoreDep) 
         "design": request.design,
     }
     bookmark = keep_design(store, stored_front.job.id, dimensions=design.values, variant=design.variant, **fields)
-    return _shown(stored_front, bookmark)
+    return _bookmark_model(stored_front, bookmark)
 
 
 @router.patch("/jobs/{number}/kept/{kept}")
@@ -123,7 +123,9 @@ def change_bookmark(
     stored_front: FrontDep, kept: BookmarkNumber, change: BookmarkChange, store: StoreDep
 ) -> BookmarkedDesign:
     """Change a bookmark, or decide for its design."""
-    return _shown(stored_front, change_kept(store, stored_front.job.id, kept, **change.model_dump(exclude_unset=True)))
+    return _bookmark_model(
+        stored_front, change_kept(store, stored_front.job.id, kept, **change.model_dump(exclude_unset=True))
+    )
 
 
 @router.delete("/jobs/{number}/kept/{kept}", status_code=HTTPStatus.NO_CONTENT)
@@ -161,7 +163,7 @@ def alternatives_of(stored_front: StoredFront, store: Store) -> list[Alternative
     return alternatives
 
 
-def _asked(stored_front: StoredFront, request: NewBookmark) -> StoredDesign:
+def _requested_design(stored_front: StoredFront, request: NewBookmark) -> StoredDesign:
     """Return the design to bookmark. Raises `InputError` for dimensions that the job does not have."""
     if request.design is None and not request.dimensions:
         raise InputError("a bookmark needs a design of the front or dimensions; got neither; give a design, or lengths")
@@ -196,7 +198,7 @@ def _varied(stored_front: StoredFront, design: StoredDesign) -> Variation:
     return variation_of(design, stored_front.result, stored_front.minimised)
 
 
-def _shown(stored_front: StoredFront, bookmark: Bookmark) -> BookmarkedDesign:
+def _bookmark_model(stored_front: StoredFront, bookmark: Bookmark) -> BookmarkedDesign:
     design = _design(stored_front, bookmark)
     varied = _varied(stored_front, design)
     same = (

@@ -54,12 +54,12 @@ def certify_front(stored_front: FrontDep, given: CertificateInputs) -> Response:
     name = " ".join(map(repr, given.values()))
 
     def make() -> tuple[tuple[str], bytes]:
-        return (name,), to_json(_proof(stored_front, given))
+        return (name,), to_json(_certificate_model(stored_front, given))
 
     return Response(stored_front.cached(name, "certificate", make), media_type="application/json")
 
 
-def _proof(stored_front: StoredFront, inputs: dict[str, Any]) -> CertificateModel:
+def _certificate_model(stored_front: StoredFront, inputs: dict[str, Any]) -> CertificateModel:
     certificate = QUESTION.ask(stored_front.front, inputs)
     sentences = [block.sentence for block in plain_blocks(certificate.blocks)]
     return CertificateModel(

@@ -69,7 +69,7 @@ def _spoken(words: str) -> Sentence:
 
 
 def _differing(jobs: Sequence[int], places: Sequence[tuple[str, Sequence[str | None]]]) -> list[Block]:
-    """Return what differs between jobs, as a table."""
+    """Return the differences between jobs as a table."""
     title = heading("What differs between the jobs")
     if not places:
         return [title, sentence("The jobs are the same but for their names.")]

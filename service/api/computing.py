@@ -84,7 +84,7 @@ class Computing:
         question = {key: scope[key] for key in _SENT if key in scope}, await Request(scope, receive).body()
         messages = asyncio.Queue[Message | None]()  # no process waits for a client that takes nothing
         answering = asyncio.create_task(self._compute(turns, question, messages.put_nowait))
-        leaving = asyncio.create_task(_left(receive))
+        leaving = asyncio.create_task(_wait_for_disconnect(receive))
         for task in (answering, leaving):
             task.add_done_callback(lambda _: messages.put_nowait(None))
         try:
@@ -191,7 +191,7 @@ class _Process:
             self._process.kill()
 
 
-async def _left(receive: Receive) -> None:
+async def _wait_for_disconnect(receive: Receive) -> None:
     """Wait until the client of a request has gone, or has its answer."""
     while (await receive())["type"] != "http.disconnect":
         pass

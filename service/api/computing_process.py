@@ -42,7 +42,7 @@ def answer_questions(connection: Connection, make: ApplicationFactory, limits: L
                 scope, body = connection.recv()
                 _limit_memory(limits.memory)
                 _limit_time(limits.seconds)
-                last = runner.run(_answer(app, scope, body, connection.send))
+                last = runner.run(_run_request(app, scope, body, connection.send))
                 _limit_time(None)
                 connection.send(last)
     except SlidercrankError as error:
@@ -56,7 +56,7 @@ def is_last(message: Message) -> bool:
     return message["type"] == "http.response.body" and not message.get("more_body", False)
 
 
-async def _answer(app: ASGIApp, scope: dict[str, Any], body: bytes, give: Callable[[Message], None]) -> Message:
+async def _run_request(app: ASGIApp, scope: dict[str, Any], body: bytes, give: Callable[[Message], None]) -> Message:
     """Give the messages of an answer but the last, which is returned."""
     parts = deque[Message]([{"type": "http.request", "body": body}])
     last = deque[Message](maxlen=1)

@@ -73,7 +73,7 @@ class Gate:
         self._told: dict[str, float] = {}
 
     def queue(self, connection: Connection) -> None:
-        """Let a connection go on with what was sent ahead, one in each round of the loop, and others in between."""
+        """Queue a connection with unread requests; each pass of the event loop resumes one connection."""
         self._queue.append(connection)
         if len(self._queue) == 1:
             connection.loop.call_soon(self._go_on)
@@ -146,7 +146,7 @@ class Connection(HttpToolsProtocol):
 
     @property
     def is_dispensable(self) -> bool:
-        """Whether it may be closed to make room: unless it is known, and takes the one answer that it waits for."""
+        """Whether it may be closed to make room: it has no token, is at rest, or does not read its answers."""
         return not self.is_known or self.is_at_rest or bool(self._backlog) or self.flow.write_paused
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as in the parent
@@ -183,7 +183,7 @@ class Connection(HttpToolsProtocol):
         return not self.pipeline and (self.is_at_rest or self._part != "rest")
 
     def read(self) -> None:
-        """Read what came to the end of a request, some of it a turn; refuse what is too large before it ends."""
+        """Read received bytes up to the end of a request, a limited number per turn; refuse oversized parts early."""
         begin = 0
         for _ in range(_PIECES):
             if not begin < min(len(self._backlog), _TURN) or not self._may_read:

@@ -32,7 +32,7 @@ class ActuatorModel(BaseModel):
 
 
 class BodyModel(BaseModel):
-    """A body on the crank: its mass centre along it and across it, and the side of the square about that, for show."""
+    """A body on the crank: mass centre along and across the crank, and the side of its schematic square."""
 
     along_mm: float = Field(examples=[700.0])
     across_mm: float = Field(examples=[0.0])
@@ -40,7 +40,7 @@ class BodyModel(BaseModel):
 
 
 class OutlinesModel(BaseModel):
-    """Parts of a design as its drawings have them, mm; bore, clearance and mass centre are true, the rest is for show.
+    """Sizes of the drawn parts of a design, mm; bore, clearance and mass centre are true, the rest is schematic.
 
     extent_mm: left, bottom, right and top of what stands or moves. slider_height_mm: the bore where it is a piston.
     actuator, body: null where the machine has none.

@@ -93,7 +93,7 @@ def animate_linkage(request: RequestedDesignDep) -> Response:
 
     design, named = request.design, {"name": request.stored_front.result.name, "design": request.words}
     swing = design.part.motion
-    content = _made(request, "gif", lambda: animated_gif(design.mechanism, design.linkage, swing=swing, **named))
+    content = _cached_file(request, "gif", lambda: animated_gif(design.mechanism, design.linkage, swing=swing, **named))
     return _file(request, "gif", "image/gif", content, label="-motion")
 
 
@@ -102,8 +102,10 @@ def report_design(request: RequestedDesignDep, store: StoreDep, units: UnitsPara
     """Give the report of a design for a review as one HTML file without script, which fetches nothing."""
     from ..report.html import html_file
 
-    content = _made(
-        request, f"report {units} {_kept(request, store)}", lambda: html_file(_report(request, store, units))
+    content = _cached_file(
+        request,
+        f"report {units} {_bookmarks_version(request, store)}",
+        lambda: html_file(_report(request, store, units)),
     )
     return _file(request, "html", "text/html; charset=utf-8", content, label="-report")
 
@@ -113,7 +115,9 @@ def print_report(request: RequestedDesignDep, store: StoreDep, units: UnitsParam
     """Give the same report as PDF."""
     from ..report.pdf import pdf_file
 
-    content = _made(request, f"pdf {units} {_kept(request, store)}", lambda: pdf_file(_report(request, store, units)))
+    content = _cached_file(
+        request, f"pdf {units} {_bookmarks_version(request, store)}", lambda: pdf_file(_report(request, store, units))
+    )
     return _file(request, "pdf", "application/pdf", content, label="-report")
 
 
@@ -151,10 +155,10 @@ def _report(request: RequestedDesign, store: Store, units: System) -> Report:
     return design_report(subject)
 
 
-def _kept(request: RequestedDesign, store: Store) -> int:
+def _bookmarks_version(request: RequestedDesign, store: Store) -> int:
     """Return a number of the state of a job's kept designs, which reports tell of: another one after each change."""
     return hash(tuple(bookmarks_of(store, request.stored_front.job.id)))
 
 
-def _made(request: RequestedDesign, kind: str, make: Callable[[], bytes]) -> bytes:
+def _cached_file(request: RequestedDesign, kind: str, make: Callable[[], bytes]) -> bytes:
     return request.stored_front.cached(request.key, kind, lambda: ([request.key], make()))

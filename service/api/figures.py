@@ -99,8 +99,8 @@ def _image(stored_front: StoredFront, name: str, kind: Kind, numbers: Numbers | 
 
     def draw() -> tuple[Sequence[str], bytes]:
         if request:
-            return (key,), figure_bytes(_sheet(request, units), kind)
-        figure = _of_front(stored_front, name, units)
+            return (key,), figure_bytes(_datasheet(request, units), kind)
+        figure = _front_figure(stored_front, name, units)
         return figure.names, figure_bytes(figure.draw(), kind)
 
     drawn = stored_front.cached(key, f"{kind} {units}", draw)
@@ -112,7 +112,7 @@ def _image(stored_front: StoredFront, name: str, kind: Kind, numbers: Numbers | 
     return Response(drawn, media_type=_MEDIA[kind], headers=headers)
 
 
-def _of_front(stored_front: StoredFront, name: str, units: System) -> FrontFigure:
+def _front_figure(stored_front: StoredFront, name: str, units: System) -> FrontFigure:
     """Return a figure of a whole front. Raises `NotFound` with those that there are."""
     from ..figures.front import front_figures
 
@@ -125,7 +125,7 @@ def _of_front(stored_front: StoredFront, name: str, units: System) -> FrontFigur
     return named
 
 
-def _sheet(request: RequestedDesign, units: System) -> Figure:
+def _datasheet(request: RequestedDesign, units: System) -> Figure:
     from ..figures.front import datasheet_of
 
     return datasheet_of(request.stored_front.front, request.number - 1, request.words, units, request.variation())

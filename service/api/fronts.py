@@ -237,7 +237,7 @@ def list_designs(
 ) -> DesignsModel:
     """Give the designs that meet all conditions, in the order of the front unless sorted."""
     result = stored_front.result
-    chosen_columns = _asked(stored_front, columns)
+    chosen_columns = _requested_columns(stored_front, columns)
     chosen = chosen_rows(result, where, sort=sort, reverse=reverse)
     page = chosen[offset : offset + limit]
     return DesignsModel(
@@ -277,7 +277,7 @@ def list_columns(
     accept_encoding: Annotated[str, Header(include_in_schema=False)] = "",
 ) -> Response:
     """Give columns of the designs, each as one array of all designs: a front of 10,000 in one small answer."""
-    chosen_columns = _asked(stored_front, columns)
+    chosen_columns = _requested_columns(stored_front, columns)
 
     def respond() -> Response:
         compressed = "gzip" in accept_encoding and "gzip;q=0" not in accept_encoding.replace(" ", "")
@@ -293,7 +293,7 @@ def list_columns(
     return response_with_etag(request, tag, respond, {"Vary": "Accept-Encoding"})
 
 
-def _asked(stored_front: StoredFront, columns: str | None) -> Sequence[Column]:
+def _requested_columns(stored_front: StoredFront, columns: str | None) -> Sequence[Column]:
     """Return the columns of a list of names, each once; all without a list."""
     if columns is None or not stored_front.result.designs:
         return stored_front.columns

@@ -192,9 +192,10 @@ def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
         example=_example(look),
         swing=_swing(look.swing),
         formulas=[
-            FormulaModel(path=of.key[:500], kind=of.kind and of.kind.plain, unit=_unit(of.kind)) for of in look.formulas
+            FormulaModel(path=item.key[:500], kind=item.kind and item.kind.plain, unit=_unit(item.kind))
+            for item in look.formulas
         ],
-        names=[NameModel(name=of.name[:500], title=of.title[:200], unit=_unit(of.kind)) for of in look.names],
+        names=[NameModel(name=item.name[:500], title=item.title[:200], unit=_unit(item.kind)) for item in look.names],
     )
 
 
@@ -221,9 +222,9 @@ def _allowed(look: Look) -> AllowedModel | None:
         return None
     return AllowedModel(
         turning_share=possible.turning,
-        stroke_mm=_in(1e3, possible.stroke),
-        time_ratio=_in(1.0, possible.time_ratio),
-        transmission_angle_deg=_in(180.0 / math.pi, possible.transmission_angle),
+        stroke_mm=_scaled_ends(1e3, possible.stroke),
+        time_ratio=_scaled_ends(1.0, possible.time_ratio),
+        transmission_angle_deg=_scaled_ends(180.0 / math.pi, possible.transmission_angle),
         slow_strokes=list(possible.slow_strokes),
         feasible_share=possible.feasible,
         sampled=possible.sampled,
@@ -234,7 +235,7 @@ def _allowed(look: Look) -> AllowedModel | None:
     )
 
 
-def _in(factor: float, ends: Ends | None) -> Ends | None:
+def _scaled_ends(factor: float, ends: Ends | None) -> Ends | None:
     return None if ends is None else (factor * ends[0], factor * ends[1])
 
 
@@ -265,7 +266,7 @@ def _swing(possible: PossibleSwing | None) -> SwingPreview | None:
         from_deg=None if possible.shown is None else math.degrees(possible.shown.start),
         to_deg=None if possible.shown is None else math.degrees(possible.shown.end),
         closing_share=possible.closing,
-        travel_mm=_in(1e3, possible.travel),
+        travel_mm=_scaled_ends(1e3, possible.travel),
         feasible_share=possible.feasible,
         sampled=possible.sampled,
         unchecked=list(possible.unchecked),

@@ -143,7 +143,7 @@ def _methods(request: Request) -> list[str]:
 
 
 def rule_and_value(details: Mapping[str, Any]) -> str:
-    """Return what is wrong where pydantic says so: rule, value, remedy."""
+    """Return the message for an error that pydantic reports: rule, value, remedy."""
     from ...objectives.units import quote
     from ...optimise.job.messages import rule_of
 

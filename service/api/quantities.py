@@ -100,7 +100,7 @@ class UnitTable(BaseModel):
 
 
 class InputModel(BaseModel):
-    """What a question is asked with. key: in its address. title: before a field. unit: of the key. usual: if left out.
+    """An input of a question. key: name in the address. title: label of its field. unit: of the key. usual: default.
 
     words: that it may be, none for a number. required: whether there is no answer without it. example: as typed.
     """

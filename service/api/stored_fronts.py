@@ -255,9 +255,9 @@ def requested_design(stored_front: StoredFront, number: int, numbers: Numbers | 
     return RequestedDesign(stored_front, number, with_numbers(stored, lengths, values), changed=True)
 
 
-def _shown(stored_front: FrontDep, design: DesignNumber, numbers: NumbersDep) -> RequestedDesign:
+def _requested_design(stored_front: FrontDep, design: DesignNumber, numbers: NumbersDep) -> RequestedDesign:
     return requested_design(stored_front, design, numbers)
 
 
-RequestedDesignDep = Annotated[RequestedDesign, Depends(_shown)]
+RequestedDesignDep = Annotated[RequestedDesign, Depends(_requested_design)]
 """The design in the path, with the numbers in the query."""

@@ -111,7 +111,7 @@ def read_json(body: bytes, most_depth: int) -> Any:
     Raises `InputError` for what `require_moderate` refuses, and for doubled keys.
     """
     try:
-        value = json.loads(body, parse_constant=_no_number, parse_int=_whole, object_pairs_hook=_unique)
+        value = json.loads(body, parse_constant=_no_number, parse_int=_parse_integer, object_pairs_hook=_unique)
     except RecursionError:
         raise InputError(f"a body must be nested at most {most_depth} deep; got more; flatten it") from None
     except InputError:
@@ -166,7 +166,7 @@ def _no_number(text: str) -> None:
     raise InputError(f"a number must be finite; got {text}; leave it out if there is no bound")
 
 
-def _whole(text: str) -> int:
+def _parse_integer(text: str) -> int:
     if len(text) > _DIGITS:  # long ones take a time that grows with the square of their length
         raise _too_large()
     return int(text)

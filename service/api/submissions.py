@@ -1,4 +1,4 @@
-"""Submissions: a job as it is sent, or a copy of one with changes, wider limits, or ranges around a design."""
+"""Submissions: a job as sent, or a copy of a job with changes, wider limits, or ranges around a design."""
 
 from __future__ import annotations
 

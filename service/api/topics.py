@@ -75,11 +75,11 @@ _PARAMETERS = (parameter_of(one, f"for the topic {TOPIC_OF_INPUT[name]}: ") for 
 TopicInputsDep = Annotated[dict[str, str], inputs_in_address(INPUTS.values(), _PARAMETERS)]
 
 
-def _asked(inputs: TopicInputsDep, units: UnitsParameter = "metric") -> TopicRequest:
+def _topic_request(inputs: TopicInputsDep, units: UnitsParameter = "metric") -> TopicRequest:
     return TopicRequest(units, inputs)
 
 
-TopicRequestDep = Annotated[TopicRequest, Depends(_asked)]
+TopicRequestDep = Annotated[TopicRequest, Depends(_topic_request)]
 
 
 @router.get(

@@ -37,7 +37,7 @@ class Designs:
         """
         if question in FRONT_OR_JOB_QUESTIONS:
             if not FRONT_OR_JOB_QUESTIONS[question].path:
-                raise InputError(f"a service is not asked {question}; use the command of that name, or problem.ask")
+                raise InputError(f"a service cannot answer {question}; use the command of that name, or problem.ask")
             return self._ask_wider(FRONT_OR_JOB_QUESTIONS[question], number, design, inputs)
         if design is None:
             raise InputError(f"{question} needs a design; got none; give its number")

@@ -38,7 +38,7 @@ def certify(
     """Answer the question, keep the certificate, and tell by the exit code whether it is proven."""
     folder, front = front_of_run(run, runs, empty=True)
     with Interruption() as interruption, search_listener("bounding the design box", interruption.requested) as watch:
-        certificate = QUESTION.ask(front, inputs, words=QUESTION.flags, watch=watch)
+        certificate = QUESTION.ask(front, inputs, words=QUESTION.flags, listener=watch)
     place, file_lines = {"run": path_text(folder)}, list[str]()
     if len(front):
         record = place | certificate.record("metric")

@@ -90,8 +90,8 @@ def diagnose(address: str, runs: Path, *, named: bool = False) -> list[Check]:
     return [
         *_store(address, named),
         _writable("runs", runs),
-        *([] if "://" in address else [_room("disk of the store", Path(address).parent)]),
-        _room("disk of runs", runs),
+        *([] if "://" in address else [_free_space("disk of the store", Path(address).parent)]),
+        _free_space("disk of runs", runs),
         _check_compiled_model(),
         _versions(),
     ]
@@ -206,7 +206,7 @@ def _writable(name: str, folder: Path) -> Check:
     return Check(name, "ok", f"{folder} is writable")
 
 
-def _room(name: str, folder: Path) -> Check:
+def _free_space(name: str, folder: Path) -> Check:
     free = shutil.disk_usage(_existing(folder.absolute())).free
     grade: Grade = "problem" if free < _LEAST_ROOM else "note" if free < _LITTLE_ROOM else "ok"
     remedy = "" if grade == "ok" else "; free some space: a full disk stops all writing"

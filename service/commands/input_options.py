@@ -17,35 +17,25 @@ from ..text.screen import show_activity
 _Command = Callable[..., None]
 
 
-def option_of(one: Input) -> inspect.Parameter:
-    """Return the option of an input, a text or a word that typer knows."""
-    if isinstance(one, TypedInput):
-        return _plain_option(one)
-    metavar = one.name.upper() if one.loose else None
-    if one.kind is not None:
-        metavar = one.kind.plain.upper().replace(" ", "_")
-    kind: Any = str if one.loose else one.words or str
+def option_of(item: Input) -> inspect.Parameter:
+    """Return the command-line option of an input."""
+    least, has_default = None, False
+    if isinstance(item, TypedInput):
+        kind: Any = item.type if get_origin(item.type) is None else list[str]
+        default, metavar, least, text = item.value, item.metavar, item.least, item.help
+        has_default = bool(item.usual)
+    else:
+        kind = str if item.loose else item.words or str
+        default, metavar, text = None, item.name.upper() if item.loose else None, item.remark
+        if item.kind is not None:
+            metavar = item.kind.plain.upper().replace(" ", "_")
     return inspect.Parameter(
-        one.name,
+        item.name,
         inspect.Parameter.KEYWORD_ONLY,
-        default=inspect.Parameter.empty if one.required else None,
+        default=inspect.Parameter.empty if item.required else default,
         annotation=Annotated[
-            kind if one.required else kind | None, typer.Option(one.flag, metavar=metavar, help=one.remark)
-        ],
-    )
-
-
-def _plain_option(one: TypedInput) -> inspect.Parameter:
-    """Return the option of a number, or of texts, of which it may be repeated."""
-    kind: Any = one.type if get_origin(one.type) is None else list[str]
-    optional = not (one.required or one.usual)
-    return inspect.Parameter(
-        one.name,
-        inspect.Parameter.KEYWORD_ONLY,
-        default=inspect.Parameter.empty if one.required else one.value,
-        annotation=Annotated[
-            kind | None if optional else kind,
-            typer.Option(one.flag, metavar=one.metavar, min=one.least, help=one.help),
+            kind if item.required or has_default else kind | None,
+            typer.Option(item.flag, metavar=metavar, min=least, help=text),
         ],
     )
 

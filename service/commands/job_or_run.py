@@ -64,7 +64,7 @@ def machine_of(
 
 
 def turning_problem(job: Path, command: str) -> Problem:
-    """Return the problem of a job file, to look at a given design, which need not be able to meet the job.
+    """Return the problem of a job file for the analysis of a given design; the job need not be feasible.
 
     Raises `InputError` for a crank that swings, in the words of a command.
     """

@@ -30,7 +30,7 @@ def round(
     """Answer the question; where no design meets all, tell which options would do."""
     folder, front = front_of_run(run, runs, number)
     with search_listener("rounding") as watch:
-        rounded = QUESTION.ask(front, inputs, row=number - 1, words=QUESTION.flags, watch=watch)
+        rounded = QUESTION.ask(front, inputs, row=number - 1, words=QUESTION.flags, listener=watch)
     record: dict[str, Any] = {"run": path_text(folder), "number": number} | rounded.record(units)
     if json:
         print_output(json_text(record))

@@ -32,7 +32,7 @@ _MEDIA = {".toml": "application/toml", ".json": "application/json"}
 
 @dataclass(frozen=True)
 class JobLimits:
-    """What the search of a job may take."""
+    """Limits on the search of a job."""
 
     seconds: Annotated[float | None, "Time limit of its search, s; the designs found so far are kept."] = None
     evaluations: Annotated[
@@ -52,7 +52,7 @@ def submit(
     key: Annotated[str | None, "Key of this submission; repeating it with the same key returns the same job."] = None,
     attempts: Annotated[int, "Attempts without progress before the job fails."] = 3,
     *,
-    most: JobLimits,
+    job_limits: JobLimits,
     watch: Annotated[bool, "Show its events until it ends."] = False,
     json: Json = False,
 ) -> None:
@@ -68,8 +68,8 @@ def submit(
     load_job(job)  # for its messages, which name the file
     tables = read_job(job)
     functions = sorted(set(functions_of(tables).values()))
-    memory = None if most.memory is None else size_of(most.memory, "--memory")
-    limits = Limits(seconds=most.seconds, evaluations=most.evaluations, memory=memory)
+    memory = None if job_limits.memory is None else size_of(job_limits.memory, "--memory")
+    limits = Limits(seconds=job_limits.seconds, evaluations=job_limits.evaluations, memory=memory)
     with open_store(store) as opened:
         queued = put_in(
             opened,
@@ -87,7 +87,7 @@ def submit(
             _tell_of(functions, job)
             tell_idle(opened)
         if watch:
-            raise typer.Exit(_follow(opened, queued, json=json))
+            raise typer.Exit(_write_events(opened, queued, json=json))
 
 
 def watch(job: Name, store: Address = None, json: Json = False) -> None:
@@ -99,7 +99,7 @@ def watch(job: Name, store: Address = None, json: Json = False) -> None:
         watched = find_job(opened, job)
         if watched.state == "queued":
             tell_idle(opened)
-        raise typer.Exit(_follow(opened, watched, json=json))
+        raise typer.Exit(_write_events(opened, watched, json=json))
 
 
 def _tell_of(functions: Sequence[str], job: Path) -> None:
@@ -124,7 +124,7 @@ def _source(job: Path) -> Artefact | None:
     return Artefact(name=f"job{suffix}", media_type=_MEDIA[suffix], content=job.read_bytes())
 
 
-def _follow(store: Store, job: Job, *, json: bool) -> int:
+def _write_events(store: Store, job: Job, *, json: bool) -> int:
     """Write the events of a job until it ends and return its exit code; 0 once nobody reads on."""
     try:
         with _event_writer(json) as show:

@@ -47,7 +47,7 @@ class Limit:
     @property
     def words(self) -> str:
         """The limit in words, such as "rod at most 400 mm"."""
-        return f"{self.title} {_WORDS[self.side]} {_said(self.value, self.unit)}"
+        return f"{self.title} {_WORDS[self.side]} {_with_unit(self.value, self.unit)}"
 
 
 def active_limits(problem: Problem, result: Result, tables: Mapping[str, Any]) -> list[Limit]:
@@ -105,7 +105,7 @@ def widen_limits(
             holder[key] = [text, holder[key][1]] if side == "lower" else [holder[key][0], text]
         else:
             job.setdefault(table, {}).setdefault(path, {})["min" if side == "lower" else "max"] = text
-        changes.append(f"{limit.title} {_WORDS[side]} {_said(value, limit.unit)}")
+        changes.append(f"{limit.title} {_WORDS[side]} {_with_unit(value, limit.unit)}")
     name = f"{tables['name']}, {', '.join(changes)}"
     job["name"] = name if len(name) <= _LONGEST_NAME else tables["name"]
     return job
@@ -182,5 +182,5 @@ def _round(value: float, step: float) -> float:
     return float(f"{digit * round(value / digit):.12g}")
 
 
-def _said(value: float, unit: str) -> str:
+def _with_unit(value: float, unit: str) -> str:
     return f"{value:.6g} {unit}".rstrip()

@@ -45,7 +45,7 @@ def find_column(name: str, keys: Collection[str]) -> Column:
     name = name.strip()
     metric = metric_key(name)
     same = name if name in keys else next((key for key in keys if metric_key(key) == metric), None)
-    key = _meant(name, keys) if same is None else same
+    key = _key_of_name(name, keys) if same is None else same
     plain, unit, factor = split_unit(key)
     from ...objectives.quantity import Group
     from ...objectives.tables.varying_column import number_in_words
@@ -95,7 +95,7 @@ def _titles() -> dict[str, str]:
     return {quantity.field: quantity.title for quantity in FACTS.values()}
 
 
-def _meant(name: str, keys: Collection[str]) -> str:
+def _key_of_name(name: str, keys: Collection[str]) -> str:
     """Return the key that a name without unit means. Raises `InputError` with the nearest names."""
     from ...objectives.registry import QUANTITIES
 

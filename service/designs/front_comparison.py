@@ -40,7 +40,7 @@ def comparison_sentences(names: Sequence[str], results: Sequence[Result], system
     for a in range(len(names)):
         for b in range(len(names)):
             if a != b:
-                sentences += _against(
+                sentences += _unmatched_sentence(
                     names[a], names[b], results[a], shared, fronts[a] / span, fronts[b] / span, system
                 )
     return sentences
@@ -71,7 +71,7 @@ def _best(
     rows = [int(np.argmin(front[:, index])) for front in fronts]
     least = np.array([front[row, index] for front, row in zip(fronts, rows, strict=True)])
     values = [
-        _said(result.designs[row][objective.column], objective, system)
+        _with_unit(result.designs[row][objective.column], objective, system)
         for result, row in zip(results, rows, strict=True)
     ]
     first = [n for n in range(len(names)) if least[n] <= least.min() + _SAME * span[index]]
@@ -82,7 +82,7 @@ def _best(
     return f"{title}: {' and '.join(names[n] for n in first)} with {values[first[0]]}, against {', '.join(rest)}"
 
 
-def _against(
+def _unmatched_sentence(
     name: str,
     other_name: str,
     result: Result,
@@ -99,7 +99,9 @@ def _against(
     if count == total:
         return [f"{other_name} matches none of the {counted(total, 'design')} of {name}, {_TO}"]
     parts = [
-        text for n, objective in enumerate(shared) if (text := _where(result, free, objective, front[:, n], system))
+        text
+        for n, objective in enumerate(shared)
+        if (text := _range_in_words(result, free, objective, front[:, n], system))
     ]
     place = f": where {', '.join(parts)}" if parts else ", spread over the whole front"
     return [f"{name} has {count} of {counted(total, 'design')} that {other_name} does not match, {_TO}{place}"]
@@ -110,7 +112,7 @@ def unmatched(front: Array, other_front: Array) -> NDArray[np.bool_]:
     return np.array([not bool((other_front <= point + NEAR).all(axis=1).any()) for point in front])
 
 
-def _where(result: Result, free: NDArray[np.bool_], objective: Wanted, values: Array, system: System) -> str:
+def _range_in_words(result: Result, free: NDArray[np.bool_], objective: Wanted, values: Array, system: System) -> str:
     """Return in which part of an objective's range the chosen designs are; empty if in most of it."""
     low, high = values[free].min(), values[free].max()
     is_between = (values >= low) & (values <= high)
@@ -118,10 +120,10 @@ def _where(result: Result, free: NDArray[np.bool_], objective: Wanted, values: A
         return ""
     cells = [result.designs[row][objective.column] for row in np.flatnonzero(free)]
     numbers = [float(cell) for cell in cells if isinstance(cell, float)]
-    ends = [_said(end, objective, system) for end in (min(numbers), max(numbers))]
+    ends = [_with_unit(end, objective, system) for end in (min(numbers), max(numbers))]
     return f"{objective.title} is {ends[0]}" if ends[0] == ends[1] else f"{objective.title} is {ends[0]} to {ends[1]}"
 
 
-def _said(value: object, objective: Wanted, system: System) -> str:
+def _with_unit(value: object, objective: Wanted, system: System) -> str:
     unit, factor = shown_in(objective.unit, system)
     return f"{value * factor:.4g} {unit}".rstrip() if isinstance(value, float) else "not defined"

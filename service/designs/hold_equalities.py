@@ -1,4 +1,4 @@
-"""Lengths that follow one that was moved, so that the rules that ask for exact values still hold."""
+"""Adjustment of lengths after one was moved, so that the equality constraints still hold."""
 
 from __future__ import annotations
 

@@ -38,11 +38,11 @@ _LENGTH: dict[str, Any] = {
 
 
 def _dimension(name: str) -> dict[str, Any]:
-    texts: dict[str, Any] = dict(zip(_TOLD, _DIMENSIONS[name], strict=True))
+    texts: dict[str, Any] = dict(zip(_TEXT_FIELDS, _DIMENSIONS[name], strict=True))
     return {"name": name, "picture": name, "column": name + LENGTH.metric.suffix, **texts, **_LENGTH}
 
 
-_TOLD = ("title", "section", "sentence", "advice", "formula")
+_TEXT_FIELDS = ("title", "section", "sentence", "advice", "formula")
 _DIMENSIONS = {
     "crank": (
         "crank",
@@ -68,4 +68,4 @@ _DIMENSIONS = {
         "e; the slider line is y = e",
     ),
 }
-"""What is told of each dimension: `_TOLD`."""
+"""What is told of each dimension: `_TEXT_FIELDS`."""

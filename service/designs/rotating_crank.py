@@ -1,4 +1,4 @@
-"""Analyses of a full turn, which designs of a crank that swings do not have."""
+"""Requirement of a rotating crank, for analyses of a full turn."""
 
 from __future__ import annotations
 

@@ -78,7 +78,7 @@ def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition
     name, comparison, value = match.groups()
     comparison = _SAME.get(comparison, comparison)
     _require_order(text, name, comparison, value)
-    column, formula = _meant(name, keys)
+    column, formula = _column_and_formula(name, keys)
     if formula is not None:
         return Condition(column, comparison, _number(match, column), formula)
     if isinstance(example[column.key], str):
@@ -103,7 +103,7 @@ def _require_order(text: str, name: str, comparison: str, value: str) -> None:
         raise InputError(f'a condition must begin with its quantity or formula; got {text!r}; write it like "{turned}"')
 
 
-def _meant(name: str, keys: Collection[str]) -> tuple[Column, RowFormula | None]:
+def _column_and_formula(name: str, keys: Collection[str]) -> tuple[Column, RowFormula | None]:
     """Return the column of a name, or of a formula one that the table does not have, with the formula."""
     if not _SIGN.search(name.strip()):
         return find_column(name, keys), None
@@ -126,7 +126,7 @@ def plain_number(text: str) -> float | None:
 
 
 def parse_value(key: str, value: object, kind: Kind, *, sign: Any = "any") -> float:
-    """Return the value in SI of a text, which needs a unit unless the kind has none, or of a number in SI.
+    """Return the SI value of a text with its unit, or of a number in SI.
 
     Raises `InputError` that begins with the key.
     """
@@ -180,15 +180,17 @@ def order_key(cell: Cell) -> tuple[bool, float, str]:
     return (False, 0.0, cell) if isinstance(cell, str) else (False, float(cell), "")
 
 
-def chosen_rows(result: Result, where: Collection[str], *, sort: str | None = None, reverse: bool = False) -> list[int]:
+def chosen_rows(
+    result: Result, conditions: Collection[str], *, sort: str | None = None, reverse: bool = False
+) -> list[int]:
     """Return the positions of the designs that meet all conditions.
 
     sort: a quantity, column or formula of these: best first for an objective, else smallest first; None for the order
     of the front. reverse: turn the order round. Raises `InputError` for a wrong condition and for an unknown column.
     """
-    chosen = select(result.designs, where)
+    chosen = select(result.designs, conditions)
     if sort is not None and result.designs:
-        column, formula = _meant(sort, list(result.designs[0]))
+        column, formula = _column_and_formula(sort, list(result.designs[0]))
         key = column.key
         objective = next((item for item in result.objectives if item.column == key), None)
         if formula is not None:
@@ -220,11 +222,11 @@ def result_part(result: Result, rows: Sequence[int]) -> Result:
     )
 
 
-def no_match_message(result: Result, where: Collection[str]) -> str:
+def no_match_message(result: Result, texts: Collection[str]) -> str:
     """Return the message for a front where no design meets the conditions."""
     rows = result.designs
-    conditions = " and ".join(text.strip() for text in where)
-    parsed = (parse_condition(text, list(rows[0]), rows[0]) for text in where if rows)
+    conditions = " and ".join(text.strip() for text in texts)
+    parsed = (parse_condition(text, list(rows[0]), rows[0]) for text in texts if rows)
     reasons = dict.fromkeys(reason for condition in parsed if (reason := _never(condition, rows)))
     return "; ".join((f"none of the {counted(len(rows), 'design')} meets {conditions}", *reasons))
 

@@ -82,11 +82,11 @@ def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Vari
         broken=unmet_columns(requirements_of(design.part), row)
         + (["slow_stroke"] if design.part.slow_stroke not in (None, row.get("slow_stroke")) else []),
         outside=unmet_columns(ranges_of(design.part), row),
-        **_beside(result, row, minimised),
+        **_dominance(result, row, minimised),
     )
 
 
-def _beside(result: Result, row: Row, minimised: Array) -> dict[str, list[int]]:
+def _dominance(result: Result, row: Row, minimised: Array) -> dict[str, list[int]]:
     """Return the positions of designs that dominate a row, and of those that it dominates."""
     from ...optimise.front.constant import spread
 

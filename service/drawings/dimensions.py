@@ -23,7 +23,7 @@ class Lettering:
 
     @property
     def factor(self) -> float:
-        """What one mm is in the unit of the texts."""
+        """Conversion factor from mm to the unit of the texts."""
         return shown_in("mm", self.system)[1]
 
 
@@ -44,11 +44,11 @@ def dimension(
     """
     turn, height = math.radians(angle), look.height
     direction, normal = (math.cos(turn), math.sin(turn)), (-math.sin(turn), math.cos(turn))
-    feet = [_at(through, direction, _dot(_less(point, through), direction)) for point in (start, end)]
+    feet = [_shifted(through, direction, _dot(_difference(point, through), direction)) for point in (start, end)]
     if _dot(feet[1], direction) < _dot(feet[0], direction):
         feet.reverse()
         start, end = end, start
-    length = _dot(_less(feet[1], feet[0]), direction)
+    length = _dot(_difference(feet[1], feet[0]), direction)
     displayed, off = look.factor * length, look.factor * tolerance
     text = format_toleranced(displayed, off) if tolerance else f"{displayed:.7g}"
     wide, arrow = WIDE * height * len(text), _ARROW * height
@@ -58,22 +58,24 @@ def dimension(
         distance = math.dist(point, foot)
         if distance > _GAP * height:
             unit = ((foot[0] - point[0]) / distance, (foot[1] - point[1]) / distance)
-            first, last = _at(point, unit, _GAP * height), _at(foot, unit, _BEYOND * height)
+            first, last = _shifted(point, unit, _GAP * height), _shifted(foot, unit, _BEYOND * height)
             parts.append(Line(DIMENSIONS, first, last))
     side = 1.0 if fits else -1.0
     for foot, out in ((feet[0], side), (feet[1], -side)):
-        base = _at(foot, direction, out * arrow)
-        corners = (foot, _at(base, normal, arrow / 6.0), _at(base, normal, -arrow / 6.0))
+        base = _shifted(foot, direction, out * arrow)
+        corners = (foot, _shifted(base, normal, arrow / 6.0), _shifted(base, normal, -arrow / 6.0))
         parts.append(Wedge(DIMENSIONS, corners))
     if fits:
         parts.append(Line(DIMENSIONS, *feet))
-        middle = _at(feet[0], direction, 0.5 * length)
+        middle = _shifted(feet[0], direction, 0.5 * length)
     else:
         parts.append(
-            Line(DIMENSIONS, _at(feet[0], direction, -2.0 * arrow), _at(feet[1], direction, 2.4 * arrow + wide))
+            Line(
+                DIMENSIONS, _shifted(feet[0], direction, -2.0 * arrow), _shifted(feet[1], direction, 2.4 * arrow + wide)
+            )
         )
-        middle = _at(feet[1], direction, 2.2 * arrow + 0.5 * wide)
-    parts.append(Label(DIMENSIONS, text, _at(middle, normal, 0.4 * height), height, angle, "middle"))
+        middle = _shifted(feet[1], direction, 2.2 * arrow + 0.5 * wide)
+    parts.append(Label(DIMENSIONS, text, _shifted(middle, normal, 0.4 * height), height, angle, "middle"))
     return Dimension(DIMENSIONS, name, start, end, through, angle, text, height, tuple(parts), tolerance)
 
 
@@ -87,11 +89,11 @@ def aligned(name: str, start: Point, end: Point, away: float, look: Lettering, t
     return dimension(name, start, end, through, angle, look=look, tolerance=tolerance)
 
 
-def _at(point: Point, unit: Point, length: float) -> Point:
+def _shifted(point: Point, unit: Point, length: float) -> Point:
     return point[0] + length * unit[0], point[1] + length * unit[1]
 
 
-def _less(point: Point, origin: Point) -> Point:
+def _difference(point: Point, origin: Point) -> Point:
     return point[0] - origin[0], point[1] - origin[1]
 
 

@@ -142,7 +142,7 @@ class Drawing:
     @property
     def bounds(self) -> tuple[float, float, float, float]:
         """Left, bottom, right and top of everything."""
-        x, y = zip(*(point for shape in self.shapes for point in _reach(shape)), strict=True)
+        x, y = zip(*(point for shape in self.shapes for point in _extreme_points(shape)), strict=True)
         return min(x), min(y), max(x), max(y)
 
 
@@ -152,7 +152,7 @@ def pairs(outline: Outline) -> Iterator[tuple[Point, Point, float]]:
     yield from zip(corners, (*corners[1:], corners[0]), outline.bulges, strict=True)
 
 
-def _reach(shape: Shape) -> Iterable[Point]:
+def _extreme_points(shape: Shape) -> Iterable[Point]:
     if isinstance(shape, Line):
         return shape.start, shape.end
     if isinstance(shape, Circle):
@@ -165,7 +165,7 @@ def _reach(shape: Shape) -> Iterable[Point]:
     if isinstance(shape, Wedge):
         return shape.corners
     if isinstance(shape, Dimension):
-        return [point for part in shape.parts for point in _reach(part)]
+        return [point for part in shape.parts for point in _extreme_points(part)]
     long, turn = WIDE * shape.height * len(shape.text), math.radians(shape.angle)
     back = {"start": 0.0, "middle": 0.5, "end": 1.0}[shape.anchor] * long
     corners = [(u - back, v) for u in (0.0, long) for v in (-0.3 * shape.height, shape.height)]

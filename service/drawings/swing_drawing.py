@@ -35,7 +35,7 @@ def swing_drawing(
     angle outside, and what `require_swing` raises.
     """
     drawn = swing_look(mechanism, linkage, swing)
-    angle = _within(drawn.swing, crank_angle)
+    angle = _angle_in_swing(drawn.swing, crank_angle)
     pin, slider = pin_positions(drawn.linkage, angle)
     letters = Lettering(TEXT * drawn.look.size, system)
     shapes: list[Shape] = [
@@ -51,7 +51,7 @@ def swing_drawing(
     )
 
 
-def _within(swing: Swing, angle: float | None) -> float:
+def _angle_in_swing(swing: Swing, angle: float | None) -> float:
     """Return a crank angle turned by whole turns into a swing."""
     if angle is None:
         return 0.5 * (swing.start + swing.end)

@@ -20,7 +20,7 @@ from ...model.signals.signals import Signal
 from ...objectives.kinds import LENGTH, System
 from ...objectives.tables.cycle_curves import cycle_curves as all_curves
 from ..render.blocks import Value, joined, words
-from ..render.numerals import shown
+from ..render.numerals import format_number
 from .drawing import least_transmission_crank_angle
 from .panel_figure import CRANK_ANGLE, Line, Panel, crank_angle_panel
 from .panels import draw_panel
@@ -105,7 +105,8 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True)
                 value = math.copysign(size, highest)
             lines.append(Line("", degrees[at : at + 1], np.array([value]), points=True))
             note = words(
-                f"{word} {{value}} at {shown(degrees[at])}°", value=Value(value, computed_curve.kind, 4, bare=True)
+                f"{word} {{value}} at {format_number(degrees[at])}°",
+                value=Value(value, computed_curve.kind, 4, bare=True),
             )
         panels.append(
             replace(
@@ -137,7 +138,7 @@ def _name_dead_centres(top: Axes, curves: Curves) -> None:
             "left" if angle < 70.0 * turns else "right" if angle > curves.last_turn_end - 70.0 * turns else "center"
         )
         top.annotate(
-            f"{name} dead centre {shown(angle)}°",
+            f"{name} dead centre {format_number(angle)}°",
             xy=(angle, 1.0),
             xycoords=top.get_xaxis_transform(),
             xytext=(0, 17),

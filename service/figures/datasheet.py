@@ -15,7 +15,7 @@ from ...model.machine.mechanism import Mechanism
 from ...objectives.keys import split_unit
 from ...objectives.kinds import System, shown_in, unit_text
 from ...objectives.registry import QUANTITIES
-from ..render.numerals import shown
+from ..render.numerals import format_number
 from .curves import cycle_curves, draw_curves
 from .drawing import draw_mechanism
 from .style import INK, MUTED, SMALL, TEXT, add_axes, heading, new_figure, write_text
@@ -62,7 +62,9 @@ def design_datasheet(
             style: dict[str, Any] = {"weight": "bold" if key in (bold or {}) else "normal", "color": INK}
             name = textwrap.shorten(name, 2 * _LETTERS, placeholder=" ...")
             write_text(figure, x, y, name, fontsize=TEXT * min(1.0, _LETTERS / len(name)), **style)
-            write_text(figure, x + 2.38, y, shown(float(numbers[key]) * factor, 5, zeros=True), ha="right", **style)
+            write_text(
+                figure, x + 2.38, y, format_number(float(numbers[key]) * factor, 5, zeros=True), ha="right", **style
+            )
             if unit:
                 write_text(figure, x + 2.44, y, unit_text(unit), **style)
             y -= 0.2 * _ROWS / tall

@@ -14,7 +14,7 @@ from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System, shown_in
 from ..drawings.parts import Look, fixed_shapes, look_of, moving_shapes, pin_positions
 from ..drawings.shapes import Point
-from ..render.numerals import length, shown
+from ..render.numerals import format_number, length
 from .painting import paint, show_rectangle
 from .style import BLUE, INK, MUTED, SMALL, VERMILION
 
@@ -78,7 +78,9 @@ def _transmission_angle(axes: Axes, pin: Point, slider: Point, degrees: float) -
     away = 1.0 if pin[0] < slider[0] else -1.0
     at = (slider[0], slider[1] + math.copysign(radius, normal))
     aside = "left" if away > 0.0 else "right"
-    _annotate(axes, f"{shown(degrees)}°", at, (5.0 * away, 0.0), VERMILION, ha=aside, va="center", weight="bold")
+    _annotate(
+        axes, f"{format_number(degrees)}°", at, (5.0 * away, 0.0), VERMILION, ha=aside, va="center", weight="bold"
+    )
 
 
 def _annotate(axes: Axes, text: str, at: Point, away: Point, colour: str, **style: Any) -> None:

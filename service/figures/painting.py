@@ -99,7 +99,7 @@ def paint(axes: Axes, shapes: Iterable[Shape]) -> list[Artist]:
             disc = Disc(shape.centre, shape.radius, facecolor=fill, edgecolor=shape.layer.ink, **style)
             artists.append(axes.add_patch(disc))
         elif isinstance(shape, Outline):
-            corners = [point for side in pairs(shape) for point in _along(*side)]
+            corners = [point for side in pairs(shape) for point in _arc_points(*side)]
             polygon = Polygon(corners, facecolor=fill, edgecolor=shape.layer.ink, **style)
             artists.append(axes.add_patch(polygon))
         elif isinstance(shape, Wedge):
@@ -107,7 +107,7 @@ def paint(axes: Axes, shapes: Iterable[Shape]) -> list[Artist]:
     return artists
 
 
-def _along(start: Point, end: Point, bulge: float) -> list[Point]:
+def _arc_points(start: Point, end: Point, bulge: float) -> list[Point]:
     """Return points along a side, its end left out."""
     if not bulge:
         return [start]

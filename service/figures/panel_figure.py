@@ -1,4 +1,4 @@
-"""A sheet of panels with curves, as data: what the figure of a topic or of a published case shows."""
+"""A figure of panels with curves, as data: for a topic or a published case."""
 
 from __future__ import annotations
 
@@ -21,7 +21,9 @@ THIN, DASHED, FAINT, DOTS, SAMPLES = 5, 6, 7, 8, 9
 
 @dataclass(frozen=True)
 class Line:
-    """A curve through (x, y), each (n,), as its panel has them, with a gap where y is nan; single points if `points`.
+    """A curve through (x, y), each (n,), in the units of its panel; NaN in y leaves a gap.
+
+    points: whether single points are drawn instead of a line.
 
     style: which of the line styles.
     """
@@ -37,9 +39,9 @@ class Line:
 class Panel:
     """Lines over a common axis.
 
-    title, across: of the axes. kind, along: of the numbers y and x, which are then in SI; where there is none, numbers
-    are drawn as they are, and the title says their unit. names: (text, x, y) of what is named in the drawing. equal:
-    the same scale in both directions. turns: x is a crank angle in deg, ticked by quarter turns. level: a horizontal
+    title, x_title: of the axes. kind, x_kind: of the numbers y and x, then in SI; without a kind, numbers are drawn
+    unchanged and the title contains their unit. names: (text, x, y) of named points. equal: whether both directions
+    have the same scale. turns: whether x is a crank angle in deg, with ticks at parts of a turn. level: a horizontal
     line, with its name. shaded: parts of the axis (from, to). note: at the right of the title.
     """
 

@@ -1,4 +1,4 @@
-"""A sheet of panels with curves as a figure."""
+"""Drawing of panels with curves as a figure."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def draw_panel_figure(figure_panels: PanelFigure, system: System = "metric", *, 
 
 
 def figure_of(source: FigureSource, system: System = "metric") -> Figure:
-    """Return the figure of a sheet, or of what is drawn otherwise, in a system of units; one drawn before as it is."""
+    """Return a finished figure unchanged, or draw panels or a function's figure in a system of units."""
     if isinstance(source, Figure):
         return source
     return draw_panel_figure(source, system) if isinstance(source, PanelFigure) else source(system)

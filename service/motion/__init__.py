@@ -1,1 +1,1 @@
-"""A linkage that moves: a page of its own for a browser, and an animated picture."""
+"""Animations of a linkage: a self-contained page for a browser, and a GIF."""

@@ -1,4 +1,4 @@
-"""The moving linkage as an animated GIF: a turn of the crank, two of a cycle of 720 deg, or a swing, repeated."""
+"""The moving linkage as an animated GIF : one turn, two for a 720 deg cycle, or a swing."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def animated_gif(
     name: of the run. design: which of it, "design 3". swing: what the crank makes instead of turning fully. Raises
     `AssemblyError` for a linkage that does not turn fully, or what `require_swing` raises.
     """
-    scene = _turning(mechanism, linkage) if swing is None else _swinging(mechanism, linkage, swing)
+    scene = _turn_scene(mechanism, linkage) if swing is None else _swing_scene(mechanism, linkage, swing)
     frames = _frames(scene, f"{name}, {design}" if design else name)
     out = io.BytesIO()
     options: dict[str, Any] = {"append_images": frames[1:], "duration": MILLISECONDS, "loop": 0, "optimize": False}
@@ -59,7 +59,7 @@ class _Scene:
     dashed: str
 
 
-def _turning(mechanism: Mechanism, linkage: Linkage) -> _Scene:
+def _turn_scene(mechanism: Mechanism, linkage: Linkage) -> _Scene:
     look, turns = look_of(mechanism, linkage), cycle_turns(mechanism)
     turn = -1.0 if mechanism.speed < 0.0 else 1.0
     angles = turn * 2.0 * math.pi * np.arange(turns * FRAMES) / FRAMES
@@ -76,7 +76,7 @@ def _turning(mechanism: Mechanism, linkage: Linkage) -> _Scene:
     )
 
 
-def _swinging(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> _Scene:
+def _swing_scene(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> _Scene:
     drawn = swing_look(mechanism, linkage, swing)
     ways = curves_at_even_times(mechanism, drawn.linkage, drawn.swing, FRAMES)
     frames = []

@@ -16,7 +16,7 @@ from ...optimise.front.constant import is_constant
 from ..designs.cycle_table import CurveColumn
 from ..drawings import layers as on
 from ..drawings.svg import elements, group
-from ..render.numerals import shown as number
+from ..render.numerals import format_number as number
 from .playback import ANGLES, Playback, turn_playback
 from .swing_playback import swing_playback
 

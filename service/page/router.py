@@ -44,7 +44,7 @@ _HEADERS = {"Content-Security-Policy": POLICY, "Cache-Control": "no-cache", "Var
 @router.get("/")
 async def show_page(request: Request) -> Response:
     """Return the document; its modules ask the API for everything else."""
-    return _answer(request, "index.html")
+    return _page_file(request, "index.html")
 
 
 @router.get("/page/inter.woff")
@@ -59,7 +59,7 @@ def fetch_typeface(request: Request) -> Response:
 @router.get("/page/{name:path}")
 async def fetch_page_file(request: Request, name: str) -> Response:
     """Return a file that the document uses."""
-    return _answer(request, name)
+    return _page_file(request, name)
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class _File:
     tag: str
 
 
-def _answer(request: Request, name: str) -> Response:
+def _page_file(request: Request, name: str) -> Response:
     file = _FILES.get(name)
     if file is None:
         raise NotFound(f"the page has no file {name[:100]!r}; open the address of the service itself")

@@ -22,11 +22,11 @@ def typeface() -> bytes:
     more.
     """
     with _ONE:
-        return _made()
+        return _subset_font()
 
 
 @cache
-def _made() -> bytes:
+def _subset_font() -> bytes:
     from fontTools.subset import Options, Subsetter, load_font
 
     options = Options(layout_features=[*_FEATURES])

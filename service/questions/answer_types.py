@@ -1,4 +1,4 @@
-"""Answers of questions as types: what keys there are, of what kind, what may be null and why; JSON Schemas follow.
+"""Types of the answers of questions, from which JSON Schemas follow: keys, their kinds, and why a value is null.
 
 An answer is what the function `numbers` of a question returns: a `Record`, a typed dictionary that mypy checks, or,
 where its keys follow from data, a dictionary with `Keys`. The unit of a number is the end of its key.
@@ -45,7 +45,7 @@ class Record(TypedDict):
 
 
 def _title(key: str, _: object = None) -> str:
-    """Return what a key says in words: "peak torque, N m"."""
+    """Return the title of a key: "peak torque, N m"."""
     numerator, per, denominator = key.partition("_per_")
     name, unit, _factor = split_unit(numerator)
     words = [name.replace("_", " "), *([f"per {denominator.replace('_', ' ')}"] if per else [])]

@@ -67,7 +67,7 @@ def quantities_of_design(
 def with_undefined_values(
     row: Row, mechanism: Mechanism, linkage: Linkage, custom: Sequence[Quantity] = (), swing: Swing | None = None
 ) -> tuple[Row, dict[str, str]]:
-    """Return a row of all quantities with NaN for those that a design lacks, and by column why it lacks them.
+    """Return a row of all quantities with NaN for undefined ones, and the reason for each by column.
 
     row: of the `columns_of` of a table. custom: quantities of the job. swing: in place of a full turn.
     """

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class QuestionCommand:
-    """What a question says that is a command, with an address of its own, and no topic of `analyse --show`.
+    """Declaration of a question that is a command with its own endpoint instead of a topic of `analyse --show`.
 
     help: what it answers, the first sentence in a paragraph of its own. endpoint: name of the endpoint. job, alone:
     help on JOB, and on what holds without. curves: what the command can write and draw, by functions `curves` and
@@ -165,14 +165,14 @@ class BoundQuestion:
         return shown_blocks
 
     def notes(self, numbers: dict[str, Any]) -> list[str]:
-        """Return what is to be said of the numbers besides: what is undefined, or not proven."""
+        """Return notes on the numbers: values that are undefined, or an optimum that is not proven."""
         if hasattr(self._analysis, "notes"):
             remarks: list[str] = self._analysis.notes(numbers)
             return remarks
         return [note for note in numbers.get("notes", [numbers.get("note")]) if note]
 
     def written(self, name: str, units: System) -> Any:
-        """Return what a command writes, by the name of its function: rows of `curves`, or a `figure`."""
+        """Return the output of a function of the module by its name: rows of `curves`, or a `figure`."""
         return getattr(self._analysis, name)(self.mechanism, self.linkage, units=units, **self.options)
 
     def draw(self, folder: Path, units: System = "metric") -> Path:

@@ -1,4 +1,4 @@
-"""A question to more than one design: to a front, to several runs, or to a job."""
+"""Questions to a front or a job."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Answer:
-    """An answer. record: numbers for JSON, by system of units. blocks: for people. met: whether it is what was asked.
+    """An answer. record: numbers for JSON, by system of units. blocks: for people. message: its summary.
 
-    message: what was found, in short. found: what the search gives, for what a command does with it besides.
+    is_satisfied: whether the request was met. search_result: result of the search, for further use by a command.
     """
 
     record: Callable[[System], dict[str, Any]]
@@ -33,7 +33,7 @@ class Answer:
 
 @dataclass(frozen=True, kw_only=True)
 class SearchListener:
-    """Who waits for an answer. cancelled: asked now and then. tell: hears in words where the search is."""
+    """Listener to a search. cancelled: polled; whether to stop. report: receives the progress in words."""
 
     cancelled: Callable[[], bool] = lambda: False
     report: Callable[[str], None] = lambda _: None
@@ -41,13 +41,13 @@ class SearchListener:
 
 @dataclass(frozen=True, kw_only=True)
 class FrontOrJobQuestion:
-    """A question, declared by its folder, whose module `analysis` has the function `answer`.
+    """Declaration of a question to a front or a job. The module `analysis` of its folder has the function `answer`.
 
-    It takes the subject, for a front also `row`, `watch`, `words`, what the door calls the inputs, and the inputs by
-    name; it gives an `Answer`. package: the folder's; its last part is the name. subject: what is asked. help: what it
-    answers, the first sentence in a paragraph of its own. row: whether a design of the front belongs to the question.
-    path: of the endpoint, with names in braces. posted: whether the inputs are its body, not part of its address. key:
-    of the numbers in its answer, "" if that is they.
+    `answer` takes the subject, for a front also `row`, then `watch`, `words` (names of the inputs in the interface) and
+    the inputs by name; it returns an `Answer`. package: of the folder; its last part is the name. subject: kind of
+    object that the question is put to. help: first sentence in a paragraph of its own. row: whether the question is
+    about one design of the front. path: of the endpoint, with names in braces. posted: whether the inputs are the body
+    of the request instead of part of its address. key: of the numbers in the answer, "" if they are the whole answer.
     """
 
     package: str
@@ -67,7 +67,7 @@ class FrontOrJobQuestion:
 
     @property
     def flags(self) -> dict[str, str]:
-        """What the command line calls the inputs."""
+        """Command-line options of the inputs, by name."""
         return {item.name: item.flag for item in self.inputs}
 
     def read(
@@ -75,8 +75,9 @@ class FrontOrJobQuestion:
     ) -> dict[str, Any]:
         """Return inputs as the answer takes them. Raises `InputError` for others, and for a design out of place."""
         if (row is None and self.row == "must") or (row is not None and self.row == "none"):
-            rule = f"{self.name} is of {'one design' if row is None else 'a whole front'}"
-            raise InputError(f"{rule}; got {'none; name it' if row is None else 'one design; leave it out'}")
+            if row is None:
+                raise InputError(f"{self.name} needs one design of the front; got none; name it")
+            raise InputError(f"{self.name} applies to the whole front; got one design; leave it out")
         return read_inputs(self.inputs, inputs, self.name, words)
 
     def ask(
@@ -86,7 +87,7 @@ class FrontOrJobQuestion:
         *,
         row: int | None = None,
         words: Mapping[str, str] | None = None,
-        watch: SearchListener | None = None,
+        listener: SearchListener | None = None,
     ) -> Answer:
         """Return the answer. inputs: by name. row: of a front. words: what the door calls the inputs, if not so.
 
@@ -95,10 +96,10 @@ class FrontOrJobQuestion:
         values = self.read(inputs, row, words)
         options: dict[str, Any] = {"row": row} if self.row != "none" else {}
         labels = {item.name: item.name for item in self.inputs} | dict(words or {})
-        answer: Answer = import_module(f"{self.package}.analysis").answer(
-            subject, **options, words=labels, watch=watch or SearchListener(), **values
+        result: Answer = import_module(f"{self.package}.analysis").answer(
+            subject, **options, words=labels, watch=listener or SearchListener(), **values
         )
-        return answer
+        return result
 
     def answer_of(self, subject: object, row: int | None, inputs: Mapping[str, object]) -> dict[str, Any]:
         """Return the numbers as JSON has them, metric: a question of `optimise.problem.questions`."""

@@ -1,4 +1,4 @@
-"""What a question is asked with besides its design: declared once, read from the words of every door."""
+"""Inputs of questions: declared once, parsed alike in every interface."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Input:
-    """A value that a question is asked with.
+    """An input of a question.
 
     name: the parameter of the question's `numbers`, which has its default. kind: of the value, in SI there; None for a
     word. title: before the field of a form. help: of the option, with the default in brackets. usual: the default, as
@@ -72,9 +72,9 @@ class Input:
         return f"{self.help}  [{'default' if self.usual else 'example'}: {quoted}]" if typed else self.help
 
     def read(self, raw: object, word: str) -> Any:
-        """Return the value in SI of a text with its unit, or of a number in SI; a word as it is.
+        """Return the SI value of a text with its unit or of a number; words are unchanged.
 
-        word: what the door calls the input. Raises `InputError` that begins with it.
+        word: name of the input in the interface, with which error messages begin. Raises `InputError`.
         """
         from ...model.machine.loads.load import require_word
         from ...objectives.units import quote

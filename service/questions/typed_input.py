@@ -1,4 +1,4 @@
-"""Numbers and texts without a kind, which questions to a front, to runs or to a job are asked with."""
+"""Inputs with a plain type instead of a physical kind: numbers, texts, texts by name."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from .inputs import Input
 
 @dataclass(frozen=True, kw_only=True)
 class TypedInput(Input):
-    """An input without a kind.
+    """An input with a plain type instead of a physical kind.
 
-    type: a number, `str`, a `list` of texts, or a `dict` of texts by name, of which a door of texts writes "name=text".
-    least: of a number. limits: in services, by the names of `pydantic.Field`. form: of a text with a name,
+    type: a number, `str`, a `list` of texts, or a `dict` of texts by name, typed as "name=text" on the command line.
+    least: minimum of a number. limits: in services, by the names of `pydantic.Field`. form: of a text with a name,
     "REQUIREMENT=AMOUNT". metavar: of the option. sent: an example in a body.
     """
 
@@ -44,7 +44,7 @@ class TypedInput(Input):
         return TypeAdapter(kind)
 
     def with_unit(self, number: Any) -> Any:
-        """Return what the API was given, as it is."""
+        """Return a value of the API unchanged: it has no unit."""
         return number
 
     def read(self, raw: object, word: str) -> Any:
@@ -79,6 +79,6 @@ def texts_by_name(texts: Sequence[object], word: str, form: str, example: str) -
         if not (equals and name and value):
             raise InputError(f"{word} must be {form}; got {quote(text)}; write it like {example}")
         if name in text_of_name:
-            raise InputError(f"{word} gives each name once; got {name} twice; leave out one")
+            raise InputError(f"{word} may give each name only once; got {name} twice; leave out one")
         text_of_name[name] = value
     return text_of_name

@@ -147,7 +147,7 @@ NamedNumber = tuple[str, Text, Text]
 
 
 def named_number(record: Mapping[str, Any], key: str, remark: Text = "") -> NamedNumber:
-    """Return a number of a metric record, named by its key, with a remark and the crank angle of a peak."""
+    """Return a number of a metric record with its name, the crank angle of a peak, and a remark."""
     name, _ = kind_of_key(key)
     angle = f"{name}_angle_deg"
     at = words("at {angle}", angle=recorded(record, angle, decimals=2)) if record.get(angle) is not None else ""

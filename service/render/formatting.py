@@ -1,4 +1,4 @@
-"""Text of values and blocks in a system of units: the one place where a number of an answer becomes text."""
+"""Formatting of values and blocks in a system of units; only here do numbers of answers become text."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from ...objectives.kinds import System, unit_text
 from .blocks import Block, Phrase, Sentence, Table, Text, Unit, Value
-from .numerals import shown
+from .numerals import format_number
 
 _LEAST_DIGITS = 4  # of a number in a unit of the inch system: 0.7 mm is 0.02756 in
 
@@ -36,7 +36,7 @@ def format_value(value: Value, system: System = "metric", *, bare: bool = False,
     digits, decimals = digits_of(value, system)
     number, unit = display_unit.factor * value.number, "" if bare or value.bare else unit_text(display_unit.symbol)
     if printed and decimals is None:
-        text = shown(number, digits)
+        text = format_number(number, digits)
     else:
         text = format(number, f".{digits}g" if decimals is None else f".{decimals}f")
         text = text.removeprefix("-") if float(text) == 0.0 else text

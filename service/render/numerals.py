@@ -8,7 +8,7 @@ from ...objectives.kinds import System, shown_in, unit_text
 from ..runs.result import Cell
 
 
-def shown(value: float, digits: int = 4, *, zeros: bool = False) -> str:
+def format_number(value: float, digits: int = 4, *, zeros: bool = False) -> str:
     """Return a number for people: that many significant digits, no exponent where avoidable, a real minus sign.
 
     zeros: keep those at the end, so that numbers below one another have the same precision.
@@ -23,7 +23,7 @@ def shown(value: float, digits: int = 4, *, zeros: bool = False) -> str:
 
 def on_scale(value: float, low: float, high: float, *, digits: int = 4) -> str:
     """Return a number as text for an axis from low to high; less than a millionth of it is zero."""
-    return shown(0.0 if abs(value) < 1e-6 * abs(high - low) else value, digits)
+    return format_number(0.0 if abs(value) < 1e-6 * abs(high - low) else value, digits)
 
 
 def with_unit(title: str, symbol: str, target: float | None = None) -> str:
@@ -36,7 +36,7 @@ def rounded(cell: Cell) -> str:
     """Return a value for people, six digits of it."""
     if cell is None:
         return "–"
-    return cell if isinstance(cell, str) else shown(cell, 6)
+    return cell if isinstance(cell, str) else format_number(cell, 6)
 
 
 def as_stored(cell: Cell) -> str:
@@ -49,7 +49,7 @@ def as_stored(cell: Cell) -> str:
 def length(millimetres: float, system: System, digits: int = 4) -> str:
     """Return a length, mm, for people in the unit of a system."""
     unit, factor = shown_in("mm", system)
-    return f"{shown(millimetres * factor, digits)} {unit}"
+    return f"{format_number(millimetres * factor, digits)} {unit}"
 
 
 def measured(cell: Cell, unit: str) -> str:

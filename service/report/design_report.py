@@ -25,9 +25,9 @@ from .subject import Subject
 from .swing_section import SwingOfSubject
 
 
-def design_report(subject: Subject, *, made: float | None = None) -> Report:
-    """Return the report of a design. made: when, seconds since 1970; now if None."""
-    when = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime(made))
+def design_report(subject: Subject, *, created: float | None = None) -> Report:
+    """Return the report of a design. created: when, seconds since 1970; now if None."""
+    when = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime(created))
     motion, decision = subject.design.part.motion, decision_section(subject)
     swing = None if motion is None else SwingOfSubject(subject, motion)
     tolerances = tolerance_section(subject) if swing is None else swing.tolerances()
@@ -72,7 +72,7 @@ def _summary(subject: Subject) -> Section:
 
 
 def _format_choice(subject: Subject, key: str) -> str:
-    """Return what was chosen, or an amount that comes with it, in words."""
+    """Return a choice, or an amount that follows from it, in words."""
     column, value = find_column(key, list(subject.row)), subject.row[key]
     custom = next((quantity for quantity in subject.problem.own if quantity.field == key), None)
     title, unit = (column.title, column.unit) if custom is None else (custom.title, custom.unit.symbol)

@@ -39,7 +39,7 @@ def design_section(subject: Subject) -> Section:
                 "The design over a turn of the crank"
                 if subject.design.part.motion is None
                 else "The design over its swing",
-                partial(_sheet, subject),
+                partial(_datasheet, subject),
             ),
         ),
     )
@@ -198,6 +198,6 @@ def linkage_picture(subject: Subject) -> Picture:
     )
 
 
-def _sheet(subject: Subject) -> Figure:
+def _datasheet(subject: Subject) -> Figure:
     label = "the chosen design" if subject.changed is None else subject.label
     return datasheet_of(subject.front, subject.number - 1, label, subject.system, subject.changed)

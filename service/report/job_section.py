@@ -27,8 +27,8 @@ def job_section(subject: Subject) -> Section:
     return Section("The job", (Facts(rows), *warned))
 
 
-def search_section(subject: Subject, made: str) -> Section:
-    """Return how the front was found, how good it is known to be, and what computed it. made: when the report was."""
+def search_section(subject: Subject, created: str) -> Section:
+    """Return the section on the search: its outcome, its proven quality, its software. created: date of the report."""
     result, settings = subject.result, subject.problem.settings
     stationary = sum(row.get("status") == "stationary" for row in result.designs)
     rows = {
@@ -42,7 +42,7 @@ def search_section(subject: Subject, made: str) -> Section:
         "Outcome": f"{result.status}: {result.message}",
         "Stationary designs": f"{stationary} of {len(result.designs)}",
         "Computed by": _versions_in_words(subject.versions) or "not recorded",
-        "Report drawn by": f"{_versions_in_words({name: version_of(name) for name in _DREW})}; {made}",
+        "Report drawn by": f"{_versions_in_words({name: version_of(name) for name in _DREW})}; {created}",
     }
     facts = Facts({title: [line] for title, line in rows.items()})
     return Section("How the front was found", (facts, *_certificate(subject)))

@@ -1,4 +1,4 @@
-"""A report as PDF on A4 pages, set by typst: tagged, with text that can be searched and figures as lines."""
+"""A report as tagged PDF on A4 pages, set by typst, with searchable text and vector figures."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ def reader_left() -> bool:
 
 def guard_streams() -> None:
     """Make standard streams that say why they fail, and show "?" for characters that the terminal does not have."""
-    codecs.register_error(_AS_SHOWN, _shown)
+    codecs.register_error(_AS_SHOWN, _replacement_text)
     if sys.stderr is None:
         sys.stderr = open(os.devnull, "w")  # noqa: SIM115, PTH123 - as long as this process
     if sys.stdout is None:
@@ -70,8 +70,8 @@ def guard_streams() -> None:
         sys.stderr.reconfigure(errors=_AS_SHOWN)
 
 
-def _shown(error: UnicodeError) -> tuple[bytes, int]:
-    """Return what a stream shows for characters that it cannot encode, and where it continues.
+def _replacement_text(error: UnicodeError) -> tuple[bytes, int]:
+    """Return the replacement for characters that a stream cannot encode, and the position to continue from.
 
     Bytes of a path that the locale could not decode are joined to characters first, so that each letter is one.
     """

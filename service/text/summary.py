@@ -45,7 +45,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
     samples = f", {counted(settings.samples, 'sample')} a round" if settings.samples else ""
     return {
         "name": problem.name,
-        "given": [*_motion(problem), *_machine(problem), *_own(problem)],
+        "given": [*_motion(problem), *_machine(problem), *_custom_lines(problem)],
         "loads": problem.mechanism.load_texts,
         "tolerances": _tolerances(problem.mechanism),
         "costs": [] if problem.costs is None else [_cost(*item) for item in problem.costs.by_name.items()],
@@ -119,7 +119,7 @@ def _machine(problem: Problem) -> list[str]:
 
 def machine_in_words(problem: Problem, mechanism: Mechanism) -> list[str]:
     """Return a machine of a problem line by line: the one that is stated, or that of a design."""
-    return [*_speed(problem, mechanism), *_given(mechanism)]
+    return [*_speed(problem, mechanism), *_mechanism_lines(mechanism)]
 
 
 def _speed(problem: Problem, mechanism: Mechanism) -> list[str]:
@@ -137,7 +137,7 @@ def _speed(problem: Problem, mechanism: Mechanism) -> list[str]:
     return [speed, f"{cycle} {turns * seconds:.6g} s, {60.0 / seconds:.6g} strokes per minute"]
 
 
-def _given(mechanism: Mechanism) -> list[str]:
+def _mechanism_lines(mechanism: Mechanism) -> list[str]:
     lines = []
     if mechanism.speed_profile is not None:
         lines.append(f"speed over the crank angle: {mechanism.speed_profile.text}; quantities follow this profile")
@@ -187,7 +187,7 @@ def _motion(problem: Problem) -> list[str]:
     return lines
 
 
-def _own(problem: Problem) -> list[str]:
+def _custom_lines(problem: Problem) -> list[str]:
     lines = [
         f"{quantity.name}: {quantity.title}, by {quantity.function}"
         for quantity in problem.own
@@ -295,7 +295,7 @@ def _varying(item: Varying) -> str:
 
 
 def _values(problem: Problem, item: Discrete) -> str:
-    """Return the values of a variable that has some only: the rule that gives them, and the first and last ones."""
+    """Return the values of a discrete variable: its rule, its first and last values."""
     unit = columns_of_numbers(problem.mechanism.varying)[item.name][1]
     values = [f"{unit.factor * value:.6g}" for value in item.values]
     few = values if len(values) <= _MOST_VALUES else [*values[:2], "...", values[-1]]
@@ -322,13 +322,13 @@ def _option(name: str, label: str, speed: float) -> str:
     return f"{label} ({rpm})" if name == "speed" and label != rpm else label
 
 
-_MOST_TOLD = 12  # combinations whose limits are told one by one
+_MOST_LISTED = 12  # combinations whose limits are told one by one
 
 
 def _limits(problem: Problem) -> list[str]:
     """Return the limits that come with each combination of choices, such as what a gearmotor can take."""
     limited = [variant for variant in problem.variants if variant.limits]
-    if len(limited) > _MOST_TOLD:
+    if len(limited) > _MOST_LISTED:
         return [f"limits set by {len(limited)} combinations of choices"]
     return [
         f"with {' and '.join(variant.labels)}: {_rule(limit, problem, is_stated=True)}"

@@ -220,20 +220,20 @@ def show_rules(screen: Console, rules: Sequence[JudgedRule]) -> None:
     if not broken:
         screen.print("It meets every range and requirement of the job.", soft_wrap=True)
     for rule in broken:
-        value = "has no value" if rule.value is None else f"is {_of(rule.value, rule)}"
-        miss = "" if rule.missed_by is None else f", by {_of(rule.missed_by, rule)}"
-        screen.print(f"Not met: {rule.title} {_asked(rule)} {value}{miss}.", style="bold", soft_wrap=True)
+        value = "has no value" if rule.value is None else f"is {_format_value(rule.value, rule)}"
+        miss = "" if rule.missed_by is None else f", by {_format_value(rule.missed_by, rule)}"
+        screen.print(f"Not met: {rule.title} {_format_bounds(rule)} {value}{miss}.", style="bold", soft_wrap=True)
     for rule in (rule for rule in rules if rule.met):
-        value = "" if rule.value is None else _of(rule.value, rule)
-        screen.print(f"  met: {rule.title} {_asked(rule)}: {value}", soft_wrap=True, style="dim")
+        value = "" if rule.value is None else _format_value(rule.value, rule)
+        screen.print(f"  met: {rule.title} {_format_bounds(rule)}: {value}", soft_wrap=True, style="dim")
 
 
-def _asked(rule: JudgedRule) -> str:
+def _format_bounds(rule: JudgedRule) -> str:
     if rule.lower is not None and rule.lower == rule.upper:
-        return f"(exactly {_of(rule.lower, rule)})"
+        return f"(exactly {_format_value(rule.lower, rule)})"
     ends = [("at least", rule.lower), ("at most", rule.upper)]
-    return f"({', '.join(f'{word} {_of(end, rule)}' for word, end in ends if end is not None)})"
+    return f"({', '.join(f'{word} {_format_value(end, rule)}' for word, end in ends if end is not None)})"
 
 
-def _of(value: float, rule: JudgedRule) -> str:
+def _format_value(value: float, rule: JudgedRule) -> str:
     return f"{value:.6g} {rule.unit}".rstrip()

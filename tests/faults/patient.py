@@ -1,4 +1,4 @@
-"""Slow clients with the token: a download, a stream of events, and requests that are sent a few at a time."""
+"""Slow clients with the token: a download, a stream of events, and requests sent a few at a time."""
 
 from __future__ import annotations
 

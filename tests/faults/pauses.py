@@ -22,7 +22,7 @@ _MOST = 10  # times as many pauses as asked for, on a machine where writes rarel
 
 
 def pauses(kind: Kind, count: int, seed: int) -> Verdict:
-    """Pause workers that have a job, `count` times and until a write is refused, and return what came of the jobs."""
+    """Pause busy workers `count` times and until a write is refused; return the final states of the jobs."""
     chance = random.Random(seed)
     expected = undisturbed()
     with place(kind) as where, Store(where.address) as store:

@@ -1,4 +1,4 @@
-"""A small disk that has room for a lease, and not for a round, at random moments and for longer than attempts last."""
+"""A small disk with room for a lease but not for a round, at random moments, longer than attempts last."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _SIZE = "12m"  # a store takes its write-ahead log into its file at 4 MB, and ne
 
 
 def room(count: int, seed: int) -> Verdict:
-    """Leave little room on the disk of a store `count` times while workers solve jobs; return what came of the jobs."""
+    """Fill the disk of a store `count` times while workers solve jobs; return the final states of the jobs."""
     chance = random.Random(seed)
     expected = undisturbed()
     full: list[tuple[float, float]] = []

@@ -161,7 +161,7 @@ def _in_a_service(
 def _under_way(
     verdict: Verdict, serving: Serving, folder: Path, function: str, when: str, **limits: float
 ) -> tuple[int, Path]:
-    """Return the number of a job whose function has come to its loop, and the file that it has opened then."""
+    """Return the number of a job whose function has reached its loop, and the file that it opened."""
     verdict.jobs += 1
     before = _markers(folder)
     number = serving.submit(_tables(function), **limits)

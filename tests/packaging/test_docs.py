@@ -218,7 +218,7 @@ def _tables(page: str) -> list[dict[str, Any]]:
 
 
 def test_the_parts_of_jobs_that_the_pages_show_are_valid(pages: dict[Path, str], root: Path, tmp_path: Path) -> None:
-    """Each alone added to the whole job at the beginning of the page; of tables that both have, the keys of both count.
+    """Each is added to the whole job at the beginning of the page; keys of tables in both are merged.
 
     A swing has requirements and objectives of its own; a time of the cycle takes the place of the speed.
     """

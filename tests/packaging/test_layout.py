@@ -48,7 +48,7 @@ def test_listed_packages_are_the_folders_on_disk(root: Path) -> None:
 
 
 def test_the_distribution_says_who_made_it_and_under_which_licence(root: Path) -> None:
-    """As the citation does; no file of a typeface is installed, so that its licence is that of its own package."""
+    """Check the licence, as the citation does; no typeface is installed, so its licence is not needed."""
     with (root / "pyproject.toml").open("rb") as file:
         project = tomllib.load(file)["project"]
     citation = (root / "CITATION.cff").read_text(encoding="utf-8")

@@ -26,7 +26,7 @@ class Compiled(dict[Any, Any]):
     """Statements that are compiled, of all engines of a dialect: SQLAlchemy compiles them anew for every engine."""
 
     def get(self, key: Any, default: Any = None) -> Any:
-        """Return what is kept for a key, which begins with the dialect of one engine."""
+        """Return the cached value of a key that begins with the dialect of an engine."""
         return super().get((key[0].name, *key[1:]), default)
 
     def __setitem__(self, key: Any, value: Any) -> None:
@@ -44,7 +44,7 @@ def _compiled_once() -> Iterator[None]:
 
 @pytest.fixture(scope="session", autouse=True)
 def _tables_made_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Give a new store in a file the tables of another one: to make them by Alembic takes ten times as long."""
+    """Copy the tables of another store into a new one; Alembic takes ten times as long."""
     kept = Database(tmp_path_factory.mktemp("tables") / "store.db")
     upgrade(kept)
     with kept.reading() as connection:

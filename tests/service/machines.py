@@ -46,7 +46,7 @@ def linkage_of(problem: sc.Problem, design: Sequence[float]) -> sc.Linkage:
 
 
 def some_design(problem: sc.Problem, random: Random) -> list[float]:
-    """Return a design in the ranges that turns fully, or swings; lengths are the same numbers in mm, m and as text."""
+    """Return a design within the ranges that rotates fully, or swings; lengths agree in mm, m and text."""
     for _ in range(1000):
         lengths = [round(8e3 * random.uniform(ends.lower, ends.upper)) / 8.0 for ends in problem.ranges.values()]
         design = [length / 1e3 for length in lengths]

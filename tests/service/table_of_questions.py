@@ -1,4 +1,4 @@
-"""Table of all questions in `questions.csv`: where each is declared, at which doors it is had, and how large it is.
+"""Table of all questions in `questions.csv`: where each is declared, its interfaces, and its size.
 
 `python -m tests.service.table_of_questions` writes it anew; scripts of the page and the reason for them stay.
 """

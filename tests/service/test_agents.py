@@ -128,7 +128,7 @@ def run(agent: Agent) -> str:
 
 
 def command(*words: object) -> Any:
-    """Return what a command prints as JSON."""
+    """Return the JSON output of a command."""
     done = CliRunner().invoke(app, [*map(str, words), "--json"])
     assert done.exit_code == 0, done.stderr
     return json.loads(done.stdout)
@@ -371,7 +371,7 @@ def test_functions_that_are_allowed_may_print_and_others_are_not_called(agent: A
         (
             "files",
             {"run": "latest", "write": ["csv", "figures"], "design": 2},
-            "csv, figures are of all designs of a run",
+            "csv, figures cover all designs of a run",
         ),
         ("files", {"run": "latest", "write": ["exe"]}, "write.0 must be 'csv'"),
         ("files", {"run": "latest", "write": []}, "write must have at least 1 entries"),

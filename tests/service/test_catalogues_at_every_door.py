@@ -1,4 +1,4 @@
-"""The six gearmotors of a pusher at the command line and over HTTP: price and maker stay, the cheapest is named."""
+"""The six gearmotors of a pusher on the command line and over HTTP: price, maker, and the cheapest one."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def asked(command: Command, place: Path, name: str, *given: object) -> Any:
-    """Return what a command on the run says as JSON."""
+    """Return the JSON output of a command on the run."""
     done = command(name, "latest", *given, "--runs", place / "runs", "--json")
     assert done.exit_code == 0, done.stderr
     return json.loads(done.stdout)

@@ -33,7 +33,7 @@ from slidercrank.service.figures.parallel import parallel_coordinates
 from slidercrank.service.figures.scatter import scatter_matrix
 from slidercrank.service.figures.style import add_axes, colours, new_figure, style_axes
 from slidercrank.service.render.formatting import format_text
-from slidercrank.service.render.numerals import shown
+from slidercrank.service.render.numerals import format_number
 from tests.service import fronts
 
 LINKAGES = {
@@ -250,7 +250,7 @@ def test_the_table_of_a_sheet_has_every_objective_of_the_job() -> None:
         figure = design_datasheet(machine(linkage), linkage, numbers, title="A job", bold=bold)
         printed = [text.get_text() for text in figure.texts if text.get_fontweight() == "bold"]
         assert set(bold.values()) <= set(printed)
-        assert {shown(float(numbers[key]), 5, zeros=True) for key in bold} <= set(printed)
+        assert {format_number(float(numbers[key]), 5, zeros=True) for key in bold} <= set(printed)
         assert overlaps(figure) == []
 
 
@@ -375,4 +375,4 @@ def test_the_colour_scale_is_as_clear_in_grey() -> None:
     ],
 )
 def test_numbers_are_shown_without_exponent_where_possible(value: float, text: str) -> None:
-    assert shown(value) == text
+    assert format_number(value) == text

@@ -1,4 +1,4 @@
-"""What topics are asked with: declared once, and the same at the command line and in the API."""
+"""Inputs of topics: declared once, and the same at the command line and in the API."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.service.drawings.dxf import dxf_file
 from slidercrank.service.drawings.linkage_drawing import linkage_drawing
-from slidercrank.service.page.typeface import _made
+from slidercrank.service.page.typeface import _subset_font
 from slidercrank.service.workers.logs import about, set_up_logs
 
 _log = logging.getLogger("slidercrank.service.workers.worker")
@@ -88,6 +88,6 @@ def test_setting_up_twice_writes_each_record_once(stream: io.StringIO) -> None:
 
 def test_files_of_a_design_are_written_without_a_word(stream: io.StringIO) -> None:
     set_up_logs(stream=stream)
-    assert _made.__wrapped__()  # the typeface of the page and of reports
+    assert _subset_font.__wrapped__()  # the typeface of the page and of reports
     assert dxf_file(linkage_drawing(Mechanism(), Linkage(0.04, 0.064, 0.02), name="x"))
     assert stream.getvalue() == ""

@@ -1,4 +1,4 @@
-"""What a press and a pump can do, against calculation by hand: own formulas, bisection, integrals, energy."""
+"""Press and pump against calculation by hand: separate formulas, bisection, integrals, energy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Questions to one design: the same answers and refusals in Python, on the command line, in the API and its client."""
+"""Questions to one design: the same answers and errors in Python, commands, the API and its client."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def client(address: str) -> Iterator[Client]:
 
 
 def by_agent(place: Path, **inputs: Any) -> dict[str, Any]:
-    """Return what the tool `ask` of agents answers, as they get it."""
+    """Return the answer of the tool `ask` as agents receive it."""
     call = Call(place, frozenset(), lambda: False, lambda _: None)
     found: dict[str, Any] = json_ready(Tool("ask", ask).execute(call, inputs).record)
     return found
@@ -286,11 +286,11 @@ def test_an_endpoint_says_what_its_command_says_and_takes_its_inputs(address: st
 
 
 WRONG: list[tuple[str, dict[str, object], str]] = [
-    ("pres", {}, "a question is asked by its name; got 'pres'; did you mean press?"),
+    ("pres", {}, "there is no question 'pres'; did you mean press?"),
     (
         "weather",
         {},
-        "a question is asked by its name; got 'weather'; choose from inverse, swing, ",
+        "there is no question 'weather'; choose from inverse, swing, ",
     ),
     ("press", {"touch": 1.0}, "press may only be given touch_distance, dwell_distance, rated_torque; got touch; leave"),
     ("motor", {"limit": 1.0}, "the topic motor has no inputs; got limit; leave limit out"),

@@ -183,7 +183,7 @@ def test_a_search_that_is_interrupted_ends_with_exit_code_130(
         (1, [""], '--to must be STEP or NAME=STEP; got ""; write it like'),
         (1, ["crank=1 kg"], "--to must be a length"),
         (1, ["mechanism.slider.mass=1 mm"], "--to must be a mass"),
-        (1, ["rood=1 mm"], "--to is for crank, rod, offset, mechanism.slider.mass; got 'rood'"),
+        (1, ["rood=1 mm"], "--to must name crank, rod, offset, mechanism.slider.mass; got 'rood'"),
         (1, ["=1 mm"], "got ''"),
         (1, ["1 mm", "2 mm"], "got that of all lengths twice"),
         (1, ["rod=1 mm", "rod_in=2 mm"], "got rod twice"),
@@ -227,7 +227,7 @@ def test_a_wrong_request_is_one_sentence_and_exit_code_2(
         (["transmission_angle=.5%"], 'must be an angle, not a percentage; got ".5%"; write "0.2 deg"'),
         (["stroke=-1 mm"], "the allowed miss of stroke must be positive"),
         (["0.1 mm"], '--allow must be REQUIREMENT=AMOUNT; got "0.1 mm"'),
-        (["stroke=1 mm", "stroke=2 mm"], "--allow gives each name once; got stroke twice"),
+        (["stroke=1 mm", "stroke=2 mm"], "--allow may give each name only once; got stroke twice"),
         (["stroke_in=1 mm", "stroke=2 mm"], "got two for stroke"),
     ],
 )

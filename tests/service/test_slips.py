@@ -84,7 +84,7 @@ def unplaced(sentence: str) -> str:
 
 
 def looked_at(text: str, files: dict[str, str]) -> tuple[list[str], bool, Understood | None]:
-    """Return what the page says of a job file: what is wrong, whether no design can meet the job, and it in words.
+    """Return the page's findings on a job file: mistakes, whether the job is infeasible, and the job in words.
 
     files: sent beside it, but for those of catalogues, which are pasted into the form.
     """

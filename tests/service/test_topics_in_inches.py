@@ -20,7 +20,7 @@ from slidercrank.service.figures.panels import draw_panel_figure
 from slidercrank.service.questions.discovery import TOPICS
 from slidercrank.service.render.blocks import Table, Text, Unit, Value, column, heading, words
 from slidercrank.service.render.formatting import PlainBlock, format_text, format_value, plain_blocks
-from slidercrank.service.render.numerals import shown
+from slidercrank.service.render.numerals import format_number
 from tests.service import fronts, sized
 from tests.service.conftest import Command
 
@@ -91,7 +91,7 @@ def test_the_figure_of_a_topic_has_lengths_and_extremes_in_inches() -> None:
     for panel in sheet.panels:
         drawn = panel_in_units(panel, "inch")
         ends = [end for line in drawn.lines if line.points for end in line.y.tolist()]
-        assert [part.split(" at ")[0] for part in str(drawn.note).split(", ")] == [shown(end) for end in ends]
+        assert [part.split(" at ")[0] for part in str(drawn.note).split(", ")] == [format_number(end) for end in ends]
         assert len(ends) == 2
 
 

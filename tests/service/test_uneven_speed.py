@@ -101,7 +101,7 @@ def test_a_record_of_one_turn_at_an_uneven_speed_has_its_profile(pytestconfig: p
 
 
 def test_points_about_the_end_of_the_first_turn_are_its_end(pytestconfig: pytest.Config, tmp_path: Path) -> None:
-    """A sample a hair before 360 deg, with its own noise, would be a second value of the speed at one crank angle."""
+    """A noisy sample just before 360 deg would give a second speed at the same crank angle."""
     job = job_with('{ file = "speed.csv" }', pytestconfig, tmp_path)
     job.write_text(job.read_text().replace('speed = "900 rpm"', 'speed = "60 rpm"'))
     times = np.linspace(0.0, 2.0, 81)

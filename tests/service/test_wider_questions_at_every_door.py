@@ -1,4 +1,4 @@
-"""Questions to a front: the same answers and refusals in Python, by commands, in the API, its client and for agents."""
+"""Questions to a front: the same answers and errors in Python, commands, the API, its client and for agents."""
 
 from __future__ import annotations
 
@@ -49,12 +49,12 @@ class Doors:
     front: sc.ParetoFront
 
     def command(self, name: str, row: int | None, given: Mapping[str, Any], *more: str) -> Any:
-        """Return what a command ends with."""
+        """Return the last message of a command."""
         design = [] if row is None else [str(row + 1)]
         return CliRunner().invoke(command_line, [name, str(self.folder), *design, *options(name, given), *more])
 
     def printed(self, name: str, row: int | None, given: Mapping[str, Any]) -> dict[str, Any]:
-        """Return what a command prints as JSON, without the names of the run and of what was asked."""
+        """Return the JSON output of a command without the names of the run and of the request."""
         done = self.command(name, row, given, "--json")
         assert done.exit_code == 0, done.stderr
         left = ("run", "wishes") if FRONT_OR_JOB_QUESTIONS[name].row != "must" else ("run", "number")
@@ -343,7 +343,7 @@ WRONG: list[tuple[str, int | None, dict[str, Any], str]] = [
     ("certify", None, {"epsilon": True}, "epsilon must be a number; got true; write it like 0.01"),
     ("certify", None, {"delta": 0.1}, "certify may only be given epsilon, seconds; got delta; leave delta out"),
     ("round", 1, {}, 'round needs to; got none; give it like "0.5 mm"'),
-    ("round", None, {"to": "1 mm"}, "round is of one design; got none; name it"),
+    ("round", None, {"to": "1 mm"}, "round needs one design of the front; got none; name it"),
     ("round", 1, {"to": "1 kg"}, 'to must be a length; got "1 kg", which is a mass; write it like '),
     ("round", 1, {"to": ["1 mm", 2]}, "to must be text in quotes; got "),
     ("round", 1, {"to": "1 mm", "count": 0}, "count must be at least 1; got 0; write it like 5"),
@@ -360,8 +360,8 @@ WRONG: list[tuple[str, int | None, dict[str, Any], str]] = [
         {"where": ["rod != 2 mm"]},
         "a condition must use >=, <= or =; got 'rod != 2 mm'; write it like ",
     ),
-    ("like", None, {"where": "rod <= 2 mm"}, "like is of one design; got none; name it"),
-    ("certify", 0, {}, "certify is of a whole front; got one design; leave it out"),
+    ("like", None, {"where": "rod <= 2 mm"}, "like needs one design of the front; got none; name it"),
+    ("certify", 0, {}, "certify applies to the whole front; got one design; leave it out"),
 ]
 
 
@@ -377,22 +377,22 @@ def test_what_is_wrong_is_refused_in_the_same_sentence(
 def test_questions_are_asked_of_what_they_are_of(doors: Doors) -> None:
     front = doors.front
     assert refusal(lambda: front.ask("press")) == (
-        "the question press is of one design; got none; name one, as a row of a front or lengths"
+        "the question press needs one design; got none; name one, as a row of a front or lengths"
     )
     assert refusal(lambda: front.problem.ask("certify")) == (
-        "the question certify is asked of a front; got a job; write it like front.ask(question)"
+        "the question certify needs a front; got a job; write it like front.ask(question)"
     )
     assert refusal(lambda: front.ask("sweep", of="stroke")) == (
-        "the question sweep is asked of a job; got a front; write it like problem.ask(question)"
+        "the question sweep needs a job; got a front; write it like problem.ask(question)"
     )
-    assert refusal(lambda: doors.client.ask(doors.number, None, "sweep")).startswith("a service is not asked sweep; ")
+    assert refusal(lambda: doors.client.ask(doors.number, None, "sweep")).startswith("a service cannot answer sweep; ")
     assert refusal(lambda: front.problem.ask("certify", front.dimensions[0])) == (
-        "the question certify is asked of a front; got a design; write it like front.ask(question)"
+        "the question certify needs a front; got a design; write it like front.ask(question)"
     )
     assert refusal(lambda: front.ask("whish", at={})).endswith("did you mean wish?")
     assert refusal(lambda: doors.client.ask(doors.number, None, "press")).startswith("press needs a design; got none")
     for subject, sentence in (
-        ({"job": fronts.JOB}, "a front is of a run; got a job; name a run, without a job"),
+        ({"job": fronts.JOB}, "this topic needs the front of a run; got a job; name a run, without a job"),
         (
             {"run": doors.folder.name, "crank": "40 mm"},
             "dimensions must not be given with a run, whose designs have their own; got run and crank",

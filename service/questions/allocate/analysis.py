@@ -149,7 +149,7 @@ def numbers(before: Mechanism, linkage: Linkage, *, found: Allocation, costs: Co
 
 
 def notes(numbers: Tolerances) -> list[str]:
-    """Return what is not proven."""
+    """Return a note if the optimum is not proven."""
     residual = f"the optimality conditions are only met to {numbers['residual']:.1e}"
     return [] if numbers["converged"] else [f"not proven to be the cheapest: {residual}"]
 
@@ -205,7 +205,7 @@ def _row(tolerance: Tolerance) -> tuple[Text, ...]:
 
 
 def _saving_per_step(per_um: float | None) -> Value:
-    """Return what a step of length saves."""
+    """Return the saving for one step of length."""
     per = replace(_STEP, metric=display_unit("", 1e-6), inch=display_unit("", 1.0 / _STEP.display_unit("inch").factor))
     return Value(None if per_um is None else 1e6 * per_um, per, 4)
 

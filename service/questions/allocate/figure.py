@@ -17,7 +17,7 @@ from ....objectives.kinds import LENGTH, System
 from ....optimise.problem.costs import Costs, costs_before
 from ....optimise.sizing.tolerance_allocation import Allocation
 from ...figures import style
-from ...render.numerals import shown, with_unit
+from ...render.numerals import format_number, with_unit
 
 Array = NDArray[np.float64]
 
@@ -85,7 +85,7 @@ def allocation_figure(data: AllocationCurves, system: System = "metric") -> Figu
     foot = 0.55 + 0.42 * count
     figure = style.new_figure(9.2, foot + 4.25)
     gaps = _gaps(data.counted)
-    note = f"{data.kind} within {shown(limit)} {unit.symbol}" + ("; pale: not counted" if gaps else "")
+    note = f"{data.kind} within {format_number(limit)} {unit.symbol}" + ("; pale: not counted" if gaps else "")
     style.heading(figure, "Least-cost tolerances", note)
     error = style.add_axes(figure, 0.8, foot + 0.85, 5.9, 2.7)
     style.style_axes(error, most_y_ticks=6)
@@ -121,8 +121,10 @@ def allocation_figure(data: AllocationCurves, system: System = "metric") -> Figu
     if before is not None:
         bars.append(("as in the job", before, -shift, {"color": "white", "edgecolor": style.BLUE, "hatch": "///"}))
     for name, costs, at, look in bars:
-        drawn = cost.barh(rows + at, costs, height=thick, label=f"{name}, {shown(costs.sum())}", **look)
-        cost.bar_label(drawn, [shown(value) for value in costs], padding=3, fontsize=style.SMALL, color=style.INK)
+        drawn = cost.barh(rows + at, costs, height=thick, label=f"{name}, {format_number(costs.sum())}", **look)
+        cost.bar_label(
+            drawn, [format_number(value) for value in costs], padding=3, fontsize=style.SMALL, color=style.INK
+        )
     cost.set_yticks(rows, data.names, fontsize=style.TEXT)
     cost.set_ylim(-0.6, count - 0.4)
     cost.margins(x=0.12)

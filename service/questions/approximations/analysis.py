@@ -15,7 +15,7 @@ from ....model.machine.mechanism import Mechanism
 from ....objectives.kinds import ACCELERATION, LENGTH, TORQUE, Kind
 from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import Block, Table, Text, Unit, column, dimensions, heading, joined, note, recorded, recorded_all
-from ...render.numerals import shown
+from ...render.numerals import format_number
 from ..answer_types import Note, Record
 
 Share = Annotated[float | None, Note("null where the exact value is zero all over")]
@@ -55,7 +55,7 @@ class Approximations(Record):
     torques: list[TorqueOf]
 
 
-_TOLD, _DRAWN = 5, 25  # offsets
+_TABULATED, _DRAWN = 5, 25  # offsets
 _SHORT = {"two masses by mass centre": "two masses", "two masses, half and half": "half and half"}
 
 
@@ -74,7 +74,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Approximations:
     """
     comparison = compare(mechanism, linkage, np.linspace(0.0, 2.0 * math.pi, 1440, endpoint=False))
     rotating, reciprocating = rotating_and_reciprocating(mechanism, linkage)
-    offsets = _errors_over_offset(mechanism, linkage, _TOLD)
+    offsets = _errors_over_offset(mechanism, linkage, _TABULATED)
 
     return {
         "rotating_mass_kg": rotating,
@@ -113,7 +113,7 @@ def _percent(share: float) -> float | None:
 
 def blocks(numbers: Approximations) -> list[Block]:
     """Return a line for each approximation."""
-    offsets = [column(f"{100 * k // (_TOLD - 1)} %") for k in range(_TOLD)]
+    offsets = [column(f"{100 * k // (_TABULATED - 1)} %") for k in range(_TABULATED)]
     columns = (column("model", left=True), column("peak"), column("unit", left=True), column("error"), *offsets)
     rows: list[tuple[Text, ...]] = []
     rows.append(("slider acceleration, exact", *_exact(numbers, "exact_peak_acceleration_m_s2", ACCELERATION)))
@@ -132,7 +132,7 @@ def blocks(numbers: Approximations) -> list[Block]:
 
 
 def _exact(numbers: Approximations, key: str, kind: Kind) -> tuple[Text, ...]:
-    return recorded(numbers, key, digits=5), Unit(kind), *[""] * (1 + _TOLD)
+    return recorded(numbers, key, digits=5), Unit(kind), *[""] * (1 + _TABULATED)
 
 
 def _row(approximation: Approximation, key: str, kind: Kind) -> tuple[Text, ...]:
@@ -170,6 +170,6 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     if np.all(errors.peak_torque > 0.0):
         lines = tuple(Line(label, offsets, 100.0 * errors.torques[name], style) for label, style, name in torques)
         panels.append(Panel("greatest error in torque, %", "offset", lines, x_kind=LENGTH))
-    subtitle = joined([dimensions(linkage), f"{shown(mechanism.speed)} rad/s; inertia only"])
+    subtitle = joined([dimensions(linkage), f"{format_number(mechanism.speed)} rad/s; inertia only"])
     title = "Approximate and exact models"
     return PanelFigure(title, subtitle, tuple(panels), columns=2, width=7.6, height=3.0)

@@ -1,5 +1,6 @@
 """Proof of how far a front can be from the true one: numbers and text."""
 
+from ....optimise.certificate.defaults import EPSILON, SECONDS
 from ..front_or_job_question import FrontOrJobQuestion
 from ..typed_input import TypedInput
 
@@ -17,9 +18,11 @@ QUESTION = FrontOrJobQuestion(
         TypedInput(
             "epsilon",
             help="Distance to prove, as a fraction of each objective's range over the front.",
-            usual="0.01",
+            usual=str(EPSILON),
             limits={"gt": 0.0, "lt": 1.0},
         ),
-        TypedInput("seconds", help="Time limit; reports what is proven so far.", usual="60.0", limits={"gt": 0.0}),
+        TypedInput(
+            "seconds", help="Time limit; reports what is proven so far.", usual=str(SECONDS), limits={"gt": 0.0}
+        ),
     ),
 )

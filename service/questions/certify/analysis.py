@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.kinds import LENGTH
-from ....optimise.certificate.certify import EPSILON, SECONDS, certify_designs
+from ....optimise.certificate.certify import certify_designs
+from ....optimise.certificate.defaults import EPSILON, SECONDS
 from ....optimise.certificate.infeasible import prove_infeasible
 from ...designs.display_units import record_in
 from ...render.blocks import Block, Value, heading, joined, sentence, words

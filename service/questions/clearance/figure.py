@@ -21,7 +21,7 @@ from ...figures.panels import draw_panel
 from ...figures.style import add_axes, heading, new_figure, write_text
 from ...render.blocks import Text, Unit, Value, words
 from ...render.formatting import format_text
-from ...render.numerals import shown
+from ...render.numerals import format_number
 
 Array = NDArray[np.float64]
 
@@ -77,7 +77,7 @@ def clearance_figure(run: ClearanceRun, system: System = "metric") -> Figure:
     position, velocity, acceleration = (_motion_panel(curves, kind) for kind in _TITLES)
     loose, ideal = position.lines
     off = float(np.abs(loose.y - ideal.y).max())
-    share = f"{shown(100.0 * off / float(run.linkage.stroke), 2)} % of the stroke"
+    share = f"{format_number(100.0 * off / float(run.linkage.stroke), 2)} % of the stroke"
     note = words(f"largest deviation {{off}}, {share}", off=Value(off, LENGTH, 3))
     greatest = words("greatest {force}", force=Value(float(curves.force.max()), FORCE, 4))
     x_title, force = "crank angle in the direction of rotation, deg", Line("", curves.angles, curves.force, THIN)

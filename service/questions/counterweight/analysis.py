@@ -29,7 +29,7 @@ from ...render.blocks import (
     recorded,
     words,
 )
-from ...render.numerals import shown
+from ...render.numerals import format_number
 from ..answer_types import Note, PeakAngle, Record
 from . import QUESTION
 
@@ -152,7 +152,7 @@ def numbers(_: Mechanism, __: Linkage, *, found: Balance, measure: Measure = "pe
 
 
 def notes(numbers: BalanceNumbers) -> list[str]:
-    """Return what is not proven."""
+    """Return a note if the optimum is not proven."""
     proven = f"{numbers['objective_N']:.6g} N, and at least {numbers['least_possible_N']:.6g} N is unavoidable"
     return [] if numbers["converged"] else [f"not proven to be the best: {proven}"]
 
@@ -222,7 +222,7 @@ def figure(_: Mechanism, __: Linkage, *, found: Balance, problem: Problem, **opt
         Panel("hodograph of the shaking force", x_title, hodographs, kind=FORCE, x_kind=FORCE, equal=True),
         crank_angle_panel("size of the shaking force", *sizes, kind=FORCE),
     ]
-    angle = shown(float(np.degrees(found.angle)) % 360.0)
+    angle = format_number(float(np.degrees(found.angle)) % 360.0)
     mass, radius = Value(found.mass, MASS, 4), Value(found.radius, LENGTH, 4)
     parts: list[Text] = [
         words(f"counterweight {{mass}} at {{radius}}, {angle}° from the crank", mass=mass, radius=radius)

@@ -66,7 +66,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Cylinders:
     """
     shaft = multi_cylinder_cycle(mechanism, linkage)
     return {
-        "cylinders": [_each(member, linkage) for member in members(mechanism)],
+        "cylinders": [_single_cylinder(member, linkage) for member in members(mechanism)],
         "peak_torque_Nm": abs(shaft.peak.value),
         "peak_torque_angle_deg": _degrees(shaft.peak),
         "least_torque_Nm": shaft.least.value,
@@ -90,7 +90,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Cylinders:
     }
 
 
-def _each(member: Member, linkage: Linkage) -> Cylinder:
+def _single_cylinder(member: Member, linkage: Linkage) -> Cylinder:
     def greatest(signal: Signal) -> float:
         return peak(member.mechanism, signal, linkage).value
 

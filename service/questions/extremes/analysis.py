@@ -31,7 +31,7 @@ from ...render.blocks import (
     words,
 )
 from ...render.extremes import extremes_table
-from ...render.numerals import shown
+from ...render.numerals import format_number
 from ...text.tables import finite_or_none
 from ..answer_types import Keys, Note, Record, keys_of_kinds
 
@@ -205,7 +205,7 @@ def _panel(curve: CurveExtremes, degrees: np.ndarray, values: np.ndarray) -> Pan
         lines.append(Line("", angles, np.array(sizes), points=True))
         note = joined(
             [
-                words(f"{{value}} at {shown(at)}°", value=Value(size, curve.kind, digits=4, bare=True))
+                words(f"{{value}} at {format_number(at)}°", value=Value(size, curve.kind, digits=4, bare=True))
                 for size, at in zip(sizes, angles, strict=True)
             ]
         )

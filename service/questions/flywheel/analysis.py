@@ -15,7 +15,7 @@ from ....model.transient.steady import Runner, SteadyRunning
 from ....objectives.kinds import ANGULAR_SPEED, INERTIA
 from ...figures.panel_figure import FAINT, Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import Block, Table, Text, Value, column, recorded, sentence, words
-from ...render.numerals import shown
+from ...render.numerals import format_number
 from ..answer_types import Note, Record
 from ..start_up.analysis import RPM, SteadyNumbers, in_order, steady_numbers
 from . import FLUCTUATION
@@ -161,8 +161,8 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCT
     for name, running, style in turns:
         angle, (speed,) = in_order(running, running.speed)
         speeds.append(Line(name, angle, speed, style))
-    reached = shown(design.running.fluctuation)
-    size: Text = f"none needed for {shown(fluctuation)}"
+    reached = format_number(design.running.fluctuation)
+    size: Text = f"none needed for {format_number(fluctuation)}"
     if design.inertia:
         size = words(f"{{inertia}} for {reached}", inertia=Value(design.inertia, INERTIA, 4))
     motor = "constant motor torque" if mechanism.drive is None else "the motor's own torque curve"

@@ -56,11 +56,11 @@ def answer(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> A
     )
 
 
-def _added_constraints(where: Sequence[str], row: Row, problem: Problem) -> tuple[list[Constraint], dict[str, Ends]]:
+def _added_constraints(texts: Sequence[str], row: Row, problem: Problem) -> tuple[list[Constraint], dict[str, Ends]]:
     """Return conditions as constraints, and those on dimensions as ranges, m; both bounds of one quantity as one."""
     names = quantity_names(problem) | {f"{dimension}_mm": dimension for dimension in DIMENSIONS}
     ends_by_name: dict[str, Ends] = {}
-    for text in where:
+    for text in texts:
         condition = parse_condition(text, list(row), row)
         formula = condition.formula
         name = names.get(condition.column.key) if formula is None else formula.text

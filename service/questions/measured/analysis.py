@@ -20,7 +20,7 @@ from ....objectives.tables.deviation import Deviation, deviations
 from ....objectives.tables.measured import Measured
 from ...figures.panel_figure import DASHED, SAMPLES, Array, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, Sentence, Table, Text, Unit, Value, column, dimensions, heading, recorded, words
-from ...render.numerals import shown
+from ...render.numerals import format_number
 from ...text.tables import finite_or_none
 from ..answer_types import Keys, Note, Record, keys_of_kinds
 
@@ -177,5 +177,5 @@ def _panel(deviation: Deviation, computed: list[Line], at: Array, samples: Array
         place = np.degrees([deviation.crank_angle])
         lines.append(Line("", place, np.array([deviation.sample]), points=True))
         rms, largest = (Value(value, deviation.kind, 4, bare=True) for value in (deviation.rms, deviation.largest))
-        note = words(f"RMS {{rms}}, largest {{largest}} at {shown(place[0])}°", rms=rms, largest=largest)
+        note = words(f"RMS {{rms}}, largest {{largest}} at {format_number(place[0])}°", rms=rms, largest=largest)
     return crank_angle_panel(deviation.title, *lines, kind=deviation.kind, note=note)

@@ -14,7 +14,7 @@ from ....model.machine.mechanism import Branch, Mechanism
 from ....objectives.kinds import ACCELERATION, LENGTH, SPEED
 from ...figures.panel_figure import Line, Panel, PanelFigure
 from ...render.blocks import Block, Table, Text, Unit, Value, column, dimensions, heading, joined, recorded
-from ...render.numerals import shown
+from ...render.numerals import format_number
 from ..answer_types import Record
 from . import AT
 
@@ -114,9 +114,8 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, crank_angle: float = AT.de
     """Return the polygons at one crank angle, rad; without a crank speed for 1 rad/s."""
     speed = mechanism.speed or 1.0
     by_branch = both_branches(linkage, crank_angle, speed=speed, acceleration=mechanism.acceleration)
-    at = (
-        f"crank angle {shown(math.degrees(crank_angle))}°, {shown(speed)} rad/s, {shown(mechanism.acceleration)} rad/s²"
-    )
+    rates = f"{format_number(speed)} rad/s, {format_number(mechanism.acceleration)} rad/s²"
+    at = f"crank angle {format_number(math.degrees(crank_angle))}°, {rates}"
     subtitle = joined([dimensions(linkage), at], "; ")
     return polygon_panels(by_branch, title="Kinematic polygons", subtitle=subtitle)
 

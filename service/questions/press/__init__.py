@@ -1,4 +1,4 @@
-"""What a press can do before a dead centre: numbers, text and figure."""
+"""Capability of a press before a dead centre: numbers, text and figure."""
 
 from ....objectives.kinds import LENGTH, TORQUE
 from ..design_question import DesignQuestion

@@ -1,4 +1,4 @@
-"""What a press can do before a dead centre: available force, speed, work at a rated torque, and dwell.
+"""Capability of a press before a dead centre: force, speed and work at a rated torque, and dwell.
 
 The force is static and without friction, by virtual work: F = T / |x'| with the slider's travel x' per crank angle.
 """
@@ -33,7 +33,7 @@ Dwelling = Annotated[float | None, Note("null without a dwell distance")]
 
 
 class Press(Record):
-    """What a press does before a dead centre at its rated torque, and lists at distances before it."""
+    """Force, speed, work and dwell of a press before a dead centre, with lists over the distance to it."""
 
     dead_centre: Literal["inner", "outer"]
     rated_torque_Nm: float
@@ -122,7 +122,7 @@ def _torque(mechanism: Mechanism, linkage: Linkage, rated: float | None) -> floa
 def _angles_before_dead_centre(
     mechanism: Mechanism, linkage: Linkage, distances: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the crank angle to the dead centre, rad, and |x'|, m, at distances before it, m, in the stroke to it."""
+    """Return the crank angle to the dead centre, rad, and |x'|, m, at distances before it, m."""
     _require_stroke(distances[-1], float(linkage.stroke))
     return before_dead_centre(mechanism, row_of(linkage)[0], distances)
 

@@ -1,4 +1,4 @@
-"""What a pump or compressor delivers: numbers, text and figure."""
+"""Delivery of a pump or compressor: numbers, text and figure."""
 
 from ..design_question import DesignQuestion
 

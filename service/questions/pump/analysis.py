@@ -1,4 +1,4 @@
-"""What pumps and compressors deliver: mean flow, its ripple over the cycle, and the torque from the pressures only."""
+"""Delivery of pumps and compressors: mean flow, ripple over the cycle, torque from the pressures only."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from ..static_forces.analysis import massless
 
 
 class Delivery(Record):
-    """What all cylinders deliver together, and the torque from the pressures only."""
+    """Total delivery of all cylinders, and the torque from the pressures only."""
 
     flow_L_min: float
     """Mean over a turn; gas counts at suction pressure."""

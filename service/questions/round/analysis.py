@@ -73,7 +73,7 @@ def _answered(rounded: Rounded, row: int) -> Answer:
     )
 
 
-def steps_of(to: Sequence[str], part: Problem, key: str) -> dict[str, float]:
+def steps_of(texts: Sequence[str], part: Problem, key: str) -> dict[str, float]:
     """Return the steps by name, SI. key: what gives them, for messages. Raises `InputError`."""
     from ....model.machine.numbers import unit_of
     from ....objectives.tables.varying_column import varying_column
@@ -86,13 +86,13 @@ def steps_of(to: Sequence[str], part: Problem, key: str) -> dict[str, float]:
         kinds[item.name] = kind_of(unit_of(item.paths[0]))
         names |= {item.name: item.name, column_key: item.name, split_unit(column_key)[0]: item.name}
     steps: dict[str, float] = {}
-    for text in to:
+    for text in texts:
         name, equals, value = (piece.strip() for piece in text.rpartition("="))
         name = metric_key(name)
         if not value:
             raise InputError(f"{key} must be STEP or NAME=STEP; got {quote(text)}; write it like {_TO.example}")
         if equals and name not in names:
-            raise InputError(f"{key} is for {', '.join(kinds)}; got {name!r}; name one of them, like {_TO.example}")
+            raise InputError(f"{key} must name {', '.join(kinds)}; got {name!r}; name one of them, like {_TO.example}")
         variable = names[name] if equals else ""
         if variable in steps:
             raise InputError(

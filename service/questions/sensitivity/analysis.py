@@ -79,7 +79,7 @@ def in_units(numbers: Sensitivity, system: System) -> dict[str, Any]:
 
 
 def blocks(numbers: Sensitivity) -> list[Block]:
-    """Return the numbers for people: change for 1 mm or 1 in more, in percent per percent, and for the tolerances."""
+    """Return the numbers for people: changes per mm or inch, in percent per percent, and for the tolerances."""
     rows: list[tuple[Text, ...]] = []
     tolerance_rows: list[tuple[Text, ...]] = []
     kinks, plain = False, [*_LEFT_OUT, *(name for name, quantity in QUANTITIES.items() if quantity.plain)]
@@ -117,7 +117,7 @@ def blocks(numbers: Sensitivity) -> list[Block]:
 
 
 def _per_length(kind: Kind) -> Kind:
-    """Return the kind of a derivative by a dimension; its unit is left out, as the heading says for how much it is."""
+    """Return the kind of a derivative by a dimension, without a unit: the heading names the step."""
     inch = kind.display_unit("inch").factor / LENGTH.display_unit("inch").factor
     return replace(
         kind, metric=display_unit("", kind.metric.factor / LENGTH.metric.factor), inch=display_unit("", inch)

@@ -14,7 +14,7 @@ from ....model.swing.swing import Swing
 from ....objectives.kinds import System
 from ....objectives.tables.sensitivity import sensitivity
 from ...figures.style import BLUE, FRAME, INK, MUTED, SMALL, TEXT, VERMILION, add_axes, heading, new_figure, style_axes
-from ...render.numerals import shown
+from ...render.numerals import format_number
 from ..peaks import row_of
 
 _STEPS: dict[System, tuple[str, float]] = {"metric": ("1 mm", 1.0), "inch": ("0.01 in", 0.254)}
@@ -89,7 +89,7 @@ def tornado_figure(rows: pd.DataFrame, system: System = "metric", *, width: floa
 def _bar(panel: Axes, at: float, height: float, value: float, half_width: float, side: str = "") -> None:
     up = value >= 0.0
     panel.barh(at, value, height=height, color=BLUE if up else "white", edgecolor=BLUE if up else VERMILION)
-    text = side + (f"{'+' if up else ''}{shown(value, 3)}" if abs(value) >= 5e-4 else "0")
+    text = side + (f"{'+' if up else ''}{format_number(value, 3)}" if abs(value) >= 5e-4 else "0")
     size = SMALL - (2.5 if side else 1.0)
     panel.text(
         value + (0.02 if up else -0.02) * half_width,

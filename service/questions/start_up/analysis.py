@@ -16,7 +16,7 @@ from ....model.transient.steady import SteadyRunning, steady_running
 from ....objectives.kinds import ANGULAR_SPEED, TIME, TORQUE
 from ...figures.panel_figure import FAINT, Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import Block, Table, Unit, column, recorded, sentence
-from ...render.numerals import shown
+from ...render.numerals import format_number
 from ..answer_types import Note, Record
 
 
@@ -177,7 +177,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, **options: Any) -> PanelFigur
     if running is None:
         return PanelFigure("Start from rest", message, (speed, torque), width=9.6, height=2.3, stacked=True)
     angle, (speeds, motor, mechanism_torque) = in_order(running, running.speed, running.motor_torque, running.torque)
-    note = f"fluctuation {shown(running.fluctuation, 3)}"
+    note = f"fluctuation {format_number(running.fluctuation, 3)}"
     turning = crank_angle_panel("speed in steady running", Line("", angle, speeds), kind=ANGULAR_SPEED, note=note)
     pair = (Line("", angle, motor), Line("", angle, mechanism_torque, FAINT))
     panels = (speed, turning, torque, crank_angle_panel("torque in steady running", *pair, kind=TORQUE))

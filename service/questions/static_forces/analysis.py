@@ -59,7 +59,7 @@ class StaticForces(Record):
     mechanical_advantage: list[Annotated[float | None, Note("null at a dead centre, where it is unbounded")]]
 
 
-_OWN = "loads of the job"
+_JOB_LOADS = "loads of the job"
 _STEP = 30
 _MOST_ADVANTAGE = 10.0  # beyond it the curve only says that a dead centre is near
 
@@ -69,7 +69,7 @@ def massless(mechanism: Mechanism, load: float | None = None) -> Mechanism:
 
     Without loads of its own and without one given, the load is 1 N towards the crank pivot.
     """
-    slider_loads = _own(mechanism)
+    slider_loads = _slider_loads(mechanism)
     constant = -1.0 if load is None and not slider_loads else load
     return replace(
         mechanism,
@@ -84,7 +84,7 @@ def massless(mechanism: Mechanism, load: float | None = None) -> Mechanism:
     )
 
 
-def _own(mechanism: Mechanism) -> tuple[Load, ...]:
+def _slider_loads(mechanism: Mechanism) -> tuple[Load, ...]:
     """Return the loads on the slider that act on it at rest."""
     return tuple(load for load in mechanism.loads if not load.on_crank and not load.inertial)
 
@@ -103,9 +103,9 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None
     loads = cycle(machine, linkage, np.radians(degrees)).load
     at = static_forces(linkage, np.radians(degrees), load=loads)
     advantage = [value if math.isfinite(value) else None for value in at.mechanical_advantage.tolist()]
-    uses_job_loads = load is None and bool(_own(mechanism))
+    uses_job_loads = load is None and bool(_slider_loads(mechanism))
     return {
-        "load": _OWN if uses_job_loads else f"{-1.0 if load is None else load:g} N, constant, positive outward",
+        "load": _JOB_LOADS if uses_job_loads else f"{-1.0 if load is None else load:g} N, constant, positive outward",
         "peak_rod_force_N": rod.value,
         "peak_rod_force_angle_deg": rod.degrees,
         "peak_guide_reaction_N": guide.value,
@@ -155,8 +155,8 @@ def blocks(numbers: StaticForces) -> list[Block]:
 
 
 def _load(numbers: StaticForces) -> Text:
-    if numbers["load"] == _OWN:
-        return _OWN
+    if numbers["load"] == _JOB_LOADS:
+        return _JOB_LOADS
     return words("{load}, constant, positive outward", load=recorded_all(numbers, "load_N")[0])
 
 

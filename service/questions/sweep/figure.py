@@ -72,7 +72,7 @@ def sweep_figure(
     figure = new_figure(0.4 + _WIDTH * columns, 0.75 + (_SIDE + 0.85) * rows)
     height = figure.get_size_inches()[1]
     names = " and ".join(axes[n].parameter for n in drawn)
-    titles = [_told(axis, system) for axis in axes]
+    titles = [_axis_title(axis, system) for axis in axes]
     fixed_values = [
         f"{name} = {table[column_of(axis)].iloc[0] * factor:.6g}"
         for n, (axis, (name, factor)) in enumerate(zip(axes, titles, strict=True))
@@ -104,7 +104,7 @@ def sweep_figure(
     return figure
 
 
-def _told(axis: Axis, system: System) -> tuple[str, float]:
+def _axis_title(axis: Axis, system: System) -> tuple[str, float]:
     """Return the title of an axis with its unit, and that unit in the one of its column."""
     symbol, factor = shown_in("rpm" if axis.parameter == "speed" else "mm", system)
     return with_unit(axis.parameter, symbol), factor

@@ -32,7 +32,7 @@ BINS = 40  # of the histogram
 
 
 class Contribution(Record):
-    """What one tolerance adds to the position error at the crank angle of the worst case."""
+    """Contribution of one tolerance to the position error at the crank angle of the worst case."""
 
     source: str
     limit_mm: Annotated[float | None, Note("null for the crank angle")]

@@ -74,7 +74,7 @@ def client_of(store: Store, settings: Settings = DEFAULT) -> Iterator[httpx.Clie
 
 @contextlib.contextmanager
 def varied_in(place: Path) -> Iterator[tuple[Store, int]]:
-    """Solve the job with a width that varies in a store; yield it with the number of the job, and close it."""
+    """Solve the job with a variable width in a store; yield the store and the job number, then close it."""
     with Store(place / "varied.db") as store:
         number = submit(store, tomllib.loads(made.VARIED)).id
         work(store, drain=True)

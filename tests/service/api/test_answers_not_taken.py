@@ -1,4 +1,4 @@
-"""Clients that ask ahead, and take no answers: read one at a time, closed in the end, and keeping nobody out."""
+"""Clients that send requests ahead without reading answers: served one by one, closed in the end, blocking nobody."""
 
 from __future__ import annotations
 

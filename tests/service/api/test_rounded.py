@@ -57,7 +57,7 @@ def test_the_record_is_that_of_the_command_line(units: str, client: httpx.Client
     ("body", "words"),
     [
         ({"to": ["0.5"]}, "to must be a length with its unit"),
-        ({"to": ["rood=1 mm"]}, "to is for crank, rod, offset"),
+        ({"to": ["rood=1 mm"]}, "to must name crank, rod, offset"),
         ({"to": ["1 mm", "2 mm"]}, "got that of all lengths twice"),
         ({"to": []}, "body to: must have at least 1 entries; got []"),
         ({"to": [""]}, 'to must be STEP or NAME=STEP; got ""; write it like'),

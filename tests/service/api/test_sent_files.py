@@ -1,4 +1,4 @@
-"""Files that a job names, sent with it: read as those beside a job file, at every door that takes a submission."""
+"""Files of a job, sent with it: read like files beside a job file, in every interface for submissions."""
 
 from __future__ import annotations
 

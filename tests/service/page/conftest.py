@@ -43,7 +43,7 @@ class Pages:
         viewport: ViewportSize | None = None,
         reduced_motion: Literal["reduce", "no-preference"] = "no-preference",
     ) -> Iterator[Page]:
-        """Give a page for an address, as in a new browser; nothing is left of it, whoever has the address next."""
+        """Open a page at an address in a new browser context, which leaves nothing behind."""
         page = self._context.new_page()
         try:
             if viewport:

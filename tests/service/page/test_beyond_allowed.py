@@ -1,4 +1,4 @@
-"""Allowable values that designs go beyond are seen on the page; a what-if has its own numbers, under its own name."""
+"""Violated allowable values on the page; a what-if has numbers and a name of its own."""
 
 from __future__ import annotations
 

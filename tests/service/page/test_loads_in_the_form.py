@@ -1,4 +1,4 @@
-"""Loads in the form: below each what it does; a force over a part of a stroke, and one that pushes is questioned."""
+"""Loads in the form: their effect below each, a force over part of a stroke, a warning for pushing forces."""
 
 from __future__ import annotations
 

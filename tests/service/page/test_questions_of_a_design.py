@@ -1,4 +1,4 @@
-"""What a design is asked on the page: forms from the declaration, and the numbers of the API in either system."""
+"""Questions to a design on the page: forms from the declaration, and the numbers of the API in either system."""
 
 from __future__ import annotations
 

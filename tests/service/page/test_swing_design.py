@@ -68,7 +68,7 @@ def test_a_design_moves_between_the_ends_of_its_swing(service: tuple[Page, str])
 
 
 def test_the_stage_draws_the_body_and_the_actuator(service: tuple[Page, str]) -> None:
-    """The body's mass centre lies where the job says, on the crank; the rod reaches from the slider to the barrel."""
+    """The mass centre of the body lies as stated in the job; the actuator rod spans slider and barrel."""
     page, address = service
     page.goto(f"{address}/#/jobs/1/designs/1")
     crank = tomllib.loads(Path("runs/support.toml").read_text(encoding="utf-8"))["mechanism"]["crank"]

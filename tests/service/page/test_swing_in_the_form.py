@@ -94,7 +94,7 @@ def test_a_swing_is_stated_by_places_of_the_slider_or_by_its_angle(form: Open, s
 
 
 def test_a_swing_is_offered_what_it_can_have(form: Open, store: Store) -> None:
-    """Cycles of cylinders, cylinders on a shaft and the like are of a full turn, a spring on the crank of a swing."""
+    """Gas cycles and several cylinders need a full turn; a spring on the crank needs a swing."""
     page = form(store, "#/new?preset=support")
     ready(page)
     folds = page.locator("details.more > summary")

@@ -34,7 +34,7 @@ def figures() -> dict[str, tuple[Figure, Inset, Image]]:
     """Return each figure of a report with its place and its picture on paper (h, w, 3)."""
     front = fronts.front(designs=20)
     result = result_of(front, "kept")
-    report = design_report(Subject(front.problem, result, 3, run="kept", versions={}), made=0.0)
+    report = design_report(Subject(front.problem, result, 3, run="kept", versions={}), created=0.0)
     content = pdf_file(report)
     pictures = [block for section in report.sections for block in section.blocks if isinstance(block, Picture)]
     places = [(page.number, inset) for page in paper(content) for inset in page.insets]

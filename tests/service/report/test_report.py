@@ -55,7 +55,7 @@ def subject() -> Subject:
 
 @cache
 def report() -> Report:
-    return design_report(subject(), made=0.0)
+    return design_report(subject(), created=0.0)
 
 
 @cache
@@ -270,7 +270,7 @@ def test_no_word_of_a_table_is_broken() -> None:
     of = Subject(replace(found.problem, offset=Range(lower=-0.15, upper=0.0)), result, 2, run="kept", versions={})
     sections = [
         replace(part, blocks=tuple(block for block in part.blocks if isinstance(block, Table)))
-        for part in design_report(of, made=0.0).sections
+        for part in design_report(of, created=0.0).sections
     ]
     tables = replace(report(), sections=tuple(part for part in sections if part.blocks))
     written = {word for page in paper(pdf_file(tables)) for word in page.whole.split()}
@@ -335,7 +335,7 @@ def test_the_machine_of_a_design_is_told_where_it_is_not_that_of_the_job() -> No
     problem = parse_job(job)
     result = result_of(solve(problem), "chosen")
     for number, row in enumerate(result.designs, start=1):
-        said = texts(design_report(Subject(problem, result, number, run="chosen", versions={}), made=0.0))
+        said = texts(design_report(Subject(problem, result, number, run="chosen", versions={}), created=0.0))
         assert f"crank: bar {row['crank_width_mm']:.6g} x 20 mm (width x depth), 7850 kg/m³" in said
         assert f"crank speed {row['choice_speed']} (counter-clockwise)" in said
         assert "crank speed 30 rpm (counter-clockwise)" in said

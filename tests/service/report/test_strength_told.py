@@ -1,4 +1,4 @@
-"""What the strength of a design rests on is told: material, pins, and limits of what was chosen."""
+"""The report lists what the strength of a design depends on: material, pins, and limits of the choices."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def told() -> list[tuple[Subject, Report]]:
     subjects = [
         Subject(problem, result, number, run="kept", versions={}) for number in range(1, len(result.designs) + 1)
     ]
-    return [(subject, design_report(subject, made=0.0)) for subject in subjects]
+    return [(subject, design_report(subject, created=0.0)) for subject in subjects]
 
 
 def test_a_job_says_material_pins_and_how_stresses_are_judged() -> None:
@@ -104,7 +104,9 @@ def test_requirements_of_a_report_have_their_bounds_those_of_the_chosen_option_a
 def test_bounds_of_a_report_are_in_its_units() -> None:
     subject, _ = told()[0]
     inch = Subject(subject.problem, subject.metric, 1, run="kept", versions={}, system="inch")
-    tables = [b for section in design_report(inch, made=0.0).sections for b in section.blocks if isinstance(b, Table)]
+    tables = [
+        b for section in design_report(inch, created=0.0).sections for b in section.blocks if isinstance(b, Table)
+    ]
     (table,) = (table for table in tables if table.title.startswith("Requirements"))
     row = next(row for row in table.rows if row[0] == "peak torque")
     peak = float(OPTIONS[str(subject.row["choice_motor"])][0].removesuffix(" N m"))

@@ -44,7 +44,7 @@ def subject(driver: str) -> Subject:
 
 @cache
 def report(driver: str) -> Report:
-    return design_report(subject(driver), made=0.0)
+    return design_report(subject(driver), created=0.0)
 
 
 def table(found: Report, title: str) -> Table:
@@ -114,7 +114,7 @@ def test_extremes_are_those_of_the_curves_of_both_ways(driver: str) -> None:
 
 
 def test_tables_of_the_swing_are_in_inches_where_that_is_asked() -> None:
-    found = design_report(replace(subject("slider"), system="inch"), made=0.0)
+    found = design_report(replace(subject("slider"), system="inch"), created=0.0)
     units = {cells[2] for cells in table(found, "Swing driven").rows} | {
         cells[-1] for cells in table(found, "Extremes").rows
     }

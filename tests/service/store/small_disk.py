@@ -1,4 +1,4 @@
-"""The disk of a store, of either kind, on which a test leaves room for small writes only, or for nothing."""
+"""The disk of a store, of either kind, which a test fills except for small writes, or completely."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A disk without room for the round of a search: the job stays with its worker, and goes on when there is some."""
+"""A full disk during a search: the job stays with its worker and continues once there is space."""
 
 from __future__ import annotations
 
