@@ -87,7 +87,7 @@ def public(count: int = 100_000, pairs: int = 7) -> list[Row]:
 def accuracy(count: int = 2_000) -> list[Row]:
     """Return the greatest relative errors of the peak torque; reference: all local maxima, refined from 512 angles."""
     designs = random_designs(count, seed=2)
-    exact = find_peaks(MECHANISM, Signal.TORQUE, designs, kept=1, angles=512).values[:, 0]
+    exact = find_peaks(MECHANISM, Signal.TORQUE, designs, limit=1, angles=512).values[:, 0]
     peer, _ = numpy_peer.evaluate(designs, angles=360, chunk=128)
     ours, _ = evaluate(designs, angles=64, crowd=True)
     return [

@@ -17,10 +17,10 @@ _ANGLES = (16, 24, 32, 48, 64, 96)
 def accuracy(count: int = 1_000) -> list[Row]:
     """Return the greatest relative error of peak torque by number of angles; reference: 4,096 angles, refined."""
     designs = random_designs(count, seed=3)
-    exact = find_peaks(MECHANISM, Signal.TORQUE, designs, kept=1, angles=4096).values[:, 0]
+    exact = find_peaks(MECHANISM, Signal.TORQUE, designs, limit=1, angles=4096).values[:, 0]
     rows = []
     for angles in _ANGLES:
-        peaks = find_peaks(MECHANISM, Signal.TORQUE, designs, kept=1, angles=angles).values[:, 0]
+        peaks = find_peaks(MECHANISM, Signal.TORQUE, designs, limit=1, angles=angles).values[:, 0]
         rows.append(Row(f"peak search, {angles} angles", [float(np.max(np.abs(peaks / exact - 1.0)))]))
         quick = screen(MECHANISM, (Signal.TORQUE,), designs, angles=angles)[0].values
         rows.append(Row(f"screening, {angles} angles", [float(np.max(np.abs(quick / exact - 1.0)))]))

@@ -13,15 +13,15 @@ _REMEDY = "text with a unit belongs into the tables of a job"
 
 
 def require_numbers(
-    owner: object, *names: str, what: str = "", least: float = -math.inf, above: float = -math.inf, unit: str = ""
+    owner: object, *names: str, phrase: str = "", least: float = -math.inf, above: float = -math.inf, unit: str = ""
 ) -> None:
     """Refuse fields of an object that are no finite numbers, below `least` or not above `above`; None passes.
 
-    what: the number in words, with {} where the name of the field belongs. unit: written behind the number.
+    phrase: the number in words, with {} where the name of the field belongs. unit: written behind the number.
     """
     for name in names:
         value = getattr(owner, name)
-        number = (what or f"{{}} of a {type(owner).__name__}").format(name)
+        number = (phrase or f"{{}} of a {type(owner).__name__}").format(name)
         try:
             right = value is None or (math.isfinite(value) and value >= least and value > above)
         except TypeError:
@@ -31,26 +31,30 @@ def require_numbers(
             raise InputError(f"{number} must be {sign}finite; got {value:g}{unit and f' {unit}'}")
 
 
-def require_all_finite(what: str, values: Iterable[float], where: str = "") -> None:
+def require_all_finite(subject: str, values: Iterable[float], suffix: str = "") -> None:
     """Refuse numbers of which one is not finite, or is no number."""
     for value in values:
         try:
             finite = math.isfinite(value)
         except TypeError:
-            raise InputError(f"{what} must be of numbers, SI; got {value!r}; {_REMEDY}") from None
+            raise InputError(f"{subject} must be of numbers, SI; got {value!r}; {_REMEDY}") from None
         if not finite:
-            raise InputError(f"{what} must be finite{where and f' {where}'}; got {value}")
+            raise InputError(f"{subject} must be finite{suffix and f' {suffix}'}; got {value}")
 
 
-def require_kinds(owner: object, kinds: Mapping[str, type | UnionType], remedy: str, *, each: bool = False) -> None:
-    """Refuse fields of an object that are of another kind than theirs. each: of tuples, item by item."""
+def require_kinds(
+    owner: object, kinds: Mapping[str, type | UnionType], remedy: str, *, item_by_item: bool = False
+) -> None:
+    """Refuse fields of an object that are of another kind than theirs. item_by_item: of tuples, item by item."""
     for name, kind in kinds.items():
         field = getattr(owner, name)
-        for value in field if each and isinstance(field, tuple) else (field,):
-            if not isinstance(value, kind) or (each and not isinstance(field, tuple)):
-                of = " or ".join("None" if item is NoneType else item.__name__ for item in get_args(kind) or (kind,))
-                wanted = f"a tuple of {of}" if each else of
-                raise InputError(f"{name} of a {type(owner).__name__} must be {wanted}; got {value!r}; {remedy}")
+        for value in field if item_by_item and isinstance(field, tuple) else (field,):
+            if not isinstance(value, kind) or (item_by_item and not isinstance(field, tuple)):
+                kind_names = " or ".join(
+                    "None" if item is NoneType else item.__name__ for item in get_args(kind) or (kind,)
+                )
+                expected = f"a tuple of {kind_names}" if item_by_item else kind_names
+                raise InputError(f"{name} of a {type(owner).__name__} must be {expected}; got {value!r}; {remedy}")
 
 
 def keep_tuples(owner: object, *names: str) -> None:

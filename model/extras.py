@@ -61,7 +61,7 @@ def extra_of(package: str) -> str | None:
     except PackageNotFoundError:  # the sources are used where they are, without an installation
         return None
     for line in lines:
-        found = _REQUIREMENT.fullmatch(line)
-        if found is not None and _SEPARATORS.sub("", found["name"]) == _SEPARATORS.sub("", package):
-            return found["extra"]
+        match = _REQUIREMENT.fullmatch(line)
+        if match is not None and _SEPARATORS.sub("", match["name"]) == _SEPARATORS.sub("", package):
+            return match["extra"]
     return None

@@ -17,7 +17,7 @@ def path_text(path: str | PathLike[str]) -> str:
 
 
 def path_from_text(name: str | PathLike[str]) -> Path:
-    """Path of the file with a name: in the encoding of the locale if it has the characters, else in UTF-8."""
+    """Return the path for a file name, encoded as the locale says, or in UTF-8 if that lacks a character."""
     text = os.fspath(name)
     try:
         os.fsencode(text)

@@ -12,12 +12,12 @@ import numpy as np
 from ..model.machine.links import Bar
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.memoise import memoise_by_batch
-from ..model.machine.numbers import PINS, of_numbers
+from ..model.machine.numbers import PINS, formula_of_numbers
 from ..model.machine.raw import Raw
 from ..model.machine.strength import Strength
 from ..model.signals.peaks import KEPT, find_peaks
 from ..model.signals.signals import Signal
-from ..model.strength.places import Eye, Place
+from ..model.strength.places import Eye, StressLocation
 from ..model.strength.section_forces import CRANK, ROD
 from ..model.strength.stress_cycle import APART, CLASSES, stress_peaks
 from .quantity import Array, Group, Pieces, Quantity, Values, fact, undefined
@@ -147,20 +147,20 @@ def strength_of(mechanism: Mechanism) -> Strength:
 def stresses(
     mechanism: Mechanism,
     designs: Array,
-    places: tuple[Place, ...],
+    places: tuple[StressLocation, ...],
     criteria: tuple[tuple[float, float], ...],
     piece_count: int,
     gradients: bool,
 ) -> list[Part]:
     """Return the greatest p sigma - q sigma of each place, for (p, q) of the criteria; see `stress_peaks`."""
-    peaks = stress_peaks(mechanism, places, designs, np.array(criteria), gradients=gradients, kept=piece_count)
+    peaks = stress_peaks(mechanism, places, designs, np.array(criteria), gradients=gradients, limit=piece_count)
     return [Part(each.values, each.gradients, each.labels) for each in peaks]
 
 
 @memoise_by_batch
 def pin_force(mechanism: Mechanism, designs: Array, pin: str, piece_count: int, gradients: bool) -> Part:
     """Return the greatest force of a pin over the cycle, N."""
-    peaks = find_peaks(mechanism, FORCE[pin], designs, gradients=gradients, kept=piece_count)
+    peaks = find_peaks(mechanism, FORCE[pin], designs, gradients=gradients, limit=piece_count)
     return Part(peaks.values, peaks.gradients, np.nan_to_num(peaks.angles))
 
 
@@ -175,11 +175,15 @@ def eyes_of(link: str, pin: str) -> list[Eye]:
     return [Eye(sizes.part, pin != NEAR, sizes.width, PINS[pin], bent, outer) for outer in edges]
 
 
-def stress_divisor(mechanism: Mechanism, designs: Array, place: Place, gradients: bool) -> tuple[Array, Array | None]:
+def stress_divisor(
+    mechanism: Mechanism, designs: Array, place: StressLocation, gradients: bool
+) -> tuple[Array, Array | None]:
     """Return the factor that the stress of a place still has (`places`): w - D of an eye, m, and 1 along a link."""
     if not isinstance(place, Eye):
         return constant(1.0, designs, gradients)
-    return of_numbers(mechanism, designs, lambda number: number(place.width) - number(place.pin), gradients=gradients)
+    return formula_of_numbers(
+        mechanism, designs, lambda number: number(place.width) - number(place.pin), gradients=gradients
+    )
 
 
 def net_section(link: str, pin: str) -> Formula:

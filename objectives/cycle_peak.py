@@ -27,7 +27,7 @@ class CyclePeak(Quantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        peaks = find_peaks(mechanism, self.signal, dimensions, during=self.during, gradients=gradients, kept=1)
+        peaks = find_peaks(mechanism, self.signal, dimensions, during=self.during, gradients=gradients, limit=1)
         return Values(
             peaks.values[:, 0] + 0.0, None if peaks.gradients is None else peaks.gradients[:, 0]
         )  # no negative zero

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..model.machine.dissipation import with_loads_alone
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.numbers import of_numbers
+from ..model.machine.numbers import formula_of_numbers
 from ..model.machine.raw import Raw
 from ..model.machine.two_turns import cycle_turns
 from ..model.signals.averages import average_torque
@@ -40,7 +40,7 @@ def _heat(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[Array, 
     heat = np.zeros(len(designs))
     slopes = None if work.gradients is None else np.zeros(designs.shape)
     for place, formula in _COEFFICIENTS.items():
-        factor, factor_slopes = of_numbers(mechanism, designs, formula, gradients=slopes is not None)
+        factor, factor_slopes = formula_of_numbers(mechanism, designs, formula, gradients=slopes is not None)
         mean = np.where(np.isinf(work.mean[:, place]), 0.0, work.mean[:, place])
         heat += _TURN * factor * mean
         if slopes is not None and factor_slopes is not None and work.gradients is not None:

@@ -21,7 +21,7 @@ from ..model.machine.loads.stroke_force import StrokeForce
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.members import cylinder_count
 from ..model.machine.memoise import memoise_by_machine
-from ..model.machine.numbers import of_numbers
+from ..model.machine.numbers import formula_of_numbers
 from ..model.machine.raw import LOAD_SLOTS, Raw
 from ..model.machine.varying import Varying
 from ..model.signals.peaks import find_peaks
@@ -45,7 +45,7 @@ class Flow(Quantity):
         if self.lacks(mechanism, "undefined"):
             return undefined(dimensions, gradients)
         factor = mechanism.direction * mean_speed_ratio(mechanism) / (2.0 * math.pi)
-        rate = of_numbers(mechanism, dimensions, lambda number: factor * number(Raw.SPEED), gradients=gradients)
+        rate = formula_of_numbers(mechanism, dimensions, lambda number: factor * number(Raw.SPEED), gradients=gradients)
         volume = gas_cycle(mechanism, dimensions, lambda gas: gas.delivered, gradients=gradients)
         return Values(*volume).times(Values(*rate))
 
@@ -73,12 +73,12 @@ class FlowRipple(Quantity):
 
     def _differences(self, mechanism: Mechanism, designs: Array, peak_count: int) -> Pieces:
         n, pumps = len(designs), list(pumps_of(mechanism))
-        areas = [of_numbers(mechanism, designs, partial(_area, k), gradients=True) for k in pumps]
+        areas = [formula_of_numbers(mechanism, designs, partial(_area, k), gradients=True) for k in pumps]
         machine, count = _flow_as_torque(mechanism), cylinder_count(mechanism)
         flow_designs = np.column_stack([designs[:, :3], *(area for area, _ in areas), np.zeros(n)])
-        peaks = find_peaks(machine, Signal.TORQUE, flow_designs, kept=peak_count, gradients=True)
+        peaks = find_peaks(machine, Signal.TORQUE, flow_designs, limit=peak_count, gradients=True)
         flow_designs[:, -1] = peaks.values[:, 0] / count
-        troughs = find_peaks(machine, Signal.TORQUE, flow_designs, kept=peak_count, gradients=True)
+        troughs = find_peaks(machine, Signal.TORQUE, flow_designs, limit=peak_count, gradients=True)
         shape, chain = (n, peak_count * peak_count), np.zeros((n, flow_designs.shape[1], designs.shape[1]))
         chain[:, :3, :3] = np.eye(3)
         chain[:, 3:-1] = np.stack([slopes for _, slopes in areas if slopes is not None], axis=1)
@@ -86,7 +86,9 @@ class FlowRipple(Quantity):
         assert peaks.gradients is not None
         assert troughs.gradients is not None
         slopes = (peaks.gradients[:, :, None] + troughs.gradients[:, None]).reshape(*shape, -1) @ chain
-        mean, mean_slopes = of_numbers(mechanism, designs, lambda number: _mean(number, pumps, count), gradients=True)
+        mean, mean_slopes = formula_of_numbers(
+            mechanism, designs, lambda number: _mean(number, pumps, count), gradients=True
+        )
         assert mean_slopes is not None
         values = differences.reshape(shape) / mean[:, None]
         finite = np.isfinite(values)

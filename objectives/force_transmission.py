@@ -25,7 +25,7 @@ class ForceTransmission(Quantity):
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         peaks = [
-            find_peaks(mechanism, signal, dimensions, gradients=gradients, kept=1)
+            find_peaks(mechanism, signal, dimensions, gradients=gradients, limit=1)
             for signal in (Signal.LINE_FORCE, Signal.SLIDER_PIN_FORCE)
         ]
         values, slopes = _ratios(*peaks)
@@ -33,7 +33,7 @@ class ForceTransmission(Quantity):
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the ratios to the highest local peaks of |B|, the least of which is the quantity; see `Quantity`."""
-        line_peaks = find_peaks(mechanism, Signal.LINE_FORCE, dimensions, gradients=True, kept=1)
+        line_peaks = find_peaks(mechanism, Signal.LINE_FORCE, dimensions, gradients=True, limit=1)
         pin_peaks = find_peaks(mechanism, Signal.SLIDER_PIN_FORCE, dimensions, gradients=True)
         return Pieces(*_ratios(line_peaks, pin_peaks), pin_peaks.angles, least=True)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.numbers import of_numbers
+from ..model.machine.numbers import formula_of_numbers
 from .quantity import Array, Pieces, Quantity, Values, undefined
 
 
@@ -40,7 +40,8 @@ class GreatestFormula(Quantity):
         designs = np.asarray(dimensions, dtype=np.float64)
         with np.errstate(invalid="ignore"):
             evaluations = [
-                of_numbers(mechanism, designs, formula, gradients=gradients) for formula in self.formulas(mechanism)
+                formula_of_numbers(mechanism, designs, formula, gradients=gradients)
+                for formula in self.formulas(mechanism)
             ]
         values = np.stack([value for value, _ in evaluations], axis=1)
         slopes = [formula_slopes for _, formula_slopes in evaluations if formula_slopes is not None]

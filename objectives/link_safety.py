@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.numbers import of_numbers
-from ..model.strength.places import Place, WholeBar
+from ..model.machine.numbers import formula_of_numbers
+from ..model.strength.places import StressLocation, WholeBar
 from .bars import LINKS, NEAR, Formula, OfBars, Part, eyes_of, strength_of, stress_divisor, stresses
 from .kinds import RATIO
 from .needs import A_BAR, EVEN_SPEED, LOADED, ONE_TURN, STRENGTH
@@ -30,7 +30,7 @@ class FatigueSafety(OfBars):
         criteria = ((worn + steady, worn - steady), (worn, worn))
         bars = self.bars(mechanism)
         eyes = [eye for name in bars for pin in (NEAR, LINKS[name].far) for eye in eyes_of(name, pin)]
-        places: tuple[Place, ...] = (*(WholeBar(LINKS[name].part) for name in bars), *eyes)
+        places: tuple[StressLocation, ...] = (*(WholeBar(LINKS[name].part) for name in bars), *eyes)
         peak_stresses = stresses(mechanism, designs, places, criteria, piece_count, gradients)
         return [
             part.dividing(stress_divisor(mechanism, designs, place, gradients))
@@ -53,7 +53,7 @@ class BucklingSafety(OfBars):
                 critical = critical_stress(
                     own.length, side, own.end_condition, material.elasticity, material.yield_strength
                 )
-                safeties.append(pressed.dividing(of_numbers(mechanism, designs, critical, gradients=gradients)))
+                safeties.append(pressed.dividing(formula_of_numbers(mechanism, designs, critical, gradients=gradients)))
         return safeties
 
 

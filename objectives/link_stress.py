@@ -10,8 +10,8 @@ from functools import partial
 import numpy as np
 
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.numbers import of_numbers
-from ..model.strength.places import Place, WholeBar
+from ..model.machine.numbers import formula_of_numbers
+from ..model.strength.places import StressLocation, WholeBar
 from ..model.strength.stress_cycle import stress_peaks
 from .bars import (
     LINKS,
@@ -65,7 +65,7 @@ class LinkStress(OfBars):
         for name in bars:
             for pin in (NEAR, LINKS[name].far):
                 force = pin_force(mechanism, designs, pin, piece_count, gradients)
-                area = of_numbers(mechanism, designs, net_section(name, pin), gradients=gradients)
+                area = formula_of_numbers(mechanism, designs, net_section(name, pin), gradients=gradients)
                 if self.least:
                     yield name, pin, force.dividing(_scaled(area, yield_strength / strength.eye_concentration))
                 else:
@@ -88,19 +88,19 @@ def eye_stresses(mechanism: Mechanism, design: Array) -> dict[str, dict[str, tup
     return stresses_by_link
 
 
-def _angle_of(mechanism: Mechanism, place: Place, design: Array) -> float:
+def _angle_of(mechanism: Mechanism, place: StressLocation, design: Array) -> float:
     """Return the crank angle of the greatest stress of a place, tension or compression."""
     ends = []
     for column, criterion in enumerate(STATIC):
-        (peak,) = stress_peaks(mechanism, (place,), design, np.array([criterion]), kept=1)
+        (peak,) = stress_peaks(mechanism, (place,), design, np.array([criterion]), limit=1)
         ends.append((float(peak.values[0, 0]), float(peak.places[0, 0, 2 + column])))
     return max(ends)[1]
 
 
-def _places(mechanism: Mechanism) -> list[tuple[str, str, Place]]:
+def _places(mechanism: Mechanism) -> list[tuple[str, str, StressLocation]]:
     """Return where the stress is that of a section: all along the bars, and in the eye of the pivot, which is bent."""
     bars, pivot = STATIC_SAFETY.bars(mechanism), LINKS[CRANK].far
-    places: list[tuple[str, str, Place]] = [(name, "", WholeBar(LINKS[name].part)) for name in bars]
+    places: list[tuple[str, str, StressLocation]] = [(name, "", WholeBar(LINKS[name].part)) for name in bars]
     return places + [(CRANK, pivot, eye) for eye in (eyes_of(CRANK, pivot) if CRANK in bars else [])]
 
 

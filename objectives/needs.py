@@ -60,7 +60,7 @@ _SLIDER_LOADS = _LOADS.replace("from loads;", "from loads on the slider;") + " o
 _SPEED = 'it needs a crank speed; got none; add for example [mechanism] speed = "300 rpm"'
 
 TOLERANCES = _defining(
-    lambda machine: machine.fullest.tolerances.given,
+    lambda machine: machine.fullest.tolerances.are_stated,
     'a position error needs tolerances; got none; add for example [tolerances] crank = "0.05 mm"',
 )
 FRICTION = Need(

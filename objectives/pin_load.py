@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any
 
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.numbers import PINS, of_numbers
+from ..model.machine.numbers import PINS, formula_of_numbers
 from .bars import LINKS, NEAR, Formula, OfBars, Part, force_over_area, pin_force, strength_of
 from .kinds import PRESSURE
 from .needs import A_BAR, CRANK_BAR, LOADED, PIVOT_LOADED, ROD_BAR, STRENGTH, Need
@@ -26,7 +26,9 @@ class PinPressure(OfBars):
         """Return the pressure in each bar that the pin bears in; see `OfBars`."""
         force = pin_force(mechanism, designs, self.pin, piece_count, gradients)
         areas = [projected(self.pin, name) for name in self.bars(mechanism)]
-        return [force_over_area(force, of_numbers(mechanism, designs, area, gradients=gradients)) for area in areas]
+        return [
+            force_over_area(force, formula_of_numbers(mechanism, designs, area, gradients=gradients)) for area in areas
+        ]
 
     def allowable(self, mechanism: Mechanism) -> float:
         """Return the bearing pressure of the material, Pa."""
@@ -43,7 +45,9 @@ class PinShear(OfBars):
         """Return the stress; see `OfBars`."""
         slot = PINS[self.pin]
         force = pin_force(mechanism, designs, self.pin, piece_count, gradients)
-        area = of_numbers(mechanism, designs, lambda number: 0.25 * math.pi * number(slot) ** 2, gradients=gradients)
+        area = formula_of_numbers(
+            mechanism, designs, lambda number: 0.25 * math.pi * number(slot) ** 2, gradients=gradients
+        )
         return [force_over_area(force, area)]
 
     def allowable(self, mechanism: Mechanism) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.members import single_cylinder
-from ..model.machine.numbers import of_numbers
+from ..model.machine.numbers import formula_of_numbers
 from ..model.machine.raw import Raw
 from ..model.machine.two_turns import cycle_turns
 from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, SLIDER_PIN, turn_work
@@ -44,7 +44,9 @@ class PinRubbing(OfBars):
         mean = Part(work.mean[:, place, None], slopes, np.zeros((len(designs), 1)))
         factor = self.factor(mechanism)
         return [
-            mean.times(of_numbers(mechanism, designs, _per_length(factor, LINKS[name].depth), gradients=gradients))
+            mean.times(
+                formula_of_numbers(mechanism, designs, _per_length(factor, LINKS[name].depth), gradients=gradients)
+            )
             for name in self.bars(mechanism)
         ]
 

@@ -12,7 +12,7 @@ from ..model.cycle.stroke_times import ScaledStrokeTimes, scaled_stroke_times
 from ..model.kernel.arithmetic import STEP
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.members import cylinder_count
-from ..model.machine.numbers import of_numbers, require_width
+from ..model.machine.numbers import formula_of_numbers, require_width
 from ..model.machine.raw import Raw
 from .kinds import RATIO, TIME
 from .needs import ONE_TIMING, REPEATS, SPEED
@@ -64,7 +64,7 @@ class StrokeTime(Quantity):
             return 1.0 / (mechanism.direction * number(Raw.SPEED))
 
         angles = Values(*evaluate_stroke_times(mechanism, dimensions, angle, gradients))
-        return angles.times(Values(*of_numbers(mechanism, dimensions, per_speed, gradients=gradients)))
+        return angles.times(Values(*formula_of_numbers(mechanism, dimensions, per_speed, gradients=gradients)))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -63,7 +63,7 @@ class SwingQuantity(Quantity):
             reason = self.unfit(self.swing)
             if reason is not None:
                 return reason
-            if self.tolerated and not (mechanism.fullest.tolerances.given or self.swing.actuator_tolerance):
+            if self.tolerated and not (mechanism.fullest.tolerances.are_stated or self.swing.actuator_tolerance):
                 return 'a position error needs tolerances; got none; add for example [tolerances] crank = "0.05 mm"'
         if consequence == "equal" and self.rubbing and not mechanism.fullest.friction.acts:
             return (
@@ -98,7 +98,7 @@ class SwingPeak(SwingQuantity):
         if self.state is None:
             return holding_peaks(mechanism, self._required_swing, dimensions, free=self.free, gradients=gradients)
         return swing_peaks(
-            mechanism, self._required_swing, self.state, dimensions, gradients=gradients, kept=peak_count
+            mechanism, self._required_swing, self.state, dimensions, gradients=gradients, limit=peak_count
         )
 
 
@@ -111,7 +111,7 @@ class SwingLeast(SwingQuantity):
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         negated_peaks = least_drives(
-            mechanism, self._required_swing, dimensions, back=self.back, gradients=gradients, kept=1
+            mechanism, self._required_swing, dimensions, back=self.back, gradients=gradients, limit=1
         )
         values = np.where(negated_peaks.values[:, 0] == np.inf, -np.inf, -negated_peaks.values[:, 0] + 0.0)
         return Values(values, None if negated_peaks.gradients is None else -negated_peaks.gradients[:, 0])
@@ -153,12 +153,12 @@ class SwingForm(SwingQuantity):
 
     def unfit(self, swing: Swing) -> str | None:
         """Return rule, value and remedy where every design has the same; see `SwingQuantity`."""
-        if swing.of == self.stated:
+        if swing.stated_for == self.stated:
             stated_value = self.unit.factor * abs(swing.end - swing.start)
-            keys = "from and to" if swing.of == "crank" else "slider_from and slider_to"
+            keys = "from and to" if swing.stated_for == "crank" else "slider_from and slider_to"
             return (
                 f"[motion] fixes it by {keys} for all designs; got {stated_value:.6g} {self.unit.symbol} there; leave "
-                f"it out, or state {'the two places of the slider' if swing.of == 'crank' else 'crank angles'} "
+                f"it out, or state {'the two places of the slider' if swing.stated_for == 'crank' else 'crank angles'} "
                 "instead and let it follow"
             )
         return super().unfit(swing)

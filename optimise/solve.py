@@ -124,7 +124,7 @@ class _ContinuousSolver:
         run = self.start_run(problem)
         evaluators: list[Evaluator] = []
         try:
-            with interrupted_by(self.checkpoints.interrupt, between=self.checkpoints.poll) as interruption:
+            with interrupted_by(self.checkpoints.interrupt, between_parts=self.checkpoints.poll) as interruption:
                 evaluators = self.evaluators(problem)
                 if self.resumes:
                     run.report_stage(REPEATING, 0, 1, now=True)

@@ -46,14 +46,14 @@ def solve_loop(
     speed: ArrayLike = 0.0,
     acceleration: ArrayLike = 0.0,
     start: tuple[ArrayLike, ArrayLike] | None = None,
-    most: int = 60,
+    iteration_limit: int = 60,
 ) -> LoopSolution:
     """Return the motion at crank angles (rad) for crank speed (rad/s) and acceleration (rad/s^2); all broadcast.
 
     start: slider position (m) and rod angle (rad) to start from. By default the rod lies along the slider line on the
     linkage's branch; from there the rod angle rises or falls to the solution without overshooting, because the sine is
     concave up to a quarter turn. From another start the solution that is found may lie on the other branch.
-    most: iterations allowed.
+    iteration_limit: iterations allowed.
 
     Raises `AssemblyError` where the linkage cannot be assembled, `InputError` where the iteration does not end.
     """
@@ -72,7 +72,7 @@ def solve_loop(
         raise InputError("the start of the iteration must be finite; give a slider position and a rod angle")
     iterations = np.zeros(theta.shape, dtype=np.int64)
     moving = np.ones(theta.shape, dtype=np.bool_)
-    for _ in range(most):
+    for _ in range(iteration_limit):
         residual = np.stack([pin[0] + l * np.cos(phi) - x, pin[1] + l * np.sin(phi) - e], axis=-1)
         step = _solve(_jacobian(l, phi), -residual, moving, theta)
         x, phi = x + np.where(moving, step[..., 0], 0.0), phi + np.where(moving, step[..., 1], 0.0)
@@ -82,7 +82,7 @@ def solve_loop(
             break
     else:
         raise InputError(
-            f"the iteration must end within {most} steps; got none at crank angle "
+            f"the iteration must end within {iteration_limit} steps; got none at crank angle "
             f"{_first_degrees(moving, theta):.6g} deg; start nearer to the solution or allow more steps"
         )
     jacobian = _jacobian(l, phi)
@@ -110,18 +110,18 @@ def _jacobian(l: Array, phi: Array) -> Array:
     return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
 
 
-def _solve(jacobian: Array, right: Array, wanted: Mask, theta: Array) -> Array:
+def _solve(jacobian: Array, right: Array, active: Mask, theta: Array) -> Array:
     """Solve at the angles that are wanted; zero elsewhere."""
-    singular = wanted & (np.abs(jacobian[..., 1, 1]) < np.finfo(np.float64).tiny)
+    singular = active & (np.abs(jacobian[..., 1, 1]) < np.finfo(np.float64).tiny)
     if np.any(singular):
         raise InputError(
             "the Jacobian must not be singular: the rod stood normal to the slider line; "
             f"got it at crank angle {_first_degrees(singular, theta):.6g} deg; start with another rod angle"
         )
-    found = np.zeros_like(right)
-    found[wanted] = np.linalg.solve(jacobian[wanted], right[wanted][..., None])[..., 0]
-    return found
+    step = np.zeros_like(right)
+    step[active] = np.linalg.solve(jacobian[active], right[active][..., None])[..., 0]
+    return step
 
 
-def _first_degrees(where: Mask, theta: Array) -> Any:
-    return math.degrees(float(theta[where].flat[0]))
+def _first_degrees(marked: Mask, theta: Array) -> Any:
+    return math.degrees(float(theta[marked].flat[0]))

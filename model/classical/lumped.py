@@ -66,15 +66,15 @@ def lumped(mechanism: Mechanism, linkage: Linkage, *, crank_pin_share: float | N
     crank, added = mass_properties(mechanism.crank, radius), share * rod
     total = crank.mass + added
     centre = (crank.mass * crank.centre + added * radius) / total if total > 0.0 else 0.0
-    across = crank.mass * crank.centre_across / total if total > 0.0 else 0.0
+    centre_across = crank.mass * crank.centre_across / total if total > 0.0 else 0.0
     inertia = (
         crank.inertia
-        + crank.mass * ((crank.centre - centre) ** 2 + (crank.centre_across - across) ** 2)
-        + added * ((radius - centre) ** 2 + across**2)
+        + crank.mass * ((crank.centre - centre) ** 2 + (crank.centre_across - centre_across) ** 2)
+        + added * ((radius - centre) ** 2 + centre_across**2)
     )
     return replace(
         mechanism,
-        crank=RigidLink(mass=total, centre=centre, centre_across=across, inertia=inertia),
+        crank=RigidLink(mass=total, centre=centre, centre_across=centre_across, inertia=inertia),
         rod=RigidLink(mass=0.0, inertia=0.0),
         slider_mass=mechanism.slider_mass + (1.0 - share) * rod,
     )

@@ -105,12 +105,12 @@ def locate(time: float, gap: complex, gap_t: complex, s: System) -> Place:
     """Return where the linkage is, from the two components of the gap and of its derivative."""
     theta = s.start + s.speed * time
     crank = complex(math.cos(theta), math.sin(theta))
-    across = s.e - s.r * crank.imag - gap.imag
-    along = s.branch * math.sqrt(s.l * s.l - across * across)
-    rod_t = -(gap_t.imag + s.r * s.speed * crank.real) / along
-    x = gap.real + along + s.r * crank.real
-    x_t = gap_t.real - across * rod_t - s.r * s.speed * crank.imag
-    return Place(crank, complex(along, across) / s.l, x, x_t, rod_t)
+    l_sin = s.e - s.r * crank.imag - gap.imag
+    l_cos = s.branch * math.sqrt(s.l * s.l - l_sin * l_sin)
+    rod_t = -(gap_t.imag + s.r * s.speed * crank.real) / l_cos
+    x = gap.real + l_cos + s.r * crank.real
+    x_t = gap_t.real - l_sin * rod_t - s.r * s.speed * crank.imag
+    return Place(crank, complex(l_cos, l_sin) / s.l, x, x_t, rod_t)
 
 
 @analytic

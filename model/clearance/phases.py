@@ -108,9 +108,9 @@ class Integrator:
                     f"the steps of the integration must stay above rounding; got too short ones at {solver.t:g} s; "
                     "make the tolerance coarser or the contact softer"
                 )
-            between = solver.dense_output()
+            interpolate = solver.dense_output()
             times = np.linspace(solver.t_old, solver.t, BETWEEN + 1)
-            states = between(times)
+            states = interpolate(times)
             depth = self._depth(states[:, 1:])
             if not depth.max() < self.system.bearing_radius:
                 raise SlidercrankError(
@@ -118,12 +118,12 @@ class Integrator:
                     f"got a penetration beyond the bearing's radius, {1e3 * self.system.bearing_radius:g} mm, with a "
                     f"stiffness of {self.system.stiffness:g} N/m^1.5; make the contact stiffer"
                 )
-            over = np.flatnonzero(sign * depth > 0.0)
-            if len(over):
-                self._switch(between, times[over[0]], times[over[0] + 1], sign)
-                kept = over[0] + 1
-                times = np.append(times[:kept], self.time)
-                states = np.column_stack([states[:, :kept], self.state])
+            crossed = np.flatnonzero(sign * depth > 0.0)
+            if len(crossed):
+                self._switch(interpolate, times[crossed[0]], times[crossed[0] + 1], sign)
+                count = crossed[0] + 1
+                times = np.append(times[:count], self.time)
+                states = np.column_stack([states[:, :count], self.state])
                 self.trace.add(times, states, rate, outward)
                 return True
             self.time, self.state = float(solver.t), states[:, -1]
@@ -134,20 +134,24 @@ class Integrator:
         depth: Array = np.hypot(states[0], states[1]) - self.system.clearance
         return depth
 
-    def _switch(self, between: Callable[[float], Array], before: float, after: float, sign: float) -> None:
+    def _switch(self, interpolate: Callable[[float], Array], before: float, after: float, sign: float) -> None:
         """Go to where the journal crosses the clearance between two times, and on to the other phase."""
         from scipy.optimize import brentq
 
-        def over(time: float) -> float:
-            return sign * float(self._depth(between(time)))
+        def excess_depth(time: float) -> float:
+            return sign * float(self._depth(interpolate(time)))
 
-        time = float(brentq(over, before, after, xtol=1e-300, rtol=1e-15)) if over(before) < 0.0 else before
+        time = (
+            float(brentq(excess_depth, before, after, xtol=1e-300, rtol=1e-15))
+            if excess_depth(before) < 0.0
+            else before
+        )
         # Past it by rounding at least: the next phase begins on its own side.
         step = float(np.spacing(time))
-        while time < after and over(time) <= 0.0:
+        while time < after and excess_depth(time) <= 0.0:
             time = min(time + step, after)
             step *= 2.0
-        self.time, self.state = time, between(time)
+        self.time, self.state = time, interpolate(time)
         if self.rate != FLIGHT:
             self.rate = FLIGHT
             return

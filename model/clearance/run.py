@@ -130,22 +130,22 @@ def simulate(
     # Shares of a turn at which the dead centres are passed.
     turn, way = 2.0 * math.pi, math.copysign(1.0, mechanism.speed)
     dead_centres = sorted(float(angle * way % turn) / turn for angle in linkage.dead_centre_angles)
-    done = 0
-    while done < cycles:
-        ends = [(done + share) * period for share in (*dead_centres, 1.0)]
+    turns_made = 0
+    while turns_made < cycles:
+        ends = [(turns_made + share) * period for share in (*dead_centres, 1.0)]
         reached = all(
             integrator.advance(end, outward=_outward(linkage, mechanism.speed, before, end), cancelled=cancelled)
-            for before, end in zip([done * period, *ends], ends, strict=False)
+            for before, end in zip([turns_made * period, *ends], ends, strict=False)
         )
         if not reached:
             break
-        done += 1
+        turns_made += 1
         if progress is not None:
             impacts = len(integrator.trace.impact_times)
-            progress(ClearanceProgress(done, cycles, impacts, time.perf_counter() - began))
-        if done < cycles and cancelled is not None and cancelled():
+            progress(ClearanceProgress(turns_made, cycles, impacts, time.perf_counter() - began))
+        if turns_made < cycles and cancelled is not None and cancelled():
             break
-    return _collect(mechanism, linkage, clearance, integrator, done, cycles, discard)
+    return _collect(mechanism, linkage, clearance, integrator, turns_made, cycles, discard)
 
 
 def _start(mechanism: Mechanism, linkage: Linkage, clearance: Clearance, tolerance: float) -> Integrator:
@@ -170,7 +170,7 @@ def _collect(
     linkage: Linkage,
     clearance: Clearance,
     integrator: Integrator,
-    done: int,
+    turns_made: int,
     cycles: int,
     discard: int,
 ) -> ClearanceRun:
@@ -178,7 +178,7 @@ def _collect(
     times = np.concatenate(trace.times)
     states = np.ascontiguousarray(np.concatenate(trace.states, axis=1))
     rate, outward = np.concatenate(trace.rates), np.concatenate(trace.outward)
-    seen = observe(times, states, rate, outward, integrator.system, integrator.block, integrator.loads)
+    observed = observe(times, states, rate, outward, integrator.system, integrator.block, integrator.loads)
     angle = mechanism.speed * times
     ideal = linkage.at(angle, speed=mechanism.speed)
     # The gap is that of the bearing (on the rod) from the journal when the crank pin is loose, else the reverse.
@@ -187,28 +187,28 @@ def _collect(
         mechanism=mechanism,
         linkage=linkage,
         clearance=clearance,
-        status="done" if done == cycles else "cancelled",
-        cycles=done,
+        status="done" if turns_made == cycles else "cancelled",
+        cycles=turns_made,
         discard=discard,
         times=times,
         crank_angle=angle,
-        slider_position=seen[0],
-        slider_velocity=seen[1],
-        slider_acceleration=seen[2],
+        slider_position=observed[0],
+        slider_velocity=observed[1],
+        slider_acceleration=observed[2],
         ideal_position=ideal.slider_position,
         ideal_velocity=ideal.slider_velocity,
         ideal_acceleration=ideal.slider_acceleration,
-        contact_force=seen[3],
-        friction_force=seen[4],
-        penetration=seen[5],
+        contact_force=observed[3],
+        friction_force=observed[4],
+        penetration=observed[5],
         journal_x=side * states[0],
         journal_y=side * states[1],
         in_contact=rate != FLIGHT,
-        torque=seen[6],
+        torque=observed[6],
         input_work=states[4],
         load_work=states[5],
         dissipated=states[6],
-        stored=seen[7] + seen[8] + seen[9],
+        stored=observed[7] + observed[8] + observed[9],
         impact_times=np.array(trace.impact_times),
         impact_speeds=np.array(trace.impact_speeds),
     )

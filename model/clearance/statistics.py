@@ -31,7 +31,7 @@ class Estimate:
     uncertainty: float | None
 
     @classmethod
-    def of(cls, turns: Array) -> Estimate:
+    def from_turns(cls, turns: Array) -> Estimate:
         """Return the estimate from one value per turn, (n,)."""
         n = len(turns)
         if n < 2:
@@ -100,24 +100,26 @@ def summarise(run: ClearanceRun) -> ClearanceSummary:
         run.mechanism,
         Signal.SLIDER_ACCELERATION,
         np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]]),
-        kept=1,
+        limit=1,
     ).values[0, 0]
     counted = run.impact_times >= marks[0]
     residual = [np.ptp(run.energy_residual[span]) for span in spans]
     return ClearanceSummary(
         turns=turns,
-        peak_acceleration=Estimate.of(acceleration),
-        acceleration_ratio=Estimate.of(acceleration / ideal),
-        displacement_deviation=Estimate.of(greatest(run.slider_position - run.ideal_position) / float(linkage.stroke)),
-        velocity_deviation=Estimate.of(greatest(run.slider_velocity - run.ideal_velocity)),
-        impacts=Estimate.of(np.histogram(run.impact_times, marks)[0].astype(np.float64)),
-        contact_share=Estimate.of(gained(touching) / run.period),
-        peak_contact_force=Estimate.of(greatest(run.contact_force)),
-        penetration=Estimate.of(np.array([run.penetration[span].max() for span in spans])),
+        peak_acceleration=Estimate.from_turns(acceleration),
+        acceleration_ratio=Estimate.from_turns(acceleration / ideal),
+        displacement_deviation=Estimate.from_turns(
+            greatest(run.slider_position - run.ideal_position) / float(linkage.stroke)
+        ),
+        velocity_deviation=Estimate.from_turns(greatest(run.slider_velocity - run.ideal_velocity)),
+        impacts=Estimate.from_turns(np.histogram(run.impact_times, marks)[0].astype(np.float64)),
+        contact_share=Estimate.from_turns(gained(touching) / run.period),
+        peak_contact_force=Estimate.from_turns(greatest(run.contact_force)),
+        penetration=Estimate.from_turns(np.array([run.penetration[span].max() for span in spans])),
         fastest_impact=float(run.impact_speeds[counted].max()) if counted.any() else None,
-        input_work=Estimate.of(gained(run.input_work)),
-        load_work=Estimate.of(gained(run.load_work)),
-        dissipated=Estimate.of(gained(run.dissipated)),
-        stored=Estimate.of(gained(run.stored)),
+        input_work=Estimate.from_turns(gained(run.input_work)),
+        load_work=Estimate.from_turns(gained(run.load_work)),
+        dissipated=Estimate.from_turns(gained(run.dissipated)),
+        stored=Estimate.from_turns(gained(run.stored)),
         energy_residual=float(max(residual)),
     )

@@ -38,11 +38,11 @@ def build(
                 "add that mass to the slider's, or leave that load out"
             )
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
-    room = l - r - abs(e)
-    if clearance.radius >= 0.5 * room:
+    rod_margin = l - r - abs(e)
+    if clearance.radius >= 0.5 * rod_margin:
         raise InputError(
             "a clearance must be less than half of rod - crank - |offset|, or the rod could fold over; "
-            f"got {1e3 * clearance.radius:g} mm and {1e3 * room:g} mm; lengthen the rod or reduce the clearance"
+            f"got {1e3 * clearance.radius:g} mm and {1e3 * rod_margin:g} mm; lengthen the rod or reduce the clearance"
         )
     raw = raw_vector(mechanism)
     raw[:3] = r, l, e

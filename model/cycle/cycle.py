@@ -88,7 +88,7 @@ def _curves(
         out[0, i] = m.x
         out[1, i] = m.x_1 * d.speed
         out[2, i] = m.x_2 * d.speed * d.speed + m.x_1 * d.acceleration
-        out[3, i] = math.atan2(abs(m.along), abs(m.across))
+        out[3, i] = math.atan2(abs(m.l_cos), abs(m.l_sin))
         out[4, i] = load
         way = sense_of(d)
         out[5, i] = beside_crank_loads(f.torque, d, block, 0, theta, way, loads, piece, shift)
@@ -115,18 +115,18 @@ def cycle(
     """Return all curves of one fully turning linkage at crank angles (n,), rad.
 
     speed, acceleration: of the crank at each angle, rad/s and rad/s^2, (n,) or one; if None those of the mechanism,
-    along its profile if it has one. Several cylinders: the curves are of one, see `several`.
-    Where a load or friction jumps (exactly on a dead centre, or where the rod turns back) the value on one side is
-    given: at a dead centre that of the inward stroke; where the speed is zero, that of counter-clockwise motion. Torque
-    and forces are NaN where friction locks the linkage (`rubbing`: where they are not determined). Raises `InputError`
+    along its profile if it has one. Several cylinders: the curves are those of one; see `multi_cylinder`.
+    Where a load or friction jumps (exactly at a dead centre, or where the rod turns back), the value is that of one
+    side: of the inward stroke at a dead centre, of counter-clockwise motion where the speed is zero. Torque and
+    forces are NaN where friction locks the linkage (`rubbing`: where they are not determined). Raises `InputError`
     for arrays of linkages and for a linkage on another branch than the mechanism's.
     """
     linkage = single(mechanism, linkage)
     angles = np.require(np.atleast_1d(crank_angle), np.float64, ["C", "W"])  # one compiled kernel serves
-    own = crank_speed(mechanism, angles)
+    own_motion = crank_speed(mechanism, angles)
     speeds, accelerations = (
-        np.array(np.broadcast_to(np.asarray(of if given is None else given, dtype=np.float64), angles.shape))
-        for given, of in zip((speed, acceleration), own, strict=True)
+        np.array(np.broadcast_to(np.asarray(default if argument is None else argument, dtype=np.float64), angles.shape))
+        for argument, default in zip((speed, acceleration), own_motion, strict=True)
     )
     if not (np.isfinite(angles).all() and np.isfinite(speeds).all() and np.isfinite(accelerations).all()):
         raise InputError("crank angles, speeds and accelerations must be finite")
@@ -139,7 +139,7 @@ def curves_of(mechanism: Mechanism, linkage: Linkage, angles: Array, speeds: Arr
         return _of_two_turns(mechanism, linkage, angles, speeds, accelerations)
     out = np.empty((_COLUMNS, len(angles)))
     watch, loads = CycleWindow(0, 0.0, 1.0, False), load_structure(mechanism)
-    at, w, a = (np.require(each, np.float64, ["C", "W"]) for each in (angles, speeds, accelerations))
+    at, w, a = (np.require(values, np.float64, ["C", "W"]) for values in (angles, speeds, accelerations))
     block = _block(mechanism, linkage).copy()  # the kernel sets the speed of each angle
     _curves(block, loads, watch, at, w, a, out, rubs(mechanism))
     return Cycle(angles, *out)
@@ -154,8 +154,8 @@ def _of_two_turns(mechanism: Mechanism, linkage: Linkage, angles: Array, speeds:
 
 def design_of(mechanism: Mechanism, linkage: Linkage) -> Design:
     """Return the numbers of one linkage for the equations of motion; dead centres that it lacks are NaN."""
-    found: Design = design_at(_block(mechanism, linkage), 0)
-    return found
+    design: Design = design_at(_block(mechanism, linkage), 0)
+    return design
 
 
 def kinks_of_loads(mechanism: Mechanism, linkage: Linkage) -> Array:
@@ -164,8 +164,8 @@ def kinks_of_loads(mechanism: Mechanism, linkage: Linkage) -> Array:
     loads = load_structure(mechanism)
     block = _block(mechanism, linkage).copy()
     block[_SPEED] = 0.0  # valves open in both senses of rotation
-    found = breakpoints_of(block[None], loads, cycle_window(mechanism, Signal.TORQUE), rubbing=False)
-    return found.angle[0, : found.many[0]]
+    cuts = breakpoints_of(block[None], loads, cycle_window(mechanism, Signal.TORQUE), rubbing=False)
+    return cuts.angle[0, : cuts.many[0]]
 
 
 def _block(mechanism: Mechanism, linkage: Linkage) -> Table:
@@ -189,8 +189,8 @@ def breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
     """
     linkage = single(mechanism, linkage)
     if cycle_turns(mechanism) > 1:
-        found = np.concatenate([breakpoints(half, linkage) for half in halves(mechanism)])
-        return np.unique(np.concatenate([found, found + TURN]))
+        angles = np.concatenate([breakpoints(half, linkage) for half in halves(mechanism)])
+        return np.unique(np.concatenate([angles, angles + TURN]))
     raw, loads = raw_vector(mechanism), load_structure(mechanism)
     raw[:3] = linkage.crank, linkage.rod, linkage.offset
     require_driving(mechanism.friction, linkage)

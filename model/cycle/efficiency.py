@@ -90,7 +90,7 @@ def energies(mechanism: Mechanism, linkage: Linkage) -> Energies:
         motion = linkage.at(theta, speed=1.0)
         work = -linkage.sign * curves.load * motion.slider_velocity - curves.crank_load
         swing = motion.rod_velocity
-        found: Array = weight * np.stack(
+        integrands: Array = weight * np.stack(
             [
                 turn * curves.torque,
                 turn * work,
@@ -101,14 +101,14 @@ def energies(mechanism: Mechanism, linkage: Linkage) -> Energies:
                 np.abs(work),
             ]
         )
-        return found
+        return integrands
 
     turns = cycle_turns(mechanism)
     edges = [crowded(float(angle), kappa) for angle in (*cuts, cuts[0] + turns * TURN)]
     ends = np.concatenate([edges[:1], *(np.linspace(a, b, 1 + _PIECES)[1:] for a, b in pairwise(edges))])
     sizes = np.abs(rates(np.linspace(edges[0], edges[-1], _SAMPLES))).max(axis=1)
     panels = panels_of(rates, ends, np.where(sizes > 0.0, sizes, 1.0))
-    given, useful, guide, pivot, crank_pin, slider_pin, throughput = map(panels.integral, range(len(sizes)))
+    drive_work, useful, guide, pivot, crank_pin, slider_pin, throughput = map(panels.integral, range(len(sizes)))
     inertia = average(mechanism, Signal.REFLECTED_INERTIA, dimensions).mean[0]
     stored = turn * turns * TURN * mechanism.acceleration * float(inertia)
-    return Energies(given, useful, stored, guide, pivot, crank_pin, slider_pin, throughput)
+    return Energies(drive_work, useful, stored, guide, pivot, crank_pin, slider_pin, throughput)

@@ -74,27 +74,29 @@ def may_deliver_nothing(mechanism: Mechanism) -> bool:
 
 
 def gas_cycle(
-    mechanism: Mechanism, designs: Array, of: Callable[[GasCycle], Any], *, gradients: bool = False
+    mechanism: Mechanism, designs: Array, number: Callable[[GasCycle], Any], *, gradients: bool = False
 ) -> tuple[Array, Array | None]:
     """Return a number (n,) of the `GasCycle` of designs (n, 3 + k), and its derivatives (n, 3 + k).
 
     Of several cylinders on one crankshaft volumes and works are those of all.
     """
     designs = turning(designs)
-    several = cylinder_count(mechanism)
-    if several > 1:
-        one = replace(mechanism, arrangement=None)
-        return gas_cycle(one, designs, lambda gas: of(gas.times(several)), gradients=gradients)
+    count = cylinder_count(mechanism)
+    if count > 1:
+        single = replace(mechanism, arrangement=None)
+        return gas_cycle(single, designs, lambda gas: number(gas.times(count)), gradients=gradients)
     if cycle_turns(mechanism) > 1:
         sums, rates = _of_two_turns(mechanism, designs, gradients=gradients)
-        return np.asarray(of(sums), dtype=np.float64), None if rates is None else _differentiated(of, sums, rates)
+        return np.asarray(number(sums), dtype=np.float64), None if rates is None else _differentiated(
+            number, sums, rates
+        )
     raw, loads = fullest_inputs(mechanism)
-    numbers = numbers_of(mechanism, designs, room=len(raw), gradients=gradients)
+    numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=gradients)
     blocks, steps = derived(raw, loads, numbers.columns, numbers.values, steps=gradients)
-    values = np.asarray(of(_gas(mechanism, blocks[:, :, 0])), dtype=np.float64)
+    values = np.asarray(number(_gas(mechanism, blocks[:, :, 0])), dtype=np.float64)
     if not gradients:
         return values, None
-    slopes = of(_gas(mechanism, steps[:, :, 0])).imag / STEP
+    slopes = number(_gas(mechanism, steps[:, :, 0])).imag / STEP
     return values, numbers.chain(slopes.reshape(len(designs), len(numbers.columns)))
 
 
@@ -104,7 +106,7 @@ def _of_two_turns(mechanism: Mechanism, designs: Array, *, gradients: bool) -> t
     sums, slopes = [], []
     for half in halves(mechanism):
         raw, loads = fullest_inputs(half)
-        numbers = numbers_of(half, designs, room=len(raw), gradients=gradients)
+        numbers = numbers_of(half, designs, limit=len(raw), gradients=gradients)
         blocks, steps = derived(raw, loads, numbers.columns, numbers.values, steps=gradients)
         sums.append(_gas(half, blocks[:, :, 0], four))
         if gradients:
@@ -119,9 +121,9 @@ def _joined(first: GasCycle, second: GasCycle) -> GasCycle:
     return first._replace(work=first.work + second.work, cycle_work=first.cycle_work + second.cycle_work)
 
 
-def _differentiated(of: Callable[[GasCycle], Any], values: GasCycle, slopes: GasCycle) -> Array:
+def _differentiated(number: Callable[[GasCycle], Any], values: GasCycle, slopes: GasCycle) -> Array:
     stepped = (value[:, None] + 1j * STEP * slope for value, slope in zip(values, slopes, strict=True))
-    return np.asarray(of(GasCycle(*stepped)).imag / STEP)
+    return np.asarray(number(GasCycle(*stepped)).imag / STEP)
 
 
 def _gas(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()) -> GasCycle:
@@ -152,10 +154,10 @@ def _strokes(stroke: Any, h: Any, low: Any, high: Any, compression: Any, expansi
     """Return work of expansion and of compression per piston area, J/m^2, and the share of the stroke that takes in."""
     expanded, compressed = expanded_at(h, high / low, expansion), compressed_at(stroke, h, high / low, compression)
     with np.errstate(divide="ignore", invalid="ignore"):  # without clearance the gas has always expanded
-        whole, ratio = np.log((h + stroke) / h), np.log(high / low)
+        full_stroke, ratio = np.log((h + stroke) / h), np.log(high / low)
     opens, delivers = expanded.real < stroke.real, compressed.real > 0.0
-    down = np.where(opens, ratio / expansion, whole)
-    up = np.where(delivers, ratio / compression, whole)
+    down = np.where(opens, ratio / expansion, full_stroke)
+    up = np.where(delivers, ratio / compression, full_stroke)
     gained = high * h * np.where(h.real > 0.0, down * _mean_factor((expansion - 1.0) * down), 0.0)
     gained = gained + np.where(opens, low * (stroke - expanded), 0.0)
     spent = low * (h + stroke) * up * _mean_factor(-(compression - 1.0) * up)

@@ -70,7 +70,10 @@ def valve_events(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> tupl
 
 
 def burning_ends(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> float | None:
-    """Return the crank angle, rad in [0, 4 pi), at which burning at peak pressure ends; None without such a phase."""
+    """Return the crank angle at which burning at peak pressure ends, rad in [0, 4 pi).
+
+    None without such a phase.
+    """
     if not isinstance(load, LimitedPressure):
         return None
     linkage = single(mechanism, linkage)
@@ -81,7 +84,10 @@ def burning_ends(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> floa
 
 
 def _angle_at(mechanism: Mechanism, linkage: Linkage, load: Cylinder, z: float, *, away: bool) -> float | None:
-    """Return the crank angle, rad in [0, 2 pi), with the piston z from its top on one of its ways; None beyond both."""
+    """Return the crank angle at which the piston is z from its top, rad in [0, 2 pi).
+
+    away: whether it moves away from there. None for a z that it does not reach.
+    """
     stroke, sign, top = _top(linkage, load)
     outward = away == (sign > 0.0)
     second = outward == (mechanism.direction < 0.0)

@@ -53,10 +53,10 @@ def verdict(mechanism: Mechanism, linkage: Linkage) -> Verdict:
     for a, b in pairwise([*cuts, cuts[0] + 2.0 * np.pi]):
         spans += _spans(mechanism.friction, linkage, a, b)
     joined = _joined(spans)
-    inside = np.concatenate([np.linspace(a, b, 66)[1:-1] for a, b in joined]) if joined else np.empty(0)
-    if not len(inside):
+    inner_angles = np.concatenate([np.linspace(a, b, 66)[1:-1] for a, b in joined]) if joined else np.empty(0)
+    if not len(inner_angles):
         return Verdict(margin, joined, None)
-    states = states_at(mechanism, linkage, inside)
+    states = states_at(mechanism, linkage, inner_angles)
     return Verdict(margin, joined, float(np.mean(states == "locks")))
 
 
@@ -66,13 +66,13 @@ def states_at(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) ->
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     design = _design(mechanism, linkage)
     loads = cycle(mechanism, linkage, angles).load
-    found = []
+    states = []
     for theta, load, excess in zip(angles, loads, _excess(mechanism.friction, linkage, angles), strict=True):
         if excess > 0.0:
-            found.append("drives")
+            states.append("drives")
         else:
-            found.append("may jam" if _balances(design, float(theta), float(load)) else "locks")
-    return np.array(found, dtype=np.str_)
+            states.append("may jam" if _balances(design, float(theta), float(load)) else "locks")
+    return np.array(states, dtype=np.str_)
 
 
 def _dimensions(linkage: Linkage) -> tuple[float, float, float]:
@@ -84,18 +84,18 @@ def _design(mechanism: Mechanism, linkage: Linkage) -> Design:
     raw[:3, 0] = _dimensions(linkage)
     block = np.empty((DESIGN + LOAD_ROWS * len(loads.kind), 1))
     derive(raw, loads.kind, loads.datum, block)
-    found: Design = design_at(block, 0)
-    return found
+    design: Design = design_at(block, 0)
+    return design
 
 
-def _excess(friction: Friction, linkage: Linkage, theta: Any, inside: Any = None) -> Any:
-    """Return |along| - |D| at crank angles, with the signs of the angles `inside` the segment."""
-    inside = theta if inside is None else inside
+def _excess(friction: Friction, linkage: Linkage, theta: Any, probe: Any = None) -> Any:
+    """Return |along| - |D| at crank angles, with the signs at the angles `probe` within the segment."""
+    probe = theta if probe is None else probe
     arguments = (linkage.crank, linkage.rod, linkage.offset, linkage.sign)
-    m, signs = (motion(np.sin(angle), np.cos(angle), *arguments) for angle in (theta, inside))
+    m, signs = (motion(np.sin(angle), np.cos(angle), *arguments) for angle in (theta, probe))
     q = np.sqrt(1.0 + friction.guide**2)
     pins = q * (friction.slider_pin.circle * np.sign(signs.rod_1) - friction.crank_pin.circle)
-    return np.abs(m.along) - np.abs(pins - friction.guide * m.across * np.sign(signs.x_1))
+    return np.abs(m.l_cos) - np.abs(pins - friction.guide * m.l_sin * np.sign(signs.x_1))
 
 
 def _spans(friction: Friction, linkage: Linkage, a: float, b: float) -> list[tuple[float, float]]:
@@ -144,14 +144,14 @@ def _balances(d: Design, theta: float, load: float) -> bool:
         bx = b.pull + d.guide_friction * slide * np.abs(y + weight)
         pins = d.slider_pin_circle * swing * np.hypot(bx, y)
         pins = pins - d.crank_pin_circle * turn * np.hypot(bx + b.rod_x, y + b.rod_y)
-        return m.along * y - m.across * bx + b.moment + pins
+        return m.l_cos * y - m.l_sin * bx + b.moment + pins
 
-    size = abs(b.pull) + abs(weight) + abs(b.moment * m.per_along) + np.hypot(b.rod_x, b.rod_y)
+    size = abs(b.pull) + abs(weight) + abs(b.moment * m.per_l_cos) + np.hypot(b.rod_x, b.rod_y)
     if size == 0.0:
         return True  # nothing acts: all forces are zero
-    reach = 1e6 * size
-    upward = 1.0 if h(reach) > 0.0 else -1.0
-    steps = np.concatenate([[0.0], np.geomspace(1e-9 * size, reach, 400)])
+    largest = 1e6 * size
+    upward = 1.0 if h(largest) > 0.0 else -1.0
+    steps = np.concatenate([[0.0], np.geomspace(1e-9 * size, largest, 400)])
     from scipy.optimize import minimize_scalar
 
     for side in (-1.0, 1.0):

@@ -87,13 +87,13 @@ def multi_cylinder_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: A
     for member in members(mechanism):
         at = theta + member.lead
         torques.append(cycle(member.mechanism, linkage, at, speed=speed, acceleration=acceleration).torque)
-        own = shaking_curves(member.mechanism, linkage, at, speed=speed, acceleration=acceleration)
+        shaken = shaking_curves(member.mechanism, linkage, at, speed=speed, acceleration=acceleration)
         c, s = math.cos(member.bank), math.sin(member.bank)
-        x, y = c * own.force_x - s * own.force_y, s * own.force_x + c * own.force_y
-        sums += np.stack([x, y, own.moment, -member.place * y, member.place * x])
+        x, y = c * shaken.force_x - s * shaken.force_y, s * shaken.force_x + c * shaken.force_y
+        sums += np.stack([x, y, shaken.moment, -member.place * y, member.place * x])
         force = np.hypot(x, y)
         couple = abs(member.place) * force
-        sizes += np.stack([force, force, np.abs(own.moment), couple, couple])
+        sizes += np.stack([force, force, np.abs(shaken.moment), couple, couple])
     sums[np.abs(sums) <= _ROUNDING * sizes] = 0.0
     force_x, force_y, moment, couple_x, couple_y = sums
     torque = np.sum(torques, axis=0)
@@ -102,9 +102,9 @@ def multi_cylinder_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: A
 
 def multi_cylinder_breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the crank angles of the shaft, rad from 0, where a torque may jump or turn sharply."""
-    found = [breakpoints(member.mechanism, linkage) - member.lead for member in members(mechanism)]
-    found += [speed_knots(mechanism) + turn * TURN for turn in range(cycle_turns(mechanism))]
-    return np.unique(np.mod(np.concatenate(found), cycle_turns(mechanism) * TURN))
+    angles = [breakpoints(member.mechanism, linkage) - member.lead for member in members(mechanism)]
+    angles += [speed_knots(mechanism) + turn * TURN for turn in range(cycle_turns(mechanism))]
+    return np.unique(np.mod(np.concatenate(angles), cycle_turns(mechanism) * TURN))
 
 
 def multi_cylinder_cycle(mechanism: Mechanism, linkage: Linkage) -> MultiCylinderCycle:
@@ -115,25 +115,25 @@ def multi_cylinder_cycle(mechanism: Mechanism, linkage: Linkage) -> MultiCylinde
     pieces = np.linspace(cuts[0], cuts[0] + period, 1 + _PIECES * cycle_turns(mechanism))
     ends = np.unique(np.concatenate([cuts, pieces]))
     sizes = _sizes(mechanism, linkage)
-    found = panels_of(
+    panels = panels_of(
         lambda theta: _curve_rows(mechanism, multi_cylinder_curves(mechanism, linkage, theta)), ends, sizes
     )
-    least, greatest = (_unless_cancelled(extreme, sizes[_TORQUE], period) for extreme in found.extremes(_TORQUE))
-    moment = peak_of(found.extremes(_MOMENT), period)
-    mean, time = found.mean(_TORQUE), None if mechanism.speed_profile is None else _TIME
+    least, greatest = (_unless_cancelled(extreme, sizes[_TORQUE], period) for extreme in panels.extremes(_TORQUE))
+    moment = peak_of(panels.extremes(_MOMENT), period)
+    mean, time = panels.mean(_TORQUE), None if mechanism.speed_profile is None else _TIME
     return MultiCylinderCycle(
         least=least,
         greatest=greatest,
         peak=peak_of((least, greatest), period),
         mean=0.0 if abs(mean) <= _NOTHING * sizes[_TORQUE] else mean,
-        rms=math.sqrt(found.mean_square(_TORQUE, time=time)),
-        fluctuation=math.sqrt(found.mean_square(_TORQUE, less=mean)),
-        energy_change=found.swing(_TORQUE),
-        shaking_force=_force_extreme(found, _FORCE, sizes, period),
-        rms_shaking_force=math.sqrt(max(0.0, found.mean(_FORCE, time))),
+        rms=math.sqrt(panels.mean_square(_TORQUE, time=time)),
+        fluctuation=math.sqrt(panels.mean_square(_TORQUE, subtract=mean)),
+        energy_change=panels.swing(_TORQUE),
+        shaking_force=_force_extreme(panels, _FORCE, sizes, period),
+        rms_shaking_force=math.sqrt(max(0.0, panels.mean(_FORCE, time))),
         shaking_moment=_unless_cancelled(Extreme(abs(moment.value), moment.angle), sizes[_MOMENT], period),
-        rms_shaking_moment=math.sqrt(found.mean_square(_MOMENT, time=time)),
-        couple=_force_extreme(found, _COUPLE, sizes, period),
+        rms_shaking_moment=math.sqrt(panels.mean_square(_MOMENT, time=time)),
+        couple=_force_extreme(panels, _COUPLE, sizes, period),
     )
 
 
@@ -151,10 +151,10 @@ def _sizes(mechanism: Mechanism, linkage: Linkage) -> Array:
     profile, sizes = mechanism.speed_profile, np.zeros(7)
     sizes[_TIME] = 1.0 if profile is None else time_per_angle(profile, theta).max()
     for member in members(mechanism):
-        alone = replace(mechanism, arrangement=Arrangement(phases=(member.lead,)), gravity=member.mechanism.gravity)
-        own = multi_cylinder_curves(alone, linkage, theta)
-        force, torque = np.hypot(own.force_x, own.force_y).max(), np.abs(own.torque).max()
-        sizes += np.array([torque, force, force, force, np.abs(own.moment).max(), force * abs(member.place), 0.0])
+        single = replace(mechanism, arrangement=Arrangement(phases=(member.lead,)), gravity=member.mechanism.gravity)
+        curves = multi_cylinder_curves(single, linkage, theta)
+        force, torque = np.hypot(curves.force_x, curves.force_y).max(), np.abs(curves.torque).max()
+        sizes += np.array([torque, force, force, force, np.abs(curves.moment).max(), force * abs(member.place), 0.0])
     sizes[[_FORCE, _COUPLE]] **= 2
     return sizes
 
@@ -166,9 +166,9 @@ def _unless_cancelled(extreme: Extreme, size: float, period: float) -> Extreme:
     return Extreme(extreme.value, angle_in_cycle(extreme.angle, period))
 
 
-def _force_extreme(found: Panels, curve: int, sizes: Array, period: float) -> Extreme:
+def _force_extreme(panels: Panels, curve: int, sizes: Array, period: float) -> Extreme:
     """Return the greatest size of a force whose square is followed."""
-    greatest = found.extremes(curve)[1]
+    greatest = panels.extremes(curve)[1]
     return _unless_cancelled(
         Extreme(math.sqrt(max(0.0, greatest.value)), greatest.angle), math.sqrt(sizes[curve]), period
     )

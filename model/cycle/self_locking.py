@@ -72,22 +72,22 @@ def varied_margin(mechanism: Mechanism, designs: Array, *, gradients: bool = Fal
     guide, circles = friction.guide, friction.crank_pin.circle + friction.slider_pin.circle
     if not mechanism.varying:
         return _margin(designs, guide, circles, gradients)[:2]
-    given = (
+    slots = (
         (Raw.GUIDE_FRICTION, guide),
         (Raw.CRANK_PIN_RADIUS, friction.crank_pin.radius),
         (Raw.CRANK_PIN_FRICTION, friction.crank_pin.coefficient),
         (Raw.SLIDER_PIN_RADIUS, friction.slider_pin.radius),
         (Raw.SLIDER_PIN_FRICTION, friction.slider_pin.coefficient),
     )
-    (mu, mu_slope), *pins = (number_of(mechanism, slot, designs, otherwise=value) for slot, value in given)
+    (mu, mu_slope), *pins = (number_of(mechanism, slot, designs, otherwise=value) for slot, value in slots)
     (a, a_slope), (b, b_slope), (c, c_slope), (d, d_slope) = pins
     sums = a * b + c * d
     slopes = a[:, None] * b_slope + b[:, None] * a_slope + c[:, None] * d_slope + d[:, None] * c_slope
-    values, found, rates = _margin(designs[:, :3], mu, sums, gradients)
-    if found is None or rates is None:
+    values, gradient, rates = _margin(designs[:, :3], mu, sums, gradients)
+    if gradient is None or rates is None:
         return values, None
-    found = np.pad(found, ((0, 0), (0, len(mechanism.varying))))
-    return values, found + rates[:, :1] * mu_slope + rates[:, 1:] * slopes
+    gradient = np.pad(gradient, ((0, 0), (0, len(mechanism.varying))))
+    return values, gradient + rates[:, :1] * mu_slope + rates[:, 1:] * slopes
 
 
 def _margin(designs: Array, guide: Any, circles: Any, gradients: bool) -> tuple[Array, Array | None, Array | None]:
@@ -119,5 +119,5 @@ def _margin(designs: Array, guide: Any, circles: Any, gradients: bool) -> tuple[
         ],
         axis=1,
     )
-    known = turns[:, None]
-    return values, np.where(known, slopes / STEP, 0.0), np.where(known, rates / STEP, 0.0)
+    is_finite = turns[:, None]
+    return values, np.where(is_finite, slopes / STEP, 0.0), np.where(is_finite, rates / STEP, 0.0)

@@ -56,9 +56,9 @@ def shaking_curves(
     derive(raw, structure.kind, structure.datum, block)
     d = design_at(block, 0)
     if mechanism.speed_profile is not None:
-        own = crank_speed(mechanism, theta)
-        speed = own[0] if speed is None else speed
-        acceleration = own[1] if acceleration is None else acceleration
+        profile_motion = crank_speed(mechanism, theta)
+        speed = profile_motion[0] if speed is None else speed
+        acceleration = profile_motion[1] if acceleration is None else acceleration
     d = d if speed is None else d._replace(speed=speed)
     d = d if acceleration is None else d._replace(acceleration=acceleration)
     sine, cosine = np.sin(theta), np.cos(theta)

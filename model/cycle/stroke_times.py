@@ -48,43 +48,50 @@ def scaled_stroke_times(
     """
     profile = mechanism.speed_profile
     if profile is None:
-        between: Any = math.pi + mechanism.sign * geometry.excess_angle(crank, rod, offset)
+        inward_span: Any = math.pi + mechanism.sign * geometry.excess_angle(crank, rod, offset)
         turn = 2.0 * math.pi
     else:
         outer, inner = geometry.outer_crank_angle(crank, rod, offset), geometry.inner_crank_angle(crank, rod, offset)
         if mechanism.branch == "crossed":
             outer, inner = math.pi - outer, 3.0 * math.pi - inner
         lead = cylinders_of(mechanism)[cylinder].lead
-        between = _elapsed_time(profile, inner - lead) - _elapsed_time(profile, outer - lead)
+        inward_span = _elapsed_time(profile, inner - lead) - _elapsed_time(profile, outer - lead)
         turn = profile.elapsed_time.whole_turn
-    outward, inward = (turn - between, between) if mechanism.direction > 0.0 else (between, turn - between)
+    outward, inward = (
+        (turn - inward_span, inward_span) if mechanism.direction > 0.0 else (inward_span, turn - inward_span)
+    )
     return ScaledStrokeTimes(outward, inward)
 
 
 def massless_machine(mechanism: Mechanism) -> Mechanism:
     """Return a machine without masses and loads that has the same stroke times."""
-    given = mechanism.nominal
-    if given.speed_profile is None:
-        return Mechanism(speed=given.speed, branch=given.branch)
-    own = given.arrangement
-    return Mechanism(speed=given.speed, branch=given.branch, speed_profile=given.speed_profile, arrangement=own)
+    nominal = mechanism.nominal
+    if nominal.speed_profile is None:
+        return Mechanism(speed=nominal.speed, branch=nominal.branch)
+    arrangement = nominal.arrangement
+    return Mechanism(
+        speed=nominal.speed, branch=nominal.branch, speed_profile=nominal.speed_profile, arrangement=arrangement
+    )
 
 
 def _elapsed_time(profile: Profile, crank_angle: Any) -> Any:
     angle = np.asarray(np.real(crank_angle), dtype=np.float64)
-    found = profile.elapsed_time.up_to(angle)
+    elapsed = profile.elapsed_time.up_to(angle)
     if np.iscomplexobj(crank_angle):
-        return found + 1j * np.imag(crank_angle) / profile.ratio(angle)
-    return found
+        return elapsed + 1j * np.imag(crank_angle) / profile.ratio(angle)
+    return elapsed
 
 
 def time_ratio(mechanism: Mechanism, linkage: Linkage) -> Array:
-    """Return the time of the slower stroke divided by that of the faster one, for the first cylinder; 1 or more."""
+    """Return the time of the slower stroke over that of the faster one, 1 or more.
+
+    With several cylinders it is that of the first one.
+    """
     if mechanism.speed_profile is None:
         return linkage.time_ratio
     linkage.require_full_rotation()
-    found = scaled_stroke_times(mechanism, linkage.crank, linkage.rod, linkage.offset).ratio
-    return np.asarray(np.maximum(found, 1.0 / found))[()]
+    ratio = scaled_stroke_times(mechanism, linkage.crank, linkage.rod, linkage.offset).ratio
+    return np.asarray(np.maximum(ratio, 1.0 / ratio))[()]
 
 
 def slow_stroke(mechanism: Mechanism, linkage: Linkage) -> NDArray[np.str_]:
@@ -92,10 +99,10 @@ def slow_stroke(mechanism: Mechanism, linkage: Linkage) -> NDArray[np.str_]:
     if mechanism.speed_profile is None:
         return linkage.slow_stroke(direction=mechanism.direction)
     linkage.require_full_rotation()
-    found = []
+    slower = []
     for cylinder in range(len(cylinders_of(mechanism))):
-        own = scaled_stroke_times(mechanism, linkage.crank, linkage.rod, linkage.offset, cylinder=cylinder)
-        more = np.asarray((own.outward - own.inward) / (own.outward + own.inward))
-        found.append(np.where(more > _EQUAL, "outward", np.where(more < -_EQUAL, "inward", "equal")))
-    same = np.all([one == found[0] for one in found], axis=0)
-    return np.asarray(np.where(same, found[0], DIFFERS))[()]
+        times = scaled_stroke_times(mechanism, linkage.crank, linkage.rod, linkage.offset, cylinder=cylinder)
+        difference = np.asarray((times.outward - times.inward) / (times.outward + times.inward))
+        slower.append(np.where(difference > _EQUAL, "outward", np.where(difference < -_EQUAL, "inward", "equal")))
+    same = np.all([stroke == slower[0] for stroke in slower], axis=0)
+    return np.asarray(np.where(same, slower[0], DIFFERS))[()]

@@ -29,30 +29,30 @@ class Breakpoints(NamedTuple):
 
 
 @kernel
-def _cut(blocks: Cube, loads: Loads, watch: CycleWindow, found: Breakpoints, rubbing: bool) -> None:
+def _cut(blocks: Cube, loads: Loads, watch: CycleWindow, breakpoints: Breakpoints, rubbing: bool) -> None:
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     for n in range(blocks.shape[0]):
         block = blocks[n]
         d = design_at(block, 0)
-        found.many[n] = 0
+        breakpoints.many[n] = 0
         if rubbing and not always_drives(d) > 0.0:
             continue
-        cuts = Cuts(found.angle[n], found.code[n], found.number[n], found.load[n])
+        cuts = Cuts(breakpoints.angle[n], breakpoints.code[n], breakpoints.number[n], breakpoints.load[n])
         count = cut_cycle(d, block, 0, loads, watch, cuts)
         if rubbing:
             count = cut_contacts(d, block, 0, loads, watch, cuts, count, piece, shift)
-        found.many[n] = count
+        breakpoints.many[n] = count
 
 
 def breakpoints_of(blocks: Array, loads: Loads, watch: CycleWindow, *, rubbing: bool) -> Breakpoints:
     """Return the breakpoints of designs by their blocks (n, rows, 1), each turning fully."""
     shape = len(blocks), room_for(loads)
-    found = Breakpoints(
+    breakpoints = Breakpoints(
         np.empty(shape),
         np.empty(shape, np.int64),
         np.empty(shape),
         np.empty(shape, np.int64),
         np.empty(len(blocks), np.int64),
     )
-    _cut(blocks, loads, watch, found, rubbing)
-    return found
+    _cut(blocks, loads, watch, breakpoints, rubbing)
+    return breakpoints

@@ -49,23 +49,23 @@ def _touch(
 
 
 @analytic
-def _senses(inside: Any, d: Any) -> Any:
+def _senses(probe: Any, d: Any) -> Any:
     """Senses in which the crank turns, the rod, and the crank against the rod, 1 or -1."""
     turn = 1.0 if d.speed >= 0.0 else -1.0
-    m = motion(math.sin(inside), math.cos(inside), d.r, d.l, d.e, d.branch)
+    m = motion(math.sin(probe), math.cos(probe), d.r, d.l, d.e, d.branch)
     return turn, 1.0 if m.rod_1 * turn > 0.0 else -1.0, turn if m.rod_1 < 1.0 else -turn
 
 
 @analytic
 def sides_of(
-    inside: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any, rubbing: Any
+    probe: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any, rubbing: Any
 ) -> Any:
-    """Return the `Sides` of the segment, entered before, around the crank angle `inside`."""
+    """Return the `Sides` of the segment, entered before, around the crank angle `probe`."""
     if not rubbing:
         return Sides(0.0, 0.0, 0.0, 0.0, 0.0)
-    turn, swing, grip = _senses(inside, d)
+    turn, swing, grip = _senses(probe, d)
     slide = d.branch.real * (1.0 if outward else -1.0)
-    guide = _touch(inside, d, block, j, outward, loads, piece, shift, grip, swing)
+    guide = _touch(probe, d, block, j, outward, loads, piece, shift, grip, swing)
     return Sides(turn, slide, swing, -1.0 if guide > 0.0 else 1.0, grip)
 
 
@@ -87,9 +87,9 @@ def cut_contacts(
         b = cuts.angle[ahead + s + 1] if s + 1 < count else first + _TURN
         if b - a < 1e-12:
             continue
-        inside = angle_within(a, b)
-        _, outward = enter(d, block, j, inside, loads, watch, piece, shift)
-        _, swing, grip = _senses(inside, d)
+        probe = angle_within(a, b)
+        _, outward = enter(d, block, j, probe, loads, watch, piece, shift)
+        _, swing, grip = _senses(probe, d)
         low, high = crowded(a, kappa), crowded(b, kappa)
         points = max(3, int(_SAMPLES * (high - low) / _TURN) + 1)
         left, before, right, after = a, 0.0, a, 0.0

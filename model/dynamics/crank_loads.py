@@ -46,10 +46,10 @@ def beside_crank_loads(
 @analytic
 def on_crank(loads: Any) -> bool:
     """Return whether there are loads on the crank."""
-    found = False
+    is_loaded = False
     for k in range(loads.kind.shape[0]):
-        found = found or loads.factor[k, 2] != 0.0
-    return found
+        is_loaded = is_loaded or loads.factor[k, 2] != 0.0
+    return is_loaded
 
 
 @analytic

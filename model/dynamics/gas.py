@@ -42,7 +42,10 @@ def compressed_at(stroke: Any, h: Any, ratio: Any, exponent: Any) -> Any:
 
 @analytic
 def events_of(d: Any, block: Any, j: int, k: int, kind: int) -> Any:
-    """Return z_e and z_c of the cylinder that is load k of a derived block; where gas burns, z_b and none."""
+    """Return z_e and z_c of the cylinder that is load k of a derived block.
+
+    Where gas burns, the first is z_b, and there is no second.
+    """
     q = DESIGN + LOAD_ROWS * k + AREA
     if kind == _BURNING_CYLINDER:
         return block[q + 7, j], -block[q + 1, j]  # at z = -h, which the piston never comes to

@@ -24,8 +24,8 @@ from ..machine.design import Design
 @analytic
 def reflected_inertia(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
     """Return the inertia that the whole linkage presents at the crank, kg m^2."""
-    sx = d.rod_along * m.along - d.rod_across * m.across
-    sy = d.rod_along * m.across + d.rod_across * m.along
+    sx = d.rod_along * m.l_cos - d.rod_across * m.l_sin
+    sy = d.rod_along * m.l_sin + d.rod_across * m.l_cos
     rod = d.rod_mass * d.r * d.r + 2.0 * m.rod_1 * d.r * (cosine * sx + sine * sy) + m.rod_1 * m.rod_1 * d.rod_inertia
     return d.crank_inertia + rod + d.moving_mass * m.x_1 * m.x_1
 
@@ -41,8 +41,8 @@ def shaking(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
     rod_w2 = m.rod_1 * m.rod_1 * w2
     rod_a = m.rod_2 * w2 + m.rod_1 * alpha
     pin_x, pin_y = -d.r * (cosine * w2 + sine * alpha), -d.r * (sine * w2 - cosine * alpha)
-    sx = d.rod_along * m.along - d.rod_across * m.across
-    sy = d.rod_along * m.across + d.rod_across * m.along
+    sx = d.rod_along * m.l_cos - d.rod_across * m.l_sin
+    sy = d.rod_along * m.l_sin + d.rod_across * m.l_cos
     cx = d.crank_along * cosine - d.crank_across * sine
     cy = d.crank_along * sine + d.crank_across * cosine
     rod_x = d.rod_mass * pin_x - sx * rod_w2 - sy * rod_a

@@ -53,17 +53,17 @@ class Sides(NamedTuple):
 
 
 @analytic
-def drives(along: Any, across: Any, d: Design) -> Any:
+def drives(l_cos: Any, l_sin: Any, d: Design) -> Any:
     """Return by how much condition (*) is met, m: more than zero where the forces are determined, whatever the load."""
     mu = d.guide_friction
-    return abs(along) - mu * abs(across) - root(1.0 + mu * mu) * (d.crank_pin_circle + d.slider_pin_circle)
+    return abs(l_cos) - mu * abs(l_sin) - root(1.0 + mu * mu) * (d.crank_pin_circle + d.slider_pin_circle)
 
 
 @analytic
 def always_drives(d: Design) -> Any:
     """Return `drives` where it is least over the cycle: sin(theta) = -sgn(e)."""
-    reach = d.r + abs(d.e)
-    return drives(root(d.l * d.l - reach * reach), reach, d)
+    pin_distance = d.r + abs(d.e)
+    return drives(root(d.l * d.l - pin_distance * pin_distance), pin_distance, d)
 
 
 @analytic
@@ -74,7 +74,7 @@ def touch(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, grip: Any, sw
     ax, ay = b.pull + b.rod_x, y + b.rod_y
     pins = d.slider_pin_circle * swing * root(b.pull * b.pull + y * y)
     pins = pins - d.crank_pin_circle * grip * root(ax * ax + ay * ay)
-    return d.branch.real * (m.along * y - m.across * b.pull + b.moment + pins)
+    return d.branch.real * (m.l_cos * y - m.l_sin * b.pull + b.moment + pins)
 
 
 @analytic
@@ -94,11 +94,11 @@ def rubbing_forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, s: S
     b = balance(sine, cosine, m, d, load)
     weight = d.slider_mass * d.gravity_y
     mu = d.guide_friction * (s.slide * s.press)
-    slope = m.along - m.across * mu
+    slope = m.l_cos - m.l_sin * mu
     pull = b.pull + mu * weight
-    rest = b.moment - m.across * pull
+    rest = b.moment - m.l_sin * pull
     p, q = -d.crank_pin_circle * s.grip, d.slider_pin_circle * s.swing
-    least = drives(m.along.real, m.across.real, d)
+    least = drives(m.l_cos.real, m.l_sin.real, d)
     y = math.nan
     if least.real > 0.0:
         steep, still = slope.real, rest.real

@@ -93,7 +93,10 @@ def add_cut(cuts: Cuts, n: int, angle: float, code: int, number: float, load: in
 
 @analytic
 def _cut_valves(d: Design, block: Any, j: int, k: int, kind: int, margin: float, cuts: Cuts, n: int) -> int:
-    """Add valve events or end of burning of a cylinder to the first `n` cuts, each in its stroke; at rest in both."""
+    """Add the valve events of a cylinder, or the end of burning, to the first `n` cuts.
+
+    Each is added in its own stroke; if the crank is at rest, in both.
+    """
     sign, origin = block[DESIGN + LOAD_ROWS * k, j], block[DESIGN + LOAD_ROWS * k + 1, j]
     expanded, compressed = events_of(d, block, j, k, kind)
     first = _BURNT if kind == _BURNING_CYLINDER else _EXPANDED
@@ -228,13 +231,13 @@ def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Lo
 
 @analytic
 def enter(
-    d: Design, block: Any, j: int, inside: float, loads: Loads, watch: CycleWindow, piece: Any, shift: Any
+    d: Design, block: Any, j: int, probe: float, loads: Loads, watch: CycleWindow, piece: Any, shift: Any
 ) -> tuple[bool, bool]:
-    """Fix the table pieces of the segment that the crank angle `inside` lies in; return (counts, outward).
+    """Fix the table pieces of the segment that the crank angle `probe` lies in; return (counts, outward).
 
     Within rounding of a dead centre, where the sign of x' is luck, the stroke is the inward one.
     """
-    m = motion(math.sin(inside), math.cos(inside), d.r, d.l, d.e, d.branch)
+    m = motion(math.sin(probe), math.cos(probe), d.r, d.l, d.e, d.branch)
     x = d.branch * m.x
     outward = d.branch * m.x_1 * (1.0 if d.speed >= 0.0 else -1.0) > _STILL * d.r
     fraction = (x - d.inner) / (d.outer - d.inner)
@@ -242,7 +245,7 @@ def enter(
     # Only at ends that are cuts: a dead centre in the middle lies a rounding error outside 0 to 1.
     if (watch.start > 0.0 and fraction < watch.start) or (watch.end < 1.0 and fraction > watch.end):
         counts = False
-    find_pieces(d, block, j, inside, x, loads, piece, shift)
+    find_pieces(d, block, j, probe, x, loads, piece, shift)
     return counts, outward
 
 

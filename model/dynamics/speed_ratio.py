@@ -32,13 +32,13 @@ class SpeedRatio(NamedTuple):
 @memoise_by_machine
 def speed_ratio_of(mechanism: Mechanism) -> SpeedRatio:
     """Return the profile of a machine; without one it is 1 throughout."""
-    profile, none = mechanism.speed_profile, np.zeros(0)
+    profile, empty = mechanism.speed_profile, np.zeros(0)
     if profile is None:
-        return SpeedRatio(none, none, none, np.zeros((4, 0)))
+        return SpeedRatio(empty, empty, empty, np.zeros((4, 0)))
     if isinstance(profile, Harmonics):
         pairs = np.array(profile.pairs).reshape(-1, 2)
-        return SpeedRatio(np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1]), none, np.zeros((4, 0)))
-    return SpeedRatio(none, none, *profile.pieces)
+        return SpeedRatio(np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1]), empty, np.zeros((4, 0)))
+    return SpeedRatio(empty, empty, *profile.pieces)
 
 
 @analytic

@@ -68,8 +68,8 @@ def balance(sine: Any, cosine: Any, m: Motion, d: Design, load: Any) -> Balance:
     rod_a = m.rod_2 * w2 + m.rod_1 * d.acceleration
     pin_x = -d.r * (cosine * w2 + sine * d.acceleration) - gx
     pin_y = -d.r * (sine * w2 - cosine * d.acceleration) - gy
-    sx = d.rod_along * m.along - d.rod_across * m.across
-    sy = d.rod_along * m.across + d.rod_across * m.along
+    sx = d.rod_along * m.l_cos - d.rod_across * m.l_sin
+    sy = d.rod_along * m.l_sin + d.rod_across * m.l_cos
     cx = d.crank_along * cosine - d.crank_across * sine
     cy = d.crank_along * sine + d.crank_across * cosine
     return Balance(
@@ -84,9 +84,9 @@ def balance(sine: Any, cosine: Any, m: Motion, d: Design, load: Any) -> Balance:
 
 
 @analytic
-def with_couple(b: Balance, more: Any) -> Balance:
+def with_couple(b: Balance, couple: Any) -> Balance:
     """Return a balance with a couple added on the crank, N m."""
-    return Balance(b.pull, b.moment, b.rod_x, b.rod_y, b.crank_x, b.crank_y, b.couple + more)
+    return Balance(b.pull, b.moment, b.rod_x, b.rod_y, b.crank_x, b.crank_y, b.couple + couple)
 
 
 @analytic
@@ -102,5 +102,5 @@ def joined(sine: Any, cosine: Any, d: Design, b: Balance, bx: Any, by: Any) -> F
 def forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any) -> Forces:
     """Return drive torque and reactions without friction for a load on the slider (N, outward)."""
     b = balance(sine, cosine, m, d, load)
-    by = m.tangent * b.pull - b.moment * m.per_along
+    by = m.tangent * b.pull - b.moment * m.per_l_cos
     return joined(sine, cosine, d, b, b.pull, by)

@@ -77,12 +77,14 @@ def in_chunks(count: int, work: Callable[[int, int], Any], *, size: int = 512, k
     bounds = range(0, count, size)
     with _handing_out:
         # Each in a context of its own: it knows what may end the wait for a kernel.
-        done = [threads().submit(copy_context().run, in_parts, begin, min(begin + size, count)) for begin in bounds]
+        submitted = [
+            threads().submit(copy_context().run, in_parts, begin, min(begin + size, count)) for begin in bounds
+        ]
     try:
-        for chunk in done:
+        for chunk in submitted:
             chunk.result()
     except Exception:
-        for chunk in done:
+        for chunk in submitted:
             chunk.cancel()
-        wait(done)  # what ended one ends those under way
+        wait(submitted)  # what ended one ends those under way
         raise

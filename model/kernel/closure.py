@@ -24,29 +24,29 @@ _PLAIN = (int, float, complex, str, bytes, bool, type(None), type(Ellipsis))
 
 def digest(function: Callable[..., Any], examples: tuple[Any, ...]) -> str:
     """Return the digest of a kernel for arguments like the examples."""
-    found = hashlib.sha256(_surroundings())
-    found.update(_fingerprint(examples).encode())
+    hashed = hashlib.sha256(_surroundings())
+    hashed.update(_fingerprint(examples).encode())
     for _, text in _reached(function):
-        found.update(text)
-    return found.hexdigest()[:24]
+        hashed.update(text)
+    return hashed.hexdigest()[:24]
 
 
 def codes(function: Callable[..., Any]) -> dict[int, int]:
     """Return the length of the code of a kernel and of each of its formulas, by identity."""
-    return {id(each): len(each.__code__.co_code) for each, _ in _reached(function)}
+    return {id(formula): len(formula.__code__.co_code) for formula, _ in _reached(function)}
 
 
 def _reached(function: Callable[..., Any]) -> Iterator[tuple[Any, bytes]]:
     """Yield a function and all that it calls, each with what it is by itself."""
-    seen: set[int] = set()
+    visited: set[int] = set()
     waiting: list[Any] = [function]
     while waiting:
         value = waiting.pop()
-        if id(value) not in seen:
-            seen.add(id(value))
-            text, more = _parts(value)
+        if id(value) not in visited:
+            visited.add(id(value))
+            text, calls = _parts(value)
             yield value, text
-            waiting.extend(more)
+            waiting.extend(calls)
 
 
 @cache
@@ -56,9 +56,9 @@ def _surroundings() -> bytes:
 
     settings = sorted(item for item in os.environ.items() if item[0].startswith("NUMBA_") and item[0] not in _ASIDE)
     host = llvm.get_process_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
-    own = Path(__file__).with_name("compiler.py").read_bytes()
+    compiler_source = Path(__file__).with_name("compiler.py").read_bytes()
     return repr(
-        (host, sys.version_info[:2], np.__version__, version("numba"), version("llvmlite"), settings, own)
+        (host, sys.version_info[:2], np.__version__, version("numba"), version("llvmlite"), settings, compiler_source)
     ).encode()
 
 

@@ -15,7 +15,7 @@ from threading import Thread
 from typing import NamedTuple
 
 from .closure import codes
-from .disk import INTO, MODEL, Wanted, building, compile_beside, keep, locked, read_any, wanted_files
+from .disk import INTO, MODEL, KernelSource, building, compile_beside, keep, locked, read_any, wanted_files
 from .folder import kernel_folder
 from .kernel import KERNELS, Kernel
 
@@ -24,7 +24,7 @@ _MOSTLY = 0.7
 
 
 class _Task(NamedTuple):
-    wanted: Wanted
+    source: KernelSource
     file: Path
     codes: dict[int, int]
     seldom: bool
@@ -35,9 +35,9 @@ class _Task(NamedTuple):
     def cheap_after(self, compiled: Iterable[int]) -> bool:
         return sum(self.codes.get(formula, 0) for formula in compiled) >= _MOSTLY * self.size()
 
-    def follows(self, other: _Task) -> bool:
+    def follows(self, larger: _Task) -> bool:
         """Whether it is left to who compiles the other one, which is larger."""
-        return self.size() < other.size() and self.cheap_after(other.codes)
+        return self.size() < larger.size() and self.cheap_after(larger.codes)
 
     def urgency(self, tasks: list[_Task]) -> tuple[bool, int]:
         """Return the less, the sooner it should be begun: long tasks first, with their followers, then small ones."""
@@ -54,17 +54,17 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
     where nothing can be kept.
     """
     names = wanted_files(folder)
-    found = _tasks(folder, packages, modules)
-    everything = [task for task in found if not task.seldom or task.file.name in names]
-    tasks, asked = [*everything], {task.file.name for task in everything}
+    tasks_found = _tasks(folder, packages, modules)
+    everything = [task for task in tasks_found if not task.seldom or task.file.name in names]
+    tasks, awaited = [*everything], {task.file.name for task in everything}
     compiled: set[int] = set()
     complete = False
     while True:
         names = wanted_files(folder)
-        known = {task.file.name for task in everything}
-        if not complete and (not tasks or not known.issuperset(names)):
-            found = _tasks(folder, packages, [name for package in packages.split() for name in _modules(package)])
-            new = [task for task in found if task.file.name not in known]
+        listed = {task.file.name for task in everything}
+        if not complete and (not tasks or not listed.issuperset(names)):
+            tasks_found = _tasks(folder, packages, [name for package in packages.split() for name in _modules(package)])
+            new = [task for task in tasks_found if task.file.name not in listed]
             tasks, everything, complete = [*tasks, *new], [*everything, *new], True
         if not tasks:
             return
@@ -74,19 +74,19 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
                 task.file.name not in names,
                 task.seldom,
                 not task.cheap_after(compiled),
-                any(task.follows(other) for other in everything),
+                any(task.follows(larger) for larger in everything),
                 task.urgency(everything),
             ),
         )
         tasks.remove(task)
         with locked(task.file.with_suffix(".lock")) as lock:
             if lock is not None and read_any(task.file.name, folder) is None:
-                told = [each for each in everything if each.file.name in asked.union(names)]
-                if task in told:  # what is compiled for later is nobody's wait
-                    number, name = sum(each.file.exists() for each in told), task.wanted.name.rpartition(".")[2]
+                reported = [job for job in everything if job.file.name in awaited.union(names)]
+                if task in reported:  # what is compiled for later is nobody's wait
+                    number, name = sum(job.file.exists() for job in reported), task.source.name.rpartition(".")[2]
                     with contextlib.suppress(OSError):
-                        building(folder, packages).write_text(f"{number} of {len(told)} done, now {name}")
-                if not keep(task.file, task.wanted.compile()):
+                        building(folder, packages).write_text(f"{number} of {len(reported)} done, now {name}")
+                if not keep(task.file, task.source.compile()):
                     return
                 compiled.update(task.codes)
 
@@ -101,20 +101,20 @@ def end_with(parent: int) -> None:
 def _modules(package: str) -> list[str]:
     """Return the names of a package and of all that is in it."""
     parts = getattr(import_module(package), "__path__", [])
-    return [package, *(found.name for found in pkgutil.walk_packages(parts, f"{package}."))]
+    return [package, *(module.name for module in pkgutil.walk_packages(parts, f"{package}."))]
 
 
 def _tasks(folder: Path, packages: str, modules: Iterable[str]) -> list[_Task]:
     """Return the kernels of packages that modules have, or import."""
     for name in modules:
         import_module(name)
-    here = tuple(packages.split())
-    return [_task(each, folder) for each in KERNELS if each.function.__module__.startswith(here)]
+    prefixes = tuple(packages.split())
+    return [_task(kernel, folder) for kernel in KERNELS if kernel.function.__module__.startswith(prefixes)]
 
 
-def _task(of: Kernel, folder: Path) -> _Task:
-    wanted = of.wanted()
-    return _Task(wanted, wanted.file(folder), codes(wanted.function), of.seldom)
+def _task(kernel: Kernel, folder: Path) -> _Task:
+    source = kernel.source()
+    return _Task(source, source.file(folder), codes(source.function), kernel.seldom)
 
 
 if __name__ == "__main__":

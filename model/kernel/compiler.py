@@ -41,7 +41,7 @@ class _FormulaCompiler(CompilerBase):
     def define_pipelines(self) -> list[PassManager]:
         """Return the passes."""
         manager: PassManager = cast(Any, DefaultPassBuilder).define_nopython_pipeline(self.state)
-        manager.passes = [each for each in manager.passes if each[0] not in _NEEDLESS]
+        manager.passes = [entry for entry in manager.passes if entry[0] not in _NEEDLESS]
         cast(Any, manager).finalize()
         return [manager]
 
@@ -52,15 +52,15 @@ _KERNEL: Any = _OPTIONS | {"nogil": True}
 
 _TRIED = "0.68."  # of numba: `_linked` and `_resolved_once` reach into it
 
-_known: dict[Callable[..., Any], None] = {}
+_registered: dict[Callable[..., Any], None] = {}
 _resolved: dict[Any, Any] = {}
 
 
 def know_formulas() -> None:
     """Tell numba of all formulas marked so far."""
-    for formula in FORMULAS[len(_known) :]:
+    for formula in FORMULAS[len(_registered) :]:
         register_jitable(**_FORMULA)(formula)
-        _known[formula] = None
+        _registered[formula] = None
 
 
 @contextmanager
@@ -71,15 +71,15 @@ def _resolved_once() -> Iterator[None]:
     one with a number instead of a variable.
     """
     contexts = cast(Any, BaseContext)
-    whole, own = contexts.resolve_function_type, get_ident()
+    original, thread = contexts.resolve_function_type, get_ident()
 
     def resolve(context: Any, function: Any, arguments: Any, keywords: Any) -> Any:
-        if get_ident() != own or keywords or not isinstance(function, types.Function):
-            return whole(context, function, arguments, keywords)
-        formula = function.typing_key in _known
+        if get_ident() != thread or keywords or not isinstance(function, types.Function):
+            return original(context, function, arguments, keywords)
+        formula = function.typing_key in _registered
         call = function, tuple(map(types.unliteral, arguments)) if formula else tuple(arguments)
         if call not in _resolved:
-            _resolved[call] = whole(context, *call, keywords)
+            _resolved[call] = original(context, *call, keywords)
         return _resolved[call]
 
     if numba.__version__.startswith(_TRIED):
@@ -87,7 +87,7 @@ def _resolved_once() -> Iterator[None]:
     try:
         yield
     finally:
-        contexts.resolve_function_type = whole
+        contexts.resolve_function_type = original
 
 
 @contextmanager
@@ -98,14 +98,14 @@ def _linked(kernel: str) -> Iterator[None]:
     the kernel of the peaks would be half as fast.
     """
     libraries, engine = cast(Any, JITCodeLibrary), cast(Any, JITCPUCodegen)
-    whole, set_env, own = libraries.finalize, engine.set_env, get_ident()
+    finalize_original, set_env, thread = libraries.finalize, engine.set_env, get_ident()
 
     def finalize(library: Any) -> None:
-        if library.name == kernel or get_ident() != own:
-            whole(library)
+        if library.name == kernel or get_ident() != thread:
+            finalize_original(library)
             return
-        for other in dict.fromkeys(library._linking_libraries):
-            library._final_module.link_in(other._get_module_for_linking(), preserve=True)
+        for linked in dict.fromkeys(library._linking_libraries):
+            library._final_module.link_in(linked._get_module_for_linking(), preserve=True)
         manager, builder = library._codegen._module_pass_manager(
             loop_vectorize=False, slp_vectorize=False, opt=1, cost="cheap"
         )
@@ -115,11 +115,11 @@ def _linked(kernel: str) -> Iterator[None]:
     if numba.__version__.startswith(_TRIED):
         libraries.finalize = finalize
         # No formula is at an address in this process.
-        engine.set_env = lambda *given: None if get_ident() == own else set_env(*given)
+        engine.set_env = lambda *given: None if get_ident() == thread else set_env(*given)
     try:
         yield
     finally:
-        libraries.finalize, engine.set_env = whole, set_env
+        libraries.finalize, engine.set_env = finalize_original, set_env
 
 
 class _NoArrays(event.Listener):
@@ -127,10 +127,10 @@ class _NoArrays(event.Listener):
 
     def on_start(self, event: Any) -> None:
         """Look at what a function returns, before it is compiled."""
-        given = event.data
-        own = given["name"].startswith("native_lowering") and not given["module"].startswith("numba")
-        if own and "array(" in given["return_type"]:
-            raise TypeError(f"a formula must return no array; got one of {given['qualname']}; let the kernel make it")
+        data = event.data
+        is_own_formula = data["name"].startswith("native_lowering") and not data["module"].startswith("numba")
+        if is_own_formula and "array(" in data["return_type"]:
+            raise TypeError(f"a formula must return no array; got one of {data['qualname']}; let the kernel make it")
 
     def on_end(self, event: Any) -> None:
         """Do nothing."""
@@ -148,7 +148,11 @@ def compile_kernel(function: Callable[..., Any], examples: tuple[Any, ...]) -> M
     _, _, (code, _) = compiled.library.serialize_using_object_code()
     arguments = tuple(str(argument.type) for argument in compiled.library.get_function(symbol).arguments)
     functions = compiled.library.get_function(symbol).module.functions
-    calls = tuple(each.name for each in functions if each.is_declaration and not each.name.startswith("llvm."))
+    calls = tuple(
+        function_declared.name
+        for function_declared in functions
+        if function_declared.is_declaration and not function_declared.name.startswith("llvm.")
+    )
     return MachineCode(symbol, arguments[2:], calls, code)
 
 
@@ -226,9 +230,9 @@ def _asin(x: float) -> float:
     square = x * x if small else 0.5 * (1.0 - size)
     s = size if small else math.sqrt(square)
     a, b = _ABOVE, _BELOW
-    above = a[0] + square * (a[1] + square * (a[2] + square * (a[3] + square * (a[4] + square * a[5]))))
-    below = b[0] + square * (b[1] + square * (b[2] + square * (b[3] + square * b[4])))
-    angle = s + s * (square * above / below)
+    numerator = a[0] + square * (a[1] + square * (a[2] + square * (a[3] + square * (a[4] + square * a[5]))))
+    denominator = b[0] + square * (b[1] + square * (b[2] + square * (b[3] + square * b[4])))
+    angle = s + s * (square * numerator / denominator)
     return math.copysign(angle if small else 0.5 * math.pi - 2.0 * angle, x)
 
 

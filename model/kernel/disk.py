@@ -37,7 +37,7 @@ _STATES = 8
 """Machine codes kept of a kernel, the latest ones: of other formulas, versions and processors."""
 
 
-class Wanted(NamedTuple):
+class KernelSource(NamedTuple):
     """A kernel to be compiled: its name, its function, and example arguments that decide about their types."""
 
     name: str
@@ -60,33 +60,33 @@ class Wanted(NamedTuple):
         return compile_kernel(self.function, self.examples)
 
 
-def machine_code(wanted: Wanted, modules: Iterable[str] = ()) -> MachineCode:
+def machine_code(source: KernelSource, modules: Iterable[str] = ()) -> MachineCode:
     """Return the machine code of a kernel, compiled and kept if need be.
 
     What is missing of its package is compiled too, in other processes, as long as this one lives; and of its sister
     packages among those of other kernels' modules, the last ones first: of both what is in these modules before the
     rest.
     """
-    folder, name = kernel_folder(), wanted.file(Path()).name
-    found = read_any(name, folder)
-    if found is not None:
-        return found
+    folder, name = kernel_folder(), source.file(Path()).name
+    code = read_any(name, folder)
+    if code is not None:
+        return code
     tell_refusals()
     if folder is None:
-        return wanted.compile()
-    own, root = _package(wanted.module), wanted.module.partition(".")[0] + "."
+        return source.compile()
+    package, root = _package(source.module), source.module.partition(".")[0] + "."
     related = [module for module in reversed(list(modules)) if module.startswith(root)]
-    packages = dict.fromkeys([*map(_package, related), own])
+    packages = dict.fromkeys([*map(_package, related), package])
     if folder not in _refusing:
-        compile_beside(folder, " ".join(packages), folder / name, dict.fromkeys([*related, wanted.module]))
-        found = read(folder / name)
-    if found is None:  # no process could be started, or nothing be kept
+        compile_beside(folder, " ".join(packages), folder / name, dict.fromkeys([*related, source.module]))
+        code = read(folder / name)
+    if code is None:  # no process could be started, or nothing be kept
         if folder in _refusing:
-            _log.warning(f"slidercrank compiles its formulas, now {wanted.name.rpartition('.')[2]}")
-        found = wanted.compile()
-        if not keep(folder / name, found):
+            _log.warning(f"slidercrank compiles its formulas, now {source.name.rpartition('.')[2]}")
+        code = source.compile()
+        if not keep(folder / name, code):
             _refusing.add(folder)
-    return found
+    return code
 
 
 def _package(module: str) -> str:
@@ -94,18 +94,18 @@ def _package(module: str) -> str:
 
 
 def read_any(name: str, folder: Path | None) -> MachineCode | None:
-    """Return the machine code that is kept under a name in a folder, or in one that can only be read."""
-    found = (read(place / name) for place in (folder, *other_folders()) if place is not None)
-    return next((code for code in found if code is not None), None)
+    """Return the machine code stored under a name, in this folder or in a read-only one."""
+    codes = (read(place / name) for place in (folder, *other_folders()) if place is not None)
+    return next((code for code in codes if code is not None), None)
 
 
 def read(file: Path) -> MachineCode | None:
     """Return the machine code that is kept, None where there is nothing whole."""
     try:
         head, code = file.read_bytes().split(b"\n", 1)
-        kept = json.loads(head)
-        if kept["sha256"] == sha256(code).hexdigest():
-            return MachineCode(kept["symbol"], tuple(kept["arguments"]), tuple(kept["calls"]), code)
+        header = json.loads(head)
+        if header["sha256"] == sha256(code).hexdigest():
+            return MachineCode(header["symbol"], tuple(header["arguments"]), tuple(header["calls"]), code)
     except (OSError, ValueError, KeyError):
         pass
     return None
@@ -115,24 +115,24 @@ _refusing: set[Path] = set()
 """Folders that have not kept what was compiled: each process compiles what it needs, and nothing beside."""
 
 
-def keep(file: Path, found: MachineCode) -> bool:
+def keep(file: Path, code: MachineCode) -> bool:
     """Keep machine code, and of earlier ones the last few; whether it is kept. Where there is no room, say so."""
-    head = found._asdict() | {"code": None, "sha256": sha256(found.code).hexdigest()}
+    head = code._asdict() | {"code": None, "sha256": sha256(code.code).hexdigest()}
     unfinished = file.with_name(f"{uuid.uuid4().hex}.unfinished")
-    kept = False
+    is_kept = False
     with contextlib.suppress(OSError):
         try:
-            unfinished.write_bytes(json.dumps(head).encode() + b"\n" + found.code)
+            unfinished.write_bytes(json.dumps(head).encode() + b"\n" + code.code)
             unfinished.replace(file)
-            kept = True
+            is_kept = True
         except OSError as error:
             _tell_unkept(file.parent, error.strerror or str(error))
         finally:
             unfinished.unlink(missing_ok=True)
-        earlier = sorted(file.parent.glob(f"{file.stem}.*"), key=lambda other: other.stat().st_mtime)
-        for other in earlier[:-_STATES]:
-            other.unlink(missing_ok=True)
-    return kept
+        earlier = sorted(file.parent.glob(f"{file.stem}.*"), key=lambda path: path.stat().st_mtime)
+        for path in earlier[:-_STATES]:
+            path.unlink(missing_ok=True)
+    return is_kept
 
 
 @cache
@@ -149,15 +149,15 @@ def compile_beside(folder: Path, packages: str, file: Path | None = None, module
     that are at it already are waited for. `interruption` ends the wait.
     """
     if file is not None:
-        with contextlib.suppress(OSError), (folder / "wanted").open("a") as wanted:
-            wanted.write(f"{file.name}\n")
-    begun = told = time.monotonic()
+        with contextlib.suppress(OSError), (folder / "wanted").open("a") as queue:
+            queue.write(f"{file.name}\n")
+    start_time = last_report = time.monotonic()
     before = sum(_waits)
     _waits.append(0.0)
     workers = _ahead.pop(packages, None)
     if workers:
         _tell_once()
-    while (file is None or read(file) is None) and time.monotonic() < begun + _PATIENCE:
+    while (file is None or read(file) is None) and time.monotonic() < start_time + _PATIENCE:
         if workers is not None and all(worker.poll() is not None for worker in workers):
             return
         if workers is None:
@@ -165,9 +165,9 @@ def compile_beside(folder: Path, packages: str, file: Path | None = None, module
                 if lock is not None:
                     _tell_once()
                     workers = _start(folder, packages, modules, lock)
-        _waits[-1] = time.monotonic() - begun
-        if time.monotonic() > told + _TELL:
-            told = time.monotonic()
+        _waits[-1] = time.monotonic() - start_time
+        if time.monotonic() > last_report + _TELL:
+            last_report = time.monotonic()
             with contextlib.suppress(OSError):
                 if far := building(folder, packages).read_text():
                     _log.warning(f"slidercrank compiles its formulas: {far}; {before + _waits[-1]:.0f} s so far")

@@ -21,15 +21,16 @@ _REMEDY = "name a folder that can be written in NUMBA_CACHE_DIR"
 
 
 class Chosen(NamedTuple):
-    """Choice of a folder for kernels: the folder if any, whether it is empty, why places were refused, what to read.
+    """Choice of a folder for kernels.
 
-    others: folders that came first, of which kernels can be read but nothing be written there.
+    folder: None if no place can be written. empty: whether it has no kernels yet. refused: why other places were
+    refused. readable: folders that came first but are read-only.
     """
 
     folder: Path | None
     empty: bool
     refused: str
-    others: tuple[Path, ...] = ()
+    readable: tuple[Path, ...] = ()
 
 
 def kernel_folder() -> Path | None:
@@ -39,7 +40,7 @@ def kernel_folder() -> Path | None:
 
 def other_folders() -> tuple[Path, ...]:
     """Return folders of kernels that can only be read, as in an image."""
-    return _chosen().others
+    return _chosen().readable
 
 
 @cache
@@ -60,16 +61,16 @@ def choose_folder() -> Chosen:
     Places are NUMBA_CACHE_DIR, the user's folder of caches, and one of this user alone among temporary files.
     """
     refused: list[str] = []
-    others: list[Path] = []
+    readable: list[Path] = []
     for place in _places():
         folder = place / "kernels"
         reason = _refusal(folder)
         if reason is None:
-            return Chosen(folder, not any(folder.iterdir()), "; ".join(refused), tuple(others))
+            return Chosen(folder, not any(folder.iterdir()), "; ".join(refused), tuple(readable))
         refused.append(f"{place} {reason}")
         if _readable(folder):
-            others.append(folder)
-    return Chosen(None, False, "; ".join(refused), tuple(others))
+            readable.append(folder)
+    return Chosen(None, False, "; ".join(refused), tuple(readable))
 
 
 _chosen = cache(choose_folder)
@@ -77,9 +78,9 @@ _chosen = cache(choose_folder)
 
 def _places() -> Iterator[Path]:
     """Yield the places where the folder may be."""
-    given = os.environ.get("NUMBA_CACHE_DIR")
-    if given:
-        yield Path(os.path.expanduser(given)).absolute() / "slidercrank"  # noqa: PTH111 - raises for no home
+    cache_folder = os.environ.get("NUMBA_CACHE_DIR")
+    if cache_folder:
+        yield Path(os.path.expanduser(cache_folder)).absolute() / "slidercrank"  # noqa: PTH111 - raises for no home
     from platformdirs import user_cache_path
 
     with contextlib.suppress(RuntimeError):  # of later releases, for a user without a home; earlier ones keep its "~"

@@ -16,12 +16,12 @@ FAREWELL = 0.5
 class Interruption:
     """Callback that may end calls by raising.
 
-    between: the one for work that ends by itself, called between its parts. farewell: time that calls still have then,
-    s. killed: whether one did not end in that time.
+    between_parts: callback between the parts of work that ends by itself. farewell: time that calls still have then, s.
+    killed: whether a call did not end in that time.
     """
 
     poll: Poll
-    between: Poll | None = None
+    between_parts: Poll | None = None
     farewell: float = FAREWELL
     killed: bool = False
 
@@ -30,14 +30,16 @@ _CURRENT: ContextVar[Interruption | None] = ContextVar("interruption", default=N
 
 
 @contextlib.contextmanager
-def interrupted_by(poll: Poll, *, between: Poll | None = None, farewell: float = FAREWELL) -> Iterator[Interruption]:
+def interrupted_by(
+    poll: Poll, *, between_parts: Poll | None = None, farewell: float = FAREWELL
+) -> Iterator[Interruption]:
     """While entered, let `poll` be called several times a second during every call that this thread waits for.
 
-    between: called between the parts of long work of its own.
+    between_parts: called between the parts of long work of its own.
 
     A search cannot hand its own question down: quantities are evaluated in a hundred places that know of no search.
     """
-    interruption = Interruption(poll, between, farewell)
+    interruption = Interruption(poll, between_parts, farewell)
     token = _CURRENT.set(interruption)
     try:
         yield interruption
@@ -55,8 +57,8 @@ def ask() -> None:
 def ask_between() -> None:
     """Raise whatever ends long work between two of its parts, if anything does."""
     interruption = _CURRENT.get()
-    if interruption is not None and interruption.between is not None:
-        interruption.between()
+    if interruption is not None and interruption.between_parts is not None:
+        interruption.between_parts()
 
 
 def farewell() -> float:

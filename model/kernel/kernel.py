@@ -13,7 +13,7 @@ from typing import Annotated, Any, TypeVar, cast, get_args, get_origin, get_type
 import numpy as np
 from numpy.typing import NDArray
 
-from .disk import Wanted, machine_code
+from .disk import KernelSource, machine_code
 from .machine_code import Leaf, load
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -86,10 +86,10 @@ class Kernel:
             raise MemoryError(f"not enough memory for {self.function.__qualname__}")
         return result.value
 
-    def wanted(self) -> Wanted:
+    def source(self) -> KernelSource:
         """Return the kernel as it is to be compiled."""
         examples = tuple(_example(hint) for name, hint in self._hints().items() if name != "return")
-        return Wanted(f"{self.function.__module__}.{self.function.__name__}", self.function, examples)
+        return KernelSource(f"{self.function.__module__}.{self.function.__name__}", self.function, examples)
 
     def _hints(self) -> dict[str, Any]:
         return get_type_hints(self.function, include_extras=True)
@@ -98,10 +98,10 @@ class Kernel:
         """Return the machine code, what packs its arguments, and the type of its result."""
         with _loading:
             if self._loaded is None:
-                wanted, hints = self.wanted(), self._hints()
-                leaves = [leaf for example in wanted.examples for leaf in _leaves(example)]
+                source, hints = self.source(), self._hints()
+                leaves = [leaf for example in source.examples for leaf in _leaves(example)]
                 packed = Struct("".join("d" if leaf.type == "double" else "q" for leaf in leaves)).pack
-                code = machine_code(wanted, [other.function.__module__ for other in KERNELS])
+                code = machine_code(source, [kernel.function.__module__ for kernel in KERNELS])
                 result = _RESULTS[hints.pop("return")]
                 self._flat = [_flattener(name, hint) for name, hint in hints.items()]
                 self._loaded = load(code, leaves), packed, result
@@ -131,8 +131,8 @@ def _example(kind: Any) -> Any:
 
 def _item(array: Any) -> np.dtype[Any]:
     """Return the type of the items of an `NDArray[...]`."""
-    found: np.dtype[Any] = np.dtype(get_args(get_args(array)[1])[0])
-    return found
+    dtype: np.dtype[Any] = np.dtype(get_args(get_args(array)[1])[0])
+    return dtype
 
 
 def _flattener(name: str, kind: Any) -> Callable[[Any], Flat]:
@@ -153,11 +153,11 @@ def _flat_tuple(members: list[Callable[[Any], Flat]]) -> Callable[[Any], Flat]:
 
     def flat(value: Any) -> Flat:
         nonlocal last
-        before, found = last
-        if before is not value:
-            found = tuple(item for member, part in zip(members, value, strict=True) for item in member(part))
-            last = value, found
-        return found
+        last_value, flattened = last
+        if last_value is not value:
+            flattened = tuple(item for member, part in zip(members, value, strict=True) for item in member(part))
+            last = value, flattened
+        return flattened
 
     return flat
 

@@ -40,7 +40,7 @@ class Leaf(NamedTuple):
     item: int = 0
 
 
-def load(found: MachineCode, leaves: list[Leaf]) -> Callable[[bytes, int], int]:
+def load(code: MachineCode, leaves: list[Leaf]) -> Callable[[bytes, int], int]:
     """Return the entry: given arguments and the address for a result it gives 0, else memory was short.
 
     It releases the interpreter lock.
@@ -48,24 +48,24 @@ def load(found: MachineCode, leaves: list[Leaf]) -> Callable[[bytes, int], int]:
     import llvmlite.binding as llvm
 
     _prepare()
-    missing = [name for name in found.calls if not llvm.address_of_symbol(name)]
+    missing = [name for name in code.calls if not llvm.address_of_symbol(name)]
     if missing:  # the engine would jump to nowhere
         raise SlidercrankError(
             f"compiled formulas must find all functions that they call; {', '.join(missing)} is not in this process; "
             "install the versions of numba and llvmlite anew"
         )
-    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(_entry(found, leaves)), _machine())
-    engine.add_object_file(llvm.ObjectFileRef.from_data(found.code))
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(_entry(code, leaves)), _machine())
+    engine.add_object_file(llvm.ObjectFileRef.from_data(code.code))
     engine.finalize_object()
     _engines.append(engine)
-    made = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_char_p, ctypes.c_void_p)
-    return made(engine.get_function_address(_SYMBOL))
+    function_type = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_char_p, ctypes.c_void_p)
+    return function_type(engine.get_function_address(_SYMBOL))
 
 
-def _entry(found: MachineCode, leaves: list[Leaf]) -> str:
+def _entry(code: MachineCode, leaves: list[Leaf]) -> str:
     """Return the entry in LLVM's language."""
     lines: list[str] = []
-    given: list[tuple[str, str]] = []
+    arguments: list[tuple[str, str]] = []
 
     def read(kind: str, base: str, offset: int) -> str:
         name = f"%v{len(lines)}"
@@ -75,7 +75,7 @@ def _entry(found: MachineCode, leaves: list[Leaf]) -> str:
     head = object.__basicsize__  # of every Python object; an array's address, dimensions, shape and strides follow
     for number, leaf in enumerate(leaves):
         if not leaf.item:
-            given.append((leaf.type, read(leaf.type, "%block", 8 * number)))
+            arguments.append((leaf.type, read(leaf.type, "%block", 8 * number)))
             continue
         array = read("ptr", "%block", 8 * number)
         shape, strides = read("ptr", array, head + 16), read("ptr", array, head + 24)
@@ -85,22 +85,22 @@ def _entry(found: MachineCode, leaves: list[Leaf]) -> str:
             product = f"%v{len(lines)}"
             lines.append(f"{product} = mul i64 {size}, {side}")
             size = product
-        given += [("ptr", "null"), ("ptr", "null"), ("i64", size), ("i64", str(leaf.item))]
-        given += [("ptr", read("ptr", array, head)), *(("i64", side) for side in sides)]
-        given += [("i64", read("i64", strides, 8 * side)) for side in range(leaf.dimensions)]
-    types = tuple(kind for kind, _ in given)
-    if types != found.arguments:
-        raise SlidercrankError(f"a kernel must take what it declares, {types}; got {found.arguments}; compile it anew")
-    asked = ", ".join(f"{kind} {value}" for kind, value in given)
+        arguments += [("ptr", "null"), ("ptr", "null"), ("i64", size), ("i64", str(leaf.item))]
+        arguments += [("ptr", read("ptr", array, head)), *(("i64", side) for side in sides)]
+        arguments += [("i64", read("i64", strides, 8 * side)) for side in range(leaf.dimensions)]
+    types = tuple(kind for kind, _ in arguments)
+    if types != code.arguments:
+        raise SlidercrankError(f"a kernel must take what it declares, {types}; got {code.arguments}; compile it anew")
+    argument_list = ", ".join(f"{kind} {value}" for kind, value in arguments)
     body = "\n  ".join(lines)
     return f"""
-declare i32 @"{found.symbol}"(ptr, ptr, {", ".join(types)})
+declare i32 @"{code.symbol}"(ptr, ptr, {", ".join(types)})
 
 define i32 @{_SYMBOL}(ptr %block, ptr %result) {{
   %error = alloca ptr
   store ptr null, ptr %error
   {body}
-  %status = call i32 @"{found.symbol}"(ptr %result, ptr %error, {asked})
+  %status = call i32 @"{code.symbol}"(ptr %result, ptr %error, {argument_list})
   ret i32 %status
 }}
 """

@@ -29,15 +29,15 @@ from ..kernel.arithmetic import analytic, inverse, root
 class Motion(NamedTuple):
     """The linkage at one crank angle, per unit of crank angle.
 
-    along, across: components l cos(phi), l sin(phi) of the rod vector A -> B, m. per_along: 1 / along.
+    l_cos, l_sin: components l cos(phi), l sin(phi) of the rod vector A -> B, m. per_l_cos: 1 / l_cos.
     tangent: tan(phi).
     rod_1, rod_2: phi' and phi''.
     x, x_1, x_2: slider position, m, with its first and second derivative, m/rad and m/rad^2.
     """
 
-    along: Any
-    across: Any
-    per_along: Any
+    l_cos: Any
+    l_sin: Any
+    per_l_cos: Any
     tangent: Any
     rod_1: Any
     rod_2: Any
@@ -55,21 +55,21 @@ def motion(sine: Any, cosine: Any, r: Any, l: Any, e: Any, branch: Any) -> Motio
     x' = -r sin(theta) - l sin(phi) phi',  x'' = -r cos(theta) - l cos(phi) phi'^2 - l sin(phi) phi''.
     Requires l > |e - r sin(theta)| (the linkage can be assembled at this angle).
     """
-    across = e - r * sine
-    return motion_of(sine, cosine, r, across, branch * root(l * l - across * across))
+    l_sin = e - r * sine
+    return motion_of(sine, cosine, r, l_sin, branch * root(l * l - l_sin * l_sin))
 
 
 @analytic
-def motion_of(sine: Any, cosine: Any, r: Any, across: Any, along: Any) -> Motion:
+def motion_of(sine: Any, cosine: Any, r: Any, l_sin: Any, l_cos: Any) -> Motion:
     """Return the `Motion` from sine and cosine of the crank angle, crank r and the rod vector's components, m."""
-    per_along = inverse(along)
-    tangent = across * per_along
-    rod_1 = -r * cosine * per_along
-    rod_2 = r * sine * per_along + rod_1 * rod_1 * tangent
-    x = r * cosine + along
-    x_1 = -r * sine - across * rod_1
-    x_2 = -r * cosine - along * rod_1 * rod_1 - across * rod_2
-    return Motion(along, across, per_along, tangent, rod_1, rod_2, x, x_1, x_2)
+    per_l_cos = inverse(l_cos)
+    tangent = l_sin * per_l_cos
+    rod_1 = -r * cosine * per_l_cos
+    rod_2 = r * sine * per_l_cos + rod_1 * rod_1 * tangent
+    x = r * cosine + l_cos
+    x_1 = -r * sine - l_sin * rod_1
+    x_2 = -r * cosine - l_cos * rod_1 * rod_1 - l_sin * rod_2
+    return Motion(l_cos, l_sin, per_l_cos, tangent, rod_1, rod_2, x, x_1, x_2)
 
 
 @analytic
@@ -81,5 +81,5 @@ def third_derivative(sine: Any, cosine: Any, m: Motion, r: Any) -> Any:
     """
     cube = m.rod_1 * m.rod_1 * m.rod_1
     bent = m.rod_1 * m.rod_2
-    rod_3 = (r * cosine + m.along * cube + 3.0 * m.across * bent) * m.per_along
-    return r * sine + m.across * cube - 3.0 * m.along * bent - m.across * rod_3
+    rod_3 = (r * cosine + m.l_cos * cube + 3.0 * m.l_sin * bent) * m.per_l_cos
+    return r * sine + m.l_sin * cube - 3.0 * m.l_cos * bent - m.l_sin * rod_3

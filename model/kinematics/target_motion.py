@@ -97,8 +97,8 @@ def _measure(
     p, q = r * math.sin(phase), r * math.cos(phase)
     high, low, total = -math.inf, math.inf, 0.0
     for i in range(n):
-        across = e - (sines[i] * q + cosines[i] * p)
-        d[i] = b * (cosines[i] * q - sines[i] * p) + math.sqrt(l * l - across * across) - at[i]
+        l_sin = e - (sines[i] * q + cosines[i] * p)
+        d[i] = b * (cosines[i] * q - sines[i] * p) + math.sqrt(l * l - l_sin * l_sin) - at[i]
         high, low, total = max(high, d[i]), min(low, d[i]), total + d[i]
     if rms:
         mean = total / n if shifts else 0.0
@@ -119,17 +119,17 @@ def _newton(
     sines, cosines, at = points
     n = at.shape[0]
     p, q = math.sin(phase), math.cos(phase)
-    mean = one = 0.0
+    mean = mean_slope = 0.0
     for i in range(n):
         m = motion(sines[i] * q + cosines[i] * p, cosines[i] * q - sines[i] * p, r, l, e, b)
         slope[i], bend[i] = b * m.x_1, b * m.x_2
-        mean, one = mean + d[i] / n, one + slope[i] / n
+        mean, mean_slope = mean + d[i] / n, mean_slope + slope[i] / n
     if not shifts:
-        mean = one = 0.0
+        mean = mean_slope = 0.0
     first = second = 0.0
     for i in range(n):
         first += (d[i] - mean) * slope[i]
-        second += (slope[i] - one) * (slope[i] - one) + (d[i] - mean) * bend[i]
+        second += (slope[i] - mean_slope) * (slope[i] - mean_slope) + (d[i] - mean) * bend[i]
     return float(-first / second) if second > 0.0 else 0.0
 
 
@@ -169,10 +169,10 @@ def _bound(
     high = low = -math.inf
     common = rising = falling = 0.0
     for i in range(at.shape[0]):
-        up, forth = sines[i] * q + cosines[i] * p, cosines[i] * q - sines[i] * p
-        across = e - up
-        along = math.sqrt(l * l - across * across)
-        d[i], slope[i] = b * forth + along - at[i], across * forth / along - b * up
+        up, out = sines[i] * q + cosines[i] * p, cosines[i] * q - sines[i] * p
+        l_sin = e - up
+        l_cos = math.sqrt(l * l - l_sin * l_sin)
+        d[i], slope[i] = b * out + l_cos - at[i], l_sin * out / l_cos - b * up
         if d[i] > high:
             high, rising = d[i], slope[i]
         if -d[i] > low:
@@ -211,15 +211,15 @@ def _branch_and_bound(
             value, cells[1, j] = _bound(cells[0, j], half, bend, shifts, r, l, e, b, points, d, slope)
             if value < best:
                 best, at_best = value, cells[0, j]
-        kept = 0
+        open_cells = 0
         for j in range(count):
-            if cells[1, j] <= best and 2 * kept + 1 < cells.shape[1]:
-                cells[2, kept] = cells[0, j]
-                kept += 1
+            if cells[1, j] <= best and 2 * open_cells + 1 < cells.shape[1]:
+                cells[2, open_cells] = cells[0, j]
+                open_cells += 1
         half *= 0.5
-        for j in range(kept):
+        for j in range(open_cells):
             cells[0, 2 * j], cells[0, 2 * j + 1] = cells[2, j] - half, cells[2, j] + half
-        count = 2 * kept
+        count = 2 * open_cells
     return _section(at_best - 4.0 * half, at_best + 4.0 * half, False, shifts, r, l, e, b, points, d)
 
 
@@ -230,7 +230,7 @@ def _least_square(
     """Return the phase of the least root mean square deviation: the best of the grid's best stretches."""
     for j in range(_PHASES):
         grid[j], _ = _measure(_TURN * j / _PHASES, True, shifts, r, l, e, b, points, d)
-    found, least, last, j = 0.0, math.inf, -math.inf, -1
+    best_phase, least, last, j = 0.0, math.inf, -math.inf, -1
     for _ in range(_STRETCHES):
         best = -1
         for k in range(_PHASES):
@@ -251,8 +251,8 @@ def _least_square(
                 break
             phase += step
         if value < least:
-            found, least = phase, value
-    return found
+            best_phase, least = phase, value
+    return best_phase
 
 
 @seldom_kernel

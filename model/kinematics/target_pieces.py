@@ -48,12 +48,12 @@ def _points(target: TargetMotion, branch: float, phase: Array, designs: NDArray[
 
 def _slopes(target: TargetMotion, branch: float, phase: Array, designs: Array) -> Array:
     """Return the derivatives (n, points, 3) of the slider's distance at fixed phase, by complex step."""
-    found = np.empty((len(designs), len(target.positions), 3))
+    slopes = np.empty((len(designs), len(target.positions), 3))
     for v in range(3):
         stepped = designs.astype(np.complex128)
         stepped[:, v] += STEP * 1j
-        found[:, :, v] = branch * _points(target, branch, phase, stepped).x.imag / STEP
-    return found
+        slopes[:, :, v] = branch * _points(target, branch, phase, stepped).x.imag / STEP
+    return slopes
 
 
 def fit_pieces(target: TargetMotion, branch: float, measure: Measure, designs: Array) -> FitPieces:
@@ -62,24 +62,24 @@ def fit_pieces(target: TargetMotion, branch: float, measure: Measure, designs: A
     One piece for the root mean square; its gradient is zero where it is nothing but rounding.
     """
     designs = turning(designs)
-    found = fit(target, branch, measure, designs)
+    fitted = fit(target, branch, measure, designs)
     if measure == "rms":
-        d = branch * _points(target, branch, found.phase, designs).x - np.array(target.positions)
-        d = d + found.shift[:, None]
-        slopes = _slopes(target, branch, found.phase, designs)
+        d = branch * _points(target, branch, fitted.phase, designs).x - np.array(target.positions)
+        d = d + fitted.shift[:, None]
+        slopes = _slopes(target, branch, fitted.phase, designs)
         # With the shift free the deviations have no mean, so that those of the derivatives need not be taken off.
-        noise = found.values <= 1e-14 * (designs[:, 0] + designs[:, 1])
-        per = np.where(noise, 0.0, 1.0 / np.where(noise, 1.0, found.values * d.shape[1]))
+        noise = fitted.values <= 1e-14 * (designs[:, 0] + designs[:, 1])
+        per = np.where(noise, 0.0, 1.0 / np.where(noise, 1.0, fitted.values * d.shape[1]))
         gradients = np.einsum("ni,niv->nv", d, slopes) * per[:, None]
-        return FitPieces(found.values[:, None], gradients[:, None], np.zeros((len(designs), 1)))
-    phase = found.phase.copy()
-    sides = _Sides.at(target, branch, phase, designs)
+        return FitPieces(fitted.values[:, None], gradients[:, None], np.zeros((len(designs), 1)))
+    phase = fitted.phase.copy()
+    sides = _Sides.from_points(target, branch, phase, designs)
     if target.phase == "free":
         # Golden section places the turn of a smooth deviation to the root of rounding only: one step of Newton's.
         step = sides.settling()
         if np.any(step != 0.0):
             phase = phase + step
-            sides = _Sides.at(target, branch, phase, designs)
+            sides = _Sides.from_points(target, branch, phase, designs)
         sides = sides.crossed()
     return sides.highest(_PIECES)
 
@@ -97,23 +97,23 @@ class _Sides(NamedTuple):
     labels: Array
 
     @classmethod
-    def at(cls, target: TargetMotion, branch: float, phase: Array, designs: Array) -> _Sides:
+    def from_points(cls, target: TargetMotion, branch: float, phase: Array, designs: Array) -> _Sides:
         """Return the local peaks of both signs over the points; with the shift free, half-sums of pairs."""
         m = _points(target, branch, phase, designs)
         d = branch * m.x - np.array(target.positions)
         slopes = _slopes(target, branch, phase, designs)
         angles = np.broadcast_to(np.array(target.crank_angles), d.shape)
         curves = (branch * m.x_1, branch * m.x_2)
-        over, under = (_peaks(sign, d, *curves, slopes, angles) for sign in (1.0, -1.0))
+        positive, negative = (_peaks(sign, d, *curves, slopes, angles) for sign in (1.0, -1.0))
         if target.shift == "fixed":
-            return cls(*(np.concatenate(pair, axis=1) for pair in zip(over, under, strict=True)))
+            return cls(*(np.concatenate(pair, axis=1) for pair in zip(positive, negative, strict=True)))
         n = len(d)
         values, slope, bend = (
-            (0.5 * (getattr(over, name)[:, :, None] + getattr(under, name)[:, None, :])).reshape(n, -1)
+            (0.5 * (getattr(positive, name)[:, :, None] + getattr(negative, name)[:, None, :])).reshape(n, -1)
             for name in ("values", "slope", "bend")
         )
-        gradients = 0.5 * (over.gradients[:, :, None] + under.gradients[:, None, :])
-        labels = over.labels[:, :, None] + _MIX * under.labels[:, None, :]
+        gradients = 0.5 * (positive.gradients[:, :, None] + negative.gradients[:, None, :])
+        labels = positive.labels[:, :, None] + _MIX * negative.labels[:, None, :]
         return cls(values, slope, bend, gradients.reshape(n, -1, 3), labels.reshape(n, -1))
 
     def settling(self) -> Array:
@@ -122,43 +122,47 @@ class _Sides(NamedTuple):
         value, slope, bend = (
             np.take_along_axis(getattr(self, name), top, axis=1)[:, 0] for name in ("values", "slope", "bend")
         )
-        alone = np.abs(slope) < _SETTLED * bend
-        step = np.where(alone, -slope / np.where(alone, bend, 1.0), 0.0)
+        turns_by_itself = np.abs(slope) < _SETTLED * bend
+        step = np.where(turns_by_itself, -slope / np.where(turns_by_itself, bend, 1.0), 0.0)
         with np.errstate(invalid="ignore"):
-            others = np.where(np.isfinite(self.values), self.values + self.slope * step[:, None], -np.inf)
-        np.put_along_axis(others, top, -np.inf, axis=1)
-        return np.where(others.max(axis=1) < value, step, 0.0)
+            after_step = np.where(np.isfinite(self.values), self.values + self.slope * step[:, None], -np.inf)
+        np.put_along_axis(after_step, top, -np.inf, axis=1)
+        return np.where(after_step.max(axis=1) < value, step, 0.0)
 
     def crossed(self) -> _Sides:
         """Return the pairs of a falling and a rising deviation, and the highest one where it turns by itself."""
-        few = self._first(_CROSSED)
+        few = self._take_highest(_CROSSED)
         n, k = few.values.shape
         turning = (np.abs(few.slope) < _SETTLED * few.bend) & (np.arange(k) == 0)
         falling, rising = (few.slope < 0.0) & ~turning, (few.slope > 0.0) & ~turning
         finite = np.isfinite(few.values)
-        both = (falling & finite)[:, :, None] & (rising & finite)[:, None, :]
-        apart = few.slope[:, None, :] - few.slope[:, :, None]
-        share = np.where(both, few.slope[:, None, :] / np.where(both, apart, 1.0), 0.0)  # of the falling one
-        known = np.where(finite, few.values, 0.0)
-        values = np.where(both, share * known[:, :, None] + (1.0 - share) * known[:, None, :], -np.inf).reshape(n, -1)
+        is_pair = (falling & finite)[:, :, None] & (rising & finite)[:, None, :]
+        slope_difference = few.slope[:, None, :] - few.slope[:, :, None]
+        share = np.where(
+            is_pair, few.slope[:, None, :] / np.where(is_pair, slope_difference, 1.0), 0.0
+        )  # of the falling one
+        finite_values = np.where(finite, few.values, 0.0)
+        values = np.where(
+            is_pair, share * finite_values[:, :, None] + (1.0 - share) * finite_values[:, None, :], -np.inf
+        ).reshape(n, -1)
         gradients = share[..., None] * few.gradients[:, :, None] + (1.0 - share[..., None]) * few.gradients[:, None, :]
         labels = few.labels[:, :, None] + 0.5 * _MIX * few.labels[:, None, :]
-        alone = turning | (~both.any(axis=(1, 2))[:, None] & (np.arange(k) == 0))
-        none = np.zeros((n, k + k * k))
+        by_itself = turning | (~is_pair.any(axis=(1, 2))[:, None] & (np.arange(k) == 0))
+        zeros = np.zeros((n, k + k * k))
         return _Sides(
-            np.concatenate([np.where(alone, few.values, -np.inf), values], axis=1),
-            none,
-            none,
+            np.concatenate([np.where(by_itself, few.values, -np.inf), values], axis=1),
+            zeros,
+            zeros,
             np.concatenate([few.gradients, gradients.reshape(n, -1, 3)], axis=1),
             np.concatenate([few.labels, labels.reshape(n, -1)], axis=1),
         )
 
     def highest(self, count: int) -> FitPieces:
         """Return the highest candidates, highest first."""
-        few = self._first(count)
+        few = self._take_highest(count)
         return FitPieces(few.values, np.where(np.isfinite(few.values)[..., None], few.gradients, 0.0), few.labels)
 
-    def _first(self, count: int) -> _Sides:
+    def _take_highest(self, count: int) -> _Sides:
         order = np.argsort(-self.values, axis=1, kind="stable")[:, :count]
         values, slope, bend, labels = (
             np.take_along_axis(getattr(self, name), order, axis=1) for name in ("values", "slope", "bend", "labels")
@@ -169,12 +173,12 @@ class _Sides(NamedTuple):
 def _peaks(sign: float, d: Array, slope: Array, bend: Array, slopes: Array, angles: Array) -> _Sides:
     """Return the highest deviations times a sign: local peaks over the points, and others, which may tie with them."""
     values = sign * d
-    beside = np.pad(values, ((0, 0), (1, 1)), constant_values=-np.inf)
-    peaks = (values >= beside[:, :-2]) & (values >= beside[:, 2:])
+    padded = np.pad(values, ((0, 0), (1, 1)), constant_values=-np.inf)
+    peaks = (values >= padded[:, :-2]) & (values >= padded[:, 2:])
     labels = angles + (0.0 if sign > 0.0 else 0.5 * math.pi)
     curves = sign * slope, sign * bend, sign * slopes, labels
     parts = (
-        _Sides(np.where(peaks, values, -np.inf), *curves)._first(_PEAKS),
-        _Sides(np.where(peaks, -np.inf, values), *curves)._first(_BESIDE),
+        _Sides(np.where(peaks, values, -np.inf), *curves)._take_highest(_PEAKS),
+        _Sides(np.where(peaks, -np.inf, values), *curves)._take_highest(_BESIDE),
     )
     return _Sides(*(np.concatenate(pair, axis=1) for pair in zip(*parts, strict=True)))

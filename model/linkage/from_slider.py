@@ -38,7 +38,7 @@ class CrankSolution:
 
 
 @dataclass(frozen=True)
-class _Asked:
+class _SliderMotion:
     """Slider position, m, velocity, m/s, and acceleration, m/s^2."""
 
     position: float
@@ -54,33 +54,35 @@ def crank_solutions(
     Where the rod is all but normal to the slider line, a rounding of the angle moves the slider by some 1e-8 cranks.
     """
     crank, rod, offset = _real_lengths(linkage)
-    asked = _Asked(
+    motion_asked = _SliderMotion(
         _number("slider position", position),
         None if velocity is None else _number("slider velocity", velocity),
         None if acceleration is None else _number("slider acceleration", acceleration),
     )
-    if asked.acceleration is not None and asked.velocity is None:
+    if motion_asked.acceleration is not None and motion_asked.velocity is None:
         raise InputError(
             "a slider acceleration gives the crank's only together with the slider velocity; "
-            f"got acceleration {asked.acceleration:g} m/s^2 alone; give the velocity too, 0 for a slider at rest"
+            f"got acceleration {motion_asked.acceleration:g} m/s^2 alone; give the velocity too, 0 for a slider at rest"
         )
-    distance, rounding = math.hypot(asked.position, offset), ROUNDING * (crank + rod)
+    distance, rounding = math.hypot(motion_asked.position, offset), ROUNDING * (crank + rod)
     to_outer, to_inner = crank + rod - distance, distance - abs(rod - crank)
     if min(to_outer, to_inner) < -rounding:
-        raise _out_of_reach(linkage, asked.position)
+        raise _out_of_reach(linkage, motion_asked.position)
     if distance <= rounding:
         raise AssemblyError(
             "a slider pin on the crank pivot leaves the crank free to turn; "
-            f"got position {1e3 * asked.position:.9g} mm with rod = crank = {1e3 * crank:g} mm and no offset; "
+            f"got position {1e3 * motion_asked.position:.9g} mm with rod = crank = {1e3 * crank:g} mm and no offset; "
             "move the position, or make rod and crank differ"
         )
     if min(to_outer, to_inner) <= rounding:
-        angle = math.atan2(offset, asked.position) + (math.pi if to_inner < to_outer and rod > crank else 0.0)
-        return (_at_dead_centre(linkage, angle, asked),)
-    found = [each for stroke in get_args(Solution) for each in _crank_solutions(linkage, stroke, asked)]
-    if not found:
-        raise _out_of_reach(linkage, asked.position)
-    return tuple(found)
+        angle = math.atan2(offset, motion_asked.position) + (math.pi if to_inner < to_outer and rod > crank else 0.0)
+        return (_at_dead_centre(linkage, angle, motion_asked),)
+    solutions = [
+        solution for stroke in get_args(Solution) for solution in _crank_solutions(linkage, stroke, motion_asked)
+    ]
+    if not solutions:
+        raise _out_of_reach(linkage, motion_asked.position)
+    return tuple(solutions)
 
 
 def slider_ranges(linkage: Dimensions) -> tuple[tuple[float, float], ...]:
@@ -93,65 +95,66 @@ def slider_ranges(linkage: Dimensions) -> tuple[tuple[float, float], ...]:
     sines = ((offset - rod) / crank, (offset + rod) / crank)
     normal = [crank * math.sqrt((1.0 - sine) * (1.0 + sine)) for sine in sines if abs(sine) < 1.0]
     right, left = list(normal), [-x for x in normal]  # by the side of the pivot on which the crank pin is
-    ahead, behind = (right, left) if linkage.sign > 0.0 else (left, right)
+    stretched_side, folded_side = (right, left) if linkage.sign > 0.0 else (left, right)
     longest, shortest = rod + crank, rod - crank
-    ahead.append(linkage.sign * math.sqrt((longest - offset) * (longest + offset)))
+    stretched_side.append(linkage.sign * math.sqrt((longest - offset) * (longest + offset)))
     if abs(offset) <= abs(shortest):
         folded = math.sqrt((shortest - offset) * (shortest + offset))
-        behind.append(linkage.sign * math.copysign(folded, shortest))
+        folded_side.append(linkage.sign * math.copysign(folded, shortest))
     arcs = (right, left) if len(normal) == 2 else (right + left,)
     return tuple(sorted((min(arc), max(arc)) for arc in arcs))
 
 
-def _crank_solutions(linkage: Dimensions, stroke: Solution, asked: _Asked) -> list[CrankSolution]:
+def _crank_solutions(linkage: Dimensions, stroke: Solution, target: _SliderMotion) -> list[CrankSolution]:
     """Return the solution of a stroke away from the dead centres; none if it is on the other branch."""
     try:
-        angle = float(crank_angle_at(linkage, asked.position, solution=stroke))
+        angle = float(crank_angle_at(linkage, target.position, solution=stroke))
     except AssemblyError:
         return []
     if abs(linkage.offset - linkage.crank * math.sin(angle)) >= linkage.rod:  # locked, but for rounding
         return []
-    if asked.velocity is None:
+    if target.velocity is None:
         return [CrankSolution(angle, None, None, stroke)]
     with np.errstate(over="ignore", invalid="ignore"):
-        found = crank_motion(
+        crank = crank_motion(
             linkage,
-            asked.position,
-            velocity=asked.velocity,
-            acceleration=asked.acceleration or 0.0,
+            target.position,
+            velocity=target.velocity,
+            acceleration=target.acceleration or 0.0,
             solution=stroke,
         )
-    speed, acceleration = float(found.speed) + 0.0, float(found.acceleration) + 0.0  # -0 is 0
+    speed, acceleration = float(crank.speed) + 0.0, float(crank.acceleration) + 0.0  # -0 is 0
     if not (math.isfinite(speed) and math.isfinite(acceleration)):
         raise InputError(
             "crank speed and acceleration must be finite numbers; "
-            f"got slider velocity {asked.velocity:g} m/s at position {1e3 * asked.position:.9g} mm; give a smaller one"
+            f"got slider velocity {target.velocity:g} m/s at position {1e3 * target.position:.9g} mm; "
+            "give a smaller one"
         )
-    return [CrankSolution(angle, speed, None if asked.acceleration is None else acceleration, stroke)]
+    return [CrankSolution(angle, speed, None if target.acceleration is None else acceleration, stroke)]
 
 
-def _at_dead_centre(linkage: Dimensions, angle: float, asked: _Asked) -> CrankSolution:
+def _at_dead_centre(linkage: Dimensions, angle: float, target: _SliderMotion) -> CrankSolution:
     """Return the solution at a dead centre. Raises `InputError` for a slider motion that no crank gives there."""
     crank, rod, offset = _real_lengths(linkage)
-    if linkage.sign * (asked.position - crank * math.cos(angle)) <= 0.0:
-        raise _out_of_reach(linkage, asked.position)
+    if linkage.sign * (target.position - crank * math.cos(angle)) <= 0.0:
+        raise _out_of_reach(linkage, target.position)
     m = motion(math.sin(angle), math.cos(angle), crank, rod, offset, linkage.sign)
-    where = f"at the dead centre of position {1e3 * asked.position:.9g} mm"
+    place = f"at the dead centre of position {1e3 * target.position:.9g} mm"
     remedy = "or a position further away"
-    if asked.velocity:
+    if target.velocity:
         raise InputError(
-            f"the slider velocity must be 0 {where}, where the slider stands still at any crank speed; "
-            f"got {asked.velocity:g} m/s; give 0, {remedy}"
+            f"the slider velocity must be 0 {place}, where the slider stands still at any crank speed; "
+            f"got {target.velocity:g} m/s; give 0, {remedy}"
         )
     # x' = 0 leaves a = x'' speed^2.
-    if asked.acceleration is not None and asked.acceleration * float(m.x_2) < 0.0:
+    if target.acceleration is not None and target.acceleration * float(m.x_2) < 0.0:
         sign = "negative" if m.x_2 < 0.0 else "positive"
         raise InputError(
-            f"the slider acceleration must be {sign} or 0 {where}, from which the slider can only return; "
-            f"got {asked.acceleration:g} m/s^2; turn its sign, {remedy}"
+            f"the slider acceleration must be {sign} or 0 {place}, from which the slider can only return; "
+            f"got {target.acceleration:g} m/s^2; turn its sign, {remedy}"
         )
-    inside = math.fmod(angle + 2.0 * math.pi, 2.0 * math.pi)
-    return CrankSolution(inside, None, None, None)
+    angle_in_turn = math.fmod(angle + 2.0 * math.pi, 2.0 * math.pi)
+    return CrankSolution(angle_in_turn, None, None, None)
 
 
 def _out_of_reach(linkage: Dimensions, position: float) -> AssemblyError:

@@ -89,9 +89,9 @@ def crank_angle_at(linkage: Dimensions, slider_position: ArrayLike, *, solution:
     half = np.arctan2(np.sqrt(np.maximum(product, 0.0)), r * r + d * d - l * l)
     theta = np.arctan2(e, x) + (half if solution == "inward" else -half)
     # Zero where the rod is normal to the slider line: there both branches meet and neither moves.
-    along = linkage.sign * (x - r * np.cos(theta))
+    l_cos = linkage.sign * (x - r * np.cos(theta))
     _refuse(
-        along <= 0.0,
+        l_cos <= 0.0,
         x,
         dimensions,
         f"the {solution} solution must lie on the {linkage.branch} branch",
@@ -144,10 +144,10 @@ def _triangle(linkage: Dimensions, slider_position: ArrayLike) -> tuple[Array, t
         finite("slider position", slider_position), linkage.crank, linkage.rod, linkage.offset
     )
     d = np.hypot(x, e)
-    beyond = np.maximum(d - (r + l), np.abs(l - r) - d)
+    excess = np.maximum(d - (r + l), np.abs(l - r) - d)
     # A position that was computed for a dead centre lies a rounding error beyond it.
     _refuse(
-        (beyond > ROUNDING * (r + l)) | (d == 0.0),
+        (excess > ROUNDING * (r + l)) | (d == 0.0),
         x,
         (r, l, e),
         "slider positions must be in reach, |rod - crank| <= sqrt(position^2 + offset^2) <= rod + crank",
@@ -187,8 +187,8 @@ def crank_from_stroke(stroke: ArrayLike, *, rod: ArrayLike, offset: ArrayLike = 
 
     r^2 = S^2 (l^2 - e^2 - S^2/4) / (4 l^2 - S^2). Raises `AssemblyError` where no fully turning linkage gives it.
     """
-    given = (("stroke", stroke), ("rod", rod), ("offset", offset))
-    s, l, e = np.broadcast_arrays(*(numbers(value, name) for name, value in given))
+    arguments = (("stroke", stroke), ("rod", rod), ("offset", offset))
+    s, l, e = np.broadcast_arrays(*(numbers(value, name) for name, value in arguments))
     with np.errstate(invalid="ignore", divide="ignore"):
         r: Array = geometry.crank_from_stroke(s, l, e)
         real, rod_, off, crank = s.real, l.real, e.real, r.real

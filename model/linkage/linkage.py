@@ -130,15 +130,15 @@ class Linkage:
     def stroke(self) -> Array:
         """Distance between the dead centres, m: sqrt((l + r)^2 - e^2) - sqrt((l - r)^2 - e^2)."""
         self.require_full_rotation()
-        found: Array = geometry.stroke(self.crank, self.rod, self.offset)
-        return found
+        length: Array = geometry.stroke(self.crank, self.rod, self.offset)
+        return length
 
     @property
     def time_ratio(self) -> Array:
         """Duration of the slower stroke over the faster at constant speed, at least 1."""
         self.require_full_rotation()
-        found: Array = geometry.time_ratio(self.crank, self.rod, magnitude(self.offset))
-        return found
+        ratio: Array = geometry.time_ratio(self.crank, self.rod, magnitude(self.offset))
+        return ratio
 
     def slow_stroke(self, *, direction: float = 1.0) -> NDArray[np.str_]:
         """Return which stroke is the slow one at constant speed: "outward", "inward" or "equal" (no offset).
@@ -153,15 +153,15 @@ class Linkage:
         self.require_full_rotation()
         offset = np.broadcast_to(self.offset.real, np.shape(self.rotates_fully))
         inward = np.sign(offset) * np.sign(direction) * self.sign
-        found: NDArray[np.str_] = np.where(inward > 0.0, "inward", np.where(inward < 0.0, "outward", "equal"))[()]
-        return found
+        stroke: NDArray[np.str_] = np.where(inward > 0.0, "inward", np.where(inward < 0.0, "outward", "equal"))[()]
+        return stroke
 
     @property
     def least_transmission_angle(self) -> Array:
         """Least transmission angle over the cycle, rad: cos(mu_min) = (r + |e|) / l."""
         self.require_full_rotation()
-        found: Array = geometry.least_transmission_angle(self.crank, self.rod, magnitude(self.offset))
-        return found
+        angle: Array = geometry.least_transmission_angle(self.crank, self.rod, magnitude(self.offset))
+        return angle
 
     def at(self, crank_angle: ArrayLike, *, speed: ArrayLike = 0.0, acceleration: ArrayLike = 0.0) -> Kinematics:
         """Return the motion at crank angles (rad) for crank speed (rad/s) and acceleration (rad/s^2).
@@ -179,10 +179,10 @@ class Linkage:
             m.x,
             m.x_1 * speed,
             m.x_2 * w2 + m.x_1 * acceleration,
-            direction(m.across, m.along),
+            direction(m.l_sin, m.l_cos),
             m.rod_1 * speed,
             m.rod_2 * w2 + m.rod_1 * acceleration,
-            direction(magnitude(m.along), magnitude(m.across)),
+            direction(magnitude(m.l_cos), magnitude(m.l_sin)),
         )
         return Kinematics(*(np.broadcast_to(field, shape) for field in fields))
 
@@ -236,7 +236,7 @@ class Linkage:
         theta = numbers(crank_angle)
         m = self._motion(theta)
         pin = self.crank_point(theta, along=1.0, speed=speed, acceleration=acceleration)
-        unit = np.stack(np.broadcast_arrays(m.along / self.rod, m.across / self.rod), axis=-1)
+        unit = np.stack(np.broadcast_arrays(m.l_cos / self.rod, m.l_sin / self.rod), axis=-1)
         normal = np.stack([-unit[..., 1], unit[..., 0]], axis=-1)
         arm, turned = along * unit + across * normal, along * normal - across * unit
         crank = np.asarray(self.crank)[..., None]
@@ -251,8 +251,8 @@ class Linkage:
     def error_influences(self, crank_angle: ArrayLike) -> Influences:
         """Return the first-order influence of crank, rod, offset (m/m) and crank angle (m/rad) on slider position."""
         theta = numbers(crank_angle)
-        found: Influences = influences(np.sin(theta), np.cos(theta), self._motion(theta), self.rod)
-        return found
+        per_dimension: Influences = influences(np.sin(theta), np.cos(theta), self._motion(theta), self.rod)
+        return per_dimension
 
     def plot(self, crank_angle: float = 1.0) -> Figure:
         """Return a matplotlib figure of one linkage at a crank angle, rad.
@@ -265,8 +265,8 @@ class Linkage:
         """Picture of one linkage for notebooks; none of an array of them."""
         if np.ndim(self.rotates_fully):
             return None
-        reach = np.arcsin(np.clip(self.offset.real / self.crank.real, -1.0, 1.0))
-        angle = 1.0 if bool(self.rotates_fully) else float(reach)
+        normal_angle = np.arcsin(np.clip(self.offset.real / self.crank.real, -1.0, 1.0))
+        angle = 1.0 if bool(self.rotates_fully) else float(normal_angle)
         return f"<div>{svg(self._pose(angle), float(self.crank.real), self.label)}<p>{self.label}</p></div>"
 
     @property
@@ -278,10 +278,10 @@ class Linkage:
 
     def _pose(self, crank_angle: float) -> Pose:
         self._require_one("a picture")
-        given = numbers(crank_angle, "a crank angle")
-        if given.ndim:
-            raise InputError(f"a picture shows one crank angle; got an array of shape {given.shape}; take one of it")
-        crank_angle = float(given.real)
+        theta = numbers(crank_angle, "a crank angle")
+        if theta.ndim:
+            raise InputError(f"a picture shows one crank angle; got an array of shape {theta.shape}; take one of it")
+        crank_angle = float(theta.real)
         m, crank = self._motion(np.asarray(crank_angle)), float(self.crank.real)
         ends = self.dead_centres if bool(self.rotates_fully) else (np.asarray(np.nan), np.asarray(np.nan))
         return Pose(
@@ -290,10 +290,10 @@ class Linkage:
             stroke=(float(ends[0].real), float(ends[1].real)),
         )
 
-    def _require_one(self, what: str) -> None:
+    def _require_one(self, subject: str) -> None:
         if np.ndim(self.rotates_fully):
             raise InputError(
-                f"{what} shows one linkage; got an array of shape {np.shape(self.rotates_fully)}; take one of it"
+                f"{subject} shows one linkage; got an array of shape {np.shape(self.rotates_fully)}; take one of it"
             )
 
     def _motion(self, theta: Array) -> Motion:
@@ -307,14 +307,14 @@ class Linkage:
             ) from None
         if not np.all(np.isfinite(theta)):
             raise InputError("crank angles must be finite")
-        reach = np.abs(self.offset.real - self.crank.real * np.sin(theta.real)) - self.rod.real
-        if np.any(reach >= 0.0):
+        excess = np.abs(self.offset.real - self.crank.real * np.sin(theta.real)) - self.rod.real
+        if np.any(excess >= 0.0):
             parts = (self.crank, self.rod, self.offset, theta)
             crank, rod, offset, angle = np.broadcast_arrays(*(part.real for part in parts))
-            worst = np.unravel_index(np.argmax(np.broadcast_to(reach, angle.shape)), angle.shape)
+            worst = np.unravel_index(np.argmax(np.broadcast_to(excess, angle.shape)), angle.shape)
             raise AssemblyError(
                 "rod must exceed |offset - crank sin(crank angle)|; "
-                f"got {in_mm(crank, rod, offset, np.broadcast_to(reach >= 0.0, angle.shape))} "
+                f"got {in_mm(crank, rod, offset, np.broadcast_to(excess >= 0.0, angle.shape))} "
                 f"at {np.degrees(angle[worst]):.3f} deg; lengthen the rod or stay within the reachable angles"
             )
         return motion(np.sin(theta), np.cos(theta), self.crank, self.rod, self.offset, self.sign)

@@ -34,10 +34,10 @@ def loaded_stroke(mechanism: Mechanism, dimensions: Array) -> NDArray[np.str_]:
         outward, inward = np.concatenate([np.zeros((2, 0)), *parts], axis=1)
     else:
         outward, inward = _work(mechanism, dimensions)
-    most = np.maximum(outward, inward)
-    apart = np.abs(outward - inward) > MORE * most
+    greater = np.maximum(outward, inward)
+    differs = np.abs(outward - inward) > MORE * greater
     named = np.where(outward > inward, "outward", "inward")
-    return np.asarray(np.where((most > 0.0) & apart, named, "equal"))
+    return np.asarray(np.where((greater > 0.0) & differs, named, "equal"))
 
 
 def _work(mechanism: Mechanism, dimensions: Array) -> Array:
@@ -56,5 +56,7 @@ def _passage(linkage: Linkage, *, outward: bool, direction: float) -> Passage:
     begin, end = (inner, outer) if outward else (outer, inner)
     turn = direction * np.mod(direction * (end - begin), 2.0 * math.pi)
     edges = begin + turn * np.linspace(0.0, 1.0, _STEPS + 1)
-    one = Linkage(linkage.crank[:, None], linkage.rod[:, None], linkage.offset[:, None], linkage.branch)
-    return Passage(outward, 0.5 * (edges[:, 1:] + edges[:, :-1]), linkage.sign * one.at(edges).slider_position)
+    column_linkage = Linkage(linkage.crank[:, None], linkage.rod[:, None], linkage.offset[:, None], linkage.branch)
+    return Passage(
+        outward, 0.5 * (edges[:, 1:] + edges[:, :-1]), linkage.sign * column_linkage.at(edges).slider_position
+    )

@@ -42,14 +42,14 @@ class PointMotion:
     acceleration: Array
 
 
-def numbers(value: ArrayLike, what: str = "a crank angle, speed or acceleration") -> Array:
+def numbers(value: ArrayLike, argument: str = "a crank angle, speed or acceleration") -> Array:
     """Return real or complex numbers; typed as real, which all but a complex step are. Raises `InputError`."""
     kind = np.complex128 if np.iscomplexobj(value) else np.float64
     try:
-        found: Array = np.asarray(value, dtype=kind)
+        array: Array = np.asarray(value, dtype=kind)
     except (TypeError, ValueError):
-        raise InputError(f"{what} must be a number or an array of numbers, SI; got {value!r}") from None
-    return found
+        raise InputError(f"{argument} must be a number or an array of numbers, SI; got {value!r}") from None
+    return array
 
 
 def dimensions(crank: ArrayLike, rod: ArrayLike, offset: ArrayLike) -> tuple[Array, Array, Array]:
@@ -58,10 +58,10 @@ def dimensions(crank: ArrayLike, rod: ArrayLike, offset: ArrayLike) -> tuple[Arr
     Raises `InputError` for other values, `AssemblyError` where no crank angle is possible.
     """
     values = []
-    for name, given in zip(DIMENSIONS, (crank, rod, offset), strict=True):
-        value = numbers(given, name)
+    for name, length in zip(DIMENSIONS, (crank, rod, offset), strict=True):
+        value = numbers(length, name)
         if not np.all(np.isfinite(value)):
-            raise InputError(f"{name} must be finite; got {given!r}")
+            raise InputError(f"{name} must be finite; got {length!r}")
         values.append(value)
     try:
         real = np.broadcast_arrays(*(value.real for value in values))
@@ -71,11 +71,11 @@ def dimensions(crank: ArrayLike, rod: ArrayLike, offset: ArrayLike) -> tuple[Arr
     for name, size in zip(("crank", "rod"), real, strict=False):
         if np.any(size <= 0.0):
             raise InputError(f"{name} must be longer than zero; got {first_marked(size, size <= 0.0):g} m")
-    apart = np.abs(real[2]) >= real[0] + real[1]
-    if np.any(apart):
+    cannot_close = np.abs(real[2]) >= real[0] + real[1]
+    if np.any(cannot_close):
         raise AssemblyError(
             "the linkage closes at no crank angle: |offset| must be less than crank + rod; "
-            f"got {in_mm(real[0], real[1], real[2], apart)}; shorten the offset or lengthen a link"
+            f"got {in_mm(real[0], real[1], real[2], cannot_close)}; shorten the offset or lengthen a link"
         )
     rounding = in_line(real[1], real[2]) & (real[2] != 0.0)
     if np.any(rounding):
@@ -84,14 +84,14 @@ def dimensions(crank: ArrayLike, rod: ArrayLike, offset: ArrayLike) -> tuple[Arr
 
 
 def in_both_units(lengths: Iterable[Array], longest: Iterable[float] = (LONGEST,) * 3) -> str | None:
-    """Return the first of crank, rod and offset, m, beyond any machine, as it is read and as it was probably meant.
+    """Return the first implausibly long dimension in words, as read in m and as probably meant in mm.
 
-    None where there is no such length. longest: of each, m, that is believed.
+    None without such a length. longest: plausible limits for crank, rod and offset, m.
     """
     for name, size, limit in zip(DIMENSIONS, lengths, longest, strict=True):
-        beyond = np.isfinite(size) & (np.abs(size) > limit)
-        if np.any(beyond):
-            return both_readings(name, first_marked(size, beyond), "m", "mm", 1e3)
+        is_too_long = np.isfinite(size) & (np.abs(size) > limit)
+        if np.any(is_too_long):
+            return both_readings(name, first_marked(size, is_too_long), "m", "mm", 1e3)
     return None
 
 
@@ -106,22 +106,22 @@ def direction(y: Array, x: Array) -> Array:
 
 def in_a_turn(angle: Array) -> Array:
     """Return an angle in [0, 2 pi), rad."""
-    inside = np.mod(angle.real, 2.0 * np.pi)
+    in_turn = np.mod(angle.real, 2.0 * np.pi)
     # Rounding takes a tiny negative angle to 2 pi itself.
-    inside = np.where(inside < 2.0 * np.pi, inside, 0.0)
-    found: Array = (inside + 1j * angle.imag if np.iscomplexobj(angle) else inside)[()]
-    return found
+    in_turn = np.where(in_turn < 2.0 * np.pi, in_turn, 0.0)
+    wrapped: Array = (in_turn + 1j * angle.imag if np.iscomplexobj(angle) else in_turn)[()]
+    return wrapped
 
 
-def first_marked(values: Array, where: Mask) -> float:
+def first_marked(values: Array, marked: Mask) -> float:
     """Return the first of the values that are marked."""
-    return float(np.asarray(values)[where].flat[0])
+    return float(np.asarray(values)[marked].flat[0])
 
 
-def in_mm(crank: Array, rod: Array, offset: Array, where: Mask) -> str:
+def in_mm(crank: Array, rod: Array, offset: Array, marked: Mask) -> str:
     """Return the first of the linkages that are marked, in words, mm."""
-    crank, rod, offset = (np.broadcast_to(value, where.shape) for value in (crank, rod, offset))
+    crank, rod, offset = (np.broadcast_to(value, marked.shape) for value in (crank, rod, offset))
     return (
-        f"rod {1e3 * first_marked(rod, where):g} mm, crank {1e3 * first_marked(crank, where):g} mm, "
-        f"offset {1e3 * first_marked(offset, where):g} mm"
+        f"rod {1e3 * first_marked(rod, marked):g} mm, crank {1e3 * first_marked(crank, marked):g} mm, "
+        f"offset {1e3 * first_marked(offset, marked):g} mm"
     )

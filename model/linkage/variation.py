@@ -33,7 +33,7 @@ class Variations:
 
     crank_angle: Array
     linkage: Linkage
-    meant: Kinematics
+    nominal: Kinematics
     varied: tuple[Variation, ...]
 
 
@@ -65,6 +65,6 @@ def vary(
         if not math.isfinite(value):
             raise InputError(f"the other value of the {name} must be finite; got {value}")
         changed = dimensions | {name: float(value)}
-        other = Linkage(changed["crank"], changed["rod"], changed["offset"], linkage.branch)
-        varied.append(Variation(name, float(value), other.at(angles, speed=speed, acceleration=acceleration)))
+        changed_linkage = Linkage(changed["crank"], changed["rod"], changed["offset"], linkage.branch)
+        varied.append(Variation(name, float(value), changed_linkage.at(angles, speed=speed, acceleration=acceleration)))
     return Variations(angles, linkage, linkage.at(angles, speed=speed, acceleration=acceleration), tuple(varied))

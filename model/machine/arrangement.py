@@ -39,10 +39,10 @@ class Arrangement:
         if not 1 <= count <= MOST:
             raise InputError(f"cylinders must be 1 to {MOST}; got {count} phases; give a phase for each cylinder")
         for name in ("banks", "places"):
-            got = len(getattr(self, name))
-            if got not in (0, count):
+            number = len(getattr(self, name))
+            if number not in (0, count):
                 raise InputError(
-                    f"{name} of cylinders must be as many as their phases; got {got} {name} and {count} phases; "
+                    f"{name} of cylinders must be as many as their phases; got {number} {name} and {count} phases; "
                     f"give one for each cylinder, or leave out {name}"
                 )
         for k in range(count):
@@ -53,11 +53,11 @@ class Arrangement:
         """Refuse two cylinders that stand alike at one place."""
         angles = self.phases[k] - self.phases[i], self.bank(k) - self.bank(i)
         if self.place(i) == self.place(k) and all(abs(math.remainder(angle, _TURN)) <= _SAME for angle in angles):
-            own = f", both in the bank of {math.degrees(self.bank(k)):.6g} deg" if self.banks else ""
+            bank_text = f", both in the bank of {math.degrees(self.bank(k)):.6g} deg" if self.banks else ""
             raise InputError(
                 f"cylinders at one place must differ in phase or bank; got {math.degrees(self.phases[i]):.6g} deg for "
-                f"cylinder {i + 1} and {math.degrees(self.phases[k]):.6g} deg for cylinder {k + 1}{own}; change one of "
-                "them, or give the places of all along the shaft"
+                f"cylinder {i + 1} and {math.degrees(self.phases[k]):.6g} deg for cylinder {k + 1}{bank_text}; "
+                "change one of them, or give the places of all along the shaft"
             )
 
     def bank(self, k: int) -> float:
@@ -85,10 +85,10 @@ def _degrees(angles: tuple[float, ...]) -> str:
     return ", ".join(f"{math.degrees(angle):.6g}" for angle in angles)
 
 
-def require_one_cylinder(arrangement: Arrangement | None, what: str) -> None:
-    """Refuse several cylinders where an analysis is of one; what: its subject."""
+def require_one_cylinder(arrangement: Arrangement | None, subject: str) -> None:
+    """Raise `InputError` for several cylinders. subject: the analysis, as the subject of the message."""
     if arrangement is not None and len(arrangement.phases) > 1:
         raise InputError(
-            f"{what} takes a machine of one cylinder; got {arrangement.text}; leave out cylinders for that of one, or "
-            "see analyse --show cylinders"
+            f"{subject} takes a machine of one cylinder; got {arrangement.text}; leave out cylinders for that of one, "
+            "or see analyse --show cylinders"
         )

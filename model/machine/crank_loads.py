@@ -16,8 +16,8 @@ def require_no_winding(mechanism: Mechanism) -> None:
             )
 
 
-def require_no_crank_load(mechanism: Mechanism, what: str) -> None:
-    """Refuse loads on the crank where an analysis has those on the slider alone; what: its subject."""
+def require_no_crank_load(mechanism: Mechanism, subject: str) -> None:
+    """Refuse loads on the crank where an analysis has those on the slider alone; subject: the analysis."""
     for load in mechanism.fullest.loads:
         if load.on_crank:
-            raise InputError(f"{what} takes loads on the slider; got {load.size}; leave that load out")
+            raise InputError(f"{subject} takes loads on the slider; got {load.size}; leave that load out")

@@ -29,12 +29,12 @@ def _derive(
         for i in range(columns.shape[0]):
             stepped[columns[i], 0] = designs[n, i]
         for v in range(-1, count):
-            own = stepped[columns[max(v, 0)], 0] if count else 0j
+            unstepped = stepped[columns[max(v, 0)], 0] if count else 0j
             if v >= 0:
-                stepped[columns[v], 0] = own + complex(0.0, STEP)
+                stepped[columns[v], 0] = unstepped + complex(0.0, STEP)
             derive(stepped, kind, datum, block)
             if v >= 0:
-                stepped[columns[v], 0] = own
+                stepped[columns[v], 0] = unstepped
             for i in range(blocks.shape[1]):
                 if v < 0:
                     blocks[n, i, 0] = block[i, 0].real

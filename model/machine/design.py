@@ -102,29 +102,29 @@ def link_properties(
     mass: Any,
     centre: Any,
     centre_share: Any,
-    across: Any,
+    centre_across: Any,
     inertia: Any,
     inertia_share: Any,
 ) -> Any:
     """Return mass, first moments along and across, and inertia about the link's origin.
 
-    The sum of a round-ended bar and of a rigid body with its centre at `centre + centre_share length`, `across` off the
-    axis, and the central inertia `inertia + inertia_share mass length^2`; either may be absent (zero).
+    The sum of a round-ended bar and of a rigid body with its centre at `centre + centre_share length`, `centre_across`
+    off the axis, and the central inertia `inertia + inertia_share mass length^2`; either may be absent (zero).
     Half-disc of radius R: centroid 4 R / (3 pi) from its diameter, polar moment about the disc's centre m R^2 / 2.
     """
     web = density * depth * width * length
     cap = density * depth * width * width * (math.pi / 8.0)
     radius = 0.5 * width
     centroid = radius * (4.0 / (3.0 * math.pi))
-    at = centre + centre_share * length
+    centre_along = centre + centre_share * length
     return (
         web + 2.0 * cap + mass,
-        (0.5 * web + cap) * length + mass * at,
-        mass * across,
+        (0.5 * web + cap) * length + mass * centre_along,
+        mass * centre_across,
         web * (length * length * (1.0 / 3.0) + width * width * (1.0 / 12.0))
         + cap * (radius * radius + length * length + 2.0 * length * centroid)
         + inertia
-        + mass * (inertia_share * length * length + at * at + across * across),
+        + mass * (inertia_share * length * length + centre_along * centre_along + centre_across * centre_across),
     )
 
 
@@ -132,7 +132,7 @@ def link_properties(
 def _derive_crank(raw: Any, out: Any) -> None:
     c, w, t = _CRANK_LINK, _COUNTERWEIGHT, _TOLERANCES
     for j in range(raw.shape[1]):
-        m, along, across, inertia = link_properties(
+        m, first_along, first_across, inertia = link_properties(
             raw[_CRANK, j],
             raw[c, j],
             raw[c + 1, j],
@@ -146,8 +146,8 @@ def _derive_crank(raw: Any, out: Any) -> None:
         )
         weight, x, y = raw[w, j], raw[w + 1, j], raw[w + 2, j]
         out[9, j] = m + weight
-        out[10, j] = along + weight * x
-        out[11, j] = across + weight * y
+        out[10, j] = first_along + weight * x
+        out[11, j] = first_across + weight * y
         out[12, j] = inertia + raw[w + 3, j] + weight * (x * x + y * y)
         out[17, j] = raw[t, j] + raw[t + 1, j] * raw[_CRANK, j]
 
@@ -157,7 +157,7 @@ def _derive_rod(raw: Any, out: Any) -> None:
     c, t = _ROD_LINK, _TOLERANCES
     for j in range(raw.shape[1]):
         l = raw[_ROD, j]
-        m, along, across, inertia = link_properties(
+        m, first_along, first_across, inertia = link_properties(
             l,
             raw[c, j],
             raw[c + 1, j],
@@ -170,8 +170,8 @@ def _derive_rod(raw: Any, out: Any) -> None:
             raw[c + 8, j],
         )
         out[13, j] = m
-        out[14, j] = along / l
-        out[15, j] = across / l
+        out[14, j] = first_along / l
+        out[15, j] = first_across / l
         out[16, j] = inertia
         rod = raw[t + 2, j] + raw[t + 3, j] * l
         pivot, pin, end = raw[t + 7, j], raw[t + 8, j], raw[t + 9, j]

@@ -42,8 +42,8 @@ def with_loads_alone(mechanism: Mechanism) -> Mechanism:
     nothing = RigidLink(mass=0.0)
     of_loads = {"loads", "speed", "speed_profile"}
 
-    def own(item: Varying) -> Varying:
-        sets = tuple(each for each in item.sets if each[0].partition(".")[0] in of_loads)
+    def load_numbers(item: Varying) -> Varying:
+        sets = tuple(entry for entry in item.sets if entry[0].partition(".")[0] in of_loads)
         return replace(item, sets=sets, idle=not sets)
 
     return Mechanism(
@@ -54,7 +54,7 @@ def with_loads_alone(mechanism: Mechanism) -> Mechanism:
         branch=mechanism.branch,
         arrangement=mechanism.arrangement,
         speed_profile=mechanism.speed_profile,
-        varying=tuple(map(own, mechanism.varying)),
+        varying=tuple(map(load_numbers, mechanism.varying)),
     )
 
 
@@ -116,8 +116,8 @@ def _weighs(link: Link) -> bool:
 
 def _rubs(machine: Mechanism) -> bool:
     friction = machine.friction
-    beyond = friction.guide > 0.0 or friction.crank_pin.circle > 0.0 or friction.slider_pin.circle > 0.0
-    return (beyond and linkage_loaded(machine)) or (friction.crank_pivot.circle > 0.0 and pivot_loaded(machine))
+    past_pivot = friction.guide > 0.0 or friction.crank_pin.circle > 0.0 or friction.slider_pin.circle > 0.0
+    return (past_pivot and linkage_loaded(machine)) or (friction.crank_pivot.circle > 0.0 and pivot_loaded(machine))
 
 
 def _tried(mechanism: Mechanism) -> list[Mechanism]:
@@ -131,6 +131,6 @@ def _tried(mechanism: Mechanism) -> list[Mechanism]:
 def _load_works(machine: Mechanism) -> bool:
     sizes: defaultdict[Hashable, list[float]] = defaultdict(list)
     for load in _acting_loads(machine):
-        for key, own in load.turn_work(moving=machine.speed != 0.0).items():
-            sizes[key].extend(own)
+        for key, works in load.turn_work(moving=machine.speed != 0.0).items():
+            sizes[key].extend(works)
     return any(abs(math.fsum(parts)) > _ROUNDING * math.fsum(map(abs, parts)) for parts in sizes.values())

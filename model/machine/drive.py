@@ -29,7 +29,7 @@ class ConstantTorque:
     def __post_init__(self) -> None:
         require_numbers(self, "torque")
 
-    def at(self, speed: ArrayLike) -> Any:
+    def torque_at(self, speed: ArrayLike) -> Any:
         """Return the torque, N m, at motor speeds, rad/s."""
         return np.full(np.shape(speed), self.torque)[()]
 
@@ -65,7 +65,7 @@ class LinearMotor:
             )
         return cls(stall_torque=torque * no_load_speed / (no_load_speed - speed), no_load_speed=no_load_speed)
 
-    def at(self, speed: ArrayLike) -> Any:
+    def torque_at(self, speed: ArrayLike) -> Any:
         """Return the torque, N m, at motor speeds, rad/s."""
         return self.stall_torque * (1.0 - np.asarray(speed) / self.no_load_speed)[()]
 
@@ -111,7 +111,7 @@ class TorqueTable:
 
         return PchipInterpolator(self.speeds, self.torques, extrapolate=False)
 
-    def at(self, speed: ArrayLike) -> Any:
+    def torque_at(self, speed: ArrayLike) -> Any:
         """Return the torque, N m, at motor speeds, rad/s; NaN beyond the table."""
         return self._curve(speed)[()]
 
@@ -154,7 +154,7 @@ class Drive:
         direction: +1 or -1, the way the motor is meant to turn the crank.
         """
         speed = direction * self.gear_ratio * np.asarray(crank_speed)
-        return np.asarray(direction * self.gear_ratio * self.motor.at(speed))
+        return np.asarray(direction * self.gear_ratio * self.motor.torque_at(speed))
 
 
 def speed_range(drive: Drive) -> tuple[float, float]:

@@ -41,21 +41,21 @@ class ElapsedTime:
         while len(begin):
             half = 0.5 * (end - begin)
             values = 1.0 / ratio(begin[:, None] + half[:, None] * (1.0 + nodes))
-            found = values @ basis
-            tail = np.abs(found[:, -_TAIL:]).sum(axis=1)
-            good = tail <= _SETTLED * found[:, 0] + _NOISE * values.max(axis=1) ** 2
+            coefficients = values @ basis
+            tail = np.abs(coefficients[:, -_TAIL:]).sum(axis=1)
+            good = tail <= _SETTLED * coefficients[:, 0] + _NOISE * values.max(axis=1) ** 2
             good |= len(begin) > _PANELS
             starts.append(begin[good])
-            parts.append(half[good, None] * found[good])
+            parts.append(half[good, None] * coefficients[good])
             middle = begin[~good] + half[~good]
             begin, end = np.concatenate([begin[~good], middle]), np.concatenate([middle, end[~good]])
         start = np.concatenate(starts)
         order = np.argsort(start)
         integrals = legendre.legint(np.concatenate(parts)[order].T, lbnd=-1.0)
         series = np.asarray(integrals, dtype=np.float64)
-        whole = np.asarray(legendre.legval(1.0, series), dtype=np.float64)
+        panel_integrals = np.asarray(legendre.legval(1.0, series), dtype=np.float64)
         panels = np.append(start[order], ends[-1])
-        return cls(np.asarray(panels, dtype=np.float64), series, np.concatenate([[0.0], np.cumsum(whole)]))
+        return cls(np.asarray(panels, dtype=np.float64), series, np.concatenate([[0.0], np.cumsum(panel_integrals)]))
 
     @property
     def whole_turn(self) -> float:
@@ -65,9 +65,9 @@ class ElapsedTime:
     def up_to(self, crank_angle: Array) -> Array:
         """Return the integral from the start of the first panel up to crank angles, rad, of any number of turns."""
         turns = np.floor((crank_angle - self.ends[0]) / _TURN)
-        within = crank_angle - turns * _TURN
-        panel = np.clip(np.searchsorted(self.ends, within, side="right") - 1, 0, len(self.ends) - 2)
+        angle_in_turn = crank_angle - turns * _TURN
+        panel = np.clip(np.searchsorted(self.ends, angle_in_turn, side="right") - 1, 0, len(self.ends) - 2)
         low, high = self.ends[panel], self.ends[panel + 1]
-        x = np.clip(2.0 * (within - low) / (high - low) - 1.0, -1.0, 1.0)
-        found = legendre.legval(x, self.series[:, panel], tensor=False)
-        return np.asarray(turns * self.whole_turn + self.up_to_ends[panel] + found)
+        x = np.clip(2.0 * (angle_in_turn - low) / (high - low) - 1.0, -1.0, 1.0)
+        within_panel = legendre.legval(x, self.series[:, panel], tensor=False)
+        return np.asarray(turns * self.whole_turn + self.up_to_ends[panel] + within_panel)

@@ -21,7 +21,7 @@ class Pin:
     coefficient: float = 0.0
 
     def __post_init__(self) -> None:
-        require_numbers(self, "radius", "coefficient", what="the {} of a pin", least=0.0)
+        require_numbers(self, "radius", "coefficient", phrase="the {} of a pin", least=0.0)
 
     @property
     def circle(self) -> float:
@@ -48,7 +48,7 @@ class Friction:
     slider_pin: Pin = Pin()
 
     def __post_init__(self) -> None:
-        require_numbers(self, "guide", what="the {}'s coefficient of friction", least=0.0)
+        require_numbers(self, "guide", phrase="the {}'s coefficient of friction", least=0.0)
 
     @property
     def acts(self) -> bool:
@@ -56,9 +56,9 @@ class Friction:
         return self.guide > 0.0 or any(pin.circle > 0.0 for pin in (self.crank_pivot, self.crank_pin, self.slider_pin))
 
 
-def require_frictionless(friction: Friction, what: str) -> None:
-    """Refuse friction where an analysis has none. what: the analysis, as the subject of a sentence."""
+def require_frictionless(friction: Friction, subject: str) -> None:
+    """Refuse friction where an analysis has none. subject: the analysis, as the subject of a sentence."""
     if friction.acts:
         raise InputError(
-            f"{what} takes joints and guide without friction; got friction that acts; leave [friction] out"
+            f"{subject} takes joints and guide without friction; got friction that acts; leave [friction] out"
         )

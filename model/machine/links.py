@@ -26,7 +26,7 @@ class Bar:
     density: float
 
     def __post_init__(self) -> None:
-        require_numbers(self, "width", "depth", "density", what="the {} of a bar", above=0.0)
+        require_numbers(self, "width", "depth", "density", phrase="the {} of a bar", above=0.0)
 
     def mass(self, length: float) -> float:
         """Return the mass, kg, for a centre distance, m."""
@@ -42,12 +42,12 @@ class Bar:
         disc = self.density * d * 0.25 * math.pi * w**2
         # Second moments over x (along), y (across in plane), z (depth); the discs' halves sit at +-(L/2 + 4 R / 3 pi).
         radius = 0.5 * w
-        along = body * length**2 / 12.0 + disc * (
+        about_width = body * length**2 / 12.0 + disc * (
             0.25 * length**2 + length * 4.0 * radius / (3.0 * math.pi) + 0.25 * radius**2
         )
-        across = body * w**2 / 12.0 + disc * 0.25 * radius**2
-        through = (body + disc) * d**2 / 12.0
-        return along + across, along + through, across + through
+        about_axis = body * w**2 / 12.0 + disc * 0.25 * radius**2
+        about_depth = (body + disc) * d**2 / 12.0
+        return about_width + about_axis, about_width + about_depth, about_axis + about_depth
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,8 +66,8 @@ class RigidLink:
     inertia: float | None = None
 
     def __post_init__(self) -> None:
-        require_numbers(self, "mass", "inertia", what="the {} of a link", least=0.0)
-        require_numbers(self, "centre", "centre_across", what="the {} of a link")
+        require_numbers(self, "mass", "inertia", phrase="the {} of a link", least=0.0)
+        require_numbers(self, "centre", "centre_across", phrase="the {} of a link")
 
 
 Link = Bar | RigidLink
@@ -87,5 +87,5 @@ class Counterweight:
     inertia: float = 0.0
 
     def __post_init__(self) -> None:
-        require_numbers(self, "mass", "radius", "inertia", what="the {} of the counterweight", least=0.0)
-        require_numbers(self, "angle", what="the {} of the counterweight")
+        require_numbers(self, "mass", "radius", "inertia", phrase="the {} of the counterweight", least=0.0)
+        require_numbers(self, "angle", phrase="the {} of the counterweight")

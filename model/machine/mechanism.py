@@ -20,7 +20,7 @@ from .slider_distances import SliderDistances
 from .speed_profile import Profile
 from .start import Start
 from .strength import Strength
-from .varying import Varying, put, require_possible
+from .varying import Varying, require_possible, with_values
 
 Branch = Literal["open", "crossed"]
 
@@ -33,7 +33,7 @@ class Tolerance:
     fraction: float = 0.0
 
     def __post_init__(self) -> None:
-        require_numbers(self, "absolute", "fraction", what="the {} part of a tolerance", least=0.0)
+        require_numbers(self, "absolute", "fraction", phrase="the {} part of a tolerance", least=0.0)
 
     def limit(self, length: float) -> float:
         """Return how far a length, m, may be off, m."""
@@ -75,7 +75,7 @@ class Clearances:
 
     def __post_init__(self) -> None:
         names = ("crank_pivot", "crank_pin", "slider_pin", "guide")
-        require_numbers(self, *names, what="the {} clearance", least=0.0, unit="m")
+        require_numbers(self, *names, phrase="the {} clearance", least=0.0, unit="m")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,7 +94,7 @@ class Tolerances:
             raise InputError("a tolerance of the crank angle is an angle, not a share; give it in rad or deg")
 
     @property
-    def given(self) -> bool:
+    def are_stated(self) -> bool:
         """Whether anything may be off: without tolerance and clearance a position error is not defined."""
         sizes = (self.crank, self.rod, self.offset, self.crank_angle)
         return any(size.absolute or size.fraction for size in sizes) or self.clearances != Clearances()
@@ -151,9 +151,9 @@ class Mechanism:
     def __post_init__(self) -> None:
         keep_tuples(self, "gravity", "loads", "varying")
         require_kinds(self, _KINDS, _TABLES)
-        require_kinds(self, {"varying": Varying}, _TABLES, each=True)
-        require_numbers(self, "speed", "acceleration", what="{}")
-        require_numbers(self, "slider_mass", what="the slider mass", least=0.0, unit="kg")
+        require_kinds(self, {"varying": Varying}, _TABLES, item_by_item=True)
+        require_numbers(self, "speed", "acceleration", phrase="{}")
+        require_numbers(self, "slider_mass", phrase="the slider mass", least=0.0, unit="kg")
         gravity: object = self.gravity
         if not isinstance(gravity, tuple) or len(gravity) != 2:
             raise InputError(
@@ -207,9 +207,9 @@ class Mechanism:
     def load_texts(self) -> list[str]:
         """Each load in a sentence, with the ranges of its varying numbers."""
         low, high = self.ends
-        return [range_text(one.text, other.text) for one, other in zip(low.loads, high.loads, strict=True)]
+        return [range_text(at_low.text, at_high.text) for at_low, at_high in zip(low.loads, high.loads, strict=True)]
 
     def at(self, values: Sequence[float]) -> Mechanism:
         """Return the machine with these values, SI, of its varying numbers (k,)."""
-        machine: Mechanism = put(self.nominal, self.varying, values)
+        machine: Mechanism = with_values(self.nominal, self.varying, values)
         return machine

@@ -53,23 +53,23 @@ def members(mechanism: Mechanism) -> tuple[Member, ...]:
             "several cylinders need to be stated; got none; add to the job for example "
             '[mechanism] cylinders = { phases = ["0 deg", "180 deg"] }'
         )
-    found = []
+    cylinders = []
     x, y = mechanism.gravity
     for k in range(len(arrangement.phases)):
         bank = arrangement.bank(k)
         c, s = math.cos(bank), math.sin(bank)
         turned = (x, y) if bank == 0.0 else (c * x + s * y, c * y - s * x)
-        own = replace(mechanism, arrangement=None, speed_profile=None, gravity=turned)
-        found.append(Member(own, arrangement.lead(k), bank, arrangement.place(k)))
-    return tuple(found)
+        cylinder = replace(mechanism, arrangement=None, speed_profile=None, gravity=turned)
+        cylinders.append(Member(cylinder, arrangement.lead(k), bank, arrangement.place(k)))
+    return tuple(cylinders)
 
 
-def require_plain(mechanism: Mechanism, what: str) -> None:
-    """Refuse several cylinders and a speed profile where an analysis has neither; what: its subject."""
-    require_one_cylinder(mechanism.arrangement, what)
+def require_plain(mechanism: Mechanism, subject: str) -> None:
+    """Refuse several cylinders and a speed profile where an analysis has neither; subject: the analysis."""
+    require_one_cylinder(mechanism.arrangement, subject)
     if mechanism.speed_profile is not None:
         raise InputError(
-            f"{what} takes a crank at constant speed; got a speed profile, {mechanism.speed_profile.text}; leave "
+            f"{subject} takes a crank at constant speed; got a speed profile, {mechanism.speed_profile.text}; leave "
             "speed_profile out for it"
         )
 

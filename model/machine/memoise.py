@@ -28,18 +28,18 @@ def memoise_by_machine(
     last: tuple[Mechanism | None, dict[object, Result]] = (None, {})
 
     @wraps(function)
-    def known(mechanism: Mechanism, /, *given: Parameters.args, **named: Parameters.kwargs) -> Result:
+    def memoised(mechanism: Mechanism, /, *arguments: Parameters.args, **named: Parameters.kwargs) -> Result:
         nonlocal last
-        before, answers = last
-        if before is not mechanism:
-            answers = {}
-            last = mechanism, answers
-        key = (given, *named.items())
-        if key not in answers:
-            answers[key] = function(mechanism, *given, **named)
-        return answers[key]
+        machine, results = last
+        if machine is not mechanism:
+            results = {}
+            last = mechanism, results
+        key = (arguments, *named.items())
+        if key not in results:
+            results[key] = function(mechanism, *arguments, **named)
+        return results[key]
 
-    return known
+    return memoised
 
 
 def memoise_by_batch(
@@ -51,22 +51,24 @@ def memoise_by_batch(
 
     Its other arguments are hashable, and its answers are not written to. Of larger batches nothing is kept.
     """
-    kept: OrderedDict[object, tuple[Mechanism, dict[object, Result]]] = OrderedDict()
+    batches: OrderedDict[object, tuple[Mechanism, dict[object, Result]]] = OrderedDict()
     lock = Lock()
 
     @wraps(function)
-    def known(mechanism: Mechanism, designs: Array, /, *given: Parameters.args, **named: Parameters.kwargs) -> Result:
+    def memoised(
+        mechanism: Mechanism, designs: Array, /, *arguments: Parameters.args, **named: Parameters.kwargs
+    ) -> Result:
         if len(designs) > _LARGEST:
-            return function(mechanism, designs, *given, **named)
-        batch, key = (id(mechanism), designs.shape, designs.tobytes()), (given, *named.items())
+            return function(mechanism, designs, *arguments, **named)
+        batch, key = (id(mechanism), designs.shape, designs.tobytes()), (arguments, *named.items())
         with lock:
             # The machine is held, so that no other one gets its number.
-            _, answers = kept.setdefault(batch, (mechanism, {}))
-            kept.move_to_end(batch)
-            while len(kept) > _BATCHES:
-                kept.popitem(last=False)
-        if key not in answers:
-            answers[key] = function(mechanism, designs, *given, **named)
-        return answers[key]
+            _, results = batches.setdefault(batch, (mechanism, {}))
+            batches.move_to_end(batch)
+            while len(batches) > _BATCHES:
+                batches.popitem(last=False)
+        if key not in results:
+            results[key] = function(mechanism, designs, *arguments, **named)
+        return results[key]
 
-    return known
+    return memoised

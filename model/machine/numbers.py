@@ -103,28 +103,28 @@ _THREE = np.arange(3)
 
 
 @memoise_by_batch
-def numbers_of(mechanism: Mechanism, designs: Array, *, room: int, gradients: bool) -> Numbers:
+def numbers_of(mechanism: Mechanism, designs: Array, *, limit: int, gradients: bool) -> Numbers:
     """Return the raw numbers that designs (n, 3 + k) of a machine with k varying numbers set.
 
-    room: raw numbers that there are; a signal that no load matters for has fewer. gradients: whether to give slopes.
+    limit: raw numbers that there are; a signal that no load matters for has fewer. gradients: whether to give slopes.
     """
     require_width(mechanism, designs)
     if not mechanism.varying:
         return Numbers(_THREE, designs, None)
-    found = {slot: value for slot, value in _raw(mechanism, designs).items() if slot < room}
-    columns = np.array(list(found), dtype=np.int64)
-    values = np.ascontiguousarray(np.stack(list(found.values()), axis=1))
+    by_slot = {slot: value for slot, value in _raw(mechanism, designs).items() if slot < limit}
+    columns = np.array(list(by_slot), dtype=np.int64)
+    values = np.ascontiguousarray(np.stack(list(by_slot.values()), axis=1))
     shape = len(designs) if gradients else 0, len(columns), designs.shape[1]
     rates = _rates(mechanism.varying)
     if rates is not None:
-        own = np.array([rates[slot] for slot in found])
-        return Numbers(columns, values, np.array(np.broadcast_to(own, shape)))
+        by_column = np.array([rates[slot] for slot in by_slot])
+        return Numbers(columns, values, np.array(np.broadcast_to(by_column, shape)))
     slopes = np.empty(shape)
     for v in range(designs.shape[1] if gradients else 0):
         stepped = designs.astype(np.complex128)
         stepped[:, v] += 1j * STEP
         moved = _raw(mechanism, stepped)
-        slopes[:, :, v] = np.stack([moved[slot].imag for slot in found], axis=1) / STEP
+        slopes[:, :, v] = np.stack([moved[slot].imag for slot in by_slot], axis=1) / STEP
     return Numbers(columns, values, slopes)
 
 
@@ -133,14 +133,14 @@ def number_of(mechanism: Mechanism, slot: int, designs: Array, *, otherwise: flo
 
     `otherwise`: unless designs set it.
     """
-    found = numbers_of(mechanism, designs, room=10**9, gradients=True)
-    place = np.flatnonzero(found.columns == slot)
-    if found.slopes is None or not len(place):
+    numbers = numbers_of(mechanism, designs, limit=10**9, gradients=True)
+    place = np.flatnonzero(numbers.columns == slot)
+    if numbers.slopes is None or not len(place):
         return np.full(len(designs), otherwise), np.zeros(designs.shape)
-    return found.values[:, place[0]], found.slopes[:, place[0]]
+    return numbers.values[:, place[0]], numbers.slopes[:, place[0]]
 
 
-def of_numbers(
+def formula_of_numbers(
     mechanism: Mechanism, designs: Array, formula: Callable[[Callable[[int], Any]], Any], *, gradients: bool
 ) -> tuple[Array, Array | None]:
     """Return a formula of designs (n, 3 + k), (n,), and its derivatives (n, 3 + k) by complex steps.
@@ -148,27 +148,27 @@ def of_numbers(
     formula: of a function that gives the raw number of a slot (`Raw`, `PINS`), each (n,) or one for all designs. It is
     smooth, and takes complex numbers too.
     """
-    numbers = numbers_of(mechanism, designs, room=10**9, gradients=gradients)
+    numbers = numbers_of(mechanism, designs, limit=10**9, gradients=gradients)
     base = _nominal(mechanism)
     pins = (
         {} if mechanism.strength is None else {slot: getattr(mechanism.strength, name) for name, slot in PINS.items()}
     )
-    found: dict[int, Any] = dict(zip(numbers.columns.tolist(), numbers.values.T, strict=True))
-    asked: dict[int, None] = {}
+    set_numbers: dict[int, Any] = dict(zip(numbers.columns.tolist(), numbers.values.T, strict=True))
+    slots_used: dict[int, None] = {}
 
     def number(slot: int) -> Any:
-        asked[slot] = None
-        return found[slot] if slot in found else pins[slot] if slot in pins else base[slot]
+        slots_used[slot] = None
+        return set_numbers[slot] if slot in set_numbers else pins[slot] if slot in pins else base[slot]
 
     plain = formula(number) + np.zeros(len(designs))
     if not gradients:
         return plain, None
-    by_number = np.zeros((len(designs), len(found)))
-    for place, slot in enumerate(found):
-        if slot in asked:
-            found[slot] = found[slot] + 1j * STEP
+    by_number = np.zeros((len(designs), len(set_numbers)))
+    for place, slot in enumerate(set_numbers):
+        if slot in slots_used:
+            set_numbers[slot] = set_numbers[slot] + 1j * STEP
             by_number[:, place] = np.imag(formula(number)) / STEP
-            found[slot] = found[slot].real
+            set_numbers[slot] = set_numbers[slot].real
     return plain, numbers.chain(by_number)
 
 
@@ -180,9 +180,9 @@ def _nominal(mechanism: Mechanism) -> Array:
 def require_width(mechanism: Mechanism, designs: Array) -> None:
     """Raise `InputError` unless designs (n, 3 + k) have as many numbers as the machine asks for."""
     if designs.shape[1] != 3 + len(mechanism.varying):
-        more = "".join(f", {item.name}" for item in mechanism.varying)
+        names = "".join(f", {item.name}" for item in mechanism.varying)
         raise InputError(
-            f"a design of this machine has {3 + len(mechanism.varying)} numbers: crank, rod, offset{more}; "
+            f"a design of this machine has {3 + len(mechanism.varying)} numbers: crank, rod, offset{names}; "
             f"got {designs.shape[1]}"
         )
 
@@ -202,18 +202,18 @@ def _rates(varying: tuple[Varying, ...]) -> dict[int, tuple[float, ...]] | None:
 
 def _raw(mechanism: Mechanism, designs: Any) -> dict[int, Any]:
     """Return the raw numbers that designs set, each (n,); complex designs give complex ones."""
-    found: dict[int, Any] = {column: designs[:, column] for column in range(3)}
+    by_slot: dict[int, Any] = {column: designs[:, column] for column in range(3)}
     polar: dict[str, Any] = {}
     for column, item in enumerate(mechanism.varying):
         for path, factor in item.sets:
             if path in _POLAR:
                 polar[path] = factor * designs[:, 3 + column]
             else:
-                found[_slot_of(path)[0]] = factor * designs[:, 3 + column]
+                by_slot[_slot_of(path)[0]] = factor * designs[:, 3 + column]
     if polar:
         weight = mechanism.counterweight
         radius = polar.get("counterweight.radius", weight.radius)
         angle = polar.get("counterweight.angle", weight.angle) + 0.0 * designs[:, 0]
-        found[Raw.COUNTERWEIGHT_ALONG] = radius * np.cos(angle)
-        found[Raw.COUNTERWEIGHT_ACROSS] = radius * np.sin(angle)
-    return found
+        by_slot[Raw.COUNTERWEIGHT_ALONG] = radius * np.cos(angle)
+        by_slot[Raw.COUNTERWEIGHT_ACROSS] = radius * np.sin(angle)
+    return by_slot

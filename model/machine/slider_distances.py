@@ -13,8 +13,9 @@ DeadCentre = Literal["outer", "inner"]
 
 @dataclass(frozen=True, kw_only=True)
 class SliderDistances:
-    """Where the slider meets its work, m before a dead centre, and how near to it, m, it counts as at rest.
+    """Distances of the slider from a dead centre, m.
 
+    touch: where it meets its work. dwell: within which it counts as at rest.
     guide: m from the slider pin at its outer dead centre, outward, to the centre of the guide, which the frame holds.
     """
 
@@ -25,16 +26,16 @@ class SliderDistances:
 
     def __post_init__(self) -> None:
         require_word("dead_centre", self.dead_centre, DeadCentre)
-        require_numbers(self, "touch", "dwell", what="the {} distance of the slider", above=0.0, unit="m")
-        require_numbers(self, "guide", what="the {} distance of the slider")
+        require_numbers(self, "touch", "dwell", phrase="the {} distance of the slider", above=0.0, unit="m")
+        require_numbers(self, "guide", phrase="the {} distance of the slider")
 
     @property
     def text(self) -> str:
         """The distances that are given, to follow the slider's mass; empty without any."""
-        given = {
+        distances = {
             f"meets its work {{}} before the {self.dead_centre} dead centre": self.touch,
             f"dwells within {{}} of the {self.dead_centre} dead centre": self.dwell,
             "guide centre {} outward of the outer dead centre": self.guide,
         }
-        found = ((words, distance) for words, distance in given.items() if distance is not None)
-        return "".join(f", {words.format(f'{1e3 * distance:.6g} mm')}" for words, distance in found)
+        stated = ((words, distance) for words, distance in distances.items() if distance is not None)
+        return "".join(f", {words.format(f'{1e3 * distance:.6g} mm')}" for words, distance in stated)

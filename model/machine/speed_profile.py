@@ -55,24 +55,24 @@ class Harmonics:
 
     def ratio(self, theta: Array) -> Array:
         """Return p at crank angles, rad, real or complex."""
-        found = np.ones_like(theta)
+        total = np.ones_like(theta)
         for k, (a, b) in enumerate(self.pairs, start=1):
-            found = found + a * np.cos(k * theta) + b * np.sin(k * theta)
-        return np.asarray(found)
+            total = total + a * np.cos(k * theta) + b * np.sin(k * theta)
+        return np.asarray(total)
 
     def slope(self, theta: Array) -> Array:
         """Return dp/d(theta)."""
-        found = np.zeros_like(theta)
+        total = np.zeros_like(theta)
         for k, (a, b) in enumerate(self.pairs, start=1):
-            found = found + k * (b * np.cos(k * theta) - a * np.sin(k * theta))
-        return np.asarray(found)
+            total = total + k * (b * np.cos(k * theta) - a * np.sin(k * theta))
+        return np.asarray(total)
 
     def curvature(self, theta: Array) -> Array:
         """Return the second derivative of p."""
-        found = np.zeros_like(theta)
+        total = np.zeros_like(theta)
         for k, (a, b) in enumerate(self.pairs, start=1):
-            found = found - k**2 * (a * np.cos(k * theta) + b * np.sin(k * theta))
-        return np.asarray(found)
+            total = total - k**2 * (a * np.cos(k * theta) + b * np.sin(k * theta))
+        return np.asarray(total)
 
     @cached_property
     def elapsed_time(self) -> ElapsedTime:

@@ -15,4 +15,4 @@ class Start:
     place: float | None = None
 
     def __post_init__(self) -> None:
-        require_numbers(self, "angle", "place", what="the {} at which a swing starts")
+        require_numbers(self, "angle", "place", phrase="the {} at which a swing starts")

@@ -62,9 +62,9 @@ class Strength:
 
     def __post_init__(self) -> None:
         names = ("crank_pivot", "crank_pin", "slider_pin")
-        require_numbers(self, *names, what="the diameter of the {}", above=0.0, unit="m")
-        require_numbers(self, "eye_concentration", what="{}", least=1.0)
-        require_numbers(self, "wear_coefficient", what="the {}", above=0.0, unit="m^2/N")
+        require_numbers(self, *names, phrase="the diameter of the {}", above=0.0, unit="m")
+        require_numbers(self, "eye_concentration", phrase="{}", least=1.0)
+        require_numbers(self, "wear_coefficient", phrase="the {}", above=0.0, unit="m^2/N")
         require_word("criterion", self.criterion, Criterion)
 
     @property

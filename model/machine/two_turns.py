@@ -47,17 +47,17 @@ def halves(mechanism: Mechanism) -> tuple[Mechanism, ...]:
 def _half(mechanism: Mechanism, turn: int) -> Mechanism:
     loads = mechanism.loads
 
-    def own(item: Varying) -> Varying:
+    def numbers_of_turn(item: Varying) -> Varying:
         """Return the numbers of the loads by their names on that turn."""
         sets = []
         for path, factor in item.sets:
-            found = re.fullmatch(r"loads\.(\d+)\.(\w+)", path)
-            name = path if found is None else loads[int(found[1])].number_on_turn(found[2], turn)
+            match = re.fullmatch(r"loads\.(\d+)\.(\w+)", path)
+            name = path if match is None else loads[int(match[1])].number_on_turn(match[2], turn)
             if name is not None:
-                sets.append((path if found is None else f"loads.{found[1]}.{name}", factor))
+                sets.append((path if match is None else f"loads.{match[1]}.{name}", factor))
         return replace(item, sets=tuple(sets), idle=not sets)
 
-    varying = tuple(own(item) for item in mechanism.varying)
+    varying = tuple(numbers_of_turn(item) for item in mechanism.varying)
     return replace(mechanism, loads=tuple(load.on_turn(turn) for load in loads), varying=varying)
 
 
@@ -91,10 +91,10 @@ def _datum(mechanism: Mechanism) -> str:
     return datums.pop()
 
 
-def require_one_turn(mechanism: Mechanism, what: str) -> None:
-    """Refuse a cycle of two turns where an analysis is of one; what: its subject."""
+def require_one_turn(mechanism: Mechanism, subject: str) -> None:
+    """Refuse a cycle of two turns where an analysis is of one; subject: the analysis."""
     if cycle_turns(mechanism) > 1:
         raise InputError(
-            f"{what} takes a cycle of 360 deg; got a load with one of 720 deg; leave that load out, or state it "
+            f"{subject} takes a cycle of 360 deg; got a load with one of 720 deg; leave that load out, or state it "
             "for one turn"
         )

@@ -49,7 +49,7 @@ class Varying:
         return tuple(path for path, _ in self.sets)
 
 
-def put(part: Any, varying: Sequence[Varying], values: Sequence[float]) -> Any:
+def with_values(part: Any, varying: Sequence[Varying], values: Sequence[float]) -> Any:
     """Return a machine (any frozen dataclass) with the values of its varying numbers in place."""
     if len(varying) != len(values):
         names = ", ".join(item.name for item in varying) or "none"
@@ -96,12 +96,12 @@ def require_possible(mechanism: Any) -> None:
 
 def _require_corners(load: Any, prefix: str, varying: Sequence[Varying]) -> None:
     """Raise `InputError` unless a load is possible at every combination of the ends of its numbers that vary."""
-    own = [
+    entries = [
         [(path.removeprefix(prefix), factor * end) for path, factor in item.sets if path.startswith(prefix)]
         for item in varying
         for end in (item.lower, item.upper)
     ]
-    pairs = [(own[i], own[i + 1]) for i in range(0, len(own), 2) if own[i]]
+    pairs = [(entries[i], entries[i + 1]) for i in range(0, len(entries), 2) if entries[i]]
     for corner in itertools.product(*pairs):
         replace(load, **dict(itertools.chain(*corner)))
 

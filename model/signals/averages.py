@@ -126,9 +126,9 @@ def _curve(
     square: the real l^2 cos^2(phi).
     """
     sine, cosine = math.sin(theta), math.cos(theta)
-    across = d.e - d.r * sine
-    rough = d.l * d.l - across * across
-    m = motion_of(sine, cosine, d.r, across, d.branch * root(rough + (square - rough.real)))
+    l_sin = d.e - d.r * sine
+    plain = d.l * d.l - l_sin * l_sin
+    m = motion_of(sine, cosine, d.r, l_sin, d.branch * root(plain + (square - plain.real)))
     load = load_on_slider(m, d, block, 0, theta, outward, loads, piece, shift)
     if kind == _TORQUE:
         return joint_forces(sine, cosine, m, d, load, sides).torque
@@ -144,7 +144,7 @@ def _average(
     loads: Loads,
     watch: CycleWindow,
     rule: tuple[Row, Row, Table],
-    wanted: bool,
+    gradients: bool,
     mean: Row,
     rms: Row,
     mean_slope: Table,
@@ -153,10 +153,10 @@ def _average(
     jumps: bool,
 ) -> None:
     nodes, weights, tail = rule
-    room = room_for(loads)
-    cuts = Cuts(np.empty(room), np.empty(room, np.int64), np.empty(room), np.empty(room, np.int64))
+    cut_room = room_for(loads)
+    cuts = Cuts(np.empty(cut_room), np.empty(cut_room, np.int64), np.empty(cut_room), np.empty(cut_room, np.int64))
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
-    nv = mean_slope.shape[1] if wanted else 0
+    nv = mean_slope.shape[1] if gradients else 0
     value, slope, weight = np.empty(_NODES), np.empty((nv, _NODES)), np.empty(_NODES)
     greatest = np.zeros(nv + 1)
     stack = np.empty((DEEPEST + 2, 3))
@@ -182,9 +182,9 @@ def _average(
             greatest[v] = 0.0
         for s in range(count):
             a, b = cuts.angle[s], cuts.angle[s + 1]
-            inside = angle_within(a, b)
-            _, outward = enter(d, block, 0, inside, loads, watch, piece, shift)
-            sides = sides_of(inside, d, block, 0, outward, loads, piece, shift, rubbing)
+            probe = angle_within(a, b)
+            _, outward = enter(d, block, 0, probe, loads, watch, piece, shift)
+            sides = sides_of(probe, d, block, 0, outward, loads, piece, shift, rubbing)
             low, high = crowded(a, kappa), crowded(b, kappa)
             smooth = count == 1 and not rubbing
             panels = denser if smooth else denser * (int(PANELS * (high - low) / _TURN) + 1)
@@ -211,11 +211,11 @@ def _average(
                             z = _curve(kind, theta, square, z, stepped[v], outward, loads, piece, shift, sides)
                             slope[v, i] = z.imag / STEP
                             if turned:
-                                own = design_at(stepped[v], 0)
-                                more = beside_crank_loads(
-                                    0j, own, stepped[v], 0, theta, sense_of(own), loads, piece, shift
+                                z_crank = design_at(stepped[v], 0)
+                                added = beside_crank_loads(
+                                    0j, z_crank, stepped[v], 0, theta, sense_of(z_crank), loads, piece, shift
                                 )
-                                slope[v, i] += more.imag / STEP
+                                slope[v, i] += added.imag / STEP
                     if rubbing:
                         for i in range(points):
                             greatest[nv] = max(greatest[nv], abs(value[i]))
@@ -271,14 +271,14 @@ def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bo
 
     The k columns more are the values of the machine's varying numbers.
     The torque counts with its sign, any other signal by its size; its mean is exactly zero for a machine that takes no
-    work over a turn. Several cylinders and a profile of the speed count as `of_shaft` says.
+    work over a turn. Several cylinders and a profile of the speed count as `shaft_statistics` says.
     """
-    known = _of_batch(mechanism, designs, kind, gradients)
-    return Averages(known.values.copy(), None if known.gradients is None else known.gradients.copy())
+    averages = _batch_averages(mechanism, designs, kind, gradients)
+    return Averages(averages.values.copy(), None if averages.gradients is None else averages.gradients.copy())
 
 
 @memoise_by_batch
-def _of_batch(mechanism: Mechanism, designs: Array, kind: Signal, gradients: bool) -> Averages:
+def _batch_averages(mechanism: Mechanism, designs: Array, kind: Signal, gradients: bool) -> Averages:
     """Return averages that are kept: of one batch mean and RMS torque, power, energy and more are asked for."""
     designs = turning(designs)
     if is_shaft(mechanism):
@@ -289,7 +289,7 @@ def _of_batch(mechanism: Mechanism, designs: Array, kind: Signal, gradients: boo
     n = len(designs)
     mean, rms = np.empty(n), np.empty(n)
     raw, loads = signal_inputs(mechanism, kind)
-    numbers = numbers_of(mechanism, designs, room=len(raw), gradients=gradients)
+    numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=gradients)
     columns, designs = numbers.columns, numbers.values
     slopes = np.empty((2, n if gradients else 0, len(columns)))
     watch = cycle_window(mechanism, kind)
@@ -323,5 +323,5 @@ def _of_batch(mechanism: Mechanism, designs: Array, kind: Signal, gradients: boo
     values = np.stack([mean, rms, rms])
     if not gradients:
         return Averages(values, None)
-    by_mean, by_rms = (numbers.chain(each) for each in slopes)
+    by_mean, by_rms = (numbers.chain(part_slopes) for part_slopes in slopes)
     return Averages(values, np.stack([by_mean, by_rms, by_rms]))

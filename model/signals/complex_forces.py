@@ -22,7 +22,7 @@ from ..machine.mechanism import Mechanism
 from ..machine.raw import Loads, load_structure, raw_vector
 from .signals import design_motion
 
-Complex = NDArray[np.complex128]
+ComplexArray = NDArray[np.complex128]
 
 _ROWS = len(Forces._fields) + 1
 
@@ -66,13 +66,15 @@ def _fill_forces(
             out[n, 8, k] = load
 
 
-def complex_joint_forces(mechanism: Mechanism, designs: Complex, angles: Complex) -> tuple[Forces, Complex]:
+def complex_joint_forces(
+    mechanism: Mechanism, designs: ComplexArray, angles: ComplexArray
+) -> tuple[Forces, ComplexArray]:
     """Return the joint forces and the load on the slider, N outward, each (n, k).
 
     designs: (n, 3), crank, rod, offset, m, each turning fully. angles: (n, k), rad. NaN where friction locks.
     """
     # Arrays of one kind, so that one compiled kernel serves.
-    designs, angles = (np.require(given, np.complex128, ["C", "W"]) for given in (designs, angles))
+    designs, angles = (np.require(array, np.complex128, ["C", "W"]) for array in (designs, angles))
     out = np.empty((len(angles), _ROWS, angles.shape[1]), np.complex128)
     raw, loads, rubbing = raw_vector(mechanism), load_structure(mechanism), rubs(mechanism)
 
@@ -80,5 +82,5 @@ def complex_joint_forces(mechanism: Mechanism, designs: Complex, angles: Complex
         _fill_forces(raw, designs[begin:end], loads, angles[begin:end], out[begin:end], rubbing)
 
     in_chunks(len(designs), work, size=64)
-    *found, load = out.swapaxes(0, 1)
-    return Forces(*found), load
+    *forces, load = out.swapaxes(0, 1)
+    return Forces(*forces), load

@@ -15,19 +15,19 @@ from ..dynamics.segments import angle_within
 class Segments:
     """The cycles of n designs between breakpoints: s segments in order of design and place, with smooth curves.
 
-    row: design. low, high: places, of the crank angle or of the time. cut: the breakpoint at its start. after: the
-    segment behind, -1 where nothing follows. unit: of the place, which panels are counted in.
+    row: design. low, high: places, of the crank angle or of the time. cut: the breakpoint at its start. next_segment:
+    -1 where none follows. unit: of the place, which panels are counted in.
     """
 
     row: Whole
     low: Array
     high: Array
     cut: Whole
-    after: Whole
+    next_segment: Whole
     unit: float = 1.0
 
     @property
-    def inside(self) -> Array:
+    def probe(self) -> Array:
         """A place in each that tells strokes and pieces."""
         low: Any = self.low
         high: Any = self.high
@@ -39,5 +39,5 @@ class Segments:
         count = np.maximum(1, np.ceil(width / self.unit * fineness[self.row])).astype(np.int64)
         segment = np.repeat(np.arange(len(width)), count)
         place = np.arange(len(segment)) - np.repeat(np.cumsum(count) - count, count)
-        own = (width / count)[segment]
-        return self.row[segment], self.inside[segment], self.low[segment] + place * own, own, segment
+        panel_width = (width / count)[segment]
+        return self.row[segment], self.probe[segment], self.low[segment] + place * panel_width, panel_width, segment

@@ -23,9 +23,9 @@ _APART = 1e-3  # rad: an equally high point closer to a peak than this is the sa
 
 
 def first_greatest(values: Array, angles: Array, period: float) -> Whole:
-    """Return the indices (...) of the first of the greatest values (..., k), in order of crank angle, rad, from zero.
+    """Return the indices (...) of the greatest values (..., k); of equal ones the first by crank angle, rad.
 
-    The index is 0 if no value is finite.
+    Angles count from zero. The index is 0 if no value is finite.
     """
     top = values.max(axis=-1, keepdims=True)
     with np.errstate(invalid="ignore"):

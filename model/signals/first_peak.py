@@ -19,8 +19,8 @@ def first_peaks(mechanism: Mechanism, kind: Signal, designs: Array) -> tuple[Arr
 
     Designs (n, 3 + k), values and angles are those of `find_peaks`.
     """
-    found = find_peaks(mechanism, kind, designs, kept=_MOST)
+    peaks = find_peaks(mechanism, kind, designs, limit=_MOST)
     period = cycle_turns(mechanism) * TURN
-    first = first_greatest(found.values, found.angles, period)
-    angles = np.take_along_axis(found.angles, first[:, None], axis=1)[:, 0]
-    return found.values[:, 0], np.array([angle_in_cycle(angle, period) for angle in angles.tolist()])
+    first = first_greatest(peaks.values, peaks.angles, period)
+    angles = np.take_along_axis(peaks.angles, first[:, None], axis=1)[:, 0]
+    return peaks.values[:, 0], np.array([angle_in_cycle(angle, period) for angle in angles.tolist()])

@@ -49,7 +49,7 @@ def prepare(block: Any, kappa: Any, direction: Any, b: Any) -> None:
         w2, l = d.speed * d.speed, d.l
         pace = w2 + abs(d.acceleration)
         pace = pace if pace > 0.0 else 1.0
-        along, across = d.crank_along + d.rod_mass * d.r, d.crank_across
+        crank_along, crank_across = d.crank_along + d.rod_mass * d.r, d.crank_across
         inertia = pace * d.rod_inertia
         rod_along, rod_across = pace * d.r * l * d.rod_along, pace * d.r * l * d.rod_across
         mass, damping = d.moving_mass * w2 * l * l, (d.moving_mass * d.acceleration + d.viscous * d.speed) * l * l
@@ -59,26 +59,33 @@ def prepare(block: Any, kappa: Any, direction: Any, b: Any) -> None:
         inward = -(steady + d.branch * d.inward_force) * l
         fall_along = (d.rod_along * d.gravity_y - d.rod_across * d.gravity_x) * l
         fall_across = (d.rod_across * d.gravity_y + d.rod_along * d.gravity_x) * l
-        fall_cosine, fall_sine = along * d.gravity_y - across * d.gravity_x, across * d.gravity_y + along * d.gravity_x
+        fall_cosine, fall_sine = (
+            crank_along * d.gravity_y - crank_across * d.gravity_x,
+            crank_across * d.gravity_y + crank_along * d.gravity_x,
+        )
         constant = (d.crank_inertia + d.rod_mass * d.r * d.r) * d.acceleration
         size = abs(inertia) + abs(rod_along) + abs(rod_across) + abs(mass) + abs(damping) + abs(stiffness)
         size += abs(outward) + abs(inward) + abs(fall_along) + abs(fall_across) + abs(fall_cosine) + abs(fall_sine)
         size += abs(constant)
-        one = 1.0 / (size if size > 0.0 else 1.0)
+        per_size = 1.0 / (size if size > 0.0 else 1.0)
         angle = d.angle_error * l
         errors = d.crank_error + d.rod_error + d.offset_error + angle
         per = 1.0 / (errors if errors > 0.0 else 1.0)
         b[_R, j], b[_E, j], b[_BRANCH, j] = d.r / l, d.e / l, d.branch
         b[_KAPPA, j], b[_DOUBT, j] = kappa[j], min(1.0, _ROUNDING * l / (l - d.r - abs(d.e)))
-        b[_W2, j], b[_ALPHA, j], b[_INERTIA, j] = w2 / pace, d.acceleration / pace, one * inertia
-        b[_ALONG, j], b[_ACROSS, j], b[_MASS, j] = one * rod_along, one * rod_across, one * mass
-        b[_DAMPING, j], b[_STIFFNESS, j] = one * damping, one * stiffness
-        b[_STIFFNESS_LESS_MASS, j] = one * (stiffness - mass)
+        b[_W2, j], b[_ALPHA, j], b[_INERTIA, j] = w2 / pace, d.acceleration / pace, per_size * inertia
+        b[_ALONG, j], b[_ACROSS, j], b[_MASS, j] = per_size * rod_along, per_size * rod_across, per_size * mass
+        b[_DAMPING, j], b[_STIFFNESS, j] = per_size * damping, per_size * stiffness
+        b[_STIFFNESS_LESS_MASS, j] = per_size * (stiffness - mass)
         # Which force acts while x' is positive.
-        b[_FORCE_POSITIVE, j] = one * (outward if d.branch * direction > 0.0 else inward)
-        b[_FORCE_NEGATIVE, j] = one * (inward if d.branch * direction > 0.0 else outward)
-        b[_ROD_ALONG, j], b[_ROD_ACROSS, j] = one * fall_along, one * fall_across
-        b[_CRANK_COSINE, j], b[_CRANK_SINE, j], b[_CONSTANT, j] = one * fall_cosine, one * fall_sine, one * constant
+        b[_FORCE_POSITIVE, j] = per_size * (outward if d.branch * direction > 0.0 else inward)
+        b[_FORCE_NEGATIVE, j] = per_size * (inward if d.branch * direction > 0.0 else outward)
+        b[_ROD_ALONG, j], b[_ROD_ACROSS, j] = per_size * fall_along, per_size * fall_across
+        b[_CRANK_COSINE, j], b[_CRANK_SINE, j], b[_CONSTANT, j] = (
+            per_size * fall_cosine,
+            per_size * fall_sine,
+            per_size * constant,
+        )
         b[_OF_CRANK, j], b[_OF_ROD, j] = per * d.crank_error, per * d.rod_error
         b[_OF_OFFSET, j], b[_OF_ANGLE, j] = per * d.offset_error, per * angle
 
@@ -101,28 +108,28 @@ def _curves(b: Any, j: Any, sine: Any, cosine: Any) -> Any:
     pi - theta. `turn` is -phi' at theta.
     """
     rs, rc = b[_R, j] * sine, b[_R, j] * cosine
-    across = b[_E, j] - rs
-    square = max(_ONE - across * across, _LOCKED)
+    l_sin = b[_E, j] - rs
+    square = max(_ONE - l_sin * l_sin, _LOCKED)
     secant = _ONE / math.sqrt(square)  # one instruction and a Newton step
-    per_along = b[_BRANCH, j] * secant
-    along = square * per_along
-    tangent = across * per_along
-    turn = rc * per_along
+    per_l_cos = b[_BRANCH, j] * secant
+    l_cos = square * per_l_cos
+    tangent = l_sin * per_l_cos
+    turn = rc * per_l_cos
     turn_2 = turn * turn
-    rod_2 = rs * per_along + turn_2 * tangent
-    centripetal = along * turn_2 + across * rod_2
-    swing = across * turn
+    rod_2 = rs * per_l_cos + turn_2 * tangent
+    centripetal = l_cos * turn_2 + l_sin * rod_2
+    swing = l_sin * turn
     x_1, y_1 = swing - rs, -swing - rs
     w_rod_2, w_turn = b[_W2, j] * rod_2, b[_W2, j] * turn
     w_turn_2, speeding, spin = w_turn * turn, b[_ALPHA, j] * turn, b[_INERTIA, j] * turn
-    sx = b[_ALONG, j] * along - b[_ACROSS, j] * across
-    sy = b[_ALONG, j] * across + b[_ACROSS, j] * along
+    sx = b[_ALONG, j] * l_cos - b[_ACROSS, j] * l_sin
+    sy = b[_ALONG, j] * l_sin + b[_ACROSS, j] * l_cos
     u_even, u_odd, v_even, v_odd = sine * sy, cosine * sx, sine * sx, cosine * sy
     even = b[_CONSTANT, j] + b[_CRANK_SINE, j] * sine
     even += w_rod_2 * u_even + speeding * (spin - _TWO * u_odd) + w_turn_2 * v_even - w_turn * v_odd
-    odd = turn * (b[_ROD_ALONG, j] * along - b[_ROD_ACROSS, j] * across) - b[_CRANK_COSINE, j] * cosine
+    odd = turn * (b[_ROD_ALONG, j] * l_cos - b[_ROD_ACROSS, j] * l_sin) - b[_CRANK_COSINE, j] * cosine
     odd += w_rod_2 * (u_odd - spin) - _TWO * speeding * u_even + w_turn * v_even - w_turn_2 * v_odd
-    force_even = b[_STIFFNESS, j] * along - b[_MASS, j] * centripetal - b[_DAMPING, j] * rs
+    force_even = b[_STIFFNESS, j] * l_cos - b[_MASS, j] * centripetal - b[_DAMPING, j] * rs
     force_odd = b[_STIFFNESS_LESS_MASS, j] * rc + b[_DAMPING, j] * swing
     positive, negative = b[_FORCE_POSITIVE, j], b[_FORCE_NEGATIVE, j]
     x_force = force_even + force_odd + (positive if x_1 > _ZERO else negative)
@@ -131,32 +138,32 @@ def _curves(b: Any, j: Any, sine: Any, cosine: Any) -> Any:
     x_crank, y_crank = lean + cosine, lean - cosine
     of_crank, of_angle = b[_OF_CRANK, j], b[_OF_ANGLE, j]
     rod, offset = b[_OF_ROD, j] * secant, b[_OF_OFFSET, j] * tangent
-    both, squares = rod + abs(offset), rod * rod + offset * offset
+    rod_and_offset, squares = rod + abs(offset), rod * rod + offset * offset
     x_square, y_square = of_crank * of_crank * x_crank * x_crank, of_crank * of_crank * y_crank * y_crank
     return (
         abs(x_1 * x_force + (even + odd)),
         abs(y_1 * y_force + (even - odd)),
-        of_crank * abs(x_crank) + of_angle * abs(x_1) + both,
-        of_crank * abs(y_crank) + of_angle * abs(y_1) + both,
+        of_crank * abs(x_crank) + of_angle * abs(x_1) + rod_and_offset,
+        of_crank * abs(y_crank) + of_angle * abs(y_1) + rod_and_offset,
         x_square + of_angle * of_angle * x_1 * x_1 + squares,
         y_square + of_angle * of_angle * y_1 * y_1 + squares,
     )
 
 
 @analytic
-def _sample(sine_tau: Any, cosine_tau: Any, crowd: Any, b: Any, one: Any, two: Any) -> None:
+def _sample(sine_tau: Any, cosine_tau: Any, crowd: Any, b: Any, at_tau: Any, at_minus_tau: Any) -> None:
     """Torque and worst-case position error of all lanes at tau and -tau."""
     for j in range(LANES):
         sine, cosine = _turned(sine_tau, cosine_tau, crowd, b[_KAPPA, j])
-        one[0, j], two[0, j], one[1, j], two[1, j], _, _ = _curves(b, j, sine, cosine)
+        at_tau[0, j], at_minus_tau[0, j], at_tau[1, j], at_minus_tau[1, j], _, _ = _curves(b, j, sine, cosine)
 
 
 @analytic
-def _sample_squares(sine_tau: Any, cosine_tau: Any, crowd: Any, b: Any, one: Any, two: Any) -> None:
+def _sample_squares(sine_tau: Any, cosine_tau: Any, crowd: Any, b: Any, at_tau: Any, at_minus_tau: Any) -> None:
     """Squares of the root-sum-square of all lanes at tau and -tau."""
     for j in range(LANES):
         sine, cosine = _turned(sine_tau, cosine_tau, crowd, b[_KAPPA, j])
-        _, _, _, _, one[2, j], two[2, j] = _curves(b, j, sine, cosine)
+        _, _, _, _, at_tau[2, j], at_minus_tau[2, j] = _curves(b, j, sine, cosine)
 
 
 @analytic
@@ -174,10 +181,10 @@ def sweep(kinds: Any, tau: Any, crowd: Any, b: Any, samples: Any) -> None:
     """
     angles = tau.shape[1]
     for squares in (False, True):
-        wanted = False
+        is_needed = False
         for kind in kinds:
-            wanted = wanted or (row_of(kind) == 2) == squares
-        for k in range(angles // 2 + 1 if wanted else 0):
+            is_needed = is_needed or (row_of(kind) == 2) == squares
+        for k in range(angles // 2 + 1 if is_needed else 0):
             # Where an angle is its own mirror image the other row is one to spare: written twice, it would be slow.
             w = angles - k + 1 if 2 * k < angles else 0
             if squares:

@@ -62,10 +62,10 @@ class Panels:
             return self._mean_product(self.coefficients[:, :, curve], self.coefficients[:, :, time]) / self.mean(time)
         return self.integral(curve) / float(np.sum(self.width))
 
-    def mean_square(self, curve: int, *, less: float = 0.0, time: int | None = None) -> float:
+    def mean_square(self, curve: int, *, subtract: float = 0.0, time: int | None = None) -> float:
         """Return the mean, as in `mean`, of the square of the curve minus a number."""
         c = self.coefficients[:, :, curve].copy()
-        c[:, 0] -= less
+        c[:, 0] -= subtract
         if time is None:
             return self._mean_product(c, c)
         values, weight = c @ _AT_PRODUCT_NODES.T, self.coefficients[:, :, time] @ _AT_PRODUCT_NODES.T
@@ -89,12 +89,12 @@ class Panels:
         """Return the range of the integral of the curve minus its mean: of a torque, J."""
         c = self.coefficients[:, :, curve].copy()
         c[:, 0] -= self.mean(curve)
-        own = np.array([legendre.legint(row, lbnd=-1) for row in c]) * (0.5 * self.width)[:, None]
-        starts = np.concatenate([[0.0], np.cumsum(own.sum(axis=1))])
-        found = [*starts]
-        for start, row, integral in zip(starts, c, own, strict=False):
-            found += [start + legendre.legval(x, integral) for x in _roots(row)]
-        return float(max(found) - min(found))
+        integrals = np.array([legendre.legint(row, lbnd=-1) for row in c]) * (0.5 * self.width)[:, None]
+        starts = np.concatenate([[0.0], np.cumsum(integrals.sum(axis=1))])
+        values = [*starts]
+        for start, row, integral in zip(starts, c, integrals, strict=False):
+            values += [start + legendre.legval(x, integral) for x in _roots(row)]
+        return float(max(values) - min(values))
 
     def _greatest(self, coefficients: Array, sign: float) -> Extreme:
         c = sign * coefficients
@@ -107,14 +107,14 @@ class Panels:
             rate = legendre.legder(c[i])
             stationary, slopes = _roots(rate), legendre.legval([-1.0, 1.0], rate)
             ends = [end for end, falls in ((-1.0, slopes[0] <= 0.0), (1.0, slopes[1] >= 0.0)) if falls]
-            own = np.concatenate([stationary, ends])
-            tops.append(legendre.legval(own, c[i]))
-            places.append(own)
-            rows.append(np.full(len(own), i))
-        found, at, row = np.concatenate(tops), np.concatenate(places), np.concatenate(rows)
+            candidates = np.concatenate([stationary, ends])
+            tops.append(legendre.legval(candidates, c[i]))
+            places.append(candidates)
+            rows.append(np.full(len(candidates), i))
+        values, at, row = np.concatenate(tops), np.concatenate(places), np.concatenate(rows)
         angles = self.low[row] + 0.5 * (1.0 + at) * self.width[row]
-        first = int(first_greatest(found, angles, float(np.sum(self.width))))
-        return Extreme(sign * max(best, float(found.max())), float(angles[first]))
+        first = int(first_greatest(values, angles, float(np.sum(self.width))))
+        return Extreme(sign * max(best, float(values.max())), float(angles[first]))
 
 
 def panels_of(curves: Curves, ends: Array, sizes: Array) -> Panels:
@@ -124,23 +124,23 @@ def panels_of(curves: Curves, ends: Array, sizes: Array) -> Panels:
     """
     low, width = ends[:-1], np.diff(ends)
     low, width = low[width > _THIN], width[width > _THIN]
-    kept: list[tuple[Array, Array, Array]] = []
-    most, total = len(low) + _MOST, 0
+    resolved: list[tuple[Array, Array, Array]] = []
+    panel_limit, total = len(low) + _MOST, 0
     for depth in range(_DEEPEST + 1):
         angles = low[:, None] + 0.5 * width[:, None] * (1.0 + _NODES)
         values = curves(angles.ravel()).reshape(-1, *angles.shape)
-        found = np.einsum("ki,mpi->pkm", _FIT, values)
+        fitted = np.einsum("ki,mpi->pkm", _FIT, values)
         steep = ANGLE_ROUNDING * np.ptp(values, axis=2).T / width[:, None]
-        rough = np.any(np.abs(found[:, -_TAIL:]).max(axis=1) > np.maximum(_RESOLVED * sizes, steep), axis=1)
-        if depth == _DEEPEST or total + 2 * len(low) > most:
+        rough = np.any(np.abs(fitted[:, -_TAIL:]).max(axis=1) > np.maximum(_RESOLVED * sizes, steep), axis=1)
+        if depth == _DEEPEST or total + 2 * len(low) > panel_limit:
             rough[:] = False
         total += len(low)
-        kept.append((low[~rough], width[~rough], found[~rough]))
+        resolved.append((low[~rough], width[~rough], fitted[~rough]))
         if not rough.any():
             break
         half = 0.5 * width[rough]
         low, width = np.concatenate([low[rough], low[rough] + half]), np.concatenate([half, half])
-    lows, widths, coefficients = (np.concatenate(part) for part in zip(*kept, strict=True))
+    lows, widths, coefficients = (np.concatenate(part) for part in zip(*resolved, strict=True))
     order = np.argsort(lows, kind="stable")
     return Panels(lows[order], widths[order], coefficients[order])
 
@@ -155,7 +155,7 @@ def _roots(coefficients: Array) -> Array:
     size = np.abs(coefficients).max()
     if not size > 0.0:
         return np.zeros(0)
-    kept = legendre.legtrim(coefficients, 1e-15 * size)
-    roots = legendre.legroots(kept) if len(kept) > 1 else np.zeros(0)
+    trimmed = legendre.legtrim(coefficients, 1e-15 * size)
+    roots = legendre.legroots(trimmed) if len(trimmed) > 1 else np.zeros(0)
     roots = roots[np.abs(roots.imag) < 1e-6].real
     return np.asarray(roots[np.abs(roots) <= 1.0])

@@ -38,18 +38,18 @@ class Curve(Protocol):
         """Numbers of a design by which it has derivatives, 0 for none."""
         ...
 
-    def at(
-        self, row: Whole, inside: Array, place: Array, *, rate: Array | None = None, wanted: bool = False
+    def evaluate(
+        self, row: Whole, probe: Array, place: Array, *, rate: Array | None = None, gradients: bool = False
     ) -> tuple[Array, Array]:
-        """Return the curve (p, k, 2 + v) and its sizes (p, k) at places (p, k) of segments of designs (p,).
+        """Return the curve (p, k, 2 + v) and its sizes (p, k) at places (p, k) in segments.
 
-        Value, slope, and where wanted derivatives by the numbers; NaN where there is no curve. inside: (p,), a place
-        within each segment. rate: (p, v), of the places by the numbers.
+        row: (p,), the designs. Value, slope and, with `gradients`, derivatives by the numbers; NaN without a curve.
+        probe: (p,), a place within each segment. rate: (p, v), of the places by the numbers.
         """
         ...
 
-    def rates(self, cuts: Whole, inside: Array) -> Array:
-        """Return the derivatives (c, v) of the places of breakpoints; inside: of the segments that begin there."""
+    def rates(self, cuts: Whole, probe: Array) -> Array:
+        """Return the derivatives (c, v) of the places of breakpoints; probe: of the segments that begin there."""
         ...
 
 
@@ -76,27 +76,27 @@ class _Tops:
     segment: Whole
     end: Whole
 
-    def at(self, chosen: Whole | Mask) -> _Tops:
+    def select(self, chosen: Whole | Mask) -> _Tops:
         return _Tops(self.row[chosen], self.value[chosen], self.place[chosen], self.segment[chosen], self.end[chosen])
 
 
 def find_maxima(
-    curve: Curve, segments: Segments, fineness: Array, *, kept: int, live: Mask | None = None, signed: bool = False
+    curve: Curve, segments: Segments, fineness: Array, *, limit: int, counted: Mask | None = None, signed: bool = False
 ) -> Maxima:
     """Return the highest local maxima of the size of a curve, or of its value if `signed`, for n designs.
 
-    fineness: (n,), panels of a unit of the place to begin with. kept: maxima a design; one only is found sooner. live:
-    (s,), segments that count.
+    fineness: (n,), panels of a unit of the place to begin with. limit: maxima a design; one alone is found sooner.
+    counted: (s,), segments that count.
     """
-    search = _Search(curve, segments, np.ones(len(segments.row), bool) if live is None else live, signed)
+    search = _Search(curve, segments, np.ones(len(segments.row), bool) if counted is None else counted, signed)
     count = len(fineness)
-    tops, best, size = search.within(fineness, kept)
-    tops = _joined([tops, search.at_breaks()])
-    tops = _ranked(_joined([tops, best.at(~np.isin(best.row, tops.row))]))
+    tops, best, size = search.inner_maxima(fineness, limit)
+    tops = _joined([tops, search.breakpoint_maxima()])
+    tops = _ranked(_joined([tops, best.select(~np.isin(best.row, tops.row))]))
     rank = np.arange(len(tops.row)) - np.searchsorted(tops.row, tops.row, side="left")
-    tops, rank = tops.at(rank < kept), rank[rank < kept]
-    values, places = np.full((count, kept), -np.inf), np.full((count, kept), np.nan)
-    slopes = np.zeros((count, kept, curve.numbers))
+    tops, rank = tops.select(rank < limit), rank[rank < limit]
+    values, places = np.full((count, limit), -np.inf), np.full((count, limit), np.nan)
+    slopes = np.zeros((count, limit, curve.numbers))
     values[tops.row, rank], places[tops.row, rank] = tops.value, tops.place
     if curve.numbers:
         slopes[tops.row, rank] = search.slopes(tops)
@@ -109,38 +109,38 @@ class _Search:
 
     curve: Curve
     segments: Segments
-    live: Mask
+    counted: Mask
     signed: bool
 
-    def judged(self, found: Array) -> Array:
-        """Return what is to be great (..., c), with its derivatives, from the curve's value and derivatives."""
-        return found if self.signed else np.asarray(np.where(found[..., :1] < 0.0, -found, found))
+    def judged(self, curve: Array) -> Array:
+        """Return the curve (..., c) with derivatives, negated where its size counts and its value is negative."""
+        return curve if self.signed else np.asarray(np.where(curve[..., :1] < 0.0, -curve, curve))
 
-    def within(self, fineness: Array, kept: int) -> tuple[_Tops, _Tops, Array]:
+    def inner_maxima(self, fineness: Array, limit: int) -> tuple[_Tops, _Tops, Array]:
         """Return the maxima between breakpoints, each design's highest sample, and the curve's greatest size."""
-        row, inside, low, width, segment = self.segments.panels(fineness)
-        counts = self.live[segment]
-        row, inside, low, width, segment = row[counts], inside[counts], low[counts], width[counts], segment[counts]
+        row, probe, low, width, segment = self.segments.panels(fineness)
+        counts = self.counted[segment]
+        row, probe, low, width, segment = row[counts], probe[counts], low[counts], width[counts], segment[counts]
         size = np.zeros(len(fineness))
-        done: list[tuple[Whole, Array, Array, Array, Whole]] = []
+        resolved: list[tuple[Whole, Array, Array, Array, Whole]] = []
         for depth in range(_DEEPEST + 1):
             place = low[:, None] + width[:, None] * _NODES
-            found, sizes = self.curve.at(row, inside, place)
+            curve, sizes = self.curve.evaluate(row, probe, place)
             np.maximum.at(size, row, sizes.max(axis=1, initial=0.0))
-            left = resolved_tail(found[:, 1:-1, 0])
-            rough = (left > _ROUGH * size[row]) & (depth < _DEEPEST)
-            done.append((row[~rough], inside[~rough], place[~rough], self.judged(found)[~rough], segment[~rough]))
+            tail = resolved_tail(curve[:, 1:-1, 0])
+            rough = (tail > _ROUGH * size[row]) & (depth < _DEEPEST)
+            resolved.append((row[~rough], probe[~rough], place[~rough], self.judged(curve)[~rough], segment[~rough]))
             if not rough.any():
                 break
             half = 0.5 * width[rough]
-            row, inside, segment = (np.concatenate([part[rough]] * 2) for part in (row, inside, segment))
+            row, probe, segment = (np.concatenate([part[rough]] * 2) for part in (row, probe, segment))
             low, width = np.concatenate([low[rough], low[rough] + half]), np.concatenate([half, half])
-        row, inside, place, found, segment = (np.concatenate(part) for part in zip(*done, strict=True))
-        value, slope = np.where(np.isnan(found[..., 0]), -np.inf, found[..., 0]), found[..., 1]
-        greatest, each = value.argmax(axis=1), np.arange(len(row))
-        none = np.zeros(len(row), dtype=np.int64)
-        samples = _ranked(_Tops(row, value[each, greatest], place[each, greatest], segment, none))
-        best = samples.at(np.unique(samples.row, return_index=True)[1])
+        row, probe, place, curve, segment = (np.concatenate(part) for part in zip(*resolved, strict=True))
+        value, slope = np.where(np.isnan(curve[..., 0]), -np.inf, curve[..., 0]), curve[..., 1]
+        greatest, rows = value.argmax(axis=1), np.arange(len(row))
+        zeros = np.zeros(len(row), dtype=np.int64)
+        samples = _ranked(_Tops(row, value[rows, greatest], place[rows, greatest], segment, zeros))
+        best = samples.select(np.unique(samples.row, return_index=True)[1])
         highest = np.full(len(fineness), -np.inf)
         highest[best.row] = best.value
         panel, at = np.nonzero((slope[:, :-1] > 0.0) & (slope[:, 1:] <= 0.0))
@@ -148,21 +148,24 @@ class _Search:
         bound = np.minimum(
             value[panel, at] + step * slope[panel, at], value[panel, at + 1] - step * slope[panel, at + 1]
         )
-        if kept == 1:  # a curve that rises and falls again once lies below both tangents; room for one that does not
-            room = bound + 0.5 * (bound - np.maximum(value[panel, at], value[panel, at + 1]))
-            near = room >= highest[row[panel]]
+        if limit == 1:  # a curve that rises and falls again once lies below both tangents; room for one that does not
+            bound_with_margin = bound + 0.5 * (bound - np.maximum(value[panel, at], value[panel, at + 1]))
+            near = bound_with_margin >= highest[row[panel]]
             panel, at = panel[near], at[near]
         begin = place[panel, at], slope[panel, at], value[panel, at]
         end = place[panel, at + 1], slope[panel, at + 1]
-        top, where = self.refined(row[panel], inside[panel], begin, end)
+        top, top_places = self.refined(row[panel], probe[panel], begin, end)
         # On a kink rounding may give the slope of the other side: a root that near to a breakpoint moves with it.
-        own = segment[panel]
-        from_low, from_high = where - self.segments.low[own], self.segments.high[own] - where
-        on = np.where(from_low < _BESIDE, -1, np.where(from_high < _BESIDE, 1, 0))
-        return _Tops(row[panel], top, where, own, on), best, size
+        panel_segment = segment[panel]
+        from_low, from_high = (
+            top_places - self.segments.low[panel_segment],
+            self.segments.high[panel_segment] - top_places,
+        )
+        edge = np.where(from_low < _BESIDE, -1, np.where(from_high < _BESIDE, 1, 0))
+        return _Tops(row[panel], top, top_places, panel_segment, edge), best, size
 
     def refined(
-        self, row: Whole, inside: Array, begin: tuple[Array, Array, Array], end: tuple[Array, Array]
+        self, row: Whole, probe: Array, begin: tuple[Array, Array, Array], end: tuple[Array, Array]
     ) -> tuple[Array, Array]:
         """Return value and place of the maxima in brackets: roots of the slope by secants of Illinois.
 
@@ -179,9 +182,9 @@ class _Search:
             trial = a[i] + (b[i] - a[i]) * (rise[i] / (rise[i] - fall[i]))
             middle = 0.5 * (a[i] + b[i])
             trial = np.where((trial > a[i]) & (trial < b[i]), trial, middle)
-            found = self.judged(self.curve.at(row[i], inside[i], trial[:, None])[0][:, 0, :2])
+            curve = self.judged(self.curve.evaluate(row[i], probe[i], trial[:, None])[0][:, 0, :2])
             moved = np.abs(trial - at[i])
-            value[i], at[i], slope = found[:, 0], trial, found[:, 1]
+            value[i], at[i], slope = curve[:, 0], trial, curve[:, 1]
             up = slope > 0.0
             fall[i] = np.where(up & (side[i] == 1), 0.5 * fall[i], fall[i])
             rise[i] = np.where(~up & (side[i] == -1), 0.5 * rise[i], rise[i])
@@ -192,29 +195,33 @@ class _Search:
             active = i[still]
         return value, at
 
-    def at_breaks(self) -> _Tops:
+    def breakpoint_maxima(self) -> _Tops:
         """Return the breakpoints that are maxima: kinks, jumps, and the ends of what does not go on."""
-        segments, live = self.segments, self.live
+        segments, live = self.segments, self.counted
         n = len(live)
         edge = np.full((n + 1, 2, 2), -np.inf)  # the last one is that of no segment
         ends = np.stack([segments.low[live], segments.high[live]], axis=1)
-        edge[:-1][live] = self.judged(self.curve.at(segments.row[live], segments.inside[live], ends)[0][..., :2])
-        first = np.setdiff1d(np.arange(n), segments.after)
-        before, behind = np.append(np.arange(n), np.full(len(first), -1)), np.append(segments.after, first)
+        edge[:-1][live] = self.judged(self.curve.evaluate(segments.row[live], segments.probe[live], ends)[0][..., :2])
+        first = np.setdiff1d(np.arange(n), segments.next_segment)
+        before, following = np.append(np.arange(n), np.full(len(first), -1)), np.append(segments.next_segment, first)
         left, falls_not = edge[before, 1, 0], edge[before, 1, 1] >= 0.0
-        right, rises_not = edge[behind, 0, 0], edge[behind, 0, 1] <= 0.0
-        stray = _STRAY * np.fmax(*(np.abs(np.where(np.isfinite(side), side, 0.0)) for side in (left, right)))
-        from_left = np.isfinite(left) & ~(left < right - stray) & falls_not
-        of_left = from_left & (~(left <= right + stray) | rises_not)
-        of_right = ~from_left & np.isfinite(right) & ~(right <= left + stray) & rises_not
-        before, behind = before[of_left], behind[of_right]
+        right, rises_not = edge[following, 0, 0], edge[following, 0, 1] <= 0.0
+        tolerance = _STRAY * np.fmax(*(np.abs(np.where(np.isfinite(side), side, 0.0)) for side in (left, right)))
+        from_left = np.isfinite(left) & ~(left < right - tolerance) & falls_not
+        of_left = from_left & (~(left <= right + tolerance) | rises_not)
+        of_right = ~from_left & np.isfinite(right) & ~(right <= left + tolerance) & rises_not
+        before, following = before[of_left], following[of_right]
         return _joined(
             [
                 _Tops(
                     segments.row[before], left[of_left], segments.high[before], before, np.ones(len(before), np.int64)
                 ),
                 _Tops(
-                    segments.row[behind], right[of_right], segments.low[behind], behind, -np.ones(len(behind), np.int64)
+                    segments.row[following],
+                    right[of_right],
+                    segments.low[following],
+                    following,
+                    -np.ones(len(following), np.int64),
                 ),
             ]
         )
@@ -222,21 +229,21 @@ class _Search:
     def slopes(self, tops: _Tops) -> Array:
         """Return the derivatives (t, v) of maxima by the design: at their places, and as breakpoints move."""
         segments, rate = self.segments, np.zeros((len(tops.row), self.curve.numbers))
-        begins = np.where(tops.end > 0, segments.after[tops.segment], tops.segment)
+        begins = np.where(tops.end > 0, segments.next_segment[tops.segment], tops.segment)
         moves = np.flatnonzero((tops.end != 0) & (begins >= 0))
         at = begins[moves]
-        rate[moves] = self.curve.rates(segments.cut[at], segments.inside[at])
-        inside, place = segments.inside[tops.segment], tops.place[:, None]
-        found = self.judged(self.curve.at(tops.row, inside, place, rate=rate, wanted=True)[0][:, 0])
-        return np.asarray(found[:, 2:])
+        rate[moves] = self.curve.rates(segments.cut[at], segments.probe[at])
+        probe, place = segments.probe[tops.segment], tops.place[:, None]
+        curve = self.judged(self.curve.evaluate(tops.row, probe, place, rate=rate, gradients=True)[0][:, 0])
+        return np.asarray(curve[:, 2:])
 
 
 def _ranked(tops: _Tops) -> _Tops:
     """Return maxima by design, highest first; of those at one place the first."""
-    tops = tops.at(np.lexsort((-tops.value, tops.place, tops.row)))
+    tops = tops.select(np.lexsort((-tops.value, tops.place, tops.row)))
     again = (tops.row[1:] == tops.row[:-1]) & (np.abs(np.diff(tops.place)) < _SAME) & (np.diff(tops.segment) == 0)
-    tops = tops.at(np.concatenate([[True], ~again]) if len(tops.row) else np.zeros(0, dtype=bool))
-    return tops.at(np.lexsort((tops.place, -tops.value, tops.row)))
+    tops = tops.select(np.concatenate([[True], ~again]) if len(tops.row) else np.zeros(0, dtype=bool))
+    return tops.select(np.lexsort((tops.place, -tops.value, tops.row)))
 
 
 def _joined(parts: list[_Tops]) -> _Tops:

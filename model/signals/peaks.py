@@ -168,24 +168,24 @@ def _divide(
 @analytic
 def _is_listed(angles: Any, count: Any, theta: Any) -> bool:
     """Whether a peak at that angle is in the list."""
-    known = False
+    listed = False
     for i in range(count):
-        known = known or abs(angles[i] - theta) < _SAME
-    return known
+        listed = listed or abs(angles[i] - theta) < _SAME
+    return listed
 
 
 @analytic
 def _keep(values: Any, angles: Any, segment: Any, pin: Any, count: Any, value: Any, theta: Any, s: Any, p: Any) -> Any:
     """Insert a peak into the lists, highest first; the lowest falls off when they are full."""
-    kept = values.shape[0]
-    if count == kept and value <= values[kept - 1]:
+    capacity = values.shape[0]
+    if count == capacity and value <= values[capacity - 1]:
         return count
-    i = min(count, kept - 1)
+    i = min(count, capacity - 1)
     while i > 0 and values[i - 1] < value:
         values[i], angles[i], segment[i], pin[i] = values[i - 1], angles[i - 1], segment[i - 1], pin[i - 1]
         i -= 1
     values[i], angles[i], segment[i], pin[i] = value, theta, s, p
-    return min(count + 1, kept)
+    return min(count + 1, capacity)
 
 
 @kernel
@@ -197,29 +197,29 @@ def _find(
     watch: CycleWindow,
     angles: int,
     values: Table,
-    where: Table,
+    peak_angles: Table,
     gradients: Cube,
     rubbing: bool,
 ) -> None:
-    room = room_for(loads)
-    cuts = Cuts(np.empty(room), np.empty(room, np.int64), np.empty(room), np.empty(room, np.int64))
+    cut_room = room_for(loads)
+    cuts = Cuts(np.empty(cut_room), np.empty(cut_room, np.int64), np.empty(cut_room), np.empty(cut_room, np.int64))
     piece = np.zeros(loads.kind.shape[0], np.int64)
     shift = np.zeros(loads.kind.shape[0])
     nv = gradients.shape[2] if gradients.shape[0] else 0
-    kept = values.shape[1]
-    peak, at = np.empty(kept), np.empty(kept)
-    segment, pin = np.empty(kept, np.int64), np.empty(kept, np.int64)
-    edge = np.empty((room, 4))  # of each segment: value and slope at its start and at its end
-    live, thin = np.empty(room, np.bool_), np.empty(room, np.bool_)
-    theta = np.empty(angles + 8 + 5 * room)  # of all segments, one after another
+    listed = values.shape[1]
+    peak, at = np.empty(listed), np.empty(listed)
+    segment, pin = np.empty(listed, np.int64), np.empty(listed, np.int64)
+    edge = np.empty((cut_room, 4))  # of each segment: value and slope at its start and at its end
+    counts, is_thin = np.empty(cut_room, np.bool_), np.empty(cut_room, np.bool_)
+    theta = np.empty(angles + 8 + 5 * cut_room)  # of all segments, one after another
     f = np.empty(theta.shape[0])
-    first = np.empty(room + 1, np.int64)  # of each segment: where its samples begin
+    first = np.empty(cut_room + 1, np.int64)  # of each segment: where its samples begin
     for n in range(blocks.shape[0]):
         block = blocks[n]
         d = design_at(block, 0)
         kappa = crowding(d.r, d.l, d.e)
         if rubbing and not always_drives(d) > 0.0:
-            values[n, :], values[n, 0], where[n, :] = -np.inf, np.inf, np.nan
+            values[n, :], values[n, 0], peak_angles[n, :] = -np.inf, np.inf, np.nan
             if nv:
                 gradients[n] = 0.0
             continue
@@ -230,19 +230,19 @@ def _find(
         # First the samples of all segments: where one peak is asked for, low ones need no more.
         highest = -1.0
         first[0] = 0
-        known = False
+        has_motion = False
         sine, cosine = 0.0, 1.0
         m = design_motion(sine, cosine, d)
         for s in range(count):
             a, b = cuts.angle[s], cuts.angle[s + 1]
             first[s + 1] = first[s]
-            thin[s] = b - a < _THIN
-            inside = angle_within(a, b)
-            live[s], outward = enter(d, block, 0, inside, loads, watch, piece, shift)
-            if thin[s] or not live[s]:
-                known = False
+            is_thin[s] = b - a < _THIN
+            probe = angle_within(a, b)
+            counts[s], outward = enter(d, block, 0, probe, loads, watch, piece, shift)
+            if is_thin[s] or not counts[s]:
+                has_motion = False
                 continue
-            sides = sides_of(inside, d, block, 0, outward, loads, piece, shift, rubbing)
+            sides = sides_of(probe, d, block, 0, outward, loads, piece, shift, rubbing)
             # What is shorter than the spacing, as between the knots of a long table, has no samples of its own: the
             # slopes at its ends tell whether there is a peak.
             low = high = 0.0
@@ -256,32 +256,32 @@ def _find(
             theta[start], theta[start + points - 1] = a, b
             for i in range(1, points - 1):
                 theta[start + i] = uncrowded(low + (high - low) * i / (points - 1), kappa)
-            for i in range(0 if kept == 1 else 1, points if kept == 1 else points - 1):
+            for i in range(0 if listed == 1 else 1, points if listed == 1 else points - 1):
                 at_angle = theta[start + i]
-                if i > 0 or not known:  # else at the end of the segment before
+                if i > 0 or not has_motion:  # else at the end of the segment before
                     sine, cosine = math.sin(at_angle), math.cos(at_angle)
                     m = design_motion(sine, cosine, d)
                 load = load_on_slider(m, d, block, 0, at_angle, outward, loads, piece, shift)
                 place = (block, 0, at_angle, loads, piece, shift)
                 value = signal(kind, sine, cosine, m, d, load, sides, place)
                 f[start + i], highest = value, max(highest, value)
-            known = kept == 1
-        floor = _HOPELESS * highest if kept == 1 else -1.0
-        found = 0
+            has_motion = listed == 1
+        floor = _HOPELESS * highest if listed == 1 else -1.0
+        peak_count = 0
         best, best_at, best_segment = -1.0, 0.0, -1
         for s in range(count):
-            if thin[s] or not live[s]:
+            if is_thin[s] or not counts[s]:
                 continue
             a, b, start, end = cuts.angle[s], cuts.angle[s + 1], first[s], first[s + 1] - 1
-            hopeful = kept > 1
-            for i in range(start, end + 1 if kept == 1 else start):
+            hopeful = listed > 1
+            for i in range(start, end + 1 if listed == 1 else start):
                 hopeful = hopeful or not f[i] < floor
             if not hopeful:
                 edge[s, :] = -1.0
                 continue
-            inside = angle_within(a, b)
-            _, outward = enter(d, block, 0, inside, loads, watch, piece, shift)
-            sides = sides_of(inside, d, block, 0, outward, loads, piece, shift, rubbing)
+            probe = angle_within(a, b)
+            _, outward = enter(d, block, 0, probe, loads, watch, piece, shift)
+            sides = sides_of(probe, d, block, 0, outward, loads, piece, shift, rubbing)
             for side in range(2):
                 value, slope = _slope(kind, b if side else a, d, block, 0, outward, loads, piece, shift, sides)
                 edge[s, 2 * side], edge[s, 2 * side + 1] = value, slope
@@ -305,8 +305,8 @@ def _find(
                 for finer in range(2):
                     value, angle = _refine(kind, left, right, angle, d, block, 0, outward, loads, piece, shift, sides)
                     # A finer row that rises to the very end of the segment has no top; the breakpoint may be one.
-                    if (finer == 0 or a + _SAME < angle < b - _SAME) and not _is_listed(at, found, angle):
-                        found = _keep(peak, at, segment, pin, found, value, angle, s, -1)
+                    if (finer == 0 or a + _SAME < angle < b - _SAME) and not _is_listed(at, peak_count, angle):
+                        peak_count = _keep(peak, at, segment, pin, peak_count, value, angle, s, -1)
                     if finer == 1 or not f[i] > _NEAR * best:
                         break
                     left, right = theta[max(i - 2, start)], theta[min(i + 2, end)]
@@ -315,36 +315,36 @@ def _find(
                         break
                     left, right = max(left, angle - step), min(right, angle + step)
         for s in range(count):
-            if thin[s]:
+            if is_thin[s]:
                 continue
             # The breakpoint between segment `before` and segment s; between the two, breakpoints may coincide.
             before = s - 1 if s > 0 else count - 1
-            while thin[before]:
+            while is_thin[before]:
                 before = before - 1 if before > 0 else count - 1
-            after = live[s]
-            left = edge[before, 2] if live[before] else -1.0
+            after = counts[s]
+            left = edge[before, 2] if counts[before] else -1.0
             right = edge[s, 0] if after else -1.0
-            stray = _STRAY * max(left, right)
-            if live[before] and left >= right - stray and edge[before, 3] >= 0.0:
-                if left > right + stray or edge[s, 1] <= 0.0:
-                    found = _keep(peak, at, segment, pin, found, left, cuts.angle[s], before, s)
-            elif after and right > left + stray and edge[s, 1] <= 0.0:
-                found = _keep(peak, at, segment, pin, found, right, cuts.angle[s], s, s)
-        if found == 0 and best_segment >= 0:  # a constant curve
-            found = _keep(peak, at, segment, pin, found, best, best_at, best_segment, -1)
-        for i in range(kept):
-            if i >= found:
-                values[n, i], where[n, i] = -np.inf, np.nan
+            tolerance = _STRAY * max(left, right)
+            if counts[before] and left >= right - tolerance and edge[before, 3] >= 0.0:
+                if left > right + tolerance or edge[s, 1] <= 0.0:
+                    peak_count = _keep(peak, at, segment, pin, peak_count, left, cuts.angle[s], before, s)
+            elif after and right > left + tolerance and edge[s, 1] <= 0.0:
+                peak_count = _keep(peak, at, segment, pin, peak_count, right, cuts.angle[s], s, s)
+        if peak_count == 0 and best_segment >= 0:  # a constant curve
+            peak_count = _keep(peak, at, segment, pin, peak_count, best, best_at, best_segment, -1)
+        for i in range(listed):
+            if i >= peak_count:
+                values[n, i], peak_angles[n, i] = -np.inf, np.nan
                 for v in range(nv):
                     gradients[n, i, v] = 0.0
                 continue
             values[n, i] = peak[i]
             turned = at[i] - _TURN * math.floor(at[i] / _TURN)
-            where[n, i] = turned if turned < _TURN else 0.0  # rounding, for an angle just below zero
+            peak_angles[n, i] = turned if turned < _TURN else 0.0  # rounding, for an angle just below zero
             s = segment[i]
-            inside = angle_within(cuts.angle[s], cuts.angle[s + 1])
-            _, outward = enter(d, block, 0, inside, loads, watch, piece, shift)
-            sides = sides_of(inside, d, block, 0, outward, loads, piece, shift, rubbing)
+            probe = angle_within(cuts.angle[s], cuts.angle[s + 1])
+            _, outward = enter(d, block, 0, probe, loads, watch, piece, shift)
+            sides = sides_of(probe, d, block, 0, outward, loads, piece, shift, rubbing)
             # A breakpoint at the end of the last segment lies a turn ahead of its list entry.
             angle = at[i] if pin[i] < 0 or pin[i] == s else cuts.angle[s + 1]
             sine, cosine = math.sin(angle), math.cos(angle)
@@ -369,7 +369,7 @@ def find_peaks(
     *,
     during: str = "cycle",
     gradients: bool = False,
-    kept: int = KEPT,
+    limit: int = KEPT,
     angles: int = ANGLES,
 ) -> Peaks:
     """Return the local peaks of a signal for designs (n, 3 + k): crank, rod, offset, m, each turning fully.
@@ -377,30 +377,30 @@ def find_peaks(
     The k columns more are the values of the machine's varying numbers.
 
     during: for torque, "outward stroke" or "inward stroke" restricts the search; the position error counts over the
-    window of the mechanism's tolerances. kept: peaks returned a design. angles: samples a turn.
-    Several cylinders and a profile of the speed count as `of_shaft` says.
+    window of the mechanism's tolerances. limit: peaks returned a design. angles: samples a turn.
+    Several cylinders and a profile of the speed count as `shaft_statistics` says.
     """
     designs = turning(designs)
     if is_shaft(mechanism) or kind is Signal.ROCKING_COUPLE:
         parts = [
-            find_peaks(one, kind, designs, during=during, gradients=gradients, kept=kept, angles=angles)
-            for one in equivalent_single_cranks(mechanism, kind)
+            find_peaks(crank, kind, designs, during=during, gradients=gradients, limit=limit, angles=angles)
+            for crank in equivalent_single_cranks(mechanism, kind)
         ]
         if parts:
             return Peaks(*highest_peaks([(part.values, part.angles, part.gradients) for part in parts]))
-        return Peaks(*shaft_signal_peaks(mechanism, kind, designs, during=during, gradients=gradients, kept=kept))
+        return Peaks(*shaft_signal_peaks(mechanism, kind, designs, during=during, gradients=gradients, limit=limit))
     if kind.needs_forces and cycle_turns(mechanism) > 1:
         first, second = (
-            find_peaks(half, kind, designs, during=during, gradients=gradients, kept=kept, angles=angles)
+            find_peaks(half, kind, designs, during=during, gradients=gradients, limit=limit, angles=angles)
             for half in halves(mechanism)
         )
         return Peaks(*highest(mechanism, designs, first, second))
     n = len(designs)
-    values, where = np.empty((n, kept)), np.empty((n, kept))
+    values, peak_angles = np.empty((n, limit)), np.empty((n, limit))
     raw, loads = signal_inputs(mechanism, kind)
-    numbers = numbers_of(mechanism, designs, room=len(raw), gradients=gradients)
+    numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=gradients)
     columns, designs = numbers.columns, numbers.values
-    slopes = np.empty((n if gradients else 0, kept, len(columns)))
+    slopes = np.empty((n if gradients else 0, limit, len(columns)))
     watch = cycle_window(mechanism, kind, during=during)
     rubbing = kind.needs_forces and rubs(mechanism)
 
@@ -414,10 +414,10 @@ def find_peaks(
             watch,
             angles,
             values[begin:end],
-            where[begin:end],
+            peak_angles[begin:end],
             slopes[begin:end] if gradients else slopes,
             rubbing,
         )
 
     in_chunks(n, work, knots=len(loads.at))
-    return Peaks(values, where, numbers.chain(slopes) if gradients else None)
+    return Peaks(values, peak_angles, numbers.chain(slopes) if gradients else None)

@@ -38,7 +38,7 @@ class Influences(NamedTuple):
 @analytic
 def influences(sine: Any, cosine: Any, m: Motion, l: Any) -> Influences:
     """Return the exact first-order influences on the slider position."""
-    return Influences(cosine + m.tangent * sine, l * m.per_along, -m.tangent, m.x_1)
+    return Influences(cosine + m.tangent * sine, l * m.per_l_cos, -m.tangent, m.x_1)
 
 
 @analytic

@@ -42,10 +42,10 @@ def square_along(theta: Any, d: Any, gap: Any) -> Any:
 def rough(values: Any, tail: Any, allowed: Any) -> bool:
     """Return whether the last Legendre coefficients of values at the nodes of a panel exceed what is allowed."""
     for k in range(tail.shape[0]):
-        found = 0.0
+        coefficient = 0.0
         for i in range(tail.shape[1]):
-            found += tail[k, i] * values[i]
-        if abs(found) > allowed:
+            coefficient += tail[k, i] * values[i]
+        if abs(coefficient) > allowed:
             return True
     return False
 

@@ -65,17 +65,17 @@ def screens(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> boo
         return False
     watch, shaft = cycle_window(mechanism, kind, during=during), is_shaft(mechanism)
     mechanism = mechanism.fullest
-    whole = watch.strokes == 0 and watch.start == 0.0 and watch.end == 1.0
+    full_cycle = watch.strokes == 0 and watch.start == 0.0 and watch.end == 1.0
     if kind == Signal.POSITION_ERROR_RSS and mechanism.tolerances.clearances != Clearances():
         return False  # `locate` samples the squares with the tolerances alone
     if kind == Signal.TORQUE:
         return (
-            whole
+            full_cycle
             and not shaft
             and not mechanism.friction.acts
             and all(load.enters <= Enters.ADDED_MASS for load in mechanism.loads)
         )
-    return whole
+    return full_cycle
 
 
 @analytic
@@ -183,23 +183,23 @@ def _refine(
         _slopes(kind, work[0], work[1], kappa, block, direction, work[2], work[3])
         moving = 0.0
         for j in range(LANES):
-            t, found, rise, peak = work[6, j], work[2, j], work[3, j], best[j]
+            t, value_here, rise, peak = work[6, j], work[2, j], work[3, j], best[j]
             floor, ceiling, last, last_slope, moves = work[7, j], work[8, j], work[9, j], work[10, j], work[11, j]
             new_sine, new_cosine, old_sine, old_cosine = work[0, j], work[1, j], sines[j], cosines[j]
             curvature = share * top[2, j]
             floor = t if rise > 0.0 else floor
             ceiling = ceiling if rise > 0.0 else t
-            bend = curvature * found / (h * h) if step == 0 else (rise - last_slope) / (t - last)
+            bend = curvature * value_here / (h * h) if step == 0 else (rise - last_slope) / (t - last)
             trial = t - rise / bend
             middle = 0.5 * (floor + ceiling)
             trial = trial if (trial > floor) & (trial < ceiling) else middle
             # So short a step is taken without another look: its square still counts in the value, its cube does not.
             goes_on = moves if (abs(trial - t) > _SETTLED) | (step == 0) else 0.0
             ahead = 0.0 if goes_on > 0.0 else trial - t
-            found += 0.5 * rise * ahead
+            value_here += 0.5 * rise * ahead
             # On the flat top the later angle is the better.
-            better = (moves > 0.0) & (found >= peak - _FLAT * abs(peak))
-            best[j] = found if better else peak
+            better = (moves > 0.0) & (value_here >= peak - _FLAT * abs(peak))
+            best[j] = value_here if better else peak
             sines[j] = new_sine + new_cosine * ahead if better else old_sine
             cosines[j] = new_cosine - new_sine * ahead if better else old_cosine
             moving += goes_on
@@ -211,13 +211,13 @@ def _refine(
 
 @analytic
 def _still(d: Any) -> Any:
-    """Size of the torque at the dead centres, the greater one: there loads along the stroke take none."""
+    """Size of the torque at the dead centres, the greater one: there, loads along the stroke take none."""
     outer, inner = d.e * inverse(d.l + d.r), -d.e * inverse(d.l - d.r)
     sine, cosine = outer, d.branch * root(1.0 - outer * outer)
-    one = forces(sine, cosine, design_motion(sine, cosine, d), d, 0.0).torque
+    at_outer = forces(sine, cosine, design_motion(sine, cosine, d), d, 0.0).torque
     sine, cosine = inner, -d.branch * root(1.0 - inner * inner)
-    two = forces(sine, cosine, design_motion(sine, cosine, d), d, 0.0).torque
-    return max(abs(one), abs(two))
+    at_inner = forces(sine, cosine, design_motion(sine, cosine, d), d, 0.0).torque
+    return max(abs(at_outer), abs(at_inner))
 
 
 @kernel
@@ -232,7 +232,7 @@ def _screen(
     crowd: bool,
     first: int,
     values: Table,
-    where: Table,
+    peak_angles: Table,
     still: Row,
     gradients: Cube,
 ) -> None:
@@ -251,7 +251,7 @@ def _screen(
     coarse = tau.astype(np.float32)
     scaled, mark = np.empty((ROWS, LANES), np.float32), np.empty((7, LANES), np.float32)
     samples, top, slope = np.empty((3, angles + 2, LANES), np.float32), np.empty((6, LANES)), np.empty(LANES)
-    value, found = np.empty((2, LANES)), np.empty((2, signals, LANES))
+    value, peak_sines = np.empty((2, LANES)), np.empty((2, signals, LANES))
     sines, cosines = np.empty((2, LANES)), np.empty((2, LANES))
     work = np.empty((12, LANES))  # one array: the compiler sees that its rows do not overlap
     for begin in range(0, n, LANES):
@@ -279,18 +279,18 @@ def _screen(
                 part = top[3 * i : 3 * i + 3]
                 _refine(kinds[q], tau, h, part, kappa, block, direction, work, value[i], sines[i], cosines[i])
             for j in range(LANES):
-                one, two = value[0, j], (value[1, j] if rivals else -1.0)
+                first_value, second_value = value[0, j], (value[1, j] if rivals else -1.0)
                 x, x_2, y, y_2 = cosines[0, j], cosines[1, j], sines[0, j], sines[1, j]
-                value[0, j] = max(one, two)
-                x = x_2 if two > one else x
-                y = kappa[j] * (y_2 if two > one else y)
+                value[0, j] = max(first_value, second_value)
+                x = x_2 if second_value > first_value else x
+                y = kappa[j] * (y_2 if second_value > first_value else y)
                 scale = 1.0 / math.sqrt(x * x + y * y)
-                found[0, q, j], found[1, q, j] = x * scale, -y * scale
+                peak_sines[0, q, j], peak_sines[1, q, j] = x * scale, -y * scale
             for j in range(last):
                 values[q, first + begin + j] = value[0, j]
-            for j in range(last if where.shape[1] else 0):
-                angle = math.atan2(found[0, q, j], found[1, q, j])
-                where[q, first + begin + j] = angle if angle >= 0.0 else angle + 2.0 * math.pi
+            for j in range(last if peak_angles.shape[1] else 0):
+                angle = math.atan2(peak_sines[0, q, j], peak_sines[1, q, j])
+                peak_angles[q, first + begin + j] = angle if angle >= 0.0 else angle + 2.0 * math.pi
         if gradients.shape[0]:
             for v in range(columns.shape[0]):
                 for j in range(LANES):
@@ -300,7 +300,7 @@ def _screen(
                         complex_block[i, j] = block[i, j]
                 derive(stepped, load_kind, load_datum, complex_block, columns[v])
                 for q in range(signals):
-                    _partials(kinds[q], found[0, q], found[1, q], complex_block, direction, slope)
+                    _partials(kinds[q], peak_sines[0, q], peak_sines[1, q], complex_block, direction, slope)
                     for j in range(last):
                         gradients[q, first + begin + j, v] = slope[j]
                 for j in range(LANES):
@@ -328,10 +328,10 @@ def screen(
     """
     designs = turning(designs)
     n, signals = len(designs), len(kinds)
-    values, where = np.empty((signals, n)), np.empty((signals, n if places else 0))
+    values, peak_angles = np.empty((signals, n)), np.empty((signals, n if places else 0))
     standing = np.empty(n if still else 0)
     raw, loads = fullest_inputs(one_turn(mechanism))
-    numbers = numbers_of(mechanism, designs, room=len(raw), gradients=gradients)
+    numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=gradients)
     columns, designs = numbers.columns, numbers.values
     slopes = np.empty((signals if gradients else 0, n, len(columns)))
     codes = np.array([int(kind) for kind in kinds])
@@ -349,12 +349,13 @@ def screen(
             crowd,
             begin,
             values,
-            where,
+            peak_angles,
             standing,
             slopes,
         )
 
     in_chunks(n, work, size=16 * LANES)
     return tuple(
-        Screened(values[q], where[q], standing, numbers.chain(slopes[q]) if gradients else None) for q in range(signals)
+        Screened(values[q], peak_angles[q], standing, numbers.chain(slopes[q]) if gradients else None)
+        for q in range(signals)
     )

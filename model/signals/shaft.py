@@ -22,7 +22,7 @@ from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
 from ..machine.two_turns import TURN, cycle_turns, half_at, halves
 from .cycle_segments import Segments
-from .shaft_curves import TOUCH, VECTORS, WORK, Axes, Blocks, Found, Items, cut_rates, follow_kernel
+from .shaft_curves import TOUCH, VECTORS, WORK, Axes, Blocks, CurveArrays, Evaluations, cut_rates, fill_curves
 from .shaft_segments import CONTACT, FIXED, Breaks, joined, segments_of
 from .signal_inputs import cycle_window, signal_inputs
 from .signals import Signal
@@ -53,46 +53,49 @@ class Shaft:
         signal = Signal(kind) if kind < TOUCH else Signal.CRANK_PIN_FORCE
         single = single_cylinder(mechanism)
         self._single, self._designs = single, designs
-        whole = signal.needs_forces and cycle_turns(single) > 1
-        self._parts = halves(single) if whole else (single,)
+        two_turns = signal.needs_forces and cycle_turns(single) > 1
+        self._parts = halves(single) if two_turns else (single,)
         self.period = len(self._parts) * TURN
-        self.vector = kind in [int(each) for each in VECTORS]
+        self.vector = kind in [int(vector) for vector in VECTORS]
         self.rubbing = signal.needs_forces and rubs(single)
         cylinders = cylinders_of(mechanism)
-        lead, bank = np.array([own.lead for own in cylinders]), np.array([own.bank for own in cylinders])
-        place = np.array([own.place for own in cylinders])
+        lead, bank = (
+            np.array([cylinder.lead for cylinder in cylinders]),
+            np.array([cylinder.bank for cylinder in cylinders]),
+        )
+        place = np.array([cylinder.place for cylinder in cylinders])
         self._axes = Axes(lead, np.cos(bank), np.sin(bank), place)
         self._pace, self.profile = speed_ratio_of(mechanism), mechanism.speed_profile
         self._loads: list[Loads] = []
         plain, stepped = [], []
         for part in self._parts:
             raw, loads = signal_inputs(part, signal)
-            numbers = numbers_of(part, designs, room=len(raw), gradients=gradients)
+            numbers = numbers_of(part, designs, limit=len(raw), gradients=gradients)
             blocks, steps = derived(raw, loads, numbers.columns, numbers.values, steps=gradients)
             self._loads.append(loads)
             plain.append(blocks)
-            own = blocks[:, None, :, 0].astype(np.complex128)
+            cylinder = blocks[:, None, :, 0].astype(np.complex128)
             if gradients:
                 rates = steps.imag.reshape(len(designs), len(numbers.columns), -1)
                 if numbers.slopes is not None:
                     rates = np.einsum("ncr,ncu->nur", rates, numbers.slopes)
-                own = np.concatenate([own, own + 1j * rates], axis=1)
-            stepped.append(own)
+                cylinder = np.concatenate([cylinder, cylinder + 1j * rates], axis=1)
+            stepped.append(cylinder)
         self._watch = cycle_window(self._parts[0], signal, during=during)
         if kind >= WORK:
             self._watch = self._watch._replace(split=True, swing=True)
         self.numbers = designs.shape[1] if gradients else 0
         self._plain = plain
-        self._stepped = [np.ascontiguousarray(own.reshape(-1, own.shape[2], 1)) for own in stepped]
-        both = np.stack(plain, axis=1).reshape(-1, plain[0].shape[1], 1)
+        self._stepped = [np.ascontiguousarray(cylinder.reshape(-1, cylinder.shape[2], 1)) for cylinder in stepped]
+        both_halves = np.stack(plain, axis=1).reshape(-1, plain[0].shape[1], 1)
         all_steps = np.stack(stepped, axis=1).reshape(-1, plain[0].shape[1], 1)
-        self._blocks = Blocks(np.ascontiguousarray(both), np.ascontiguousarray(all_steps))
+        self._blocks = Blocks(np.ascontiguousarray(both_halves), np.ascontiguousarray(all_steps))
 
-    def of(self, kind: int) -> Shaft:
+    def with_curve(self, kind: int) -> Shaft:
         """Return the same followed by another curve, with the same breakpoints."""
-        other = copy(self)
-        other.kind, other.vector = kind, kind in [int(each) for each in VECTORS]
-        return other
+        copied = copy(self)
+        copied.kind, copied.vector = kind, kind in [int(vector) for vector in VECTORS]
+        return copied
 
     @cached_property
     def drives(self) -> Mask:
@@ -105,7 +108,7 @@ class Shaft:
     def fineness(self) -> Array:
         """Panels of a turn (n,) to begin with: more for designs near locking and for rough profiles."""
         r, l, e = self._designs[:, :3].T
-        crowd = np.array([crowding(*each) for each in zip(r, l, e, strict=True)])
+        crowd = np.array([crowding(*lengths) for lengths in zip(r, l, e, strict=True)])
         return np.asarray(np.ceil(np.maximum(12.0 / np.maximum(crowd, 0.05), 1.0 * len(self._pace.cosines))))
 
     def half(self, angle: Array, row: Whole) -> Whole:
@@ -123,52 +126,52 @@ class Shaft:
         crossed = self._single.branch == "crossed"
         return tuple(np.asarray(np.pi - at if crossed else at) for at in (inner, outer))
 
-    def at(
-        self, row: Whole, inside: Array, angle: Array, *, rate: Array | None = None, wanted: bool = False
+    def evaluate(
+        self, row: Whole, probe: Array, angle: Array, *, rate: Array | None = None, gradients: bool = False
     ) -> tuple[Array, Array]:
         """Return the curve (p, k, 2 + v) and its sizes (p, k) at angles (p, k) of segments.
 
         Value, slope over the crank angle, derivatives where wanted. rate: (p, v), of the angles by the design.
         """
-        return self._follow(self.kind, self.members, row, inside, angle, rate, wanted)[:2]
+        return self._evaluate(self.kind, self.members, row, probe, angle, rate, gradients)[:2]
 
     def outward(self, segments: Segments) -> Mask:
         """Return whether the slider of the first cylinder moves outward in the segments."""
-        inside = segments.inside
-        found = self._follow(self.kind, self.members, segments.row, inside, inside[:, None], None, False)
-        return np.asarray(found[2][:, 0] == 1)
+        probe = segments.probe
+        evaluated = self._evaluate(self.kind, self.members, segments.row, probe, probe[:, None], None, False)
+        return np.asarray(evaluated[2][:, 0] == 1)
 
-    def _follow(
-        self, kind: int, members: Whole, row: Whole, inside: Array, angle: Array, rate: Array | None, wanted: bool
+    def _evaluate(
+        self, kind: int, members: Whole, row: Whole, probe: Array, angle: Array, rate: Array | None, gradients: bool
     ) -> tuple[Array, Array, Whole]:
         """Return curve, sizes and strokes; for an angle where every force vanishes at once those beside it."""
-        found = self._asked(kind, members, row, inside, angle, rate, wanted)
-        lost = np.asarray(~np.isfinite(found[0]).all(axis=(1, 2)))
+        curve = self._run_kernel(kind, members, row, probe, angle, rate, gradients)
+        lost = np.asarray(~np.isfinite(curve[0]).all(axis=(1, 2)))
         if lost.any():
-            beside = angle[lost] + np.copysign(_BESIDE, inside[lost, None] - angle[lost])
-            own = None if rate is None else rate[lost]
-            again = self._asked(kind, members, row[lost], inside[lost], beside, own, wanted)
-            there = np.asarray(np.isfinite(found[0][lost]).all(axis=2))
-            found[0][lost] = np.where(there[:, :, None], found[0][lost], again[0])
-            found[1][lost] = np.where(there, found[1][lost], again[1])
-        return found
+            nearby = angle[lost] + np.copysign(_BESIDE, probe[lost, None] - angle[lost])
+            lost_rate = None if rate is None else rate[lost]
+            substitute = self._run_kernel(kind, members, row[lost], probe[lost], nearby, lost_rate, gradients)
+            is_finite = np.asarray(np.isfinite(curve[0][lost]).all(axis=2))
+            curve[0][lost] = np.where(is_finite[:, :, None], curve[0][lost], substitute[0])
+            curve[1][lost] = np.where(is_finite, curve[1][lost], substitute[1])
+        return curve
 
-    def _asked(
-        self, kind: int, members: Whole, row: Whole, inside: Array, angle: Array, rate: Array | None, wanted: bool
+    def _run_kernel(
+        self, kind: int, members: Whole, row: Whole, probe: Array, angle: Array, rate: Array | None, gradients: bool
     ) -> tuple[Array, Array, Whole]:
         rate = np.zeros((len(row), self.numbers)) if rate is None else rate
-        items = Items(
+        items = Evaluations(
             np.ascontiguousarray(row),
-            np.ascontiguousarray(inside),
+            np.ascontiguousarray(probe),
             np.ascontiguousarray(angle),
             np.ascontiguousarray(rate),
-            np.ascontiguousarray(self.half(inside, row)),
+            np.ascontiguousarray(self.half(probe, row)),
         )
-        width = 2 + (self.numbers if wanted else 0)
-        out = Found(
+        width = 2 + (self.numbers if gradients else 0)
+        out = CurveArrays(
             np.empty((*angle.shape, width)), np.empty(angle.shape), np.empty((len(row), len(members)), np.int64)
         )
-        follow_kernel(
+        fill_curves(
             kind,
             members,
             items,
@@ -180,7 +183,7 @@ class Shaft:
             len(self._parts),
             self.vector and kind == self.kind,
             self.rubbing,
-            wanted,
+            gradients,
             out,
         )
         return out.curve, out.size, out.outward
@@ -188,17 +191,17 @@ class Shaft:
     @cached_property
     def breaks(self) -> Breaks:
         """All breakpoints of the designs that no friction locks."""
-        parts = [self._of_half(half) for half in range(len(self._parts))]
+        parts = [self._breaks_of_half(half) for half in range(len(self._parts))]
         rows = np.flatnonzero(self.drives)
         fixed = np.concatenate([self._pace.knots[:-1] + turn * TURN for turn in range(len(self._parts))])
         fixed = np.append(np.mod(fixed, self.period), 0.0)
         row, angle = np.repeat(rows, len(fixed)), np.tile(fixed, len(rows))
-        none = np.zeros(len(row), dtype=np.int64)
-        parts.append(Breaks(row, angle, none, none, none + FIXED, np.zeros(len(row)), none))
-        found = joined(parts)
-        return joined([found, self._contacts(found)]) if self.rubbing else found
+        zeros = np.zeros(len(row), dtype=np.int64)
+        parts.append(Breaks(row, angle, zeros, zeros, zeros + FIXED, np.zeros(len(row)), zeros))
+        smooth = joined(parts)
+        return joined([smooth, self._contacts(smooth)]) if self.rubbing else smooth
 
-    def _of_half(self, half: int) -> Breaks:
+    def _breaks_of_half(self, half: int) -> Breaks:
         """Return the breakpoints of every cylinder in a turn of two."""
         cuts = breakpoints_of(self._plain[half], self._loads[half], self._watch, rubbing=False)
         places = np.arange(cuts.angle.shape[1])
@@ -208,20 +211,20 @@ class Shaft:
             for turn in range(len(self._parts)):
                 local = cuts.angle[row, place] + turn * TURN
                 angle = np.mod(local - self._axes.lead[member], self.period)
-                there = np.ones(len(row), dtype=bool)
+                belongs = np.ones(len(row), dtype=bool)
                 if len(self._parts) > 1:
                     inner, outer = (ends[row] for ends in self._dead_centres)
                     near = [half_at(self._single, inner, outer, local + away) == half for away in (-_NEAR, _NEAR)]
-                    there = near[0] | near[1]
+                    belongs = near[0] | near[1]
                 parts.append(
                     Breaks(
-                        row[there],
-                        angle[there],
-                        np.full(there.sum(), member),
-                        np.full(there.sum(), half),
-                        cuts.code[row, place][there],
-                        cuts.number[row, place][there],
-                        cuts.load[row, place][there],
+                        row[belongs],
+                        angle[belongs],
+                        np.full(belongs.sum(), member),
+                        np.full(belongs.sum(), half),
+                        cuts.code[row, place][belongs],
+                        cuts.number[row, place][belongs],
+                        cuts.load[row, place][belongs],
                     )
                 )
         return joined(parts)
@@ -229,48 +232,50 @@ class Shaft:
     def _contacts(self, breaks: Breaks) -> Breaks:
         """Return where the force of a guide changes sides, between neighbouring samples."""
         segments = segments_of(breaks, self.period)
-        row, inside, low, width, _ = segments.panels(np.full(len(self.drives), _CONTACTS))
+        row, probe, low, width, _ = segments.panels(np.full(len(self.drives), _CONTACTS))
         angle = low[:, None] + width[:, None] * np.linspace(0.0, 1.0, 17)
         parts = []
         for member in self.members:
-            one = np.array([member])
-            value = self._follow(TOUCH, one, row, inside, angle, None, False)[0][:, :, 0]
+            only_member = np.array([member])
+            value = self._evaluate(TOUCH, only_member, row, probe, angle, None, False)[0][:, :, 0]
             panel, place = np.nonzero(value[:, :-1] * value[:, 1:] < 0.0)
             left, right, before = angle[panel, place], angle[panel, place + 1], value[panel, place]
             for _ in range(_HALVINGS):
                 middle = 0.5 * (left + right)
-                now = self._follow(TOUCH, one, row[panel], inside[panel], middle[:, None], None, False)[0][:, 0, 0]
+                now = self._evaluate(TOUCH, only_member, row[panel], probe[panel], middle[:, None], None, False)[0][
+                    :, 0, 0
+                ]
                 same = now * before > 0.0
                 left, right = np.where(same, middle, left), np.where(same, right, middle)
-            none = np.zeros(len(panel), dtype=np.int64)
+            zeros = np.zeros(len(panel), dtype=np.int64)
             at = np.mod(0.5 * (left + right), self.period)
-            own = np.full(len(panel), member)
-            parts.append(Breaks(row[panel], at, own, none, none + CONTACT, np.zeros(len(panel)), none))
+            members = np.full(len(panel), member)
+            parts.append(Breaks(row[panel], at, members, zeros, zeros + CONTACT, np.zeros(len(panel)), zeros))
         return joined(parts)
 
-    def rates(self, cuts: Whole, inside: Array) -> Array:
-        """Return the derivatives (c, v) of the angles of breakpoints by the design; inside: of the segments behind."""
+    def rates(self, cuts: Whole, probe: Array) -> Array:
+        """Return the derivatives (c, v) of the angles of breakpoints by the design; probe: of the segments behind."""
         breaks = self.breaks
         code, row = breaks.code[cuts], breaks.row[cuts]
         out = np.zeros((len(cuts), self.numbers))
         local = breaks.angle[cuts] + self._axes.lead[breaks.member[cuts]]
         for half in range(len(self._parts)):
-            own = np.flatnonzero((code >= 0) & (breaks.half[cuts] == half))
-            found = np.zeros((len(own), self.numbers))
-            chosen = np.ascontiguousarray(cuts[own])
+            rows = np.flatnonzero((code >= 0) & (breaks.half[cuts] == half))
+            member_rates = np.zeros((len(rows), self.numbers))
+            chosen = np.ascontiguousarray(cuts[rows])
             cut_rates(
-                np.ascontiguousarray(row[own]),
-                np.ascontiguousarray(local[own]),
+                np.ascontiguousarray(row[rows]),
+                np.ascontiguousarray(local[rows]),
                 np.ascontiguousarray(breaks.code[chosen]),
                 np.ascontiguousarray(breaks.number[chosen]),
                 np.ascontiguousarray(breaks.load[chosen]),
                 self._stepped[half],
-                found,
+                member_rates,
             )
-            out[own] = found
+            out[rows] = member_rates
         for member in self.members:
-            own = np.flatnonzero((code == CONTACT) & (breaks.member[cuts] == member))
-            at = breaks.angle[cuts[own], None]
-            found = self._follow(TOUCH, np.array([member]), row[own], inside[own], at, None, True)[0][:, 0]
-            out[own] = -found[:, 2:] / found[:, 1:2]
+            rows = np.flatnonzero((code == CONTACT) & (breaks.member[cuts] == member))
+            at = breaks.angle[cuts[rows], None]
+            member_rates = self._evaluate(TOUCH, np.array([member]), row[rows], probe[rows], at, None, True)[0][:, 0]
+            out[rows] = -member_rates[:, 2:] / member_rates[:, 1:2]
         return out

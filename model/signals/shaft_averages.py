@@ -41,38 +41,38 @@ class Means:
 def shaft_means(shaft: Shaft, count: int) -> Means:
     """Return the means of n designs."""
     segments = segments_of(shaft.breaks, shaft.period)
-    row, inside, low, width, _ = segments.panels(shaft.fineness)
+    row, probe, low, width, _ = segments.panels(shaft.fineness)
     rows = 2 if shaft.profile is None else 3
     sums, slopes, sizes = np.zeros((rows, count)), np.zeros((rows, count, shaft.numbers)), np.zeros((2, count))
     for depth in range(_DEEPEST + 1):
         angle = low[:, None] + width[:, None] * _NODES
-        found, size = shaft.at(row, inside, angle)
-        value, time = found[:, :, 0], _time_weight(shaft, angle)
+        curve, size = shaft.evaluate(row, probe, angle)
+        value, time = curve[:, :, 0], _time_weight(shaft, angle)
         rough = _is_rough(value, size, sizes[0], row, width)
         if time is not None:
             rough |= _is_rough(np.sqrt(time) * value, np.sqrt(time) * size, sizes[1], row, width)
         ready = ~rough if depth < _DEEPEST else np.ones(len(row), dtype=bool)
         value, weight = value[ready], width[ready, None] * _WEIGHTS / shaft.period
         weights = [weight] * 2 if time is None else [weight, weight, weight * time[ready]]
-        for place, own in enumerate(weights):
-            power = value if place == MEAN else value**2
-            np.add.at(sums[place], row[ready], (own * power).sum(axis=1))
+        for index, row_weights in enumerate(weights):
+            power = value if index == MEAN else value**2
+            np.add.at(sums[index], row[ready], (row_weights * power).sum(axis=1))
         if shaft.gradients:
-            slope = shaft.at(row[ready], inside[ready], angle[ready], wanted=True)[0][:, :, 2:]
-            for place, own in enumerate(weights):
-                rate = own if place == MEAN else 2.0 * own * value
-                np.add.at(slopes[place], row[ready], np.einsum("pk,pkv->pv", rate, slope))
+            slope = shaft.evaluate(row[ready], probe[ready], angle[ready], gradients=True)[0][:, :, 2:]
+            for index, row_weights in enumerate(weights):
+                rate = row_weights if index == MEAN else 2.0 * row_weights * value
+                np.add.at(slopes[index], row[ready], np.einsum("pk,pkv->pv", rate, slope))
         if not rough.any() or depth == _DEEPEST:
             break
         half = 0.5 * width[rough]
-        row, inside = (np.concatenate([part[rough]] * 2) for part in (row, inside))
+        row, probe = (np.concatenate([part[rough]] * 2) for part in (row, probe))
         low, width = np.concatenate([low[rough], low[rough] + half]), np.concatenate([half, half])
     if shaft.gradients:
         _add_jumps(shaft, segments, slopes)
     sums[:, ~shaft.drives] = np.nan
     nothing = np.sqrt(sums[SQUARE]) <= NOTHING * sizes[0]
-    each = [MEAN, SQUARE, SQUARE if rows == 2 else SQUARE_OVER_TIME]
-    return Means(sums[each], slopes[each] if shaft.gradients else None, nothing)
+    kept_rows = [MEAN, SQUARE, SQUARE if rows == 2 else SQUARE_OVER_TIME]
+    return Means(sums[kept_rows], slopes[kept_rows] if shaft.gradients else None, nothing)
 
 
 def _time_weight(shaft: Shaft, angle: Array) -> Array | None:
@@ -83,18 +83,18 @@ def _time_weight(shaft: Shaft, angle: Array) -> Array | None:
 def _is_rough(value: Array, size: Array, sizes: Array, row: Whole, width: Array) -> Mask:
     """Return which panels (p,) are not resolved, from values and sizes (p, 16); raise the sizes (n,) of the designs."""
     np.maximum.at(sizes, row, size.max(axis=1, initial=0.0))
-    found: Mask = resolved_tail(value) * np.minimum(1.0, width) > _RESOLVED * sizes[row]
-    return found
+    rough: Mask = resolved_tail(value) * np.minimum(1.0, width) > _RESOLVED * sizes[row]
+    return rough
 
 
 def _add_jumps(shaft: Shaft, segments: Segments, slopes: Array) -> None:
     """Add to derivatives (rows, n, v) the effect of moving breakpoints at which the curve jumps."""
     ends = np.stack([segments.low, segments.high], axis=1)
-    edge = shaft.at(segments.row, segments.inside, ends)[0][:, :, 0]
-    rate = shaft.rates(segments.cut, segments.inside)
+    edge = shaft.evaluate(segments.row, segments.probe, ends)[0][:, :, 0]
+    rate = shaft.rates(segments.cut, segments.probe)
     before = np.empty(len(edge))
-    before[segments.after] = edge[:, 1]
+    before[segments.next_segment] = edge[:, 1]
     jump, squares = (before - edge[:, 0]) / shaft.period, (before**2 - edge[:, 0] ** 2) / shaft.period
     time = _time_weight(shaft, segments.low)
-    for place, own in enumerate([jump, squares] if time is None else [jump, squares, squares * time]):
-        np.add.at(slopes[place], segments.row, own[:, None] * rate)
+    for index, weights in enumerate([jump, squares] if time is None else [jump, squares, squares * time]):
+        np.add.at(slopes[index], segments.row, weights[:, None] * rate)

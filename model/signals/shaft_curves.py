@@ -54,21 +54,21 @@ class Axes(NamedTuple):
     place: Row
 
 
-class Items(NamedTuple):
+class Evaluations(NamedTuple):
     """Arguments of p evaluations: design, shaft angle in the segment that is entered, angles, their rates, half.
 
-    row, inside: (p,). angle: (p, k), rad. rate: (p, v), of the angle by each number of the design, where derivatives
+    row, probe: (p,). angle: (p, k), rad. rate: (p, v), of the angle by each number of the design, where derivatives
     are wanted. half: (p, m), of a cycle of two turns that each cylinder is in.
     """
 
     row: Integers
-    inside: Row
+    probe: Row
     angle: Table
     rate: Table
     half: IntegerTable
 
 
-class Found(NamedTuple):
+class CurveArrays(NamedTuple):
     """Answers. curve: (p, k, 2 + v), value, slope over the crank angle and, if wanted, derivatives by the design.
 
     size: (p, k), sum of the cylinders' sizes. outward: (p, m), 1 where the slider moves outward.
@@ -132,10 +132,10 @@ def _components(kind: Any, s: Any, c: Any, m: Any, d: Any, load: Any, sides: Any
 
 
 @seldom_kernel
-def follow_kernel(
+def fill_curves(
     kind: int,
     members: Integers,
-    asked: Items,
+    items: Evaluations,
     axes: Axes,
     pace: SpeedRatio,
     blocks: Blocks,
@@ -144,8 +144,8 @@ def follow_kernel(
     turns: int,
     vector: bool,
     rubbing: bool,
-    wanted: bool,
-    out: Found,
+    gradients: bool,
+    out: CurveArrays,
 ) -> None:
     """Fill `out` with a curve of designs, added up over the cylinders `members`.
 
@@ -154,16 +154,16 @@ def follow_kernel(
     rows, count = blocks.plain.shape[1], members.shape[0]
     numbers = blocks.stepped.shape[0] // max(1, blocks.plain.shape[0])
     watch = CycleWindow(0, 0.0, 1.0, False)
-    own, real = np.empty((rows, 1), np.complex128), np.empty((rows, 1))
+    stepped, real = np.empty((rows, 1), np.complex128), np.empty((rows, 1))
     piece = np.zeros((count, first.kind.shape[0]), np.int64)
     shift = np.zeros((count, first.kind.shape[0]))
     sides = np.zeros((count, 5))
-    for p in range(asked.row.shape[0]):
-        ratio, slope, _, _ = speed_ratio_at(asked.inside[p], pace)
+    for p in range(items.row.shape[0]):
+        ratio, slope, _, _ = speed_ratio_at(items.probe[p], pace)
         for i in range(count):
             k = members[i]
-            loads = first if asked.half[p, k] == 0 else second
-            block = blocks.plain[asked.row[p] * turns + asked.half[p, k]]
+            loads = first if items.half[p, k] == 0 else second
+            block = blocks.plain[items.row[p] * turns + items.half[p, k]]
             for row in range(rows):
                 real[row, 0] = block[row, 0]
             real[_ROW_SPEED, 0] = block[_ROW_SPEED, 0] * ratio
@@ -174,60 +174,60 @@ def follow_kernel(
             real[_ROW_X, 0] = axes.cosine[k] * x + axes.sine[k] * y
             real[_ROW_Y, 0] = axes.cosine[k] * y - axes.sine[k] * x
             d = design_at(real, 0)
-            local = asked.inside[p] + axes.lead[k]
+            local = items.probe[p] + axes.lead[k]
             _, outward = enter(d, real, 0, local, loads, watch, piece[i], shift[i])
             signs = sides_of(local, d, real, 0, outward, loads, piece[i], shift[i], rubbing)
             sides[i, 0], sides[i, 1], sides[i, 2] = signs.turn, signs.slide, signs.swing
             sides[i, 3], sides[i, 4] = signs.press, signs.grip
             out.outward[p, i] = 1 if outward else 0
-        for a in range(asked.angle.shape[1]):
-            theta = asked.angle[p, a]
+        for a in range(items.angle.shape[1]):
+            theta = items.angle[p, a]
             p_0, p_1, p_2, p_3 = speed_ratio_at(theta, pace)
-            for v in range(numbers if wanted else 1):
-                step = STEP if v == 0 else STEP * asked.rate[p, v - 1]
+            for v in range(numbers if gradients else 1):
+                step = STEP if v == 0 else STEP * items.rate[p, v - 1]
                 ratio_now, slope_now = complex(p_0, step * p_1), complex(p_1, step * p_2)
                 bend = complex(p_2, step * p_3)
-                one, other = 0j, 0j
+                sum_x, sum_y = 0j, 0j
                 size = 0.0
                 for i in range(count):
                     k = members[i]
-                    half = asked.half[p, k]
+                    half = items.half[p, k]
                     loads = first if half == 0 else second
-                    given = blocks.stepped[(asked.row[p] * turns + half) * numbers + v]
+                    source = blocks.stepped[(items.row[p] * turns + half) * numbers + v]
                     for row in range(rows):
-                        own[row, 0] = given[row, 0]
-                    speed = given[_ROW_SPEED, 0]
-                    own[_ROW_SPEED, 0] = speed * ratio_now
+                        stepped[row, 0] = source[row, 0]
+                    speed = source[_ROW_SPEED, 0]
+                    stepped[_ROW_SPEED, 0] = speed * ratio_now
                     square = speed * speed
-                    own[_ROW_ACCELERATION, 0] = given[_ROW_ACCELERATION, 0] + square * ratio_now * slope_now
+                    stepped[_ROW_ACCELERATION, 0] = source[_ROW_ACCELERATION, 0] + square * ratio_now * slope_now
                     rate = square * (slope_now * slope_now + ratio_now * bend)
-                    x, y = given[_ROW_X, 0], given[_ROW_Y, 0]
-                    own[_ROW_X, 0] = axes.cosine[k] * x + axes.sine[k] * y
-                    own[_ROW_Y, 0] = axes.cosine[k] * y - axes.sine[k] * x
-                    z = design_at(own, 0)
+                    x, y = source[_ROW_X, 0], source[_ROW_Y, 0]
+                    stepped[_ROW_X, 0] = axes.cosine[k] * x + axes.sine[k] * y
+                    stepped[_ROW_Y, 0] = axes.cosine[k] * y - axes.sine[k] * x
+                    z = design_at(stepped, 0)
                     local = theta + axes.lead[k]
                     sine, cosine = math.sin(local), math.cos(local)
                     s, c = complex(sine, cosine * step), complex(cosine, -sine * step)
                     at = complex(local, step)
                     m = design_motion(s, c, z)
-                    load = load_on_slider(m, z, own, 0, at, out.outward[p, i] == 1, loads, piece[i], shift[i])
+                    load = load_on_slider(m, z, stepped, 0, at, out.outward[p, i] == 1, loads, piece[i], shift[i])
                     signs = Sides(sides[i, 0], sides[i, 1], sides[i, 2], sides[i, 3], sides[i, 4])
-                    place = (own, at, loads, piece[i], shift[i])
+                    place = (stepped, at, loads, piece[i], shift[i])
                     x, y = _components(kind, s, c, m, z, load, signs, place, rate)
                     if kind in (_SHAKING_FORCE, _ROCKING_COUPLE):
                         x, y = axes.cosine[k] * x - axes.sine[k] * y, axes.sine[k] * x + axes.cosine[k] * y
                     if kind == _ROCKING_COUPLE:
                         x, y = -axes.place[k] * y, axes.place[k] * x
-                    one, other = one + x, other + y
+                    sum_x, sum_y = sum_x + x, sum_y + y
                     size += abs(x.real) + abs(y.real)
                 if vector:
-                    one = root(one * one + other * other)
+                    sum_x = root(sum_x * sum_x + sum_y * sum_y)
                 if v == 0:
-                    out.curve[p, a, 0] = one.real
-                    out.curve[p, a, 1] = one.imag / STEP
+                    out.curve[p, a, 0] = sum_x.real
+                    out.curve[p, a, 1] = sum_x.imag / STEP
                     out.size[p, a] = size
                 else:
-                    out.curve[p, a, 1 + v] = one.imag / STEP
+                    out.curve[p, a, 1 + v] = sum_x.imag / STEP
 
 
 @seldom_kernel

@@ -13,7 +13,7 @@ NOTHING = 1e-12
 """Share of what cylinders do one by one below which the whole does nothing: they cancel but for rounding."""
 
 
-def shaft_peaks(shaft: Shaft, *, kept: int, stroke: bool | None = None) -> tuple[Array, Array, Array]:
+def shaft_peaks(shaft: Shaft, *, limit: int, stroke: bool | None = None) -> tuple[Array, Array, Array]:
     """Return values, crank angles (n, kept) and derivatives of the highest local maxima of the curve's size.
 
     stroke: whether the outward one alone counts, or the inward one; None for both. Where friction locks a design the
@@ -21,8 +21,8 @@ def shaft_peaks(shaft: Shaft, *, kept: int, stroke: bool | None = None) -> tuple
     """
     segments = segments_of(shaft.breaks, shaft.period)
     live = None if stroke is None else shaft.outward(segments) == stroke
-    found = find_maxima(shaft, segments, shaft.fineness, kept=kept, live=live)
-    nothing = np.isfinite(found.values) & (found.values <= NOTHING * found.size[:, None])
-    values = np.where(nothing, 0.0, found.values)
+    maxima = find_maxima(shaft, segments, shaft.fineness, limit=limit, counted=live)
+    nothing = np.isfinite(maxima.values) & (maxima.values <= NOTHING * maxima.size[:, None])
+    values = np.where(nothing, 0.0, maxima.values)
     values[~shaft.drives, 0] = np.inf
-    return values, np.mod(found.places, shaft.period), np.where(nothing[:, :, None], 0.0, found.slopes)
+    return values, np.mod(maxima.places, shaft.period), np.where(nothing[:, :, None], 0.0, maxima.slopes)

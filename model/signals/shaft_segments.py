@@ -45,16 +45,18 @@ def segments_of(breaks: Breaks, period: float) -> Segments:
     last = np.searchsorted(row, row, side="right") - 1
     place = np.arange(len(row))
     high = np.where(place == last, low[first] + period, low[np.minimum(place + 1, len(row) - 1)])
-    kept = high - low >= _THIN
-    thin, thin_row = order[~kept], row[~kept]
-    behind = np.searchsorted(np.flatnonzero(kept), np.flatnonzero(~kept))
-    row, low, high, cut = row[kept], low[kept], high[kept], order[kept]
+    has_length = high - low >= _THIN
+    thin_breaks, thin_row = order[~has_length], row[~has_length]
+    next_break = np.searchsorted(np.flatnonzero(has_length), np.flatnonzero(~has_length))
+    row, low, high, cut = row[has_length], low[has_length], high[has_length], order[has_length]
     place = np.arange(len(row))
     ends = np.searchsorted(row, row, side="right") - 1
     begins = np.searchsorted(row, row, side="left")
     after = np.where(place == ends, begins, place + 1)
     # What is thin is one breakpoint with the next, around the cycle too: designs move it if they move either.
-    behind = np.where(behind > np.searchsorted(row, thin_row, side="right") - 1, np.searchsorted(row, thin_row), behind)
-    moves = (breaks.code[cut[behind]] == FIXED) & (breaks.code[thin] != FIXED)
-    cut[behind[moves]] = thin[moves]
+    next_break = np.where(
+        next_break > np.searchsorted(row, thin_row, side="right") - 1, np.searchsorted(row, thin_row), next_break
+    )
+    moves = (breaks.code[cut[next_break]] == FIXED) & (breaks.code[thin_breaks] != FIXED)
+    cut[next_break[moves]] = thin_breaks[moves]
     return Segments(row, low, high, cut, after, TURN)

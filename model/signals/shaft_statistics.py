@@ -44,38 +44,38 @@ def equivalent_single_cranks(mechanism: Mechanism, kind: Signal) -> tuple[Mechan
     """Return machines of one crank at constant speed whose highest peak is that of the shaft, if any."""
     if kind in _GEOMETRY:
         return (single_cylinder(mechanism),)
-    banked = any(own.bank for own in cylinders_of(mechanism))
+    banked = any(cylinder.bank for cylinder in cylinders_of(mechanism))
     turned = banked and any(path.startswith("gravity.") for item in mechanism.varying for path in item.paths)
     if kind in SUMS or mechanism.speed_profile is not None or turned:
         return ()
-    return tuple({own.mechanism.gravity: own.mechanism for own in cylinders_of(mechanism)}.values())
+    return tuple({cylinder.mechanism.gravity: cylinder.mechanism for cylinder in cylinders_of(mechanism)}.values())
 
 
 def shaft_signal_peaks(
-    mechanism: Mechanism, kind: Signal, designs: Array, *, during: str, gradients: bool, kept: int
+    mechanism: Mechanism, kind: Signal, designs: Array, *, during: str, gradients: bool, limit: int
 ) -> PeakArrays:
     """Return values, angles (n, kept) and derivatives of the highest local peaks of a signal; see `find_peaks`.
 
     Over one stroke several cylinders together have none, nor is there a rocking couple in one plane: NaN.
     """
-    count = cylinder_count(mechanism)
-    if (during != "cycle" and count > 1) or (kind is Signal.ROCKING_COUPLE and not has_rocking_couple(mechanism)):
-        nothing = np.full((len(designs), kept), np.nan)
-        return nothing, nothing.copy(), np.full((len(designs), kept, designs.shape[1]), np.nan) if gradients else None
-    groups = [tuple(range(count))] if kind in SUMS else [(k,) for k in range(count)]
-    values, angles = (np.empty((len(designs), len(groups), kept)) for _ in range(2))
-    slopes = np.empty((len(designs), len(groups), kept, designs.shape[1])) if gradients else None
+    cylinders = cylinder_count(mechanism)
+    if (during != "cycle" and cylinders > 1) or (kind is Signal.ROCKING_COUPLE and not has_rocking_couple(mechanism)):
+        nothing = np.full((len(designs), limit), np.nan)
+        return nothing, nothing.copy(), np.full((len(designs), limit, designs.shape[1]), np.nan) if gradients else None
+    groups = [tuple(range(cylinders))] if kind in SUMS else [(k,) for k in range(cylinders)]
+    values, angles = (np.empty((len(designs), len(groups), limit)) for _ in range(2))
+    slopes = np.empty((len(designs), len(groups), limit, designs.shape[1])) if gradients else None
 
     def work(begin: int, end: int) -> None:
         part = designs[begin:end]
-        for place, group in enumerate(groups):
+        for index, group in enumerate(groups):
             shaft = Shaft(mechanism, int(kind), part, members=group, during=during, gradients=gradients)
-            found = shaft_peaks(shaft, kept=kept, stroke=_STROKES[during])
-            values[begin:end, place], angles[begin:end, place] = found[:2]
-            if len(group) == 1 and count > 1:
-                angles[begin:end, place] = np.mod(found[1] + cylinders_of(mechanism)[place].lead, shaft.period)
+            peaks = shaft_peaks(shaft, limit=limit, stroke=_STROKES[during])
+            values[begin:end, index], angles[begin:end, index] = peaks[:2]
+            if len(group) == 1 and cylinders > 1:
+                angles[begin:end, index] = np.mod(peaks[1] + cylinders_of(mechanism)[index].lead, shaft.period)
             if slopes is not None:
-                slopes[begin:end, place] = found[2]
+                slopes[begin:end, index] = peaks[2]
 
     in_chunks(len(designs), work, size=_CHUNK, knots=knot_count(mechanism))
     return highest_peaks(
@@ -87,13 +87,13 @@ def highest_peaks(parts: list[PeakArrays]) -> PeakArrays:
     """Return the highest of several lists of peaks (n, k), as many as each has."""
     if len(parts) == 1:
         return parts[0]
-    kept = parts[0][0].shape[1]
-    values, angles = (np.concatenate([part[place] for part in parts], axis=1) for place in range(2))
-    order = np.argsort(-values, axis=1, kind="stable")[:, :kept]
+    limit = parts[0][0].shape[1]
+    values, angles = (np.concatenate([part[index] for part in parts], axis=1) for index in range(2))
+    order = np.argsort(-values, axis=1, kind="stable")[:, :limit]
     slopes = None
     if all(part[2] is not None for part in parts):
-        every = np.concatenate([np.asarray(part[2]) for part in parts], axis=1)
-        slopes = np.take_along_axis(every, order[:, :, None], axis=1)
+        all_slopes = np.concatenate([np.asarray(part[2]) for part in parts], axis=1)
+        slopes = np.take_along_axis(all_slopes, order[:, :, None], axis=1)
     return np.take_along_axis(values, order, axis=1), np.take_along_axis(angles, order, axis=1), slopes
 
 
@@ -105,8 +105,8 @@ def shaft_signal_averages(
     The mean of a signal that counts by its size is NaN, but for the reflected inertia.
     """
     members = tuple(range(cylinder_count(mechanism)))
-    found, slopes = _averages(mechanism, [int(kind)], designs, members, gradients)
-    values, slopes = found[:, :, 0], None if slopes is None else slopes[:, :, 0]
+    averages, slopes = _averages(mechanism, [int(kind)], designs, members, gradients)
+    values, slopes = averages[:, :, 0], None if slopes is None else slopes[:, :, 0]
     locks = np.isnan(values[1])
     values[1:, locks] = np.inf
     if kind is Signal.TORQUE and not works_over_a_turn(mechanism):  # exactly, without rounding error
@@ -130,16 +130,16 @@ def _averages(
     def work(begin: int, end: int) -> None:
         part = designs[begin:end]
         shaft = Shaft(mechanism, kinds[0], part, members=members, gradients=gradients)
-        for place, kind in enumerate(kinds):
-            found = shaft_means(shaft.of(kind), len(part))
-            roots = np.where(found.nothing, 0.0, np.sqrt(found.values[SQUARE:]))
-            values[0, begin:end, place] = np.where(found.nothing, 0.0, found.values[MEAN])
-            values[1:, begin:end, place] = roots
-            if slopes is not None and found.gradients is not None:
-                there = (roots > 0.0)[:, :, None]
-                slopes[0, begin:end, place] = np.where(found.nothing[:, None], 0.0, found.gradients[MEAN])
-                half = 0.5 / np.where(there, roots[:, :, None], 1.0)
-                slopes[1:, begin:end, place] = np.where(there, half * found.gradients[SQUARE:], 0.0)
+        for index, kind in enumerate(kinds):
+            means = shaft_means(shaft.with_curve(kind), len(part))
+            roots = np.where(means.nothing, 0.0, np.sqrt(means.values[SQUARE:]))
+            values[0, begin:end, index] = np.where(means.nothing, 0.0, means.values[MEAN])
+            values[1:, begin:end, index] = roots
+            if slopes is not None and means.gradients is not None:
+                is_positive = (roots > 0.0)[:, :, None]
+                slopes[0, begin:end, index] = np.where(means.nothing[:, None], 0.0, means.gradients[MEAN])
+                half = 0.5 / np.where(is_positive, roots[:, :, None], 1.0)
+                slopes[1:, begin:end, index] = np.where(is_positive, half * means.gradients[SQUARE:], 0.0)
 
     in_chunks(len(designs), work, size=_CHUNK, knots=knot_count(mechanism))
     return values, slopes
@@ -150,10 +150,10 @@ def shaft_turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool) ->
     mean = np.zeros((len(designs), CURVES))
     slopes = np.zeros((len(designs), CURVES, designs.shape[1])) if gradients else None
     for member in range(cylinder_count(mechanism)):
-        found, own = _averages(mechanism, range(WORK, WORK + CURVES), designs, (member,), gradients)
-        mean += found[0]
-        if slopes is not None and own is not None:
-            slopes += own[0]
+        member_mean, member_slopes = _averages(mechanism, range(WORK, WORK + CURVES), designs, (member,), gradients)
+        mean += member_mean[0]
+        if slopes is not None and member_slopes is not None:
+            slopes += member_slopes[0]
     locks = np.isnan(mean)
     if slopes is not None:
         slopes[locks] = 0.0

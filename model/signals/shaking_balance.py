@@ -26,7 +26,7 @@ def has_rocking_couple(mechanism: Mechanism) -> bool:
     return is_unbalanced(arrangement, lambda k: arrangement.place(k) * cmath.exp(1j * arrangement.bank(k)))
 
 
-def is_unbalanced(arrangement: Arrangement, share: Callable[[int], complex]) -> bool:
+def is_unbalanced(arrangement: Arrangement, weight: Callable[[int], complex]) -> bool:
     """Return whether shares add up to something over the cylinders that stand alike.
 
     A curve of period 2 pi with every harmonic cancels only among cylinders with the same crank angle from their lines.
@@ -34,10 +34,10 @@ def is_unbalanced(arrangement: Arrangement, share: Callable[[int], complex]) -> 
     groups: list[tuple[float, list[complex]]] = []
     for k in range(len(arrangement.phases)):
         lead = arrangement.lead(k)
-        for at, shares in groups:
-            if abs(math.remainder(lead - at, 2.0 * math.pi)) <= _SAME:
-                shares.append(share(k))
+        for group_lead, weights in groups:
+            if abs(math.remainder(lead - group_lead, 2.0 * math.pi)) <= _SAME:
+                weights.append(weight(k))
                 break
         else:
-            groups.append((lead, [share(k)]))
-    return any(abs(sum(shares)) > _SAME * sum(map(abs, shares)) for _, shares in groups)
+            groups.append((lead, [weight(k)]))
+    return any(abs(sum(weights)) > _SAME * sum(map(abs, weights)) for _, weights in groups)

@@ -44,4 +44,4 @@ def stroke_dependent(mechanism: Mechanism) -> bool:
             load, _, name = path.rpartition(".")
             if name in ("outward", "inward"):
                 forces.setdefault(load, []).append((item.name, factor))
-    return any(len(both) < 2 or both[0] != both[1] for both in forces.values())
+    return any(len(setters) < 2 or setters[0] != setters[1] for setters in forces.values())

@@ -81,9 +81,9 @@ def _curves(
 ) -> Any:
     """Return the five curves; square: the real l^2 cos^2(phi)."""
     sine, cosine = math.sin(theta), math.cos(theta)
-    across = d.e - d.r * sine
-    plain = d.l * d.l - across * across
-    m = motion_of(sine, cosine, d.r, across, d.branch * root(plain + (square - plain.real)))
+    l_sin = d.e - d.r * sine
+    plain = d.l * d.l - l_sin * l_sin
+    m = motion_of(sine, cosine, d.r, l_sin, d.branch * root(plain + (square - plain.real)))
     load = load_on_slider(m, d, block, 0, theta, outward, loads, piece, shift)
     f = joint_forces(sine, cosine, m, d, load, sides)
     turn = 1.0 if d.speed.real >= 0.0 else -1.0
@@ -109,8 +109,8 @@ def _integrate(
     rubbing: bool,
 ) -> None:
     nodes, weights, tail = rule
-    room = room_for(loads)
-    cuts = Cuts(np.empty(room), np.empty(room, np.int64), np.empty(room), np.empty(room, np.int64))
+    cut_room = room_for(loads)
+    cuts = Cuts(np.empty(cut_room), np.empty(cut_room, np.int64), np.empty(cut_room), np.empty(cut_room, np.int64))
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     nv = slopes.shape[2] if slopes.shape[0] else 0
     # Row 0 of the rates is the curve itself, the others are its derivatives.
@@ -136,9 +136,9 @@ def _integrate(
         greatest[:] = 0.0
         for s in range(count):
             a, b = cuts.angle[s], cuts.angle[s + 1]
-            inside = angle_within(a, b)
-            _, outward = enter(d, block, 0, inside, loads, watch, piece, shift)
-            sides = sides_of(inside, d, block, 0, outward, loads, piece, shift, rubbing)
+            probe = angle_within(a, b)
+            _, outward = enter(d, block, 0, probe, loads, watch, piece, shift)
+            sides = sides_of(probe, d, block, 0, outward, loads, piece, shift, rubbing)
             low, high = crowded(a, kappa), crowded(b, kappa)
             panels = denser * (int(PANELS * (high - low) / _TURN) + 1)
             for p in range(panels):
@@ -208,9 +208,9 @@ def turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool = False) 
     n = len(designs)
     mean = np.empty((n, _CURVES))
     raw, loads = signal_inputs(mechanism, Signal.CRANK_PIN_FORCE)
-    numbers = numbers_of(mechanism, designs, room=len(raw), gradients=gradients)
+    numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=gradients)
     columns, designs = numbers.columns, numbers.values
-    found = np.empty((n if gradients else 0, _CURVES, len(columns)))
+    slopes_by_raw = np.empty((n if gradients else 0, _CURVES, len(columns)))
     rule, gaps = panel_rule(), gaps_of(*designs.T[:3])
 
     def work(begin: int, end: int) -> None:
@@ -223,9 +223,9 @@ def turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool = False) 
             _WATCH,
             rule,
             mean[begin:end],
-            found[begin:end] if gradients else found,
+            slopes_by_raw[begin:end] if gradients else slopes_by_raw,
             rubs(mechanism),
         )
 
     in_chunks(n, work, knots=len(loads.at))
-    return TurnWork(mean, numbers.chain(found) if gradients else None)
+    return TurnWork(mean, numbers.chain(slopes_by_raw) if gradients else None)

@@ -30,16 +30,16 @@ class _Averages(Protocol):
 
 def highest(mechanism: Mechanism, designs: Array, first: _Peaks, second: _Peaks) -> tuple[Array, Array, Array | None]:
     """Return values, angles and gradients of the highest peaks of both turns, as many as each has."""
-    kept = first.values.shape[1]
+    limit = first.values.shape[1]
     values = np.concatenate([first.values, second.values], axis=1)
-    order = np.argsort(-values, axis=1, kind="stable")[:, :kept]
+    order = np.argsort(-values, axis=1, kind="stable")[:, :limit]
     angles = np.concatenate(
         [_angles(mechanism, designs, part.angles, half) for half, part in enumerate((first, second))], axis=1
     )
     gradients = None
     if first.gradients is not None and second.gradients is not None:
-        both = np.concatenate([first.gradients, second.gradients], axis=1)
-        gradients = np.take_along_axis(both, order[:, :, None], axis=1)
+        all_gradients = np.concatenate([first.gradients, second.gradients], axis=1)
+        gradients = np.take_along_axis(all_gradients, order[:, :, None], axis=1)
     return np.take_along_axis(values, order, axis=1), np.take_along_axis(angles, order, axis=1), gradients
 
 
@@ -50,9 +50,9 @@ def averaged(first: _Averages, second: _Averages) -> tuple[Array, Array | None]:
     values = np.concatenate([mean, rms])
     if first.gradients is None or second.gradients is None:
         return values, None
-    one, other = (part.values[1:, :, None] * np.asarray(part.gradients)[1:] for part in (first, second))
+    first_part, second_part = (part.values[1:, :, None] * np.asarray(part.gradients)[1:] for part in (first, second))
     with np.errstate(invalid="ignore", divide="ignore"):
-        moved = 0.5 * (one + other) / rms[:, :, None]
+        moved = 0.5 * (first_part + second_part) / rms[:, :, None]
     moved = np.where(rms[:, :, None] > 0.0, moved, 0.0)
     return values, np.concatenate([0.5 * (first.gradients[:1] + second.gradients[:1]), moved])
 
@@ -63,5 +63,5 @@ def _angles(mechanism: Mechanism, designs: Array, angles: Array, half: int) -> A
     inner, outer = geometry.inner_crank_angle(*dimensions), geometry.outer_crank_angle(*dimensions)
     if mechanism.branch == "crossed":
         inner, outer = np.pi - inner, np.pi - outer
-    known = np.isfinite(angles)
-    return np.where(known, in_cycle(mechanism, inner, outer, np.where(known, angles, 0.0), half), angles)
+    is_finite = np.isfinite(angles)
+    return np.where(is_finite, in_cycle(mechanism, inner, outer, np.where(is_finite, angles, 0.0), half), angles)

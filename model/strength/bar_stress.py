@@ -48,9 +48,9 @@ def bar_stress(mechanism: Mechanism, part: int, design: Array) -> BarStress:
     samples = field_of(mechanism, design).samples
     base = WIDE * (part == CRANK)
     shares = np.linspace(0.0, 1.0, _STATIONS)
-    of = Stress(*samples.stress[:, base : base + 7].T)
-    faces = [at_share(of, face, shares[:, None]) for face in (1.0, -1.0)]
+    stress = Stress(*samples.stress[:, base : base + 7].T)
+    both_sides = [at_share(stress, side, shares[:, None]) for side in (1.0, -1.0)]
     # Samples run a turn on from the first breakpoint: those beyond a whole turn come first, in their order at jumps.
     turned = int(np.searchsorted(samples.theta, _TURN))
     theta = np.roll(np.where(samples.theta < _TURN, samples.theta, samples.theta - _TURN), -turned)
-    return BarStress(theta, shares, np.roll(np.array(faces), -turned, axis=2))
+    return BarStress(theta, shares, np.roll(np.array(both_sides), -turned, axis=2))

@@ -21,7 +21,7 @@ import numpy as np
 from ..arrays import Array, Mask, Whole
 from ..kernel.kernel import Integers, IntegerTable, Table, seldom_kernel
 from ..machine.mechanism import Mechanism
-from ..machine.numbers import of_numbers
+from ..machine.numbers import formula_of_numbers
 from .section_forces import CRANK
 from .stress_points import WIDE, Field, Samples
 
@@ -50,21 +50,21 @@ class Eye(NamedTuple):
     outer: bool
 
 
-Place = WholeBar | Eye
+StressLocation = WholeBar | Eye
 
 
 @dataclass(frozen=True)
-class Places:
-    """Stress over the cycle of m places of n designs: as of m n bars, those of the first place first.
+class StressLocations:
+    """Stress over the cycle at m locations of n designs, stated as m n bars, first location first.
 
-    An eye is a bar whose stress falls evenly from that of the eye to nothing at the other end: the greatest along it is
-    the eye's. What is not bent has half of its axial stress as bending: all of it on one face, none on the other.
+    An eye is a bar whose stress falls linearly from that of the eye to zero at the other end, so the greatest along it
+    is the eye's. Without bending, half of the axial stress counts as bending: all of it on one side, none on the other.
     samples: their stress (m s, WIDE). factors: (m n, 2), of axial stress and bending; rates: (m n, 3 + k, 2), their
     derivatives by the numbers of the design.
     """
 
     field: Field
-    places: tuple[Place, ...]
+    places: tuple[StressLocation, ...]
     samples: Samples
     factors: Array
     rates: Array
@@ -79,107 +79,114 @@ class Places:
         """Return whether friction locks the design of a bar, (m n,)."""
         return np.tile(self.field.locked, len(self.places))
 
-    def many(self, which: Whole) -> Whole:
+    def segment_counts(self, bars: Whole) -> Whole:
         """Return how many segments the cycle of bars (p,) has."""
-        found: Whole = self.field.cuts.many[self._design(which)]
-        return found
+        counts: Whole = self.field.cuts.many[self._design(bars)]
+        return counts
 
-    def ends(self, which: Whole, segment: Whole) -> tuple[Array, Array]:
+    def ends(self, bars: Whole, segment: Whole) -> tuple[Array, Array]:
         """Return where segments (p,) of bars (p,) begin and end, rad."""
-        return self.field.ends(self._design(which), segment)
+        return self.field.ends(self._design(bars), segment)
 
-    def at(self, which: Whole, segment: Whole, angle: Array) -> Array:
+    def stress_at(self, bars: Whole, segment: Whole, angle: Array) -> Array:
         """Return stress and its derivatives by the crank angle, (p, WIDE)."""
-        found = self.field.at(self._design(which), segment, angle)
-        return _spread(self.places, found, np.arange(len(which)), self._place(which), self.factors[which])
+        stress = self.field.stress_at(self._design(bars), segment, angle)
+        return _spread(self.places, stress, np.arange(len(bars)), self._place(bars), self.factors[bars])
 
-    def slopes(self, which: Whole, segment: Whole, angle: Array, cut: Whole) -> Array:
+    def slopes(self, bars: Whole, segment: Whole, angle: Array, cut: Whole) -> Array:
         """Return the derivatives by the numbers of the design, (p, 3 + k, WIDE / 2).
 
         cut: (p,), the breakpoint with which the angle moves, -1 for none.
         """
-        stress, numbers = self.field.slopes(self._design(which), segment, angle, cut), self.field.numbers
+        stress, numbers = self.field.slopes(self._design(bars), segment, angle, cut), self.field.numbers
         values = stress[:, 0]
         if numbers.slopes is not None:
-            stress = np.einsum("pcx,pck->pkx", stress, numbers.slopes[self._design(which)])
+            stress = np.einsum("pcx,pck->pkx", stress, numbers.slopes[self._design(bars)])
         p, k = stress.shape[:2]
-        place, row = np.repeat(self._place(which), k), np.repeat(np.arange(p), k)
-        factors, rates = np.repeat(self.factors[which], k, axis=0), self.rates[which].reshape(p * k, 2)
-        found = _spread(self.places, stress.reshape(p * k, -1), np.arange(p * k), place, factors)[:, _MANY:]
-        eyes = np.array([isinstance(one, Eye) for one in self.places])[place]
-        found[eyes] += _spread(self.places, values, row[eyes], place[eyes], rates[eyes])[:, :_MANY]
-        return found.reshape(p, k, _MANY)
+        place, row = np.repeat(self._place(bars), k), np.repeat(np.arange(p), k)
+        factors, rates = np.repeat(self.factors[bars], k, axis=0), self.rates[bars].reshape(p * k, 2)
+        spread = _spread(self.places, stress.reshape(p * k, -1), np.arange(p * k), place, factors)[:, _MANY:]
+        eyes = np.array([isinstance(location, Eye) for location in self.places])[place]
+        spread[eyes] += _spread(self.places, values, row[eyes], place[eyes], rates[eyes])[:, :_MANY]
+        return spread.reshape(p, k, _MANY)
 
-    def _place(self, which: Whole) -> Whole:
-        return which // len(self.field.blocks)
+    def _place(self, bars: Whole) -> Whole:
+        return bars // len(self.field.blocks)
 
-    def _design(self, which: Whole) -> Whole:
-        return which % len(self.field.blocks)
+    def _design(self, bars: Whole) -> Whole:
+        return bars % len(self.field.blocks)
 
 
-def _spread(places: Sequence[Place], stress: Array, row: Whole, place: Whole, factors: Array) -> Array:
-    """Return rows (p,) of the stress of both links (r, 2 WIDE), with derivatives, as that of places (p,), (p, WIDE)."""
+def _spread(places: Sequence[StressLocation], stress: Array, row: Whole, place: Whole, factors: Array) -> Array:
+    """Return the stress of locations (p, WIDE) from rows (p,) of the stress of both links (r, 2 WIDE)."""
     codes = np.array(
         [
-            (WIDE * (one.part == CRANK), isinstance(one, Eye), isinstance(one, Eye) and one.far, one.bent)
-            for one in places
+            (
+                WIDE * (location.part == CRANK),
+                isinstance(location, Eye),
+                isinstance(location, Eye) and location.far,
+                location.bent,
+            )
+            for location in places
         ],
         dtype=np.int64,
     )
-    found = np.empty((len(row), WIDE))
-    _fill(np.ascontiguousarray(stress), row, place, codes, np.ascontiguousarray(factors), found)
-    return found
+    spread = np.empty((len(row), WIDE))
+    _fill(np.ascontiguousarray(stress), row, place, codes, np.ascontiguousarray(factors), spread)
+    return spread
 
 
 @seldom_kernel
-def _fill(stress: Table, row: Integers, place: Integers, codes: IntegerTable, factors: Table, found: Table) -> None:
+def _fill(stress: Table, row: Integers, place: Integers, codes: IntegerTable, factors: Table, out: Table) -> None:
     """codes: (m, 4) of places: first column of the link, whether an eye, whether far, whether bent. factors: (p, 2)."""
     for i in range(row.shape[0]):
         base, eye = codes[place[i], 0], codes[place[i], 1] == 1
         far, bent = codes[place[i], 2] == 1, codes[place[i], 3] == 1
         for half in range(2):
-            source, to = base + half * _MANY, half * _MANY
+            source, target = base + half * _MANY, half * _MANY
             for j in range(_MANY):
-                found[i, to + j] = 0.0 if eye else stress[row[i], source + j]
+                out[i, target + j] = 0.0 if eye else stress[row[i], source + j]
             for part in range(2 if eye else 0):
                 begin = 3 * part
                 value = stress[row[i], source + begin]
-                for more in range(begin + 1, begin + 3 + part if far else begin + 1):
-                    value += stress[row[i], source + more]
+                for column in range(begin + 1, begin + 3 + part if far else begin + 1):
+                    value += stress[row[i], source + column]
                 value *= factors[i, part]
                 if not far:
-                    found[i, to + begin] = value
-                found[i, to + begin + 1] = value if far else -value
+                    out[i, target + begin] = value
+                out[i, target + begin + 1] = value if far else -value
             if not bent:
                 for j in range(3):
-                    found[i, to + j] *= 0.5
-                    found[i, to + 3 + j] = found[i, to + j]
-                found[i, to + 6] = 0.0
+                    out[i, target + j] *= 0.5
+                    out[i, target + 3 + j] = out[i, target + j]
+                out[i, target + 6] = 0.0
 
 
-def places_of(field: Field, mechanism: Mechanism, designs: Array, places: Sequence[Place]) -> Places:
-    """Return the `Places` of designs (n, 3 + k) whose links have a field."""
-    own, n, many = field.samples, len(designs), len(places)
+def stress_at_locations(
+    field: Field, mechanism: Mechanism, designs: Array, places: Sequence[StressLocation]
+) -> StressLocations:
+    """Return the `StressLocations` of designs (n, 3 + k) whose links have a field."""
+    cycle_samples, n, many = field.samples, len(designs), len(places)
     factors, rates = np.ones((many * n, 2)), np.zeros((many * n, designs.shape[1], 2))
     for number, place in enumerate(places):
         if isinstance(place, Eye):
             mine = slice(n * number, n * number + n)
             factors[mine], rates[mine] = _factors(mechanism, designs, place)
-    count = len(own.theta)
+    count = len(cycle_samples.theta)
     row, of_place = np.tile(np.arange(count), many), np.repeat(np.arange(many), count)
-    of_bar = np.tile(np.repeat(np.arange(n), np.diff(own.start)), many) + n * of_place
+    of_bar = np.tile(np.repeat(np.arange(n), np.diff(cycle_samples.start)), many) + n * of_place
     samples = Samples(
-        np.append((own.start[:-1] + count * np.arange(many)[:, None]).ravel(), many * count),
-        np.tile(own.theta, many),
-        np.tile(own.first, many),
-        np.tile(own.segment, many),
-        _spread(places, own.stress, row, of_place, factors[of_bar]),
+        np.append((cycle_samples.start[:-1] + count * np.arange(many)[:, None]).ravel(), many * count),
+        np.tile(cycle_samples.theta, many),
+        np.tile(cycle_samples.begins_segment, many),
+        np.tile(cycle_samples.segment, many),
+        _spread(places, cycle_samples.stress, row, of_place, factors[of_bar]),
     )
-    return Places(field, tuple(places), samples, factors, rates)
+    return StressLocations(field, tuple(places), samples, factors, rates)
 
 
 def _factors(mechanism: Mechanism, designs: Array, eye: Eye) -> tuple[Array, Array]:
-    """Return what axial stress and bending of the whole section are multiplied with, (n, 2), and its derivatives."""
+    """Return the factors of axial stress and bending of the whole section, (n, 2), and their derivatives."""
     assert mechanism.strength is not None
     raised = mechanism.strength.eye_concentration
 
@@ -192,5 +199,5 @@ def _factors(mechanism: Mechanism, designs: Array, eye: Eye) -> tuple[Array, Arr
 
     factors, rates = np.empty((len(designs), 2)), np.empty((*designs.shape, 2))
     for number, formula in enumerate((axial, bending)):
-        factors[:, number], rates[:, :, number] = of_numbers(mechanism, designs, formula, gradients=True)
+        factors[:, number], rates[:, :, number] = formula_of_numbers(mechanism, designs, formula, gradients=True)
     return factors, rates

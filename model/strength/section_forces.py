@@ -65,7 +65,7 @@ def stress_along(
     couple = d.crank_pin_circle * turn * root(f.crank_pin_x * f.crank_pin_x + f.crank_pin_y * f.crank_pin_y)
     if part == ROD:
         length, per = d.l, inverse(d.l)
-        tx, ty = m.along * per, m.across * per
+        tx, ty = m.l_cos * per, m.l_sin * per
         fx, fy = f.crank_pin_x, f.crank_pin_y
         spin, spun = m.rod_1 * m.rod_1 * w2, m.rod_2 * w2 + m.rod_1 * d.acceleration
     else:
@@ -73,7 +73,7 @@ def stress_along(
         tx, ty = -cosine + 0.0 * d.r, -sine + 0.0 * d.r
         fx, fy, couple = -f.crank_pin_x, -f.crank_pin_y, -couple
         spin, spun = w2 + 0.0 * d.r, d.acceleration + 0.0 * d.r
-    along, across = pin_x * tx + pin_y * ty, pin_y * tx - pin_x * ty
+    pin_t, pin_n = pin_x * tx + pin_y * ty, pin_y * tx - pin_x * ty
     force_t, force_n = fx * tx + fy * ty, fy * tx - fx * ty
     web = density * depth * width * length
     cap = density * depth * width * width * (math.pi / 8.0)
@@ -82,17 +82,17 @@ def stress_along(
     of_force = inverse(width * depth)
     of_moment = 6.0 * of_force * inverse(width)
     return Stress(
-        (along * cap + spin * first - force_t) * of_force,
-        along * web * of_force,
+        (pin_t * cap + spin * first - force_t) * of_force,
+        pin_t * web * of_force,
         -0.5 * spin * web * length * of_force,
-        (2.0 * spun * second - across * first - couple) * of_moment,
-        (force_n - across * cap + 2.0 * spun * first) * length * of_moment,
-        -0.5 * across * web * length * of_moment,
+        (2.0 * spun * second - pin_n * first - couple) * of_moment,
+        (force_n - pin_n * cap + 2.0 * spun * first) * length * of_moment,
+        -0.5 * pin_n * web * length * of_moment,
         (-1.0 / 6.0) * spun * web * length * length * of_moment,
     )
 
 
 @analytic
-def at_share(c: Stress, face: Any, xi: Any) -> Any:
-    """Return the stress at a share of the length. face: 1 or -1, or 0 for the axial stress alone."""
-    return c.n0 + xi * (c.n1 + xi * c.n2) + face * (c.b0 + xi * (c.b1 + xi * (c.b2 + xi * c.b3)))
+def at_share(c: Stress, side: Any, xi: Any) -> Any:
+    """Return the stress at a share of the length. side: 1 or -1, or 0 for the axial stress alone."""
+    return c.n0 + xi * (c.n1 + xi * c.n2) + side * (c.b0 + xi * (c.b1 + xi * (c.b2 + xi * c.b3)))

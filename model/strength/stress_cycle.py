@@ -32,7 +32,7 @@ from ..kernel.batches import in_chunks, turning
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
 from ..machine.two_turns import cycle_turns, halves
-from .places import Place, Places, places_of
+from .places import StressLocation, StressLocations, stress_at_locations
 from .section_forces import Stress, at_share
 from .stress_points import field_of
 from .stress_search import LISTED, STATIONS, Candidates, choose, climb, first_candidates, propose, room_for
@@ -69,148 +69,154 @@ class StressPeaks:
 
 @dataclass
 class _Maxima:
-    """Maxima of places, c of them: bar, number of face and criterion (c,); share of the length, value (c,).
+    """Maxima of places, c of them: bar, number of side and criterion (c,); share of the length, value (c,).
 
-    angle: (c, 2). segment: (c, 2). used: (c, 2), whether the angle counts. spacing: (c, 2), of samples there, rad.
+    angle: (c, 2). segment: (c, 2). is_counted: (c, 2), whether the angle counts. spacing: (c, 2), between samples, rad.
     """
 
-    which: Whole
-    face: Whole
+    bar: Whole
+    side: Whole
     pull: Whole
     share: Array
     value: Array
     angle: Array
     segment: Whole
-    used: Mask
+    is_counted: Mask
     spacing: Array
 
     def __post_init__(self) -> None:
         """Give an angle that does not count the value of the other one."""
-        self.angle = np.where(self.used, self.angle, self.angle[:, ::-1])
+        self.angle = np.where(self.is_counted, self.angle, self.angle[:, ::-1])
 
-    def at(self, rows: Whole) -> _Maxima:
+    def select(self, rows: Whole) -> _Maxima:
         """Return some of them."""
-        return _Maxima(**{name: each[rows] for name, each in vars(self).items()})
+        return _Maxima(**{name: column[rows] for name, column in vars(self).items()})
 
 
-def _of_samples(bars: Places, faces: Array, criteria: Array, near: float, kept: int) -> _Maxima:
+def _of_samples(bars: StressLocations, sides: Array, criteria: Array, margin: float, limit: int) -> _Maxima:
     """Return the highest maxima of the cubics between the samples of the cycle."""
     start, theta, first, segment, stress = bars.samples
     n = len(start) - 1
     # Every second station, face and criterion may be one, with all pairs of angles.
-    room = n * len(faces) * len(criteria) * (STATIONS + 1) // 2 * LISTED**2
+    candidate_count = n * len(sides) * len(criteria) * (STATIONS + 1) // 2 * LISTED**2
     space = np.empty((STATIONS, int(np.diff(start).max(initial=1)))), np.empty((2, LISTED), np.int64)
-    best = np.empty((len(faces), len(criteria), STATIONS))
-    found = room_for(room)
-    count = propose(start, first, stress, 0, faces, criteria, near, *space, best, found)
-    found = first_candidates(found, count)
-    values, angles, chosen = np.empty(count), np.empty((count, 2)), np.empty((n, kept), np.int64)
-    climb(theta, first, stress, 0, faces, criteria, found, values, angles)
-    choose(found, criteria, values, angles, chosen)
+    best = np.empty((len(sides), len(criteria), STATIONS))
+    candidates = room_for(candidate_count)
+    count = propose(start, first, stress, 0, sides, criteria, margin, *space, best, candidates)
+    candidates = first_candidates(candidates, count)
+    values, angles, chosen = np.empty(count), np.empty((count, 2)), np.empty((n, limit), np.int64)
+    climb(theta, first, stress, 0, sides, criteria, candidates, values, angles)
+    choose(candidates, criteria, values, angles, chosen)
     rows = chosen[chosen >= 0]
-    at = found.at[rows]
-    here, further = theta[at], np.minimum(at + 1, len(theta) - 1)
-    ahead = (segment[further] == segment[at]) & (theta[further] > here)
-    spacing = np.abs(theta[np.where(ahead, further, at - 1)] - here)
+    at = candidates.at[rows]
+    angle_there, further = theta[at], np.minimum(at + 1, len(theta) - 1)
+    ahead = (segment[further] == segment[at]) & (theta[further] > angle_there)
+    spacing = np.abs(theta[np.where(ahead, further, at - 1)] - angle_there)
     return _Maxima(
-        found.which[rows],
-        found.face[rows],
-        found.pull[rows],
-        found.share[rows],
+        candidates.bar[rows],
+        candidates.side[rows],
+        candidates.pull[rows],
+        candidates.share[rows],
         values[rows],
         angles[rows],
         segment[at],
-        criteria[found.pull[rows]] > 0.0,
+        criteria[candidates.pull[rows]] > 0.0,
         spacing,
     )
 
 
-def _close_in(bars: Places, faces: Array, criteria: Array, maxima: _Maxima) -> None:
+def _close_in(bars: StressLocations, sides: Array, criteria: Array, maxima: _Maxima) -> None:
     """Follow maxima between samples of their own, until these are so close that the cubics are exact."""
-    begin, end = bars.ends(np.repeat(maxima.which, 2), maxima.segment.ravel())
+    begin, end = bars.ends(np.repeat(maxima.bar, 2), maxima.segment.ravel())
     begin, end = begin.reshape(-1, 2), end.reshape(-1, 2)
     width, near = _CLOSE * maxima.spacing, _FORETOLD * maxima.spacing
-    waiting = np.arange(len(maxima.which))
+    waiting = np.arange(len(maxima.bar))
     for _ in range(_ROUNDS):
         if not len(waiting):
             return
-        used, c = maxima.used[waiting], len(waiting)
+        is_counted, c = maxima.is_counted[waiting], len(waiting)
         low = np.maximum(begin[waiting], maxima.angle[waiting] - width[waiting])
         high = np.minimum(end[waiting], maxima.angle[waiting] + width[waiting])
-        theta = np.stack([low[used], high[used]], axis=1).ravel()
-        which = np.repeat(np.broadcast_to(maxima.which[waiting, None], (c, 2))[used], 2)
-        stress = bars.at(which, np.repeat(maxima.segment[waiting][used], 2), theta)
-        at = np.zeros((c, 2), np.int64)
-        at[used] = 2 * np.arange(len(theta) // 2)
-        own = Candidates(maxima.which[waiting], maxima.face[waiting], maxima.pull[waiting], at, maxima.share[waiting])
+        theta = np.stack([low[is_counted], high[is_counted]], axis=1).ravel()
+        rows = np.repeat(np.broadcast_to(maxima.bar[waiting, None], (c, 2))[is_counted], 2)
+        stress = bars.stress_at(rows, np.repeat(maxima.segment[waiting][is_counted], 2), theta)
+        sample_rows = np.zeros((c, 2), np.int64)
+        sample_rows[is_counted] = 2 * np.arange(len(theta) // 2)
+        candidates = Candidates(
+            maxima.bar[waiting], maxima.side[waiting], maxima.pull[waiting], sample_rows, maxima.share[waiting]
+        )
         values, angles = np.empty(c), np.full((c, 2), np.nan)
-        climb(theta, np.arange(len(theta)) % 2 == 0, stress, 0, faces, criteria, own, values, angles)
-        angles = np.where(used, angles, angles[:, ::-1])
+        climb(theta, np.arange(len(theta)) % 2 == 0, stress, 0, sides, criteria, candidates, values, angles)
+        angles = np.where(is_counted, angles, angles[:, ::-1])
         moved = np.abs(angles - maxima.angle[waiting])
-        maxima.value[waiting], maxima.share[waiting], maxima.angle[waiting] = values, own.share, angles
-        settled = np.all(moved <= near[waiting], axis=1)
-        inside = (angles > low) | (low <= begin[waiting])
-        inside &= (angles < high) | (high >= end[waiting])
-        closer = waiting[np.all(inside | ~used, axis=1)]
+        maxima.value[waiting], maxima.share[waiting], maxima.angle[waiting] = values, candidates.share, angles
+        is_settled = np.all(moved <= near[waiting], axis=1)
+        is_inside = (angles > low) | (low <= begin[waiting])
+        is_inside &= (angles < high) | (high >= end[waiting])
+        closer = waiting[np.all(is_inside | ~is_counted, axis=1)]
         width[closer] /= _CLOSER
         near[closer] *= _CLOSER  # what is left is off by less, wherever it was foretold
-        waiting = waiting[~settled]
+        waiting = waiting[~is_settled]
 
 
-def _gradients(bars: Places, faces: Array, criteria: Array, maxima: _Maxima, pins: Whole) -> Array:
+def _gradients(bars: StressLocations, all_sides: Array, criteria: Array, maxima: _Maxima, pins: Whole) -> Array:
     """Return the derivatives (c, 3 + k) of maxima on breakpoints `pins` (c, 2), or on none (-1)."""
-    used = maxima.used
-    which = np.broadcast_to(maxima.which[:, None], used.shape)[used]
-    slopes = bars.slopes(which, maxima.segment[used], maxima.angle[used], pins[used])
-    shares, sides = (np.repeat(each, used.sum(axis=1))[:, None] for each in (maxima.share, faces[maxima.face]))
-    weights = (criteria[maxima.pull] * np.array([1.0, -1.0]))[used]
-    own = weights[:, None] * at_share(Stress(*np.moveaxis(slopes, 2, 0)), sides, shares)
-    summed = np.zeros((len(used), own.shape[1]))
-    np.add.at(summed, np.nonzero(used)[0], own)
+    is_counted = maxima.is_counted
+    counted_bars = np.broadcast_to(maxima.bar[:, None], is_counted.shape)[is_counted]
+    slopes = bars.slopes(counted_bars, maxima.segment[is_counted], maxima.angle[is_counted], pins[is_counted])
+    shares, sides = (
+        np.repeat(column, is_counted.sum(axis=1))[:, None] for column in (maxima.share, all_sides[maxima.side])
+    )
+    weights = (criteria[maxima.pull] * np.array([1.0, -1.0]))[is_counted]
+    weighted = weights[:, None] * at_share(Stress(*np.moveaxis(slopes, 2, 0)), sides, shares)
+    summed = np.zeros((len(is_counted), weighted.shape[1]))
+    np.add.at(summed, np.nonzero(is_counted)[0], weighted)
     return summed
 
 
-_FACES = np.array([1.0, -1.0])
+_SIDES = np.array([1.0, -1.0])
 
 
-_kept_field = memoise_by_batch(field_of)
+_memoised_field = memoise_by_batch(field_of)
 
 
-def _peaks(bars: Places, criteria: Array, gradients: bool, kept: int) -> StressPeaks:
+def _peaks(bars: StressLocations, criteria: Array, gradients: bool, limit: int) -> StressPeaks:
     n, width = bars.rows, bars.rates.shape[1]
-    found = StressPeaks(
-        np.full((n, kept), -np.inf),
-        np.zeros((n, kept)),
-        np.full((n, kept, 4), np.nan),
-        np.zeros((n, kept, width)) if gradients else None,
+    peaks = StressPeaks(
+        np.full((n, limit), -np.inf),
+        np.zeros((n, limit)),
+        np.full((n, limit, 4), np.nan),
+        np.zeros((n, limit, width)) if gradients else None,
     )
     # Of several that are equal to the samples' accuracy each may be the highest.
-    maxima = _of_samples(bars, _FACES, criteria, _NEAR if kept == 1 else _WIDE, max(kept, 3))
-    if kept == 1:
+    maxima = _of_samples(bars, _SIDES, criteria, _NEAR if limit == 1 else _WIDE, max(limit, 3))
+    if limit == 1:
         top = np.full(n, -np.inf)
-        np.maximum.at(top, maxima.which, maxima.value)
-        maxima = maxima.at(np.flatnonzero(maxima.value >= (top - _EQUAL * np.abs(top))[maxima.which]))
-    _close_in(bars, _FACES, criteria, maxima)
-    own = Candidates(maxima.which, maxima.face, maxima.pull, np.zeros((len(maxima.which), 2), np.int64), maxima.share)
-    chosen = np.empty((n, kept), np.int64)
-    choose(own, criteria, maxima.value, maxima.angle, chosen)
-    there = chosen >= 0
-    maxima = maxima.at(chosen[there])
-    begin, end = (each.reshape(-1, 2) for each in bars.ends(np.repeat(maxima.which, 2), maxima.segment.ravel()))
+        np.maximum.at(top, maxima.bar, maxima.value)
+        maxima = maxima.select(np.flatnonzero(maxima.value >= (top - _EQUAL * np.abs(top))[maxima.bar]))
+    _close_in(bars, _SIDES, criteria, maxima)
+    candidates = Candidates(
+        maxima.bar, maxima.side, maxima.pull, np.zeros((len(maxima.bar), 2), np.int64), maxima.share
+    )
+    chosen = np.empty((n, limit), np.int64)
+    choose(candidates, criteria, maxima.value, maxima.angle, chosen)
+    is_found = chosen >= 0
+    maxima = maxima.select(chosen[is_found])
+    begin, end = (ends.reshape(-1, 2) for ends in bars.ends(np.repeat(maxima.bar, 2), maxima.segment.ravel()))
     early, late = maxima.angle - begin < _EDGE, end - maxima.angle < _EDGE
     maxima.angle = np.where(early, begin, np.where(late, end, maxima.angle))
-    after = (maxima.segment + 1) % bars.many(maxima.which)[:, None]
-    pins = np.where(early, maxima.segment, np.where(late, after, -1))
+    next_segment = (maxima.segment + 1) % bars.segment_counts(maxima.bar)[:, None]
+    pins = np.where(early, maxima.segment, np.where(late, next_segment, -1))
     ended = np.where(maxima.share == 0.0, 1, np.where(maxima.share == 1.0, 2, 0))
-    turned = np.where(maxima.used, maxima.angle - _TURN * np.floor(maxima.angle / _TURN), 0.0)
-    number = (maxima.face * len(criteria) + maxima.pull) * 3 + ended
-    found.values[there] = maxima.value
-    found.labels[there] = APART * number + turned[:, 0] + _OTHER * turned[:, 1]
-    found.places[there] = np.column_stack([maxima.share, _FACES[maxima.face], maxima.angle])
-    if found.gradients is not None:
-        found.gradients[there] = _gradients(bars, _FACES, criteria, maxima, pins)
-    found.values[bars.locked, 0] = np.inf
-    return found
+    turned = np.where(maxima.is_counted, maxima.angle - _TURN * np.floor(maxima.angle / _TURN), 0.0)
+    label_class = (maxima.side * len(criteria) + maxima.pull) * 3 + ended
+    peaks.values[is_found] = maxima.value
+    peaks.labels[is_found] = APART * label_class + turned[:, 0] + _OTHER * turned[:, 1]
+    peaks.places[is_found] = np.column_stack([maxima.share, _SIDES[maxima.side], maxima.angle])
+    if peaks.gradients is not None:
+        peaks.gradients[is_found] = _gradients(bars, _SIDES, criteria, maxima, pins)
+    peaks.values[bars.locked, 0] = np.inf
+    return peaks
 
 
 def _require_one_sided(criteria: Array) -> None:
@@ -222,33 +228,37 @@ def _require_one_sided(criteria: Array) -> None:
         )
 
 
-def _of_both(first: StressPeaks, second: StressPeaks, kept: int) -> StressPeaks:
+def _highest_of_both_turns(first_turn: StressPeaks, second_turn: StressPeaks, limit: int) -> StressPeaks:
     """Return the highest maxima of two turns."""
-    order = np.argsort(-np.concatenate([first.values, second.values], axis=1), axis=1, kind="stable")[:, :kept]
+    order = np.argsort(-np.concatenate([first_turn.values, second_turn.values], axis=1), axis=1, kind="stable")[
+        :, :limit
+    ]
 
-    def taken(one: Array, two: Array) -> Array:
-        both = np.concatenate([one, two], axis=1)
-        return np.take_along_axis(both, order.reshape(*order.shape, *[1] * (both.ndim - 2)), axis=1)
+    def reordered(from_first: Array, from_second: Array) -> Array:
+        joined = np.concatenate([from_first, from_second], axis=1)
+        return np.take_along_axis(joined, order.reshape(*order.shape, *[1] * (joined.ndim - 2)), axis=1)
 
-    slopes, later = None, second.places + np.array([0.0, 0.0, _TURN, _TURN])
-    if first.gradients is not None and second.gradients is not None:
-        slopes = taken(first.gradients, second.gradients)
-    labels = taken(first.labels, second.labels + _SECOND_TURN)
-    return StressPeaks(taken(first.values, second.values), labels, taken(first.places, later), slopes)
+    slopes, later = None, second_turn.places + np.array([0.0, 0.0, _TURN, _TURN])
+    if first_turn.gradients is not None and second_turn.gradients is not None:
+        slopes = reordered(first_turn.gradients, second_turn.gradients)
+    labels = reordered(first_turn.labels, second_turn.labels + _SECOND_TURN)
+    return StressPeaks(
+        reordered(first_turn.values, second_turn.values), labels, reordered(first_turn.places, later), slopes
+    )
 
 
 def stress_peaks(
     mechanism: Mechanism,
-    places: Sequence[Place],
+    places: Sequence[StressLocation],
     designs: Array,
     criteria: Array,
     *,
     gradients: bool = False,
-    kept: int = KEPT,
+    limit: int = KEPT,
 ) -> list[StressPeaks]:
-    """Return the greatest p sigma - q sigma of designs (n, 3 + k) at each place; see `Place` for what sigma is.
+    """Return the greatest p sigma - q sigma of designs (n, 3 + k) at each place; `StressLocation` defines sigma.
 
-    criteria: (m, 2), p and q of each, none negative. kept: maxima returned a design; with one only the highest ones are
+    criteria: (m, 2), p and q of each, none negative. limit: maxima returned a design; if 1, only the highest are
     followed. The links of the places must be `Bar`.
     """
     designs = turning(designs)
@@ -256,20 +266,30 @@ def stress_peaks(
     if cycle_turns(mechanism) > 1:
         _require_one_sided(criteria)
         turns = (
-            stress_peaks(half, places, designs, criteria, gradients=gradients, kept=kept) for half in halves(mechanism)
+            stress_peaks(half, places, designs, criteria, gradients=gradients, limit=limit)
+            for half in halves(mechanism)
         )
-        return [_of_both(first, second, kept) for first, second in zip(*turns, strict=True)]
-    many, n = len(places), len(designs)
-    values, labels, where = np.empty((many, n, kept)), np.empty((many, n, kept)), np.empty((many, n, kept, 4))
-    slopes = np.empty((many, n, kept, designs.shape[1])) if gradients else None
+        return [_highest_of_both_turns(first, second, limit) for first, second in zip(*turns, strict=True)]
+    location_count, n = len(places), len(designs)
+    values, labels, peak_places = (
+        np.empty((location_count, n, limit)),
+        np.empty((location_count, n, limit)),
+        np.empty((location_count, n, limit, 4)),
+    )
+    slopes = np.empty((location_count, n, limit, designs.shape[1])) if gradients else None
 
     def work(begin: int, end: int) -> None:
-        own = designs[begin:end]
-        found = _peaks(places_of(_kept_field(mechanism, own), mechanism, own, places), criteria, gradients, kept)
-        for target, part in ((values, found.values), (labels, found.labels), (where, found.places)):
-            target[:, begin:end] = part.reshape(many, end - begin, *part.shape[1:])
-        if slopes is not None and found.gradients is not None:
-            slopes[:, begin:end] = found.gradients.reshape(many, end - begin, kept, -1)
+        chunk = designs[begin:end]
+        peaks = _peaks(
+            stress_at_locations(_memoised_field(mechanism, chunk), mechanism, chunk, places), criteria, gradients, limit
+        )
+        for target, part in ((values, peaks.values), (labels, peaks.labels), (peak_places, peaks.places)):
+            target[:, begin:end] = part.reshape(location_count, end - begin, *part.shape[1:])
+        if slopes is not None and peaks.gradients is not None:
+            slopes[:, begin:end] = peaks.gradients.reshape(location_count, end - begin, limit, -1)
 
     in_chunks(n, work)
-    return [StressPeaks(values[p], labels[p], where[p], None if slopes is None else slopes[p]) for p in range(many)]
+    return [
+        StressPeaks(values[p], labels[p], peak_places[p], None if slopes is None else slopes[p])
+        for p in range(location_count)
+    ]

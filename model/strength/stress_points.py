@@ -40,13 +40,13 @@ _SLOTS = (*range(Raw.ROD_WIDTH, Raw.ROD_WIDTH + 3), *range(Raw.CRANK_WIDTH, Raw.
 class Points(NamedTuple):
     """Crank angles of designs, p of them; all (p,).
 
-    which: number of the design. inside: an angle within the segment, which tells its pieces. angle: rad. column: of the
+    design: number of the design. probe: an angle within the segment, which tells its pieces. angle: rad. column: of the
     design's numbers, by which derivatives are wanted, -1 for those by the crank angle. cut: the breakpoint that the
     angle is on, -1 for none.
     """
 
-    which: Integers
-    inside: Row
+    design: Integers
+    probe: Row
     angle: Row
     column: Integers
     cut: Integers
@@ -55,13 +55,13 @@ class Points(NamedTuple):
 class Samples(NamedTuple):
     """Samples over the cycles of n designs, one design after the other.
 
-    start: (n + 1,), where each begins. theta: (s,), rad. first: (s,), whether a segment begins. segment: (s,).
+    start: (n + 1,), where each begins. theta: (s,), rad. begins_segment: (s,), whether a segment begins. segment: (s,).
     stress: (s, 2 WIDE), of rod and crank.
     """
 
     start: Integers
     theta: Row
-    first: Flags
+    begins_segment: Flags
     segment: Integers
     stress: Table
 
@@ -81,32 +81,32 @@ def _stress(
     watch = CycleWindow(0, 0.0, 1.0, False)
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     rows, nv = blocks.shape[1], turned.shape[0]
-    block, own = np.empty((rows, 1)), np.empty((rows, 1), np.complex128)
-    last, last_column, last_inside, outward = -1, -2, 0.0, False
+    block, z_block = np.empty((rows, 1)), np.empty((rows, 1), np.complex128)
+    last, last_column, last_probe, outward = -1, -2, 0.0, False
     d = design_at(block, 0)
     sides = sides_of(0.0, d, block, 0, outward, loads, piece, shift, False)
-    for p in range(points.which.shape[0]):
-        n, v, inside, angle = points.which[p], points.column[p], points.inside[p], points.angle[p]
+    for p in range(points.design.shape[0]):
+        n, v, probe, angle = points.design[p], points.column[p], points.probe[p], points.angle[p]
         if n != last:
             for i in range(rows):
                 block[i, 0] = blocks[n, i, 0]
             d = design_at(block, 0)
-        if n != last or inside != last_inside:
-            _, outward = enter(d, block, 0, inside, loads, watch, piece, shift)
-            sides = sides_of(inside, d, block, 0, outward, loads, piece, shift, rubbing)
+        if n != last or probe != last_probe:
+            _, outward = enter(d, block, 0, probe, loads, watch, piece, shift)
+            sides = sides_of(probe, d, block, 0, outward, loads, piece, shift, rubbing)
         if n != last or v != last_column:
             for i in range(rows):
-                own[i, 0] = complex(block[i, 0], 0.0) if v < 0 else steps[n * nv + v, i, 0]
-        last, last_column, last_inside = n, v, inside
-        z = design_at(own, 0)
+                z_block[i, 0] = complex(block[i, 0], 0.0) if v < 0 else steps[n * nv + v, i, 0]
+        last, last_column, last_probe = n, v, probe
+        z = design_at(z_block, 0)
         slip = STEP if v < 0 else 0.0
         if v >= 0 and points.cut[p] >= 0:
             mine = Cuts(cuts.angle[n], cuts.code[n], cuts.number[n], cuts.load[n])
-            slip = shift_of(z, own, d, block, angle, mine, points.cut[p], outward, loads, piece, shift, sides)
+            slip = shift_of(z, z_block, d, block, angle, mine, points.cut[p], outward, loads, piece, shift, sides)
         sine, cosine = math.sin(angle), math.cos(angle)
         zs, zc = complex(sine, cosine * slip), complex(cosine, -sine * slip)
         m = design_motion(zs, zc, z)
-        load = load_on_slider(m, z, own, 0, complex(angle, slip), outward, loads, piece, shift)
+        load = load_on_slider(m, z, z_block, 0, complex(angle, slip), outward, loads, piece, shift)
         f = joint_forces(zs, zc, m, z, load, sides)
         for part in range(2):
             w, t, rho = sizes[n, 3 * part], sizes[n, 3 * part + 1], sizes[n, 3 * part + 2]
@@ -134,7 +134,7 @@ def _sample_segments(
     cuts: Breakpoints,
     start: Integers,
     theta: Row,
-    inside: Row,
+    probe: Row,
     first: Flags,
     segment: Integers,
     kappas: Row,
@@ -156,7 +156,7 @@ def _sample_segments(
             for i in range(points):
                 angle = uncrowded(low + (high - low) * i / (points - 1), kappa)
                 theta[total] = a if i == 0 else b if i == points - 1 else angle
-                inside[total], first[total], segment[total] = angle_within(a, b), i == 0, s
+                probe[total], first[total], segment[total] = angle_within(a, b), i == 0, s
                 total += 1
     start[designs.shape[0]] = total
     return total
@@ -181,50 +181,50 @@ class Field:
     @property
     def locked(self) -> Mask:
         """Return whether friction locks a design, (n,)."""
-        none: Mask = self.cuts.many == 0
-        return none
+        is_locked: Mask = self.cuts.many == 0
+        return is_locked
 
-    def ends(self, which: Whole, segment: Whole) -> tuple[Array, Array]:
+    def ends(self, design: Whole, segment: Whole) -> tuple[Array, Array]:
         """Return where segments (p,) of designs (p,) begin and end, rad."""
-        angle, count = self.cuts.angle, self.cuts.many[which]
+        angle, count = self.cuts.angle, self.cuts.many[design]
         last = segment + 1 == count
-        return angle[which, segment], angle[which, np.where(last, 0, segment + 1)] + np.where(last, _TURN, 0.0)
+        return angle[design, segment], angle[design, np.where(last, 0, segment + 1)] + np.where(last, _TURN, 0.0)
 
-    def at(self, which: Whole, segment: Whole, angle: Array) -> Array:
+    def stress_at(self, design: Whole, segment: Whole, angle: Array) -> Array:
         """Return stress and its derivatives by the crank angle, (p, 2 WIDE)."""
-        begin, end = self.ends(which, segment)
-        none = np.full(len(which), -1)
-        points = Points(which, _angles_within(begin, end), angle, none, none)
+        begin, end = self.ends(design, segment)
+        no_number = np.full(len(design), -1)
+        points = Points(design, _angles_within(begin, end), angle, no_number, no_number)
         return _stress_at(
             self.blocks, _NO_STEPS, self.sizes, _NO_TURN, points, self.cuts, self.loads, rubs(self.mechanism)
         )
 
-    def slopes(self, which: Whole, segment: Whole, angle: Array, cut: Whole) -> Array:
+    def slopes(self, design: Whole, segment: Whole, angle: Array, cut: Whole) -> Array:
         """Return stress and its derivatives by the raw numbers of `numbers`, (p, c, 2 WIDE).
 
         cut: (p,), the breakpoint with which the angle moves, -1 for none.
         """
-        begin, end = self.ends(which, segment)
+        begin, end = self.ends(design, segment)
         columns = self.numbers.columns
-        many = len(columns)
+        number_count = len(columns)
         raw, _ = signal_inputs(self.mechanism, Signal.CRANK_PIN_FORCE)
         _, steps = derived(raw, self.loads, columns, self.numbers.values, steps=True)
         turned = np.ascontiguousarray((columns[:, None] == np.array(_SLOTS)) * 1.0)
         points = Points(
-            np.repeat(which, many),
-            np.repeat(_angles_within(begin, end), many),
-            np.repeat(angle, many),
-            np.tile(np.arange(many), len(which)),
-            np.repeat(cut, many),
+            np.repeat(design, number_count),
+            np.repeat(_angles_within(begin, end), number_count),
+            np.repeat(angle, number_count),
+            np.tile(np.arange(number_count), len(design)),
+            np.repeat(cut, number_count),
         )
-        found = _stress_at(self.blocks, steps, self.sizes, turned, points, self.cuts, self.loads, rubs(self.mechanism))
-        return found.reshape(len(which), many, -1)
+        stress = _stress_at(self.blocks, steps, self.sizes, turned, points, self.cuts, self.loads, rubs(self.mechanism))
+        return stress.reshape(len(design), number_count, -1)
 
 
 def _angles_within(begin: Array, end: Array) -> Array:
-    """Return `within` of many segments."""
-    inside: Array = angle_within(begin, end)  # type: ignore[arg-type, assignment]
-    return inside
+    """Return `angle_within` of many segments."""
+    angles: Array = angle_within(begin, end)  # type: ignore[arg-type, assignment]
+    return angles
 
 
 _NO_STEPS, _NO_TURN = np.zeros((0, 0, 1), np.complex128), np.zeros((0, len(_SLOTS)))
@@ -240,7 +240,7 @@ def _stress_at(
     loads: Loads,
     rubbing: bool,
 ) -> Array:
-    out = np.zeros((len(points.which), 2 * WIDE))
+    out = np.zeros((len(points.design), 2 * WIDE))
     _stress(blocks, steps, sizes, turned, points, cuts, loads, rubbing, out)
     return out
 
@@ -248,22 +248,22 @@ def _stress_at(
 def field_of(mechanism: Mechanism, designs: Array) -> Field:
     """Return the `Field` of designs (n, 3 + k), each turning fully."""
     raw, loads = signal_inputs(mechanism, Signal.CRANK_PIN_FORCE)
-    numbers = numbers_of(mechanism, designs, room=len(raw), gradients=True)
+    numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=True)
     values, n = numbers.values, len(designs)
     blocks, _ = derived(raw, loads, numbers.columns, values)
     sizes = np.empty((n, len(_SLOTS)))
-    for place, slot in enumerate(_SLOTS):
-        own = np.flatnonzero(numbers.columns == slot)
-        sizes[:, place] = values[:, own[0]] if len(own) else raw[slot]
+    for index, slot in enumerate(_SLOTS):
+        column = np.flatnonzero(numbers.columns == slot)
+        sizes[:, index] = values[:, column[0]] if len(column) else raw[slot]
     cuts = breakpoints_of(blocks, loads, cycle_window(mechanism, Signal.CRANK_PIN_FORCE), rubbing=rubs(mechanism))
-    room = (ANGLES + 8) * n + 4 * int(cuts.many.sum())
-    start, theta, inside = np.empty(n + 1, np.int64), np.empty(room), np.empty(room)
-    first, segment, kappa = np.empty(room, np.bool_), np.empty(room, np.int64), np.empty(n)
-    total = _sample_segments(np.ascontiguousarray(values[:, :3]), cuts, start, theta, inside, first, segment, kappa)
-    theta, inside, first, segment = theta[:total], inside[:total], first[:total], segment[:total]
-    none = np.full(total, -1)
-    which = np.repeat(np.arange(n), np.diff(start))
-    points = Points(which, inside, theta, none, none)
+    sample_limit = (ANGLES + 8) * n + 4 * int(cuts.many.sum())
+    start, theta, probe = np.empty(n + 1, np.int64), np.empty(sample_limit), np.empty(sample_limit)
+    first, segment, kappa = np.empty(sample_limit, np.bool_), np.empty(sample_limit, np.int64), np.empty(n)
+    total = _sample_segments(np.ascontiguousarray(values[:, :3]), cuts, start, theta, probe, first, segment, kappa)
+    theta, probe, first, segment = theta[:total], probe[:total], first[:total], segment[:total]
+    no_number = np.full(total, -1)
+    design = np.repeat(np.arange(n), np.diff(start))
+    points = Points(design, probe, theta, no_number, no_number)
     stress = _stress_at(blocks, _NO_STEPS, sizes, _NO_TURN, points, cuts, loads, rubs(mechanism))
     samples = Samples(start, theta, first, segment, stress)
     return Field(mechanism, numbers, blocks, sizes, loads, cuts, kappa, samples)

@@ -28,12 +28,12 @@ _PLACE, _ANGLE = 1e-5, 1e-9  # share of the length, 1 - cosine of crank angles: 
 class Candidates(NamedTuple):
     """Maxima to be climbed, c of them; all (c,), `at` (c, 2).
 
-    which: number of the design. face: number of the face. pull: number of the criterion. at: samples next to both crank
+    bar: number of the bar. side: number of its side. pull: number of the criterion. at: samples next to both crank
     angles. share: place along the bar.
     """
 
-    which: Integers
-    face: Integers
+    bar: Integers
+    side: Integers
     pull: Integers
     at: IntegerTable
     share: Row
@@ -41,47 +41,51 @@ class Candidates(NamedTuple):
 
 def room_for(count: int) -> Candidates:
     """Return room for candidates."""
-    whole = [np.empty(count, np.int64) for _ in range(3)]
-    return Candidates(whole[0], whole[1], whole[2], np.empty((count, 2), np.int64), np.empty(count))
+    columns = [np.empty(count, np.int64) for _ in range(3)]
+    return Candidates(columns[0], columns[1], columns[2], np.empty((count, 2), np.int64), np.empty(count))
 
 
-def first_candidates(given: Candidates, count: int) -> Candidates:
+def first_candidates(candidates: Candidates, count: int) -> Candidates:
     """Return the first candidates."""
     return Candidates(
-        given.which[:count], given.face[:count], given.pull[:count], given.at[:count], given.share[:count]
+        candidates.bar[:count],
+        candidates.side[:count],
+        candidates.pull[:count],
+        candidates.at[:count],
+        candidates.share[:count],
     )
 
 
 @analytic
-def _stress_at_share(row: Any, k: Any, base: Any, face: Any, xi: Any) -> Any:
+def _stress_at_share(row: Any, k: Any, base: Any, side: Any, xi: Any) -> Any:
     """Stress of a sample at a place; with a base 7 further its slope over the crank angle."""
     axial = row[k, base] + xi * (row[k, base + 1] + xi * row[k, base + 2])
     bent = row[k, base + 4] + xi * (row[k, base + 5] + xi * row[k, base + 6])
-    return axial + face * (row[k, base + 3] + xi * bent)
+    return axial + side * (row[k, base + 3] + xi * bent)
 
 
 @analytic
-def _slope_at_share(row: Any, k: Any, base: Any, face: Any, xi: Any) -> Any:
+def _slope_at_share(row: Any, k: Any, base: Any, side: Any, xi: Any) -> Any:
     """Slope of `_stress_at_share` over the place."""
     axial = row[k, base + 1] + 2.0 * xi * row[k, base + 2]
-    return axial + face * (row[k, base + 4] + xi * (2.0 * row[k, base + 5] + 3.0 * xi * row[k, base + 6]))
+    return axial + side * (row[k, base + 4] + xi * (2.0 * row[k, base + 5] + 3.0 * xi * row[k, base + 6]))
 
 
 @analytic
-def _list_maxima(row: Any, first: Any, begin: Any, count: Any, sign: Any, found: Any) -> int:
+def _list_maxima(row: Any, first: Any, begin: Any, count: Any, sign: Any, listed: Any) -> int:
     """List the highest local maxima of sign times a row of samples, ends of segments included; return how many."""
     n = 0
     for k in range(count):
         value = sign * row[k]
         left = -math.inf if first[begin + k] else sign * row[k - 1]
         right = -math.inf if k + 1 == count or first[begin + k + 1] else sign * row[k + 1]
-        if value < left or value <= right or (n == LISTED and value <= sign * row[found[n - 1]]):
+        if value < left or value <= right or (n == LISTED and value <= sign * row[listed[n - 1]]):
             continue
         i = min(n, LISTED - 1)
-        while i > 0 and sign * row[found[i - 1]] < value:
-            found[i] = found[i - 1]
+        while i > 0 and sign * row[listed[i - 1]] < value:
+            listed[i] = listed[i - 1]
             i -= 1
-        found[i] = k
+        listed[i] = k
         n = min(n + 1, LISTED)
     return n
 
@@ -92,18 +96,18 @@ def propose(
     first: Flags,
     stress: Table,
     base: int,
-    faces: Row,
+    sides: Row,
     criteria: Table,
-    near: float,
+    margin: float,
     space: Table,
     listed: IntegerTable,
     best: Cube,
-    found: Candidates,
+    candidates: Candidates,
 ) -> int:
-    """List the samples next to maxima less than `near` times the greatest below it; return how many.
+    """List the samples next to maxima less than `margin` times the greatest below it; return how many.
 
     stress: (s, 2 WIDE). base: first column of the link. criteria: (m, 2), p and q. space: (STATIONS, samples of a
-    design), listed: (2, LISTED), best: (faces, m, STATIONS), work space. found: with room for all that are possible.
+    design), listed: (2, LISTED), best: (sides, m, STATIONS), work space. candidates: with room for all possible ones.
     """
     total = 0
     ups, downs = listed[0], listed[1]
@@ -111,19 +115,19 @@ def propose(
         begin, count = start[n], start[n + 1] - start[n]
         if count == 0:
             continue
-        whole = -math.inf
-        for f in range(faces.shape[0]):
+        greatest = -math.inf
+        for f in range(sides.shape[0]):
             for j in range(STATIONS):
                 xi = j / (STATIONS - 1.0)
                 top, bottom = -math.inf, math.inf
                 for k in range(count):
-                    value = _stress_at_share(stress, begin + k, base, faces[f], xi)
+                    value = _stress_at_share(stress, begin + k, base, sides[f], xi)
                     top, bottom = max(top, value), min(bottom, value)
                 for g in range(criteria.shape[0]):
                     best[f, g, j] = criteria[g, 0] * top - criteria[g, 1] * bottom
-                    whole = max(whole, best[f, g, j])
-        floor = whole - near * abs(whole)
-        for f in range(faces.shape[0]):
+                    greatest = max(greatest, best[f, g, j])
+        floor = greatest - margin * abs(greatest)
+        for f in range(sides.shape[0]):
             for g in range(criteria.shape[0]):
                 p, q = criteria[g, 0], criteria[g, 1]
                 for j in range(STATIONS):
@@ -134,7 +138,7 @@ def propose(
                         continue
                     row, xi = space[j], j / (STATIONS - 1.0)
                     for k in range(count):
-                        row[k] = _stress_at_share(stress, begin + k, base, faces[f], xi)
+                        row[k] = _stress_at_share(stress, begin + k, base, sides[f], xi)
                     high_count = low_count = 1
                     ups[0] = downs[0] = 0
                     for end in range(2):  # one place in the code: the compiler works out each anew
@@ -147,9 +151,9 @@ def propose(
                         height = (p * row[up] if p > 0.0 else 0.0) - (q * row[down] if q > 0.0 else 0.0)
                         if height < floor:
                             continue
-                        found.which[total], found.face[total], found.pull[total] = n, f, g
-                        found.at[total, 0], found.at[total, 1] = begin + up, begin + down
-                        found.share[total] = xi
+                        candidates.bar[total], candidates.side[total], candidates.pull[total] = n, f, g
+                        candidates.at[total, 0], candidates.at[total, 1] = begin + up, begin + down
+                        candidates.share[total] = xi
                         total += 1
     return total
 
@@ -160,20 +164,20 @@ def climb(
     first: Flags,
     stress: Table,
     base: int,
-    faces: Row,
+    sides: Row,
     criteria: Table,
-    given: Candidates,
+    candidates: Candidates,
     values: Row,
     angles: Table,
 ) -> None:
     """Move candidates to the maxima that they are next to: values (c,), places and angles (c, 2) of them.
 
-    `given` is changed to them. Samples of other segments are not gone to.
+    `candidates` is changed to them. Samples of other segments are not gone to.
     """
     last = theta.shape[0] - 1
-    for c in range(given.which.shape[0]):
-        face, p, q = faces[given.face[c]], criteria[given.pull[c], 0], criteria[given.pull[c], 1]
-        xi, lower, upper, ended = given.share[c], 0.0, 1.0, False
+    for c in range(candidates.bar.shape[0]):
+        side, p, q = sides[candidates.side[c]], criteria[candidates.pull[c], 0], criteria[candidates.pull[c], 1]
+        xi, lower, upper, ended = candidates.share[c], 0.0, 1.0, False
         old_xi = old_slope = value = 0.0
         for outer in range(_ITERATIONS):
             slope = value = 0.0
@@ -182,33 +186,33 @@ def climb(
                 if weight == 0.0:
                     continue
                 sign = 1.0 if weight > 0.0 else -1.0
-                k, t = given.at[c, end], 0.0
+                k, t = candidates.at[c, end], 0.0
                 for _ in range(_ITERATIONS):
-                    rate = sign * _stress_at_share(stress, k, base + 7, face, xi)
+                    rate = sign * _stress_at_share(stress, k, base + 7, side, xi)
                     if rate > 0.0 and k < last and not first[k + 1]:
-                        if sign * _stress_at_share(stress, k + 1, base + 7, face, xi) < 0.0:
+                        if sign * _stress_at_share(stress, k + 1, base + 7, side, xi) < 0.0:
                             t = 1.0
                             break
                         k += 1
                     elif rate < 0.0 and not first[k]:
                         k -= 1
-                        if sign * _stress_at_share(stress, k, base + 7, face, xi) > 0.0:
+                        if sign * _stress_at_share(stress, k, base + 7, side, xi) > 0.0:
                             t = 1.0
                             break
                     else:
                         break
-                given.at[c, end] = k
-                f0, g0 = _stress_at_share(stress, k, base, face, xi), _slope_at_share(stress, k, base, face, xi)
+                candidates.at[c, end] = k
+                f0, g0 = _stress_at_share(stress, k, base, side, xi), _slope_at_share(stress, k, base, side, xi)
                 if t == 0.0:
                     angles[c, end] = theta[k]
                     value += weight * f0
                     slope += weight * g0
                     continue
                 h = theta[k + 1] - theta[k]
-                f1, g1 = _stress_at_share(stress, k + 1, base, face, xi), _slope_at_share(stress, k + 1, base, face, xi)
+                f1, g1 = _stress_at_share(stress, k + 1, base, side, xi), _slope_at_share(stress, k + 1, base, side, xi)
                 s0, s1 = (
-                    h * _stress_at_share(stress, k, base + 7, face, xi),
-                    h * _stress_at_share(stress, k + 1, base + 7, face, xi),
+                    h * _stress_at_share(stress, k, base + 7, side, xi),
+                    h * _stress_at_share(stress, k + 1, base + 7, side, xi),
                 )
                 # The slope of the cubic is s0 + b t + a t^2, s0 and s1 = s0 + b + a of opposite signs.
                 a, b = 3.0 * (s0 + s1) - 6.0 * (f1 - f0), 6.0 * (f1 - f0) - 4.0 * s0 - 2.0 * s1
@@ -219,8 +223,8 @@ def climb(
                 h0, h1, d0, d1 = u * u * (1.0 + 2.0 * t), t * t * (3.0 - 2.0 * t), t * u * u, -t * t * u
                 value += weight * (h0 * f0 + h1 * f1 + d0 * s0 + d1 * s1)
                 r0, r1 = (
-                    h * _slope_at_share(stress, k, base + 7, face, xi),
-                    h * _slope_at_share(stress, k + 1, base + 7, face, xi),
+                    h * _slope_at_share(stress, k, base + 7, side, xi),
+                    h * _slope_at_share(stress, k + 1, base + 7, side, xi),
                 )
                 slope += weight * (h0 * g0 + h1 * g1 + d0 * r0 + d1 * r1)
             if slope > 0.0:
@@ -248,43 +252,43 @@ def climb(
             if abs(trial - xi) < _SETTLED or upper - lower < _SETTLED:
                 break
             xi = trial
-        values[c], given.share[c] = value, xi
+        values[c], candidates.share[c] = value, xi
 
 
 @seldom_kernel
-def choose(given: Candidates, criteria: Table, values: Row, angles: Table, kept: IntegerTable) -> None:
+def choose(candidates: Candidates, criteria: Table, values: Row, angles: Table, chosen: IntegerTable) -> None:
     """Number the highest candidates of each design: kept (n, k), -1 beyond the last one.
 
     Of those that are one the highest counts: next to a breakpoint there may be two so near, one of them on it.
     """
     count = -1
-    for n in range(kept.shape[0]):
-        for i in range(kept.shape[1]):
-            kept[n, i] = -1
-    found, last = 0, -1
-    for c in range(given.which.shape[0]):
-        n = given.which[c]
+    for n in range(chosen.shape[0]):
+        for i in range(chosen.shape[1]):
+            chosen[n, i] = -1
+    chosen_count, last = 0, -1
+    for c in range(candidates.bar.shape[0]):
+        n = candidates.bar[c]
         if n != last:
-            last, found = n, 0
-        p, q = criteria[given.pull[c], 0], criteria[given.pull[c], 1]
-        count = kept.shape[1]
-        place = min(found, count - 1)
-        full = found == count
-        for i in range(found):
-            o = kept[n, i]
+            last, chosen_count = n, 0
+        p, q = criteria[candidates.pull[c], 0], criteria[candidates.pull[c], 1]
+        count = chosen.shape[1]
+        place = min(chosen_count, count - 1)
+        full = chosen_count == count
+        for i in range(chosen_count):
+            o = chosen[n, i]
             if (
-                given.face[o] == given.face[c]
-                and given.pull[o] == given.pull[c]
-                and abs(given.share[o] - given.share[c]) < _PLACE
+                candidates.side[o] == candidates.side[c]
+                and candidates.pull[o] == candidates.pull[c]
+                and abs(candidates.share[o] - candidates.share[c]) < _PLACE
                 and (p == 0.0 or math.cos(angles[o, 0] - angles[c, 0]) > 1.0 - _ANGLE)
                 and (q == 0.0 or math.cos(angles[o, 1] - angles[c, 1]) > 1.0 - _ANGLE)
             ):
                 place, full = i, True
-        if full and values[c] <= values[kept[n, place]]:
+        if full and values[c] <= values[chosen[n, place]]:
             continue
-        found += 0 if full else 1
+        chosen_count += 0 if full else 1
         i = place
-        while i > 0 and values[kept[n, i - 1]] < values[c]:
-            kept[n, i] = kept[n, i - 1]
+        while i > 0 and values[chosen[n, i - 1]] < values[c]:
+            chosen[n, i] = chosen[n, i - 1]
             i -= 1
-        kept[n, i] = c
+        chosen[n, i] = c

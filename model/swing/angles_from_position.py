@@ -18,7 +18,7 @@ def crank_angles_at(x: Any, sign: float, side: float, designs: Any) -> Any:
     slider pin, -1 right of it. Complex where designs are.
     """
     r, l, e = (designs[:, column] + 0.0 for column in range(3))  # -0 counts as 0
-    plain = [np.real(each) for each in (x, r, l, e)]
+    plain = [np.real(number) for number in (x, r, l, e)]
     x_0, r_0, l_0, e_0 = plain
     d = np.hypot(x_0, e_0)
     with np.errstate(divide="ignore", invalid="ignore"):

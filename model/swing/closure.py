@@ -45,13 +45,13 @@ def closes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
 def passes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) close and pass no dead point where the slider drives."""
     ends = ends_of(mechanism, swing, designs)
-    found = _closing(designs, ends)
-    if swing.driver == "slider" and found.any():
+    passing = _closing(designs, ends)
+    if swing.driver == "slider" and passing.any():
         sign = _sign(mechanism)
-        found &= ~_dead(ends, sign, designs)
-        own = ends.take(found)
-        found[found] = _angles(swing, own, sign, designs[found], slopes=False).values.min(axis=1) > 0.0
-    return found
+        passing &= ~_has_dead_point(ends, sign, designs)
+        passing_ends = ends.select(passing)
+        passing[passing] = _angles(swing, passing_ends, sign, designs[passing], slopes=False).values.min(axis=1) > 0.0
+    return passing
 
 
 def driven_angles(mechanism: Mechanism, swing: Swing, designs: Array) -> DrivenAngles:
@@ -66,7 +66,7 @@ def travels(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Array, 
     def way(sizes: Any, first: Any, last: Any) -> Any:
         return _position(last, sign, sizes) - _position(first, sign, sizes)
 
-    values, slopes = _derived(way, designs, ends, (ends.start, 0), (ends.end, 1))
+    values, slopes = _with_slopes(way, designs, ends, (ends.start, 0), (ends.end, 1))
     side = np.where(values < 0.0, -1.0, 1.0)
     return side * values, side[:, None] * slopes
 
@@ -76,8 +76,8 @@ def swing_angles(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Ar
     ends = ends_of(mechanism, swing, designs, slopes=True)
     assert ends.slopes is not None
     slopes = np.zeros(designs.shape)
-    for place, v in enumerate(ends.by):
-        slopes[:, v] = ends.way * (ends.slopes[:, place, 1] - ends.slopes[:, place, 0])
+    for place, v in enumerate(ends.columns):
+        slopes[:, v] = ends.direction * (ends.slopes[:, place, 1] - ends.slopes[:, place, 0])
     return ends.high - ends.low, slopes
 
 
@@ -88,31 +88,31 @@ def _sign(mechanism: Mechanism) -> float:
 def _closing(designs: Array, ends: Ends) -> Mask:
     r, l = designs[:, 0], designs[:, 1]
     with np.errstate(invalid="ignore"):
-        reach, angle = ends.reach(designs), ends.high - ends.low
-        found = (r > 0.0) & (reach < l) & np.isfinite(designs).all(axis=1) & (angle > 0.0) & (angle < _TURN)
-    return np.asarray(found)
+        pin_distance, angle = ends.pin_distance(designs), ends.high - ends.low
+        closing = (r > 0.0) & (pin_distance < l) & np.isfinite(designs).all(axis=1) & (angle > 0.0) & (angle < _TURN)
+    return np.asarray(closing)
 
 
-def _dead(ends: Ends, sign: float, designs: Array) -> Mask:
+def _has_dead_point(ends: Ends, sign: float, designs: Array) -> Mask:
     """Return which designs have a dead point in the swing: beyond two of them the angle is above zero again."""
     r, l, e = designs[:, 0], designs[:, 1], designs[:, 2]
-    found = np.zeros(len(designs), np.bool_)
-    for reach, side in ((r + l, sign), (r - l, -sign)):
+    dead = np.zeros(len(designs), np.bool_)
+    for span, side in ((r + l, sign), (r - l, -sign)):
         with np.errstate(divide="ignore", invalid="ignore"):
-            angle = np.arcsin(e / reach)
-        found |= np.isfinite(ends.within(angle if side > 0.0 else np.pi - angle))
-    return found
+            angle = np.arcsin(e / span)
+        dead |= np.isfinite(ends.turned_into(angle if side > 0.0 else np.pi - angle))
+    return dead
 
 
 def _angles(swing: Swing, ends: Ends, sign: float, designs: Array, *, slopes: bool = True) -> DrivenAngles:
     places: list[tuple[Array, int | None]] = [(ends.start, 0), (ends.end, 1)]
     if swing.driver == "crank":
-        asked = [angle for angle in (0.5 * np.pi, 1.5 * np.pi) if ends.by or swing.inside(angle)]
-        places += [(ends.within(angle), None) for angle in asked]
+        normal_angles = [angle for angle in (0.5 * np.pi, 1.5 * np.pi) if ends.columns or swing.occurrences(angle)]
+        places += [(ends.turned_into(angle), None) for angle in normal_angles]
         side = None
     else:
         places += [(angle, None) for angle in _rod_as_fast(ends, sign, designs)]
-        middle = _bend(ends.middle, designs[:, 0], designs[:, 1], designs[:, 2], sign)
+        middle = _transmission_sine(ends.middle, designs[:, 0], designs[:, 1], designs[:, 2], sign)
         side = np.where(middle < 0.0, -1.0, 1.0)
 
     def measure(sizes: Any, theta: Any) -> Any:
@@ -120,25 +120,27 @@ def _angles(swing: Swing, ends: Ends, sign: float, designs: Array, *, slopes: bo
         r, l, e = sizes[:, 0], sizes[:, 1], sizes[:, 2]
         if side is not None:
             with np.errstate(invalid="ignore"):
-                return side * _bend(theta, r, l, e, sign) / l
-        across = e - r * np.sin(theta)
-        return np.where(across.real < 0.0, -across, across) / l
+                return side * _transmission_sine(theta, r, l, e, sign) / l
+        l_sin = e - r * np.sin(theta)
+        return np.where(l_sin.real < 0.0, -l_sin, l_sin) / l
 
-    found: list[tuple[Array, Array]] = []
+    measured: list[tuple[Array, Array]] = []
     for theta, end in places:
-        there = np.isfinite(theta)
-        size, slope = _derived(measure, designs, ends, (np.where(there, theta, ends.start), end), slopes=slopes)
+        is_present = np.isfinite(theta)
+        size, slope = _with_slopes(
+            measure, designs, ends, (np.where(is_present, theta, ends.start), end), slopes=slopes
+        )
         steep = np.sqrt(np.maximum(1.0 - size * size, _FLAT))[:, None]
         if swing.driver == "crank":
             value, slope = np.arccos(np.minimum(size, 1.0)), -slope / steep
         else:
             value, slope = np.arcsin(np.clip(size, -1.0, 1.0)), slope / steep
-        found.append((np.where(there, value, np.inf), np.where(there[:, None], slope, 0.0)))
-    return DrivenAngles(*(np.stack(parts, axis=1) for parts in zip(*found, strict=True)))
+        measured.append((np.where(is_present, value, np.inf), np.where(is_present[:, None], slope, 0.0)))
+    return DrivenAngles(*(np.stack(parts, axis=1) for parts in zip(*measured, strict=True)))
 
 
-def _derived(
-    of: Any, designs: Array, ends: Ends, *angles: tuple[Array, int | None], slopes: bool = True
+def _with_slopes(
+    function: Any, designs: Array, ends: Ends, *angles: tuple[Array, int | None], slopes: bool = True
 ) -> tuple[Array, Array]:
     """Return a function (n,) of sizes and crank angles, and its derivatives (n, 3 + k) by complex steps.
 
@@ -146,19 +148,19 @@ def _derived(
     derivatives are asked for; else they are zero.
     """
     sizes = designs[:, :3].astype(np.complex128)
-    values = of(sizes, *(angle for angle, _ in angles)).real
-    found = np.zeros(designs.shape)
-    for v in sorted({0, 1, 2, *ends.by}) if slopes else ():
+    values = function(sizes, *(angle for angle, _ in angles)).real
+    slopes_found = np.zeros(designs.shape)
+    for v in sorted({0, 1, 2, *ends.columns}) if slopes else ():
         moved = sizes + 1j * STEP * np.eye(3)[v] if v < 3 else sizes
         at: list[Any] = [angle for angle, _ in angles]
-        if v in ends.by and ends.slopes is not None:
-            slips = ends.slopes[:, ends.by.index(v)]
+        if v in ends.columns and ends.slopes is not None:
+            slips = ends.slopes[:, ends.columns.index(v)]
             at = [angle if end is None else angle + 1j * STEP * slips[:, end] for angle, end in angles]
-        found[:, v] = of(moved, *at).imag / STEP
-    return values, found
+        slopes_found[:, v] = function(moved, *at).imag / STEP
+    return values, slopes_found
 
 
-def _bend(theta: Any, r: Any, l: Any, e: Any, sign: float) -> Any:
+def _transmission_sine(theta: Any, r: Any, l: Any, e: Any, sign: float) -> Any:
     sine, cosine = np.sin(theta), np.cos(theta)
     return bend(sine, cosine, motion(sine, cosine, r, l, e, sign))
 
@@ -169,12 +171,12 @@ def _rod_as_fast(ends: Ends, sign: float, designs: Array) -> list[Array]:
     size = np.abs(e)
     with np.errstate(divide="ignore", invalid="ignore"):
         half = np.arccos((r * r + size * size - l * l) / (2.0 * r * size))
-        found = []
-        for way in (-1.0, 1.0):
-            theta = ends.within(np.where(e < 0.0, -0.5, 0.5) * np.pi + way * half)
+        angles = []
+        for side in (-1.0, 1.0):
+            theta = ends.turned_into(np.where(e < 0.0, -0.5, 0.5) * np.pi + side * half)
             off = np.abs(motion(np.sin(theta), np.cos(theta), r, l, e, sign).x)
-            found.append(np.where(off < 1e-6 * r, theta, np.nan))
-    return found
+            angles.append(np.where(off < 1e-6 * r, theta, np.nan))
+    return angles
 
 
 def _position(angle: Any, sign: float, sizes: Any) -> Any:

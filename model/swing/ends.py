@@ -31,17 +31,17 @@ class Ends:
     """Crank angles of n designs at both ends of their swings, rad.
 
     start, end: (n,), NaN where the slider does not reach its place. slopes: (n, v, 2), their derivatives by the numbers
-    of the designs that `by` names; None unless asked for.
+    of the designs that `columns` names; None unless asked for.
     """
 
     start: Array
     end: Array
-    by: tuple[int, ...] = ()
+    columns: tuple[int, ...] = ()
     slopes: Array | None = None
 
-    def take(self, rows: Any) -> Ends:
+    def select(self, rows: Any) -> Ends:
         """Return those of some designs."""
-        return Ends(self.start[rows], self.end[rows], self.by, None if self.slopes is None else self.slopes[rows])
+        return Ends(self.start[rows], self.end[rows], self.columns, None if self.slopes is None else self.slopes[rows])
 
     @property
     def low(self) -> Array:
@@ -59,29 +59,29 @@ class Ends:
         return 0.5 * (self.start + self.end)
 
     @property
-    def way(self) -> Array:
+    def direction(self) -> Array:
         """+1 where the crank turns counter-clockwise on its way forth, -1 otherwise."""
         return np.where(self.end > self.start, 1.0, -1.0)
 
-    def within(self, angle: Any) -> Array:
+    def turned_into(self, angle: Any) -> Array:
         """Return crank angles (n,), or one, turned by whole turns into the swings; NaN where they do not reach it."""
         with np.errstate(invalid="ignore"):
-            first = angle + _TURN * np.ceil((self.low - angle) / _TURN)
-            return np.where(first <= self.high, first, np.nan)
+            turned = angle + _TURN * np.ceil((self.low - angle) / _TURN)
+            return np.where(turned <= self.high, turned, np.nan)
 
-    def extreme(self) -> list[Array]:
+    def extreme_angles(self) -> list[Array]:
         """Return the ends, and the crank angles normal to the slider line; NaN where a swing has none."""
-        return [self.start, self.end, self.within(0.5 * np.pi), self.within(1.5 * np.pi)]
+        return [self.start, self.end, self.turned_into(0.5 * np.pi), self.turned_into(1.5 * np.pi)]
 
-    def reach(self, designs: Array) -> Array:
+    def pin_distance(self, designs: Array) -> Array:
         """Return the greatest distance (n,) of crank pin and slider line over the swings, m."""
-        return farthest(designs, self.extreme())
+        return greatest_pin_distance(designs, self.extreme_angles())
 
     def stepped(self, columns: int, column: int | None) -> Complexes:
         """Return both ends (n c, 2), the start last, with an imaginary step of each of c numbers."""
         moved = np.repeat(np.stack([self.start, self.end], axis=1)[:, None] + 0j, columns, axis=1)
         assert self.slopes is not None
-        for place, v in enumerate(self.by):
+        for place, v in enumerate(self.columns):
             moved[:, columns - 1 if v == column else v] += 1j * STEP * self.slopes[:, place]
         return moved.reshape(-1, 2)
 
@@ -95,8 +95,8 @@ def with_start(
     """
     n, rows = plain.shape[:2]
     if len(steps):
-        own = steps.reshape(n, len(numbers.columns), rows, 1)
-        steps = np.concatenate([own, plain[:, None]], axis=1).reshape(-1, rows, 1)
+        by_design = steps.reshape(n, len(numbers.columns), rows, 1)
+        steps = np.concatenate([by_design, plain[:, None]], axis=1).reshape(-1, rows, 1)
     slopes = None
     if numbers.slopes is not None:
         slope = np.zeros((len(numbers.slopes), 1, designs.shape[1]))
@@ -106,11 +106,11 @@ def with_start(
     return Numbers(np.append(numbers.columns, _NO_SLOT), values, slopes), steps
 
 
-def farthest(designs: Array, angles: Iterable[Array]) -> Array:
+def greatest_pin_distance(designs: Array, angles: Iterable[Array]) -> Array:
     """Return the greatest |e - r sin(theta)| (n,) of crank angles (n,), NaN ones left out, m."""
     r, e = designs[:, 0], designs[:, 2]
-    found = [np.abs(e - r * np.sin(angle)) for angle in angles]
-    return np.asarray(np.fmax.reduce(found))
+    distances = [np.abs(e - r * np.sin(angle)) for angle in angles]
+    return np.asarray(np.fmax.reduce(distances))
 
 
 def start_column(mechanism: Mechanism) -> int | None:
@@ -128,22 +128,22 @@ def ends_of(mechanism: Mechanism, swing: Swing, designs: Array, *, slopes: bool 
     plain = _ends(swing, sign, designs, column)
     if not slopes:
         return Ends(*plain)
-    by = ((0, 1, 2) if swing.of == "slider" else ()) + (() if column is None else (column,))
-    stepped = np.zeros((len(designs), len(by), 2))
-    for place, v in enumerate(by):
+    columns = ((0, 1, 2) if swing.stated_for == "slider" else ()) + (() if column is None else (column,))
+    stepped = np.zeros((len(designs), len(columns), 2))
+    for place, v in enumerate(columns):
         moved = designs.astype(np.complex128)
         moved[:, v] += 1j * STEP
-        stepped[:, place] = np.stack([each.imag for each in _ends(swing, sign, moved, column)], axis=1) / STEP
-    return Ends(*plain, by, stepped)
+        stepped[:, place] = np.stack([end.imag for end in _ends(swing, sign, moved, column)], axis=1) / STEP
+    return Ends(*plain, columns, stepped)
 
 
 def _ends(swing: Swing, sign: float, designs: Any, column: int | None) -> tuple[Any, Any]:
     if column is None:
-        first, last = (np.full(len(designs), each) for each in (swing.start, swing.end))
+        first, last = (np.full(len(designs), angle) for angle in (swing.start, swing.end))
     else:
         first = designs[:, column]
         last = first + (swing.end - swing.start) if swing.follows else np.full(len(designs), swing.end)
-    if swing.of == "crank":
+    if swing.stated_for == "crank":
         return first, last
     side = 1.0 if swing.side == "left" else -1.0
     return crank_angles_at(first, sign, side, designs), crank_angles_at(last, sign, side, designs)

@@ -12,7 +12,7 @@ from .swing import Swing
 
 
 @dataclass(frozen=True)
-class Share:
+class ErrorShare:
     """A source of an error. limit: how far it may be off, m, the crank angle rad. error: what it adds, m or rad."""
 
     source: str
@@ -20,21 +20,22 @@ class Share:
     error: float
 
 
-def error_shares(mechanism: Mechanism, linkage: Linkage, swing: Swing, crank_angle: float) -> tuple[Share, ...]:
+def error_shares(mechanism: Mechanism, linkage: Linkage, swing: Swing, crank_angle: float) -> tuple[ErrorShare, ...]:
     """Return the share of each source in the worst case of the driven side at a crank angle, rad.
 
     Where the crank drives, |dx/di| T_i of the slider's position; where the slider does, that over |x'|, of the crank
     angle, with the actuator among the sources. Sources without tolerance are left out.
     """
-    own = one_linkage(mechanism, linkage)
-    i, reach = own.error_influences(crank_angle), limits(mechanism, own)
-    crank, rod, offset, turn = (abs(float(each)) for each in (i.crank, i.rod, i.offset, i.crank_angle))
+    checked = one_linkage(mechanism, linkage)
+    i, source_limits = checked.error_influences(crank_angle), limits(mechanism, checked)
+    crank, rod, offset, turn = (abs(float(share)) for share in (i.crank, i.rod, i.offset, i.crank_angle))
     rates = (crank, rod, offset, turn, rod, rod, rod, offset)
-    found = [
-        Share(name, float(limit), rate * float(limit)) for name, limit, rate in zip(SOURCES, reach, rates, strict=True)
+    shares = [
+        ErrorShare(name, float(limit), rate * float(limit))
+        for name, limit, rate in zip(SOURCES, source_limits, rates, strict=True)
     ]
     if swing.driver == "slider":
-        found = [each for each in found if each.source != "crank angle"]
-        found.append(Share("actuator", swing.actuator_tolerance, swing.actuator_tolerance))
-        found = [Share(each.source, each.limit, each.error / turn) for each in found]
-    return tuple(each for each in found if each.limit)
+        shares = [share for share in shares if share.source != "crank angle"]
+        shares.append(ErrorShare("actuator", swing.actuator_tolerance, swing.actuator_tolerance))
+        shares = [ErrorShare(share.source, share.limit, share.error / turn) for share in shares]
+    return tuple(share for share in shares if share.limit)

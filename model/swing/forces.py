@@ -119,18 +119,23 @@ def swing_curves(
         rise = (acceleration - m.x_2 * speed**2) / m.x_1
     turning = swing.way * (-1.0 if back else 1.0)
     slowly = np.where(speed == 0.0, turning * _STILL, speed)
-    found = curves_of(mechanism, linkage, theta, slowly, rise)
+    cycle_curves = curves_of(mechanism, linkage, theta, slowly, rise)
     d = design_of(mechanism, linkage)._replace(speed=slowly, acceleration=rise)
     if swing.driver == "crank":
-        drive, power, angle, error = found.torque, found.torque * speed, found.transmission_angle, found.position_error
-        joints = {name: getattr(found, name) for name in JOINTS}
+        drive, power, angle, error = (
+            cycle_curves.torque,
+            cycle_curves.torque * speed,
+            cycle_curves.transmission_angle,
+            cycle_curves.position_error,
+        )
+        joints = {name: getattr(cycle_curves, name) for name in JOINTS}
     else:
-        drive, joints = _pushed(theta, m, d, found.load, found.crank_load)
+        drive, joints = _pushed(theta, m, d, cycle_curves.load, cycle_curves.crank_load)
         power = drive * m.x_1 * speed
         angle = np.arcsin(np.clip(np.abs(bend(np.sin(theta), np.cos(theta), m)) / linkage.rod, 0.0, 1.0))
         error = _crank_error(theta, m, d, swing.actuator_tolerance)
     # Without those of a crank that hardly moves.
-    load, drive, power = (np.where(np.abs(each) < _NOTHING, 0.0, each) for each in (found.load, drive, power))
+    load, drive, power = (np.where(np.abs(curve) < _NOTHING, 0.0, curve) for curve in (cycle_curves.load, drive, power))
     return SwingCurves(
         share=share,
         crank_angle=theta,
@@ -162,8 +167,8 @@ def driver_ends(linkage: Linkage, swing: Swing) -> tuple[float, float]:
 
 
 def _motion(linkage: Linkage, theta: Array) -> Motion:
-    found: Motion = motion(np.sin(theta), np.cos(theta), linkage.crank, linkage.rod, linkage.offset, linkage.sign)
-    return found
+    m: Motion = motion(np.sin(theta), np.cos(theta), linkage.crank, linkage.rod, linkage.offset, linkage.sign)
+    return m
 
 
 def angles_at(linkage: Linkage, swing: Swing, x: Array) -> Array:

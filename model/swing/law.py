@@ -26,10 +26,10 @@ def code_of(law: Law) -> int:
 
 
 @analytic
-def way_at(code: int, table: Any, t: Any, inside: Any) -> tuple[Any, Any, Any, Any]:
+def way_at(code: int, table: Any, t: Any, probe: Any) -> tuple[Any, Any, Any, Any]:
     """Return s, ds/dt, d2s/dt2 and d3s/dt3 of a law at shares t of the time, from 0 to 1.
 
-    table: of `spline`, for the law that is one. inside: a share that tells on which side of a corner t lies.
+    table: of `spline`, for the law that is one. probe: a share that tells on which side of a corner t lies.
 
     Harmonic: s = (1 - cos(pi t)) / 2. Cycloidal: s = t - sin(2 pi t) / (2 pi). Polynomial: s = 10 t^3 - 15 t^4 + 6 t^5.
     Source: R. L. Norton, Design of Machinery, chapter 8, Cam design (double-dwell functions).
@@ -49,7 +49,7 @@ def way_at(code: int, table: Any, t: Any, inside: Any) -> tuple[Any, Any, Any, A
             60.0 - 360.0 * t * rest,
         )
     if code == _TRAPEZOID:
-        first, last = 1.0 * (inside < _RAMP), 1.0 * (inside > 1.0 - _RAMP)
+        first, last = 1.0 * (probe < _RAMP), 1.0 * (probe > 1.0 - _RAMP)
         even = 1.0 - first - last
         return (
             first * (0.5 * _STEEP * t * t)
@@ -62,11 +62,11 @@ def way_at(code: int, table: Any, t: Any, inside: Any) -> tuple[Any, Any, Any, A
     if code == _TABLE:
         s, s_1, s_2, s_3 = 0.0 * t, 0.0 * t, 0.0 * t, 0.0 * t
         for i in range(table.shape[0]):
-            here = 1.0 * (inside >= table[i, 0]) * (1.0 * (inside < table[i, 1]))
+            in_piece = 1.0 * (probe >= table[i, 0]) * (1.0 * (probe < table[i, 1]))
             u, b, c, d = t - table[i, 2], table[i, 4], table[i, 5], table[i, 6]
-            s = s + here * (table[i, 3] + u * (b + u * (c + u * d)))
-            s_1, s_2 = s_1 + here * (b + u * (2.0 * c + 3.0 * u * d)), s_2 + here * (2.0 * c + 6.0 * u * d)
-            s_3 = s_3 + here * (6.0 * d)
+            s = s + in_piece * (table[i, 3] + u * (b + u * (c + u * d)))
+            s_1, s_2 = s_1 + in_piece * (b + u * (2.0 * c + 3.0 * u * d)), s_2 + in_piece * (2.0 * c + 6.0 * u * d)
+            s_3 = s_3 + in_piece * (6.0 * d)
         return s, s_1, s_2, s_3
     return 1.0 * t, 1.0 + 0.0 * t, 0.0 * t, 0.0 * t
 
@@ -81,8 +81,8 @@ def spline(points: tuple[tuple[float, float], ...]) -> Array:
     and its four coefficients. Raises `InputError` for points that are out of order, or whose way turns back between
     them. Source: C. de Boor, A Practical Guide to Splines, chapter IV, complete cubic spline.
     """
-    given = np.asarray(points, dtype=np.float64).reshape(-1, 2)
-    t, s = given.T
+    table = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+    t, s = table.T
     _require_points(t, s)
     h, rise = np.diff(t), np.diff(s) / np.diff(t)
     # Slopes m at the knots, m = 0 at the ends: h_i m_{i-1} + 2 (h_{i-1} + h_i) m_i + h_{i-1} m_{i+1} = 3 (...).
@@ -94,7 +94,7 @@ def spline(points: tuple[tuple[float, float], ...]) -> Array:
     m = np.concatenate([[0.0], np.linalg.solve(matrix[:, 1:-1], right), [0.0]])
     lower, upper = np.concatenate([[-np.inf], t[1:-1]]), np.concatenate([t[1:-1], [np.inf]])
     second, third = (3.0 * rise - 2.0 * m[:-1] - m[1:]) / h, (m[:-1] + m[1:] - 2.0 * rise) / h**2
-    found = np.stack([lower, upper, t[:-1], s[:-1], m[:-1], second, third], axis=1)
+    pieces = np.stack([lower, upper, t[:-1], s[:-1], m[:-1], second, third], axis=1)
     for i in range(len(h)):
         u = np.linspace(0.0, h[i], 101)
         slow = m[i] + u * (2.0 * second[i] + 3.0 * u * third[i])
@@ -103,7 +103,7 @@ def spline(points: tuple[tuple[float, float], ...]) -> Array:
                 "a table of a swing's motion must go on all the way; got one that turns back near the share "
                 f"{t[i] + u[int(np.argmin(slow))]:.4g} of the time; give more points there, or a gentler course"
             )
-    return found
+    return pieces
 
 
 def mirrored(points: tuple[tuple[float, float], ...]) -> Array:
@@ -114,10 +114,10 @@ def mirrored(points: tuple[tuple[float, float], ...]) -> Array:
 def _require_points(t: Array, s: Array) -> None:
     wrong = len(t) < 3 or not np.isfinite([t, s]).all() or (t[0], s[0], t[-1], s[-1]) != (0.0, 0.0, 1.0, 1.0)
     if wrong or (np.diff(t) <= 0.0).any() or (np.diff(s) < 0.0).any():
-        shown = ", ".join(f"({a:.6g}, {b:.6g})" for a, b in zip(t[:6].tolist(), s[:6].tolist(), strict=True))
+        listed = ", ".join(f"({a:.6g}, {b:.6g})" for a, b in zip(t[:6].tolist(), s[:6].tolist(), strict=True))
         raise InputError(
             "a table of a swing's motion has three points or more, shares of time and way, each from 0 to 1, the times "
-            f"rising and the ways not falling; got {shown or 'none'}{' ...' if len(t) > 6 else ''}; "
+            f"rising and the ways not falling; got {listed or 'none'}{' ...' if len(t) > 6 else ''}; "
             "begin with 0, 0 and end with 1, 1"
         )
 
@@ -134,8 +134,8 @@ def shares_of(law: Law, s: Array, table: Array = NO_TABLE) -> Array:
     low, high = np.zeros(np.shape(s)), np.ones(np.shape(s))
     for _ in range(60):
         middle = 0.5 * (low + high)
-        below = way(law, middle, table)[0] < s
-        low, high = np.where(below, middle, low), np.where(below, high, middle)
+        is_below = way(law, middle, table)[0] < s
+        low, high = np.where(is_below, middle, low), np.where(is_below, high, middle)
     return np.asarray(0.5 * (low + high))
 
 

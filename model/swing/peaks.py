@@ -59,10 +59,10 @@ class _Curve:
     def segments(self) -> Segments:
         """Return the pieces of the ways, each way back after one forth."""
         parts = []
-        for way, own in enumerate(self.ways):
-            design, piece = np.nonzero(own.live)
-            low, high = own.cuts[design, piece], own.cuts[design, piece + 1]
-            parts.append((design, low + own.back, high + own.back, self._numbered(way, design, piece)))
+        for way, pieces in enumerate(self.ways):
+            design, piece = np.nonzero(pieces.live)
+            low, high = pieces.cuts[design, piece], pieces.cuts[design, piece + 1]
+            parts.append((design, low + pieces.back, high + pieces.back, self._numbered(way, design, piece)))
         row, low, high, cut = (np.concatenate(part) for part in zip(*parts, strict=True))
         order = np.lexsort((low, row))
         row, low, high, cut = row[order], low[order], high[order], cut[order]
@@ -71,79 +71,79 @@ class _Curve:
         after[last] = first[last] if len(self.ways) > 1 else -1
         return Segments(row, low, high, cut, after)
 
-    def at(
-        self, row: Whole, inside: Array, place: Array, *, rate: Array | None = None, wanted: bool = False
+    def evaluate(
+        self, row: Whole, probe: Array, place: Array, *, rate: Array | None = None, gradients: bool = False
     ) -> tuple[Array, Array]:
         """Return value, slope and derivatives; see `peak_search.Curve`."""
-        back = np.floor(inside)[:, None]
-        points = row[:, None], place - back, inside[:, None] - back, back
-        found = self.many.states(*points, STEP)[..., self.state]
-        curve = np.stack([found.real, found.imag / STEP], axis=-1)
-        if wanted:
+        back = np.floor(probe)[:, None]
+        points = row[:, None], place - back, probe[:, None] - back, back
+        state = self.many.states(*points, STEP)[..., self.state]
+        curve = np.stack([state.real, state.imag / STEP], axis=-1)
+        if gradients:
             slips = np.zeros((len(row), self.numbers)) if rate is None else rate
-            own = [self.many.states(*points, STEP * slips[:, v : v + 1], v) for v in range(self.numbers)]
-            curve = np.concatenate([curve, *(each[..., self.state, None].imag / STEP for each in own)], axis=-1)
+            stepped = [self.many.states(*points, STEP * slips[:, v : v + 1], v) for v in range(self.numbers)]
+            curve = np.concatenate([curve, *(step[..., self.state, None].imag / STEP for step in stepped)], axis=-1)
         if self.toward is not None:
             curve = self.toward[row][:, None, None] * curve
-        return curve, np.nan_to_num(np.abs(found.real))
+        return curve, np.nan_to_num(np.abs(state.real))
 
-    def rates(self, cuts: Whole, inside: Array) -> Array:
+    def rates(self, cuts: Whole, probe: Array) -> Array:
         """Return the derivatives of cuts; see `peak_search.Curve`."""
-        found = np.zeros((len(cuts), self.numbers))
-        for way, own in enumerate(self.ways):
+        cut_rates = np.zeros((len(cuts), self.numbers))
+        for way, pieces in enumerate(self.ways):
             rows = np.flatnonzero(cuts % len(self.ways) == way)
-            design, cut = np.divmod(cuts[rows] // len(self.ways), own.cuts.shape[1])
-            found[rows] = self.many.moved(own, design, cut, inside[rows] - own.back)
-        return found
+            design, cut = np.divmod(cuts[rows] // len(self.ways), pieces.cuts.shape[1])
+            cut_rates[rows] = self.many.moved(pieces, design, cut, probe[rows] - pieces.back)
+        return cut_rates
 
     def _numbered(self, way: int, design: Whole, cut: Whole) -> Whole:
         return np.asarray((design * self.ways[way].cuts.shape[1] + cut) * len(self.ways) + way)
 
 
 def swing_peaks(
-    mechanism: Mechanism, swing: Swing, state: int, designs: Array, *, gradients: bool = False, kept: int = KEPT
+    mechanism: Mechanism, swing: Swing, state: int, designs: Array, *, gradients: bool = False, limit: int = KEPT
 ) -> SwingPeaks:
-    """Return the greatest sizes of a state (`points.DRIVE`, `POWER` or `ERROR`) for designs (n, 3 + k).
+    """Return the greatest sizes of a state (`swing_states.DRIVE`, `POWER` or `ERROR`) for designs (n, 3 + k).
 
-    kept: peaks returned of a design.
+    limit: peaks returned of a design.
     """
-    found = partial(_peaks, state=state, kept=kept, gradients=gradients)
-    return _gathered(mechanism, swing, designs, kept, gradients, found, forces=state != ERROR)
+    find = partial(_peaks, state=state, limit=limit, gradients=gradients)
+    return _peaks_of_passing(mechanism, swing, designs, limit, gradients, find, forces=state != ERROR)
 
 
 def least_drives(
-    mechanism: Mechanism, swing: Swing, designs: Array, *, back: bool, gradients: bool = False, kept: int = KEPT
+    mechanism: Mechanism, swing: Swing, designs: Array, *, back: bool, gradients: bool = False, limit: int = KEPT
 ) -> SwingPeaks:
     """Return the least drives along the motion of one way, without inertia, negated: local peaks, highest first.
 
     Where the least one is below zero, loads push the linkage on, and the drive holds it back.
     """
 
-    def found(many: SwingBatch) -> Maxima:
+    def find(many: SwingBatch) -> Maxima:
         first, last = (many.driver_at(end) for end in (many.ends.start, many.ends.end))
         toward = np.where(last > first, -1.0, 1.0) * (-1.0 if back else 1.0)
-        return _maxima(many, (many.pieces(back=back),), DRIVE, kept, gradients, toward)
+        return _maxima(many, (many.pieces(back=back),), DRIVE, limit, gradients, toward)
 
-    return _gathered(mechanism, swing, designs, kept, gradients, found, slow=True)
+    return _peaks_of_passing(mechanism, swing, designs, limit, gradients, find, slow=True)
 
 
 def holding_peaks(
     mechanism: Mechanism, swing: Swing, designs: Array, *, free: bool = False, gradients: bool = False
 ) -> SwingPeaks:
     """Return the sizes of the drive at the ends of designs (n, 3 + k), without inertia. free: without friction."""
-    one = np.ones((1, 3 + len(mechanism.varying)))
-    ways = 2 if SwingBatch(mechanism, swing, one, slopes=False, slow=True, free=free).both else 1
-    found = partial(_at_ends, gradients=gradients)
-    return _gathered(mechanism, swing, designs, 2 * ways, gradients, found, slow=True, free=free)
+    unit_design = np.ones((1, 3 + len(mechanism.varying)))
+    ways = 2 if SwingBatch(mechanism, swing, unit_design, slopes=False, slow=True, free=free).ways_differ else 1
+    find = partial(_at_ends, gradients=gradients)
+    return _peaks_of_passing(mechanism, swing, designs, 2 * ways, gradients, find, slow=True, free=free)
 
 
-def _gathered(
+def _peaks_of_passing(
     mechanism: Mechanism,
     swing: Swing,
     designs: Array,
-    kept: int,
+    limit: int,
     gradients: bool,
-    of: Callable[[SwingBatch], Maxima],
+    find: Callable[[SwingBatch], Maxima],
     *,
     slow: bool = False,
     free: bool = False,
@@ -151,61 +151,65 @@ def _gathered(
 ) -> SwingPeaks:
     designs = np.ascontiguousarray(designs, dtype=np.float64)
     n = len(designs)
-    values, places = np.full((n, kept), -np.inf), np.full((n, kept), np.nan)
-    slopes = np.zeros((n if gradients else 0, kept, designs.shape[1]))
+    values, places = np.full((n, limit), -np.inf), np.full((n, limit), np.nan)
+    slopes = np.zeros((n if gradients else 0, limit, designs.shape[1]))
     values[:, 0] = np.nan
     rows = np.flatnonzero(passes(mechanism, swing, designs))
 
     def work(begin: int, end: int) -> None:
-        own = rows[begin:end]
-        many = SwingBatch(mechanism, swing, designs[own], slopes=gradients, slow=slow, free=free, forces=forces)
-        stuck = many.locked()
+        designs_here = rows[begin:end]
+        batch = SwingBatch(
+            mechanism, swing, designs[designs_here], slopes=gradients, slow=slow, free=free, forces=forces
+        )
+        stuck = batch.locked()
         if stuck.any():
-            values[own[stuck], 0] = np.inf
-            own = own[~stuck]
-            many = SwingBatch(mechanism, swing, designs[own], slopes=gradients, slow=slow, free=free, forces=forces)
-        if len(own):
-            found = of(many)
-            values[own], places[own] = found.values, found.places
+            values[designs_here[stuck], 0] = np.inf
+            designs_here = designs_here[~stuck]
+            batch = SwingBatch(
+                mechanism, swing, designs[designs_here], slopes=gradients, slow=slow, free=free, forces=forces
+            )
+        if len(designs_here):
+            maxima = find(batch)
+            values[designs_here], places[designs_here] = maxima.values, maxima.places
             if gradients:
-                slopes[own] = many.numbers.chain(found.slopes)
+                slopes[designs_here] = batch.numbers.chain(maxima.slopes)
 
     in_chunks(len(rows), work, size=_CHUNK)
     return SwingPeaks(values, places, slopes if gradients else None)
 
 
-def _peaks(many: SwingBatch, state: int, kept: int, gradients: bool) -> Maxima:
+def _peaks(batch: SwingBatch, state: int, limit: int, gradients: bool) -> Maxima:
     # A force on the slider has the guide's friction by its size: without slopes its kink needs no cut.
-    contacts = gradients or many.swing.driver == "crank"
+    contacts = gradients or batch.swing.driver == "crank"
     forces = state != ERROR
-    ways = many.ways() if forces else (False,)
-    cut = tuple(many.pieces(back=back, forces=forces, contacts=contacts) for back in ways)
-    return _maxima(many, cut, state, kept, gradients)
+    ways = batch.ways() if forces else (False,)
+    cut = tuple(batch.pieces(back=back, forces=forces, contacts=contacts) for back in ways)
+    return _maxima(batch, cut, state, limit, gradients)
 
 
 def _maxima(
-    many: SwingBatch, ways: tuple[Pieces, ...], state: int, kept: int, gradients: bool, toward: Array | None = None
+    batch: SwingBatch, ways: tuple[Pieces, ...], state: int, limit: int, gradients: bool, toward: Array | None = None
 ) -> Maxima:
-    curve = _Curve(many, ways, state, many.columns if gradients else 0, toward)
-    return find_maxima(curve, curve.segments(), np.full(many.count, _PANELS), kept=kept, signed=toward is not None)
+    curve = _Curve(batch, ways, state, batch.columns if gradients else 0, toward)
+    return find_maxima(curve, curve.segments(), np.full(batch.count, _PANELS), limit=limit, signed=toward is not None)
 
 
-def _at_ends(many: SwingBatch, gradients: bool) -> Maxima:
+def _at_ends(batch: SwingBatch, gradients: bool) -> Maxima:
     values, places, slopes = [], [], []
-    for back in many.ways():
+    for back in batch.ways():
         for share in (0.0, 1.0):
-            rows = np.arange(many.count)
-            near = np.full(many.count, 1e-9 if share == 0.0 else 1.0 - 1e-9)
-            found = many.states(rows, share, near, float(back))[:, DRIVE].real
-            sign = np.where(found < 0.0, -1.0, 1.0)
-            own = np.zeros((many.count, many.columns if gradients else 0))
-            for v in range(own.shape[1]):
-                own[:, v] = sign * many.states(rows, share, near, float(back), 0.0, v)[:, DRIVE].imag / STEP
-            values.append(np.abs(found))
-            places.append(np.full(many.count, share + float(back)))
-            slopes.append(own)
+            rows = np.arange(batch.count)
+            near = np.full(batch.count, 1e-9 if share == 0.0 else 1.0 - 1e-9)
+            drive = batch.states(rows, share, near, float(back))[:, DRIVE].real
+            sign = np.where(drive < 0.0, -1.0, 1.0)
+            by_number = np.zeros((batch.count, batch.columns if gradients else 0))
+            for v in range(by_number.shape[1]):
+                by_number[:, v] = sign * batch.states(rows, share, near, float(back), 0.0, v)[:, DRIVE].imag / STEP
+            values.append(np.abs(drive))
+            places.append(np.full(batch.count, share + float(back)))
+            slopes.append(by_number)
     order = np.argsort(-np.stack(values, axis=1), axis=1, kind="stable")
-    first = np.take_along_axis(np.stack(values, axis=1), order, axis=1)
-    where = np.take_along_axis(np.stack(places, axis=1), order, axis=1)
-    found_slopes = np.take_along_axis(np.stack(slopes, axis=1), order[:, :, None], axis=1)
-    return Maxima(first, where, found_slopes, first[:, 0])
+    sorted_values = np.take_along_axis(np.stack(values, axis=1), order, axis=1)
+    sorted_places = np.take_along_axis(np.stack(places, axis=1), order, axis=1)
+    sorted_slopes = np.take_along_axis(np.stack(slopes, axis=1), order[:, :, None], axis=1)
+    return Maxima(sorted_values, sorted_places, sorted_slopes, sorted_values[:, 0])

@@ -37,7 +37,7 @@ class PinSides(NamedTuple):
 @analytic
 def bend(sine: Any, cosine: Any, m: Motion) -> Any:
     """Return l sin(theta - phi), m: zero where crank and rod are in line."""
-    return sine * m.along - cosine * m.across
+    return sine * m.l_cos - cosine * m.l_sin
 
 
 @analytic
@@ -45,7 +45,7 @@ def free_pin(sine: Any, cosine: Any, m: Motion, d: Design, b: Balance) -> tuple[
     """Return B without friction in the pins, N."""
     crank = b.couple + d.r * (cosine * b.rod_y - sine * b.rod_x)
     per = inverse(d.r * bend(sine, cosine, m))
-    return (m.along * crank - d.r * cosine * b.moment) * per, (m.across * crank - d.r * sine * b.moment) * per
+    return (m.l_cos * crank - d.r * cosine * b.moment) * per, (m.l_sin * crank - d.r * sine * b.moment) * per
 
 
 @analytic
@@ -58,10 +58,10 @@ def pin_rows(bx: Any, by: Any, sine: Any, cosine: Any, m: Motion, d: Design, b: 
     per_a, per_b, per_p = inverse(size_a + _NOTHING), inverse(size_b + _NOTHING), inverse(size_p + _NOTHING)
     a, q, o = sides.crank_pin, sides.slider_pin, sides.crank_pivot
     return PinRows(
-        m.along * by - m.across * bx + b.moment - a * size_a + q * size_b,
+        m.l_cos * by - m.l_sin * bx + b.moment - a * size_a + q * size_b,
         b.couple + d.r * (cosine * ay - sine * ax) + a * size_a + o * size_p,
-        -m.across - a * ax * per_a + q * bx * per_b,
-        m.along - a * ay * per_a + q * by * per_b,
+        -m.l_sin - a * ax * per_a + q * bx * per_b,
+        m.l_cos - a * ay * per_a + q * by * per_b,
         -d.r * sine + a * ax * per_a + o * px * per_p,
         d.r * cosine + a * ay * per_a + o * py * per_p,
     )

@@ -61,35 +61,35 @@ def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSumm
 
     Raises what `require_swing` raises.
     """
-    own = require_swing(mechanism, linkage, swing)
-    swing = placed(mechanism, own, swing)
-    over = SwingCycle(mechanism, own, swing)
+    checked = require_swing(mechanism, linkage, swing)
+    swing = placed(mechanism, checked, swing)
+    cycle = SwingCycle(mechanism, checked, swing)
     ends = np.array([0.0, 1.0])
-    slow = SwingCycle(mechanism, own, slowly(swing))
-    still = slow.at(ends), slow.at(ends, back=True)
-    free = SwingCycle(replace(mechanism, friction=Friction()), own, slow.swing)
-    locked = over.first_locked()
-    peak = over.greatest("drive")
-    power = None if swing.duration is None else over.greatest("power")
+    slow = SwingCycle(mechanism, checked, slowly(swing))
+    still = slow.curves(ends), slow.curves(ends, back=True)
+    free = SwingCycle(replace(mechanism, friction=Friction()), checked, slow.swing)
+    locked = cycle.first_locked()
+    peak = cycle.greatest("drive")
+    power = None if swing.duration is None else cycle.greatest("power")
     if locked is not None:  # next to that place the drive grows beyond all bounds
         peak, power = locked, None if power is None else locked
-    tolerances = mechanism.tolerances.given or swing.actuator_tolerance > 0.0
+    tolerances = mechanism.tolerances.are_stated or swing.actuator_tolerance > 0.0
     return SwingSummary(
         swing=swing,
-        linkage=own,
+        linkage=checked,
         crank_angles=(swing.start, swing.end),
         slider_positions=(float(still[0].slider_position[0]), float(still[0].slider_position[1])),
         peak_drive=peak,
         drive_start=(float(still[0].drive[0]), float(still[1].drive[1])),
         drive_end=(float(still[0].drive[1]), float(still[1].drive[0])),
-        holds=slow.holds(),
-        energy_forth=over.energy(back=False),
-        energy_back=over.energy(back=True),
+        holds=slow.friction_holds(),
+        energy_forth=cycle.energy(back=False),
+        energy_back=cycle.energy(back=True),
         stored=free.energy(back=False),
         efficiency=None if locked else _efficiency(slow, free),
         peak_power=power,
-        least_transmission=over.least("driven_angle"),
-        position_error=over.greatest("driven_error") if tolerances else None,
+        least_transmission=cycle.least("driven_angle"),
+        position_error=cycle.greatest("driven_error") if tolerances else None,
         locked=locked,
     )
 

@@ -33,9 +33,10 @@ _LEAST, _MOST = 1e-6, 1e9  # s
 class Swing:
     """A swing forth from one crank angle to another, rad, and back; or from one slider position to another, m.
 
-    The crank turns from start towards end: clockwise where end is less. of: what start and end are of; of a slider
-    position, `side` says on which side of the line from crank pivot to slider pin the crank pin is, and `placed` gives
-    the crank angles. follows: whether the end keeps its distance from a start that designs choose (`machine.start`).
+    The crank turns from start towards end: clockwise where end is less. stated_for: "crank" where start and end are
+    crank angles, "slider" where they are slider positions; then `side` says on which side of the line from crank pivot
+    to slider pin the crank pin is, and `placed` gives the crank angles. follows: whether the end keeps its distance
+    from a start that designs choose (`machine.start`).
     driver: what moves the linkage, a torque on the crank or a force on the slider along its line. law: of the driver's
     motion over time, each way. duration: of one way, s; none where it is slow. actuator_tolerance: how far the slider
     may be off where it drives, m. points: of the law that is a table: shares of time and way, see `law.spline`.
@@ -47,7 +48,7 @@ class Swing:
     law: Law = "slow"
     duration: float | None = None
     actuator_tolerance: float = 0.0
-    of: Stated = "crank"
+    stated_for: Stated = "crank"
     side: Side = "left"
     follows: bool = False
     points: tuple[tuple[float, float], ...] = ()
@@ -55,18 +56,18 @@ class Swing:
     def __post_init__(self) -> None:
         keep_tuples(self, "points")
         require_all_finite("start and end of a swing", (self.start, self.end))
-        require_numbers(self, "duration", what="the duration of a swing", above=0.0, unit="s")
-        require_numbers(self, "actuator_tolerance", what="the tolerance of the actuator", least=0.0, unit="m")
+        require_numbers(self, "duration", phrase="the duration of a swing", above=0.0, unit="s")
+        require_numbers(self, "actuator_tolerance", phrase="the tolerance of the actuator", least=0.0, unit="m")
         require_word("driver", self.driver, Driver)
         require_word("law", self.law, Law)
-        require_word("of", self.of, Stated)
+        require_word("stated_for", self.stated_for, Stated)
         require_word("side", self.side, Side)
         angle = abs(self.end - self.start)
-        if self.of == "slider" and not angle:
+        if self.stated_for == "slider" and not angle:
             raise InputError(
                 f"a swing needs two different slider positions; got {1e3 * self.start:.6g} mm twice; change one"
             )
-        if self.of == "crank" and not 0.0 < angle < _TURN:
+        if self.stated_for == "crank" and not 0.0 < angle < _TURN:
             raise InputError(
                 "a swing needs two different crank angles, less than a turn apart; "
                 f"got {math.degrees(self.start):.6g} and {math.degrees(self.end):.6g} deg; "
@@ -104,11 +105,11 @@ class Swing:
         """+1 where the crank turns counter-clockwise on its way forth, -1 otherwise."""
         return math.copysign(1.0, self.end - self.start)
 
-    def inside(self, angle: float) -> list[float]:
+    def occurrences(self, angle: float) -> list[float]:
         """Return the crank angles of the swing that equal an angle but for whole turns."""
         low, high = sorted((self.start, self.end))
-        first = angle + _TURN * math.ceil((low - angle) / _TURN)
-        return [first] if first <= high else []
+        occurrence = angle + _TURN * math.ceil((low - angle) / _TURN)
+        return [occurrence] if occurrence <= high else []
 
 
 def slowly(swing: Swing) -> Swing:
@@ -122,26 +123,26 @@ def dead_points(linkage: Linkage) -> tuple[float, ...]:
     Stretched: (r + l) sin(theta) = e; folded: (r - l) sin(theta) = e; each on the branch that it is on.
     """
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
-    found = []
-    for reach, ahead in ((r + l, True), (r - l, False)):
-        if abs(e) < abs(reach):
-            angle = math.asin(e / reach)
-            found.append(angle if ahead == (linkage.branch == "open") else math.pi - angle)
-    return tuple(found)
+    angles = []
+    for span, ahead in ((r + l, True), (r - l, False)):
+        if abs(e) < abs(span):
+            angle = math.asin(e / span)
+            angles.append(angle if ahead == (linkage.branch == "open") else math.pi - angle)
+    return tuple(angles)
 
 
 def started(mechanism: Mechanism, swing: Swing) -> Swing:
     """Return the swing from the start that a machine of one design has, if it has one."""
-    own = getattr(mechanism.start, "angle" if swing.of == "crank" else "place")
-    if own is None:
+    start = getattr(mechanism.start, "angle" if swing.stated_for == "crank" else "place")
+    if start is None:
         return swing
-    return replace(swing, start=own, end=own + (swing.end - swing.start) if swing.follows else swing.end)
+    return replace(swing, start=start, end=start + (swing.end - swing.start) if swing.follows else swing.end)
 
 
 def placed(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Swing:
     """Return the swing of one linkage between two crank angles. Raises `AssemblyError` where it misses a place."""
     swing = started(mechanism, swing)
-    if swing.of == "crank":
+    if swing.stated_for == "crank":
         return swing
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     places, side = np.array([swing.start, swing.end]), 1.0 if swing.side == "left" else -1.0
@@ -149,7 +150,7 @@ def placed(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Swing:
     for place, angle in zip(places.tolist(), angles, strict=True):
         if math.isnan(angle):
             raise AssemblyError(_missed(place, linkage, swing))
-    return replace(swing, start=angles[0], end=angles[1], of="crank", follows=False)
+    return replace(swing, start=angles[0], end=angles[1], stated_for="crank", follows=False)
 
 
 def _missed(place: float, linkage: Linkage, swing: Swing) -> str:
@@ -161,11 +162,11 @@ def _missed(place: float, linkage: Linkage, swing: Swing) -> str:
             f"the slider must reach both ends of the swing, between {near:.6g} and {far:.6g} mm from the crank pivot; "
             f"got a slider position of {1e3 * place:.6g} mm, {away:.6g} mm away; move it, or change a length"
         )
-    other = "crossed" if linkage.branch == "open" else "open"
+    other_branch = "crossed" if linkage.branch == "open" else "open"
     return (
         f"the slider must reach both ends of the swing on the {linkage.branch} branch, with the crank pin on the "
         f"{swing.side} of the line to the slider pin; got a slider position of {1e3 * place:.6g} mm, which is on the "
-        f"{other} branch there; move it, take the other side, or the other branch"
+        f"{other_branch} branch there; move it, take the other side, or the other branch"
     )
 
 
@@ -175,21 +176,21 @@ def require_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linka
     Raises `InputError` for arrays, another branch than the mechanism's, a dead point where the slider drives, and loads
     counted from a dead centre that the linkage does not have; `AssemblyError` where it does not close.
     """
-    own = one_linkage(mechanism, linkage)
-    _require_passing(mechanism, own, placed(mechanism, own, swing))
-    return own
+    checked = one_linkage(mechanism, linkage)
+    _require_passing(mechanism, checked, placed(mechanism, checked, swing))
+    return checked
 
 
-def _require_passing(mechanism: Mechanism, own: Linkage, swing: Swing) -> None:
-    _require_closing(own, swing)
-    passed = sorted(angle for dead in dead_points(own) for angle in swing.inside(dead))
+def _require_passing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> None:
+    _require_closing(linkage, swing)
+    passed = sorted(angle for dead in dead_points(linkage) for angle in swing.occurrences(dead))
     if swing.driver == "slider" and passed:
         raise InputError(
             "a slider drives the crank only between dead points, where crank and rod are in line; "
             f"the swing from {_degrees(swing.start)} to {_degrees(swing.end)} has one at {_degrees(passed[0])}; "
             "stay on one side of it, change the dimensions, or drive the crank"
         )
-    if swing.driver == "slider" and _folded(own, swing):
+    if swing.driver == "slider" and _folded(linkage, swing):
         raise InputError(
             "a slider drives the crank only where crank and rod are not in line; got a rod as long as the crank, no "
             f"offset, and both folded at {_degrees(0.5 * (swing.start + swing.end))}, the slider on the crank pivot; "
@@ -197,7 +198,7 @@ def _require_passing(mechanism: Mechanism, own: Linkage, swing: Swing) -> None:
         )
     for load in mechanism.loads:
         datum = getattr(load, "datum", "")
-        if datum.endswith("dead centre") and not bool(own.rotates_fully):
+        if datum.endswith("dead centre") and not bool(linkage.rotates_fully):
             raise InputError(
                 f"a load is measured from the {datum} of a full turn, which this linkage does not make; "
                 "measure it from the crank pivot"
@@ -212,17 +213,17 @@ def _folded(linkage: Linkage, swing: Swing) -> bool:
 
 def extreme_angles(swing: Swing) -> list[float]:
     """Return the ends of a swing, and its crank angles normal to the slider line."""
-    return [swing.start, swing.end, *swing.inside(0.5 * math.pi), *swing.inside(1.5 * math.pi)]
+    return [swing.start, swing.end, *swing.occurrences(0.5 * math.pi), *swing.occurrences(1.5 * math.pi)]
 
 
 def _require_closing(linkage: Linkage, swing: Swing) -> None:
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     worst = max(extreme_angles(swing), key=lambda angle: abs(e - r * math.sin(angle)))
-    reach = abs(e - r * math.sin(worst))
-    if reach >= l:
+    pin_distance = abs(e - r * math.sin(worst))
+    if pin_distance >= l:
         raise AssemblyError(
             "the linkage must close over the whole swing: rod > |offset - crank sin(crank angle)|; "
-            f"got a rod of {1e3 * l:.6g} mm and {1e3 * reach:.6g} mm at {_degrees(worst)}; "
+            f"got a rod of {1e3 * l:.6g} mm and {1e3 * pin_distance:.6g} mm at {_degrees(worst)}; "
             "lengthen the rod, change the offset, or swing less far"
         )
 

@@ -24,7 +24,7 @@ from ..machine.mechanism import Mechanism
 from ..machine.numbers import numbers_of
 from ..machine.raw import fullest_inputs
 from .closure import driven_angles, passes
-from .ends import Ends, ends_of, farthest, start_column, with_start
+from .ends import Ends, ends_of, greatest_pin_distance, start_column, with_start
 from .forces import locking_angle
 from .law import corners, mirrored, shares_of
 from .swing import Swing, slowly
@@ -54,7 +54,7 @@ class Pieces:
         return np.asarray(np.diff(self.cuts, axis=1) > _THIN)
 
     @property
-    def inside(self) -> Array:
+    def probe(self) -> Array:
         """A share within each piece (n, c - 1)."""
         return np.asarray(self.cuts[:, :-1] + 0.382 * np.diff(self.cuts, axis=1))
 
@@ -81,32 +81,32 @@ class SwingBatch:
         self.designs, self.count = designs, len(designs)
         self.sign = mechanism.sign
         self.ends: Ends = ends_of(mechanism, self.swing, designs, slopes=slopes)
-        numbers = numbers_of(mechanism, designs, room=len(raw), gradients=slopes)
+        numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=slopes)
         self.blocks, self.steps = derived(raw, self.loads, numbers.columns, numbers.values, steps=slopes)
-        self.plain: Complexes = self.blocks.astype(np.complex128)
+        self.complex_blocks: Complexes = self.blocks.astype(np.complex128)
         column = start_column(mechanism)
         if column is not None:
-            numbers, self.steps = with_start(numbers, self.plain, self.steps, designs, column)
+            numbers, self.steps = with_start(numbers, self.complex_blocks, self.steps, designs, column)
         self.numbers, self.columns = numbers, len(numbers.columns)
         self.plain_ends = np.stack([self.ends.start, self.ends.end], axis=1).astype(np.complex128)
         self.stepped_ends = self.ends.stepped(self.columns, column) if slopes else self.plain_ends
         self.table = self.swing.table
         # Alike on both ways is what depends on the position alone: laws are the same backwards, but for tables.
         alike = all(load.by_position or load.inertial for load in mechanism.loads)
-        self.both = self.rubs or self.swing.law == "table" or not alike
+        self.ways_differ = self.rubs or self.swing.law == "table" or not alike
 
-    def states(self, which: Any, share: Any, inside: Any, back: Any, slip: Any = 0.0, step: int | None = None) -> Any:
-        """Return states (..., 8) at shares of any shape. which: designs. step: of which raw number the slope is."""
-        shape = np.broadcast_shapes(*(np.shape(each) for each in (which, share, inside, back, slip)))
-        share, slip, inside, back = (
-            np.ascontiguousarray(np.broadcast_to(each, shape), dtype=np.float64).ravel()
-            for each in (share, slip, inside, back)
+    def states(self, designs: Any, share: Any, probe: Any, back: Any, slip: Any = 0.0, step: int | None = None) -> Any:
+        """Return states (..., 8) at shares of any shape. designs: numbers. step: raw number of the slope."""
+        shape = np.broadcast_shapes(*(np.shape(argument) for argument in (designs, share, probe, back, slip)))
+        share, slip, probe, back = (
+            np.ascontiguousarray(np.broadcast_to(argument, shape), dtype=np.float64).ravel()
+            for argument in (share, slip, probe, back)
         )
-        rows = np.ascontiguousarray(np.broadcast_to(which, shape), dtype=np.int64).ravel()
+        rows = np.ascontiguousarray(np.broadcast_to(designs, shape), dtype=np.int64).ravel()
         stepped = rows if step is None else rows * self.columns + step
-        blocks, ends = (self.plain, self.plain_ends) if step is None else (self.steps, self.stepped_ends)
-        found = states(self.blocks, blocks, self.loads, self.path, (rows, stepped, share, slip, inside, back), ends)
-        return found.reshape(*shape, found.shape[1])
+        blocks, ends = (self.complex_blocks, self.plain_ends) if step is None else (self.steps, self.stepped_ends)
+        flat = states(self.blocks, blocks, self.loads, self.path, (rows, stepped, share, slip, probe, back), ends)
+        return flat.reshape(*shape, flat.shape[1])
 
     def locked(self) -> Mask:
         """Return which designs friction may lock somewhere on the swing."""
@@ -117,12 +117,12 @@ class SwingBatch:
             least = driven_angles(self.mechanism, self.swing, self.designs).values.min(axis=1)
             pins = d.crank_pin_circle + d.slider_pin_circle + d.crank_pivot_circle > 0.0
             return np.asarray(pins & (least <= locking_angle(d)))
-        reach = farthest(self.designs, self.ends.extreme())
-        return np.asarray(drives(np.sqrt(d.l * d.l - reach * reach), reach, d) <= 0.0)
+        pin_distance = greatest_pin_distance(self.designs, self.ends.extreme_angles())
+        return np.asarray(drives(np.sqrt(d.l * d.l - pin_distance * pin_distance), pin_distance, d) <= 0.0)
 
     def ways(self) -> tuple[bool, ...]:
         """Return the ways that differ: forth, and back unless it is alike."""
-        return (False, True) if self.both else (False,)
+        return (False, True) if self.ways_differ else (False,)
 
     def pieces(self, *, back: bool, forces: bool = True, contacts: bool = True) -> Pieces:
         """Return the pieces of one way.
@@ -131,16 +131,16 @@ class SwingBatch:
         """
         self.table = mirrored(self.swing.points) if back else self.swing.table
         kinks = list(self._kinks()) if forces else []
-        at, codes = self._shares([way for way, _ in kinks]), [code for _, code in kinks]
-        found = [*self._corners(), *zip(at, codes, strict=True)]
-        shares = [np.zeros(self.count), np.ones(self.count), *(share for share, _ in found)]
-        state = np.tile(np.array([-1, -1, *(code for _, code in found)], dtype=np.int64), (self.count, 1))
+        kink_shares, codes = self._shares([way for way, _ in kinks]), [code for _, code in kinks]
+        inner_cuts = [*self._corners(), *zip(kink_shares, codes, strict=True)]
+        shares = [np.zeros(self.count), np.ones(self.count), *(share for share, _ in inner_cuts)]
+        state = np.tile(np.array([-1, -1, *(code for _, code in inner_cuts)], dtype=np.int64), (self.count, 1))
         cuts = np.stack(shares, axis=1)
         cuts = np.where((cuts > _THIN) & (cuts < 1.0 - _THIN), cuts, np.where(cuts < 0.5, 0.0, 1.0))
         cuts = np.where(np.isnan(np.stack(shares, axis=1)), 1.0, cuts)
-        own = _sorted(Pieces(back, 1.0 - cuts if back else cuts, state))
+        uncut = _sorted(Pieces(back, 1.0 - cuts if back else cuts, state))
         touching = forces and contacts and self.rubs and self.mechanism.fullest.friction.guide > 0.0
-        return self._with_contacts(own) if touching else own
+        return self._with_contacts(uncut) if touching else uncut
 
     def _corners(self) -> Any:
         for share in corners(self.swing.law, self.table):
@@ -151,55 +151,55 @@ class SwingBatch:
         friction, slider = self.mechanism.fullest.friction, self.swing.driver == "slider"
         if self.rubs:
             for angle in (0.5 * np.pi, 1.5 * np.pi):
-                yield from self._at_angle(np.full(self.count, angle), ANGLE)
+                yield from self._cuts_at_angle(np.full(self.count, angle), ANGLE)
             if friction.crank_pin.circle:  # the rod turns as fast as the crank where the slider is at the pivot
-                yield from self._passing(0.0)
-        if self.both and not slider:
+                yield from self._cuts_at_position(0.0)
+        if self.ways_differ and not slider:
             r, l, e = self.designs[:, :3].T
-            for reach, ahead in ((r + l, True), (r - l, False)):
+            for span, ahead in ((r + l, True), (r - l, False)):
                 with np.errstate(divide="ignore", invalid="ignore"):
-                    angle = np.arcsin(e / reach)
-                yield from self._at_angle(angle if ahead == (self.sign > 0.0) else np.pi - angle, PACE)
+                    angle = np.arcsin(e / span)
+                yield from self._cuts_at_angle(angle if ahead == (self.sign > 0.0) else np.pi - angle, PACE)
         for k, kind in enumerate(self.loads.kind.tolist()):
             for knot in self.loads.at[self.loads.start[k] : self.loads.start[k + 1]].tolist():
                 if kind == int(Enters.ANGLE_TABLE):
-                    yield from self._at_angle(np.full(self.count, knot), ANGLE)
+                    yield from self._cuts_at_angle(np.full(self.count, knot), ANGLE)
                 else:
-                    yield from self._passing(self.sign * knot)
+                    yield from self._cuts_at_position(self.sign * knot)
 
-    def _passing(self, x: float) -> Any:
+    def _cuts_at_position(self, x: float) -> Any:
         """Yield the cuts at which the slider passes a place."""
         if self.swing.driver == "slider":
-            yield self._at_place(np.full(self.count, x)), PLACE
+            yield self._share_at_position(np.full(self.count, x)), PLACE
             return
         r, l, e = self.designs[:, :3].T
         size = np.hypot(x, e)
         with np.errstate(divide="ignore", invalid="ignore"):
             half = np.arccos((r * r + size * size - l * l) / (2.0 * r * size))
         for way in (-1.0, 1.0):
-            yield from self._at_angle(np.arctan2(e, x) + way * half, PLACE)
+            yield from self._cuts_at_angle(np.arctan2(e, x) + way * half, PLACE)
 
-    def _at_angle(self, angle: Array, state: int) -> Any:
-        theta = self.ends.within(angle)
+    def _cuts_at_angle(self, angle: Array, state: int) -> Any:
+        theta = self.ends.turned_into(angle)
         if np.isnan(theta).all():
             return
         first, last = self.ends.start, self.ends.end
         if self.swing.driver == "crank":
             yield np.clip((theta - first) / (last - first), 0.0, 1.0), state
         else:
-            yield self._at_place(self._place(theta)), state
+            yield self._share_at_position(self._slider_position(theta)), state
 
-    def _place(self, theta: Any) -> Array:
+    def _slider_position(self, theta: Any) -> Array:
         r, l, e = self.designs[:, :3].T
         with np.errstate(invalid="ignore"):
             return np.asarray(motion(np.sin(theta), np.cos(theta), r, l, e, self.sign).x)
 
     def driver_at(self, theta: Array) -> Array:
         """Return where the driver is at crank angles (n,): these, or slider positions, m."""
-        return theta if self.swing.driver == "crank" else self._place(theta)
+        return theta if self.swing.driver == "crank" else self._slider_position(theta)
 
-    def _at_place(self, x: Array) -> Array:
-        first, last = self._place(self.ends.start), self._place(self.ends.end)
+    def _share_at_position(self, x: Array) -> Array:
+        first, last = self._slider_position(self.ends.start), self._slider_position(self.ends.end)
         with np.errstate(divide="ignore", invalid="ignore"):
             s = (x - first) / (last - first)
         return np.where((s >= 0.0) & (s <= 1.0), s, np.nan)
@@ -212,56 +212,59 @@ class SwingBatch:
         off = np.isnan(s)
         return list(np.where(off, np.nan, shares_of(self.swing.law, np.where(off, 0.0, s), self.table)))
 
-    def _with_contacts(self, own: Pieces) -> Pieces:
+    def _with_contacts(self, pieces: Pieces) -> Pieces:
         """Return pieces cut where the guide's force changes sides, between neighbours of a row of samples in each."""
         u = np.linspace(0.0, 1.0, _SCAN)
-        a, span = own.cuts[:, :-1, None], np.diff(own.cuts, axis=1)[:, :, None]
+        a, span = pieces.cuts[:, :-1, None], np.diff(pieces.cuts, axis=1)[:, :, None]
         share = a + span * u
-        inside = np.broadcast_to(own.inside[:, :, None], share.shape)
-        which = np.broadcast_to(np.arange(self.count)[:, None, None], share.shape)
-        guide = self.states(which, share, inside, float(own.back))[..., GUIDE].real
-        change = (guide[..., :-1] * guide[..., 1:] < 0.0) & own.live[:, :, None]
+        probe = np.broadcast_to(pieces.probe[:, :, None], share.shape)
+        designs = np.broadcast_to(np.arange(self.count)[:, None, None], share.shape)
+        guide = self.states(designs, share, probe, float(pieces.back))[..., GUIDE].real
+        change = (guide[..., :-1] * guide[..., 1:] < 0.0) & pieces.live[:, :, None]
         design, piece, left = np.nonzero(change)
         if not len(design):
-            return own
+            return pieces
         low, high = share[design, piece, left], share[design, piece, left + 1]
-        at = self._root(design, low, high, inside[design, piece, left], float(own.back))
+        roots = self._contact_shares(design, low, high, probe[design, piece, left], float(pieces.back))
         rank = np.zeros(len(design), np.int64)
         for i in range(1, len(design)):
             rank[i] = rank[i - 1] + 1 if design[i] == design[i - 1] else 0
-        kept = rank < _CONTACTS
-        more = np.ones((self.count, int(rank[kept].max()) + 1))
-        more[design[kept], rank[kept]] = at[kept]
-        state = np.where(more < 1.0, GUIDE, -1)
-        cuts, states_of = np.concatenate([own.cuts, more], axis=1), np.concatenate([own.state, state], axis=1)
-        return _sorted(Pieces(own.back, cuts, states_of))
+        counted = rank < _CONTACTS
+        contact_cuts = np.ones((self.count, int(rank[counted].max()) + 1))
+        contact_cuts[design[counted], rank[counted]] = roots[counted]
+        state = np.where(contact_cuts < 1.0, GUIDE, -1)
+        cuts, states_of = (
+            np.concatenate([pieces.cuts, contact_cuts], axis=1),
+            np.concatenate([pieces.state, state], axis=1),
+        )
+        return _sorted(Pieces(pieces.back, cuts, states_of))
 
-    def _root(self, design: Whole, low: Array, high: Array, inside: Array, back: float) -> Array:
+    def _contact_shares(self, design: Whole, low: Array, high: Array, probe: Array, back: float) -> Array:
         """Return the shares between two at which the guide's force is zero, by bisection and Newton's iteration."""
-        rising = self.states(design, high, inside, back)[:, GUIDE].real > 0.0
-        at, rows = 0.5 * (low + high), np.arange(len(low))
+        rising = self.states(design, high, probe, back)[:, GUIDE].real > 0.0
+        roots, rows = 0.5 * (low + high), np.arange(len(low))
         for _ in range(_ROOTS):
-            here = at[rows]
-            found = self.states(design[rows], here, inside[rows], back, STEP)[:, GUIDE]
-            above = (found.real > 0.0) == rising[rows]
-            low[rows[~above]], high[rows[above]] = here[~above], here[above]
+            shares = roots[rows]
+            guide = self.states(design[rows], shares, probe[rows], back, STEP)[:, GUIDE]
+            is_above = (guide.real > 0.0) == rising[rows]
+            low[rows[~is_above]], high[rows[is_above]] = shares[~is_above], shares[is_above]
             with np.errstate(divide="ignore", invalid="ignore"):
-                trial = here - found.real / (found.imag / STEP)
+                trial = shares - guide.real / (guide.imag / STEP)
             good = (trial > low[rows]) & (trial < high[rows])
-            at[rows] = np.where(good, trial, 0.5 * (low[rows] + high[rows]))
-            rows = rows[np.abs(at[rows] - here) > 2e-16]
+            roots[rows] = np.where(good, trial, 0.5 * (low[rows] + high[rows]))
+            rows = rows[np.abs(roots[rows] - shares) > 2e-16]
             if not len(rows):
                 break
-        return at
+        return roots
 
-    def moved(self, own: Pieces, design: Whole, cut: Whole, inside: Array) -> Array:
+    def moved(self, pieces: Pieces, design: Whole, cut: Whole, probe: Array) -> Array:
         """Return by how much cuts (p,) of designs move in share per unit of each raw number, (p, c)."""
-        state = own.state[design, cut]
+        state = pieces.state[design, cut]
         slips = np.zeros((len(design), self.columns))
         rows = np.flatnonzero(state >= 0)
         if not len(rows):
             return slips
-        at, side, way = own.cuts[design[rows], cut[rows]], inside[rows], float(own.back)
+        at, side, way = pieces.cuts[design[rows], cut[rows]], probe[rows], float(pieces.back)
         place = np.arange(len(rows))
         rise = self.states(design[rows], at, side, way, STEP)[place, state[rows]].imag / STEP
         for v in range(self.columns):
@@ -270,23 +273,23 @@ class SwingBatch:
         return slips
 
 
-def _sorted(own: Pieces) -> Pieces:
-    order = np.argsort(own.cuts, axis=1, kind="stable")
-    cuts = np.take_along_axis(own.cuts, order, axis=1)
-    state = np.take_along_axis(own.state, order, axis=1)
+def _sorted(pieces: Pieces) -> Pieces:
+    order = np.argsort(pieces.cuts, axis=1, kind="stable")
+    cuts = np.take_along_axis(pieces.cuts, order, axis=1)
+    state = np.take_along_axis(pieces.state, order, axis=1)
     ends = (cuts <= 0.0) | (cuts >= 1.0)  # what does not lie on the way counts as its end
-    return Pieces(own.back, cuts, np.where(ends, -1, state))
+    return Pieces(pieces.back, cuts, np.where(ends, -1, state))
 
 
 def driven(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) can swing as asked, and are not locked by friction on the way."""
-    found = passes(mechanism, swing, designs)
+    passing = passes(mechanism, swing, designs)
     if mechanism.fullest.friction.acts:
-        rows = np.flatnonzero(found)
+        rows = np.flatnonzero(passing)
 
         def work(begin: int, end: int) -> None:
-            own = rows[begin:end]
-            found[own] = ~SwingBatch(mechanism, swing, designs[own], slopes=False).locked()
+            rows_here = rows[begin:end]
+            passing[rows_here] = ~SwingBatch(mechanism, swing, designs[rows_here], slopes=False).locked()
 
         in_chunks(len(rows), work)
-    return found
+    return passing

@@ -48,59 +48,59 @@ class SwingCycle:
     linkage: Linkage
     swing: Swing
 
-    def at(self, share: Array, *, back: bool = False) -> SwingCurves:
+    def curves(self, share: Array, *, back: bool = False) -> SwingCurves:
         """Return the curves at shares (n,) of the time of one way."""
         return swing_curves(self.mechanism, self.linkage, self.swing, share, back=back)
 
     def greatest(self, name: str) -> SwingPoint:
         """Return the greatest size of a curve on both ways."""
-        forth, back = (self._extreme(name, way, np.abs) for way in (False, True))
+        forward, back = (self._extreme(name, way, np.abs) for way in (False, True))
         # The same on both ways but for rounding, as without friction: the first.
-        return back if abs(back.value) > abs(forth.value) * (1.0 + _EQUAL) or np.isnan(forth.value) else forth
+        return back if abs(back.value) > abs(forward.value) * (1.0 + _EQUAL) or np.isnan(forward.value) else forward
 
-    def least(self, name: str) -> SwingPoint:
+    def least(self, curve: str) -> SwingPoint:
         """Return the least value of a curve, the same on both ways."""
-        return self._extreme(name, False, np.negative)
+        return self._extreme(curve, False, np.negative)
 
-    def ends_of(self, name: str) -> tuple[SwingPoint, SwingPoint]:
+    def value_range(self, curve: str) -> tuple[SwingPoint, SwingPoint]:
         """Return the least and the greatest value of a curve over both ways; NaN where friction locks all over."""
-        low, high = (
-            [self._extreme(name, way, worth, most=4) for way in (False, True)] for worth in (np.negative, np.positive)
+        lows, highs = (
+            [self._extreme(curve, way, rank, count=4) for way in (False, True)] for rank in (np.negative, np.positive)
         )
         # The same on both ways but for rounding: the first.
-        span = max(at.value for at in high) - min(at.value for at in low)
-        least = low[1] if low[1].value < low[0].value - _EQUAL * span or np.isnan(low[0].value) else low[0]
-        most = high[1] if high[1].value > high[0].value + _EQUAL * span or np.isnan(high[0].value) else high[0]
-        return least, most
+        span = max(point.value for point in highs) - min(point.value for point in lows)
+        least = lows[1] if lows[1].value < lows[0].value - _EQUAL * span or np.isnan(lows[0].value) else lows[0]
+        greatest = highs[1] if highs[1].value > highs[0].value + _EQUAL * span or np.isnan(highs[0].value) else highs[0]
+        return least, greatest
 
     @cached_property
-    def _sampled(self) -> tuple[SwingCurves, SwingCurves]:
+    def _sampled_ways(self) -> tuple[SwingCurves, SwingCurves]:
         """Curves of both ways at many shares of the time."""
         share = np.linspace(0.0, 1.0, _SAMPLES)
-        return self.at(share), self.at(share, back=True)
+        return self.curves(share), self.curves(share, back=True)
 
     @cached_property
-    def _zoomed(self) -> dict[tuple[bool, float, float], SwingCurves]:
-        """Curves of a way between two shares: the extremes of many curves are at the same places, as at the ends."""
+    def _zoomed_curves(self) -> dict[tuple[bool, float, float], SwingCurves]:
+        """Curves between two shares, by way and shares; extremes of many curves lie in the same places."""
         return {}
 
-    def _extreme(self, name: str, back: bool, worth: np.ufunc, most: int = 1) -> SwingPoint:
-        """Return the extreme of one way. most: how many of the best local ones between the samples are followed."""
-        curves = self._sampled[back]
-        ranks = _ranks(getattr(curves, name), worth)
-        beside = np.concatenate([[-np.inf], ranks, [-np.inf]])
-        local = np.flatnonzero((ranks >= beside[:-2]) & (ranks >= beside[2:]))
-        best = [int(np.argmax(ranks)), *local[np.argsort(-ranks[local], kind="stable")][: most - 1].tolist()]
-        found = [self._refined(name, back, worth, curves, row) for row in dict.fromkeys(best)]
-        return found[int(np.argmax(_ranks(np.array([at.value for at in found]), worth)))]
+    def _extreme(self, name: str, back: bool, rank: np.ufunc, count: int = 1) -> SwingPoint:
+        """Return the extreme of one way. count: how many of the best local ones between the samples are followed."""
+        curves = self._sampled_ways[back]
+        ranks = _ranks(getattr(curves, name), rank)
+        padded = np.concatenate([[-np.inf], ranks, [-np.inf]])
+        local = np.flatnonzero((ranks >= padded[:-2]) & (ranks >= padded[2:]))
+        best = [int(np.argmax(ranks)), *local[np.argsort(-ranks[local], kind="stable")][: count - 1].tolist()]
+        candidates = [self._refined(name, back, rank, curves, row) for row in dict.fromkeys(best)]
+        return candidates[int(np.argmax(_ranks(np.array([point.value for point in candidates]), rank)))]
 
-    def _refined(self, name: str, back: bool, worth: np.ufunc, curves: SwingCurves, best: int) -> SwingPoint:
+    def _refined(self, name: str, back: bool, rank: np.ufunc, curves: SwingCurves, best: int) -> SwingPoint:
         for _ in range(_ZOOMS):
             low, high = curves.share[max(best - 1, 0)], curves.share[min(best + 1, len(curves.share) - 1)]
-            if (back, low, high) not in self._zoomed:
-                self._zoomed[back, low, high] = self.at(np.linspace(low, high, _ZOOMED), back=back)
-            curves = self._zoomed[back, low, high]
-            best = int(np.argmax(_ranks(getattr(curves, name), worth)))
+            if (back, low, high) not in self._zoomed_curves:
+                self._zoomed_curves[back, low, high] = self.curves(np.linspace(low, high, _ZOOMED), back=back)
+            curves = self._zoomed_curves[back, low, high]
+            best = int(np.argmax(_ranks(getattr(curves, name), rank)))
         return _point_at(curves, best, back, float(getattr(curves, name)[best]))
 
     def first_locked(self) -> SwingPoint | None:
@@ -108,24 +108,28 @@ class SwingCycle:
         if not self.mechanism.friction.acts:
             return None
         for back in (False, True):
-            share, drive = self._sampled[back].share, self._sampled[back].drive
+            share, drive = self._sampled_ways[back].share, self._sampled_ways[back].drive
             rows = np.flatnonzero(np.isnan(drive))
             if len(rows):
                 first = int(rows[0])
                 before = share[max(first - 1, 0)]
-                at = self._change(before, share[first], lambda curves: np.isnan(curves.drive), back) if first else 0.0
-                return _point_at(self.at(np.array([at]), back=back), 0, back, np.nan)
+                at = (
+                    self._share_of_change(before, share[first], lambda curves: np.isnan(curves.drive), back)
+                    if first
+                    else 0.0
+                )
+                return _point_at(self.curves(np.array([at]), back=back), 0, back, np.nan)
         return None
 
-    def holds(self) -> bool:
+    def friction_holds(self) -> bool:
         """Return whether friction alone holds the linkage all over: no drive lies between those of both ways."""
         if not self.mechanism.friction.acts:
             return False
-        forth, back = self._sampled
+        forward, back = self._sampled_ways
         # Forth is along the driver's way: what resists needs a drive that way, and back one the other way.
         first, last = driver_ends(self.linkage, self.swing)
         way = np.sign(last - first)
-        return bool(np.all((way * forth.drive >= 0.0) & (way * back.drive[::-1] <= 0.0)))
+        return bool(np.all((way * forward.drive >= 0.0) & (way * back.drive[::-1] <= 0.0)))
 
     def energy(self, *, back: bool) -> float:
         """Return the driver's work, J, zero where it is rounding.
@@ -143,73 +147,75 @@ class SwingCycle:
             u = u * u * (3.0 - 2.0 * u)
         spans = np.diff(cuts)
         share = (cuts[:-1, None] + spans[:, None] * u).ravel()
-        curves = self.at(share, back=back)
+        curves = self.curves(share, back=back)
         parts = (spans[:, None] * (slope * w)).ravel() * curves.drive * curves.rate
         total, gross = float(np.sum(parts)), float(np.sum(np.abs(parts)))
         return 0.0 if abs(total) <= _EQUAL * gross else total
 
     def _cuts(self, back: bool) -> Array:
         table = mirrored(self.swing.points) if back else self.swing.table
-        shares = [0.0, 1.0, *corners(self.swing.law, table), *self._shares(self._kinks(), table)]
+        shares = [0.0, 1.0, *corners(self.swing.law, table), *self._shares_at_angles(self._kink_angles(), table)]
         if back:
             shares = [1.0 - share for share in shares]
-        return np.unique([*shares, *self._changes(back)])
+        return np.unique([*shares, *self._friction_changes(back)])
 
-    def _kinks(self) -> list[float]:
+    def _kink_angles(self) -> list[float]:
         """Return the crank angles at which loads or friction change: knots of tables, dead centres, the rod's turn."""
-        own, swing = self.linkage, self.swing
-        angles = [*dead_points(own), 0.5 * np.pi, 1.5 * np.pi]
-        if bool(own.rotates_fully):
-            angles += kinks_of_loads(self.mechanism, own).tolist()
+        linkage, swing = self.linkage, self.swing
+        angles = [*dead_points(linkage), 0.5 * np.pi, 1.5 * np.pi]
+        if bool(linkage.rotates_fully):
+            angles += kinks_of_loads(self.mechanism, linkage).tolist()
         else:  # then none is counted from a dead centre
             loads = load_structure(self.mechanism)
             for k, load in enumerate(self.mechanism.loads):
                 knots = loads.at[loads.start[k] : loads.start[k + 1]]
-                angles += knots.tolist() if load.enters == Enters.ANGLE_TABLE else self._angles_of(knots)
-        return [inside for angle in angles for inside in swing.inside(float(angle))]
+                angles += knots.tolist() if load.enters == Enters.ANGLE_TABLE else self._angles_at_positions(knots)
+        return [occurrence for angle in angles for occurrence in swing.occurrences(float(angle))]
 
-    def _angles_of(self, knots: Array) -> list[float]:
+    def _angles_at_positions(self, knots: Array) -> list[float]:
         """Return the crank angles at which the slider passes distances from the crank pivot."""
-        own = self.linkage
-        r, l, e = float(own.crank), float(own.rod), float(own.offset)
-        found: list[float] = []
-        for x in (own.sign * knots).tolist():
+        linkage = self.linkage
+        r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
+        angles: list[float] = []
+        for x in (linkage.sign * knots).tolist():
             if abs(r - l) < math.hypot(x, e) < r + l:
-                found += [crank_angle_at(x, r, l, e, second) for second in (False, True)]
-        return found
+                angles += [crank_angle_at(x, r, l, e, second) for second in (False, True)]
+        return angles
 
-    def _shares(self, angles: list[float], table: Array) -> list[float]:
+    def _shares_at_angles(self, angles: list[float], table: Array) -> list[float]:
         first, last = driver_ends(self.linkage, self.swing)
         places = np.array(angles)
         if self.swing.driver == "slider":
             places = self.linkage.at(places).slider_position
         ways = np.clip((places - first) / (last - first), 0.0, 1.0)
-        found: list[float] = shares_of(self.swing.law, ways, table).tolist()
-        return found
+        shares: list[float] = shares_of(self.swing.law, ways, table).tolist()
+        return shares
 
-    def _changes(self, back: bool) -> list[float]:
+    def _friction_changes(self, back: bool) -> list[float]:
         """Return the shares at which friction changes sides: of the guide, and of a crank pin that turns back."""
         if not self.mechanism.friction.acts:
             return []
         share = np.linspace(0.0, 1.0, _SIDES)
-        found: list[float] = []
+        shares: list[float] = []
         for side in (_guide_pushes_up, _crank_pin_reverses):
-            values = side(self.at(share, back=back))
+            values = side(self.curves(share, back=back))
             places = np.flatnonzero(values[:-1] != values[1:]).tolist()
-            found += [self._change(share[i], share[i + 1], side, back) for i in places]
-        return found
+            shares += [self._share_of_change(share[i], share[i + 1], side, back) for i in places]
+        return shares
 
-    def _change(self, low: float, high: float, side: Callable[[SwingCurves], Mask], back: bool) -> float:
+    def _share_of_change(self, low: float, high: float, side: Callable[[SwingCurves], Mask], back: bool) -> float:
         """Return the share between two at which a side changes, on the side of the latter; bisection."""
-        after = side(self.at(np.array([high]), back=back))[0]
+        after = side(self.curves(np.array([high]), back=back))[0]
         for _ in range(_BISECTIONS):
             middle = 0.5 * (low + high)
-            low, high = (low, middle) if side(self.at(np.array([middle]), back=back))[0] == after else (middle, high)
+            low, high = (
+                (low, middle) if side(self.curves(np.array([middle]), back=back))[0] == after else (middle, high)
+            )
         return float(high)
 
 
-def _ranks(values: Array, worth: np.ufunc) -> Array:
-    return np.where(np.isnan(values), -np.inf, worth(values))
+def _ranks(values: Array, rank: np.ufunc) -> Array:
+    return np.where(np.isnan(values), -np.inf, rank(values))
 
 
 def _guide_pushes_up(curves: SwingCurves) -> Mask:

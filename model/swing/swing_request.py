@@ -34,68 +34,71 @@ class SwingRequest:
 
 
 def resolve_swing(
-    mechanism: Mechanism, motion: Swing | None, asked: SwingRequest, names: Mapping[str, str] | None = None
+    mechanism: Mechanism, motion: Swing | None, request: SwingRequest, field_names: Mapping[str, str] | None = None
 ) -> tuple[Mechanism, Swing]:
     """Return the swing that is asked for, and the machine without a start of its own.
 
     motion: of the job, from the start that the machine of one design has; None without one. Then the crank drives,
-    slowly. A start that is asked for alone takes the end along where the job states the angle or the travel. names: of
-    the fields of `SwingRequest`, for messages, where they are not those of Python. Raises `InputError` for ends of two
-    kinds, ends that are missing, and a table of motion that no job gives.
+    slowly. A start that is asked for alone takes the end along where the job states the angle or the travel.
+    field_names: names of the fields of `SwingRequest` in messages, where they are not those of Python.
+
+    Raises `InputError` for ends of two kinds, missing ends, and a table of motion that no job gives.
     """
-    said = {name: (names or {}).get(name, name) for name in SwingRequest.__dataclass_fields__}
+    names = {name: (field_names or {}).get(name, name) for name in SwingRequest.__dataclass_fields__}
     motion = None if motion is None else started(mechanism, motion)
-    given: dict[str, Any] = {
-        **_requested_ends(asked, motion, said),
+    fields: dict[str, Any] = {
+        **_requested_ends(request, motion, names),
         **{
-            name: getattr(asked, name)
+            name: getattr(request, name)
             for name in ("side", "driver", "law", "duration", "actuator_tolerance")
-            if getattr(asked, name) is not None
+            if getattr(request, name) is not None
         },
     }
-    if asked.law == "table" and (motion is None or not motion.points):
+    if request.law == "table" and (motion is None or not motion.points):
         raise InputError(
-            f"a motion by a table is that of a job; got {said['law']} table; give its points in [motion] of the job, "
-            f"law_times and law_shares, and leave {said['law']} out"
+            f"a motion by a table is that of a job; got {names['law']} table; give its points in [motion] of "
+            f"the job, law_times and law_shares, and leave {names['law']} out"
         )
-    if asked.law == "slow":
-        given.setdefault("duration", None)
-    if asked.law not in (None, "table"):
-        given.setdefault("points", ())
-    if asked.driver == "crank":
-        given.setdefault("actuator_tolerance", 0.0)
-    if motion is not None and given.get("of", motion.of) == motion.of:
-        found = replace(motion, **given)
+    if request.law == "slow":
+        fields.setdefault("duration", None)
+    if request.law not in (None, "table"):
+        fields.setdefault("points", ())
+    if request.driver == "crank":
+        fields.setdefault("actuator_tolerance", 0.0)
+    if motion is not None and fields.get("stated_for", motion.stated_for) == motion.stated_for:
+        swing = replace(motion, **fields)
     else:
-        kept = ("driver", "law", "duration", "points", "actuator_tolerance")
-        found = _new_swing(({} if motion is None else {name: getattr(motion, name) for name in kept}) | given, said)
-    return replace(mechanism, start=Start()), replace(found, follows=False)
+        kept_fields = ("driver", "law", "duration", "points", "actuator_tolerance")
+        swing = _new_swing(
+            ({} if motion is None else {name: getattr(motion, name) for name in kept_fields}) | fields, names
+        )
+    return replace(mechanism, start=Start()), replace(swing, follows=False)
 
 
-def _requested_ends(asked: SwingRequest, motion: Swing | None, said: Mapping[str, str]) -> dict[str, Any]:
+def _requested_ends(request: SwingRequest, motion: Swing | None, names: Mapping[str, str]) -> dict[str, Any]:
     """Return start and end that are asked for, and what they are of."""
-    found = {name: getattr(asked, name) for name in (*_ANGLES, *_POSITIONS) if getattr(asked, name) is not None}
-    if not found:
+    stated = {name: getattr(request, name) for name in (*_ANGLES, *_POSITIONS) if getattr(request, name) is not None}
+    if not stated:
         return {}
-    of = "crank" if next(iter(found)) in _ANGLES else "slider"
-    own = _ANGLES if of == "crank" else _POSITIONS
-    if any(name not in own for name in found):
+    stated_for = "crank" if next(iter(stated)) in _ANGLES else "slider"
+    fields = _ANGLES if stated_for == "crank" else _POSITIONS
+    if any(name not in fields for name in stated):
         raise InputError(
             "a swing runs between two crank angles, or between two places of the slider; got "
-            f"{', '.join(said[name] for name in found)}; give the two of one"
+            f"{', '.join(names[name] for name in stated)}; give the two of one"
         )
-    ends = {end: found[name] for end, name in zip(_ANGLES, own, strict=True) if name in found}
-    if motion is not None and motion.follows and motion.of == of and "end" not in ends:
+    ends = {end: stated[name] for end, name in zip(_ANGLES, fields, strict=True) if name in stated}
+    if motion is not None and motion.follows and motion.stated_for == stated_for and "end" not in ends:
         ends["end"] = ends["start"] + (motion.end - motion.start)
-    return ends | {"of": of}
+    return ends | {"stated_for": stated_for}
 
 
-def _new_swing(given: dict[str, Any], said: Mapping[str, str]) -> Swing:
-    slider = given.get("of") == "slider"
+def _new_swing(fields: dict[str, Any], names: Mapping[str, str]) -> Swing:
+    slider = fields.get("stated_for") == "slider"
     for name, key in zip(_ANGLES, _POSITIONS if slider else _ANGLES, strict=True):
-        if name not in given:
+        if name not in fields:
             raise InputError(
                 f"a swing runs from one {'slider position' if slider else 'crank angle'} to another; got no "
-                f"{said[key]}; give both, or a job with [motion]"
+                f"{names[key]}; give both, or a job with [motion]"
             )
-    return Swing(**given)
+    return Swing(**fields)

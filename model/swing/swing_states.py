@@ -90,9 +90,11 @@ def _pushed(sine: Any, cosine: Any, m: Any, d: Any, load: Any, on_crank: Any, ro
     bx, by = free_pin(sine, cosine, m, d, b)
     turn = 1.0 if d.speed.real > 0.0 else -1.0
     if rubbing:
-        over, swings = (1.0 if rod_1 < 1.0 else -1.0), (1.0 if rod_1 > 0.0 else -1.0)
+        crank_pin_side, slider_pin_side = (1.0 if rod_1 < 1.0 else -1.0), (1.0 if rod_1 > 0.0 else -1.0)
         sides = PinSides(
-            d.crank_pin_circle * (over * turn), d.slider_pin_circle * (swings * turn), d.crank_pivot_circle * turn
+            d.crank_pin_circle * (crank_pin_side * turn),
+            d.slider_pin_circle * (slider_pin_side * turn),
+            d.crank_pivot_circle * turn,
         )
         size = math.inf
         for _ in range(_NEWTON):
@@ -116,11 +118,11 @@ def _pushed(sine: Any, cosine: Any, m: Any, d: Any, load: Any, on_crank: Any, ro
 def _states(
     blocks: Cube,
     steps: ComplexCube,
-    which: Integers,
+    designs: Integers,
     stepped: Integers,
     share: Row,
     slip: Row,
-    inside: Row,
+    probe: Row,
     back: Row,
     ends: ComplexTable,
     loads: Loads,
@@ -129,32 +131,32 @@ def _states(
 ) -> None:
     rows = blocks.shape[1]
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
-    block, own = np.empty((rows, 1)), np.empty((rows, 1), np.complex128)
+    block, stepped_block = np.empty((rows, 1)), np.empty((rows, 1), np.complex128)
     watch = CycleWindow(0, 0.0, 1.0, False, False)
     last, last_step = -1, -1
     for p in range(share.shape[0]):
-        if which[p] != last:
-            last = which[p]
+        if designs[p] != last:
+            last = designs[p]
             block[:, :] = blocks[last]
         if stepped[p] != last_step:
             last_step = stepped[p]
-            own[:, :] = steps[last_step]
+            stepped_block[:, :] = steps[last_step]
         begin, ending = ends[stepped[p], 0], ends[stepped[p], 1]
         start, end = begin.real, ending.real
         turning = (1.0 if end > start else -1.0) * (1.0 - 2.0 * back[p])
         # Where the piece lies: stroke, pieces of tables, side of the guide.
         d = design_at(block, 0)
-        s, s_1, s_2, _ = way_at(path.law, path.table, inside[p], inside[p])
+        s, s_1, s_2, _ = way_at(path.law, path.table, probe[p], probe[p])
         if back[p] > 0.5:
             s, s_1, s_2 = 1.0 - s, -s_1, -s_2
         if path.slider:
             first, final = slider_at(start, d), slider_at(end, d)
-            within = _crank_angle(first + (final - first) * s, d.r, d.l, d.e, d.branch, start, end)
+            probe_angle = _crank_angle(first + (final - first) * s, d.r, d.l, d.e, d.branch, start, end)
         else:
-            within = start + (end - start) * s
+            probe_angle = start + (end - start) * s
         # The state itself.
-        z = design_at(own, 0)
-        w, w_1, w_2, w_3 = way_at(path.law, path.table, share[p], inside[p])
+        z = design_at(stepped_block, 0)
+        w, w_1, w_2, w_3 = way_at(path.law, path.table, share[p], probe[p])
         if back[p] > 0.5:
             w, w_1, w_2, w_3 = 1.0 - w, -w_1, -w_2, -w_3
         a, a_1 = complex(w, w_1 * slip[p]), complex(w_1, w_2 * slip[p])
@@ -191,19 +193,19 @@ def _states(
             fast = (end - start) * s_1 * path.per_time
             faster = (end - start) * s_2 * (path.per_time * path.per_time)
         block[_SPEED, 0], block[_ACCELERATION, 0] = turning * max(abs(fast), _STILL), faster
-        own[_SPEED, 0], own[_ACCELERATION, 0] = speed, rise
-        d, z = design_at(block, 0), design_at(own, 0)
+        stepped_block[_SPEED, 0], stepped_block[_ACCELERATION, 0] = speed, rise
+        d, z = design_at(block, 0), design_at(stepped_block, 0)
         load, outward = 0j, False
         if path.forces:
-            _, outward = enter(d, block, 0, within, loads, watch, piece, shift)
-            load = load_on_slider(m, z, own, 0, complex(theta, moved), outward, loads, piece, shift)
+            _, outward = enter(d, block, 0, probe_angle, loads, watch, piece, shift)
+            load = load_on_slider(m, z, stepped_block, 0, complex(theta, moved), outward, loads, piece, shift)
         drive, guide, power = 0j, 0j, 0j
         j = influences(zs, zc, m, z.l)
         if path.slider:
             if path.forces:
                 angle = complex(theta, moved)
-                on_crank = beside_crank_loads(0j, z, own, 0, angle, turning, loads, piece, shift)
-                rod_1 = motion(math.sin(within), math.cos(within), d.r, d.l, d.e, d.branch).rod_1
+                on_crank = beside_crank_loads(0j, z, stepped_block, 0, angle, turning, loads, piece, shift)
+                rod_1 = motion(math.sin(probe_angle), math.cos(probe_angle), d.r, d.l, d.e, d.branch).rod_1
                 drive, guide = _pushed(zs, zc, m, z, load, on_crank, rod_1, path.rubbing)
                 power = drive * m.x_1 * speed
             off = magnitude(j.crank) * z.crank_error + magnitude(j.rod) * z.rod_error
@@ -211,10 +213,10 @@ def _states(
             error = off * inverse(magnitude(m.x_1))
         else:
             if path.forces:
-                sides = sides_of(within, d, block, 0, outward, loads, piece, shift, path.rubbing)
+                sides = sides_of(probe_angle, d, block, 0, outward, loads, piece, shift, path.rubbing)
                 f = joint_forces(zs, zc, m, z, load, sides)
                 angle = complex(theta, moved)
-                drive = beside_crank_loads(f.torque, z, own, 0, angle, turning, loads, piece, shift)
+                drive = beside_crank_loads(f.torque, z, stepped_block, 0, angle, turning, loads, piece, shift)
                 guide, power = f.guide, drive * speed
             error = worst_case(j, z)
         out[p, 0], out[p, 1], out[p, 2], out[p, 3] = drive, power, error, guide
@@ -235,7 +237,7 @@ def states(
     steps. ends: crank angles (k, 2) of both ends of the swing, with them. The piece is told by a share within it; way:
     0 forth, 1 back. Shares count from the start of the way.
     """
-    which, stepped, share, slip, inside, back = points
+    designs, stepped, share, slip, probe, back = points
     out = np.empty((len(share), _STATES), np.complex128)
-    _states(blocks, steps, which, stepped, share, slip, inside, back, ends, loads, path, out)
+    _states(blocks, steps, designs, stepped, share, slip, probe, back, ends, loads, path, out)
     return out

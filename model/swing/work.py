@@ -57,9 +57,9 @@ def swing_work(mechanism: Mechanism, swing: Swing, designs: Array, *, gradients:
 
 
 def work_of_loads(mechanism: Mechanism, swing: Swing, designs: Array) -> Array:
-    """Return the net work (n,), J, that loads do on designs over a swing and back: what a drive without friction takes.
+    """Return the net work (n,), J, of the loads on designs over a swing and back.
 
-    NaN where a design cannot swing.
+    A drive without friction absorbs it. NaN where a design cannot swing.
     """
 
     def both_ways(rows: Array) -> tuple[Array, Array]:
@@ -81,69 +81,69 @@ def swing_efficiency(mechanism: Mechanism, swing: Swing, designs: Array, *, grad
     )
 
 
-def _for_passing_designs(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool, of: Any) -> Work:
+def _for_passing_designs(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool, evaluate: Any) -> Work:
     designs = np.ascontiguousarray(designs, dtype=np.float64)
     values = np.full(len(designs), np.nan)
     slopes = np.zeros((len(designs) if gradients else 0, designs.shape[1]))
     rows = np.flatnonzero(passes(mechanism, swing, designs))
 
     def work(begin: int, end: int) -> None:
-        own = rows[begin:end]
-        stuck = SwingBatch(mechanism, swing, designs[own], slopes=False).locked()
-        values[own[stuck]] = np.inf
-        own = own[~stuck]
-        if len(own):
-            values[own], found = of(designs[own])
+        rows_here = rows[begin:end]
+        stuck = SwingBatch(mechanism, swing, designs[rows_here], slopes=False).locked()
+        values[rows_here[stuck]] = np.inf
+        rows_here = rows_here[~stuck]
+        if len(rows_here):
+            values[rows_here], slopes_here = evaluate(designs[rows_here])
             if gradients:
-                slopes[own] = found
+                slopes[rows_here] = slopes_here
 
     in_chunks(len(rows), work, size=_CHUNK)
     return Work(values, slopes if gradients else None)
 
 
 def _forward_work(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool) -> tuple[Array, Array]:
-    many = SwingBatch(mechanism, swing, designs, slopes=gradients)
-    values, slopes = _work(many, many.pieces(back=False), gradients)
-    return values, many.numbers.chain(slopes[:, None])[:, 0] if gradients else slopes
+    batch = SwingBatch(mechanism, swing, designs, slopes=gradients)
+    values, slopes = _work(batch, batch.pieces(back=False), gradients)
+    return values, batch.numbers.chain(slopes[:, None])[:, 0] if gradients else slopes
 
 
 def _efficiency(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool) -> tuple[Array, Array]:
-    found, slope = np.full(len(designs), np.nan), np.zeros((len(designs), designs.shape[1] if gradients else 0))
+    values, slope = np.full(len(designs), np.nan), np.zeros((len(designs), designs.shape[1] if gradients else 0))
     rubbing, free = (
-        SwingBatch(mechanism, swing, designs, slopes=gradients, slow=True, free=each) for each in (False, True)
+        SwingBatch(mechanism, swing, designs, slopes=gradients, slow=True, free=is_free) for is_free in (False, True)
     )
     for back in (True, False):  # forth has the last word
         spent, by_spent = _work(rubbing, rubbing.pieces(back=back), gradients)
         least, by_least = _work(free, free.pieces(back=back), gradients)
         driven = (least > 0.0) & (spent > 0.0)
         with np.errstate(divide="ignore", invalid="ignore"):
-            found = np.where(driven, least / spent, found)
-            own = (by_least - (least / spent)[:, None] * by_spent) / spent[:, None]
+            values = np.where(driven, least / spent, values)
+            by_raw = (by_least - (least / spent)[:, None] * by_spent) / spent[:, None]
         if gradients:
-            slope = np.where(driven[:, None], rubbing.numbers.chain(own[:, None])[:, 0], slope)
-    return found, slope
+            slope = np.where(driven[:, None], rubbing.numbers.chain(by_raw[:, None])[:, 0], slope)
+    return values, slope
 
 
-def _work(many: SwingBatch, own: Pieces, gradients: bool) -> tuple[Array, Array]:
+def _work(batch: SwingBatch, pieces: Pieces, gradients: bool) -> tuple[Array, Array]:
     """Return the work over one way (n,) and its derivatives by raw numbers (n, c)."""
     u, w = graded()
-    design, piece = np.nonzero(own.live)
-    a, b, inside = own.cuts[design, piece], own.cuts[design, piece + 1], own.inside[design, piece]
+    design, piece = np.nonzero(pieces.live)
+    a, b, probe = pieces.cuts[design, piece], pieces.cuts[design, piece + 1], pieces.probe[design, piece]
     share = a[:, None] * (1.0 - u) + b[:, None] * u
     rows = np.broadcast_to(design[:, None], share.shape)
-    side, back = np.broadcast_to(inside[:, None], share.shape), float(own.back)
-    found = many.states(rows, share, side, back)
-    parts = (b - a)[:, None] * w * (found[..., DRIVE] * found[..., RATE]).real
-    values, gross = np.zeros(many.count), np.zeros(many.count)
+    side, back = np.broadcast_to(probe[:, None], share.shape), float(pieces.back)
+    states = batch.states(rows, share, side, back)
+    parts = (b - a)[:, None] * w * (states[..., DRIVE] * states[..., RATE]).real
+    values, gross = np.zeros(batch.count), np.zeros(batch.count)
     np.add.at(values, design, parts.sum(axis=1))
     np.add.at(gross, design, np.abs(parts).sum(axis=1))
-    slopes = np.zeros((many.count, many.columns if gradients else 0))
+    slopes = np.zeros((batch.count, batch.columns if gradients else 0))
     if gradients:
-        starts, ends = many.moved(own, design, piece, inside), many.moved(own, design, piece + 1, inside)
-        for v in range(many.columns):
+        starts, ends = batch.moved(pieces, design, piece, probe), batch.moved(pieces, design, piece + 1, probe)
+        for v in range(batch.columns):
             slip = starts[:, v : v + 1] * (1.0 - u) + ends[:, v : v + 1] * u
-            found = many.states(rows, share, side, back, STEP * slip, v)
+            states = batch.states(rows, share, side, back, STEP * slip, v)
             span = (b - a) + 1j * STEP * (ends[:, v] - starts[:, v])
-            parts_of = (span[:, None] * w * found[..., DRIVE] * found[..., RATE]).imag / STEP
-            np.add.at(slopes[:, v], design, parts_of.sum(axis=1))
+            rates = (span[:, None] * w * states[..., DRIVE] * states[..., RATE]).imag / STEP
+            np.add.at(slopes[:, v], design, rates.sum(axis=1))
     return np.where(np.abs(values) <= _EQUAL * gross, 0.0, values), slopes

@@ -93,25 +93,25 @@ def worst(mechanism: Mechanism, linkage: Linkage) -> Worst:
 
     best = Worst(0.0, 0.0)
 
-    def less(angle: float) -> float:
+    def negative_size(angle: float) -> float:
         return -float(extremes(mechanism, linkage, angle).size[0])
 
     for angles in counted_angles(mechanism, linkage):
         sizes = extremes(mechanism, linkage, angles).size
-        around = np.concatenate([[-1.0], sizes, [-1.0]])
-        tops = np.flatnonzero((sizes >= around[:-2]) & (sizes >= around[2:]))
+        padded = np.concatenate([[-1.0], sizes, [-1.0]])
+        tops = np.flatnonzero((sizes >= padded[:-2]) & (sizes >= padded[2:]))
         for i in tops[np.argsort(sizes[tops])[-_CELLS:]]:
             low, high = angles[max(i - 1, 0)], angles[min(i + 1, len(angles) - 1)]
-            found = minimize_scalar(less, bounds=(low, high), method="bounded", options={"xatol": 1e-10})
-            for size, angle in ((sizes[i], angles[i]), (-found.fun, found.x)):
+            optimum = minimize_scalar(negative_size, bounds=(low, high), method="bounded", options={"xatol": 1e-10})
+            for size, angle in ((sizes[i], angles[i]), (-optimum.fun, optimum.x)):
                 if size > best.size:
                     best = Worst(float(size), angle_in_cycle(float(angle), _TURN))
     return best
 
 
 def _position(r: Array, l: float, e: Array, angles: Array) -> Array:
-    across = e - r * np.sin(angles)
-    return r * np.cos(angles) + np.sqrt(l * l - across * across)
+    l_sin = e - r * np.sin(angles)
+    return r * np.cos(angles) + np.sqrt(l * l - l_sin * l_sin)
 
 
 def _greatest(r: Array, l: float, e: Array, middle: Array, turn: Array) -> Array:

@@ -57,8 +57,8 @@ def first_order(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) 
 def shares(parts: Array) -> Array:
     """Return parts (n, m) over their sum (m,); NaN where all are zero."""
     total = parts.sum(axis=0)
-    found: Array = np.divide(parts, total, out=np.full(parts.shape, np.nan), where=total > 0.0)
-    return found
+    fractions: Array = np.divide(parts, total, out=np.full(parts.shape, np.nan), where=total > 0.0)
+    return fractions
 
 
 def remainder(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Array:

@@ -59,7 +59,7 @@ class Yield:
     share: float
     low: float
     high: float
-    within: int
+    count_within: int
     samples: int
     confidence: float
 
@@ -86,35 +86,38 @@ def simulate(
     linkage = single(mechanism, linkage)
     spreads = Spreads() if spreads is None else spreads
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
-    _require_whole("samples", samples, least=1)
-    _require_whole("seed", seed, least=0)
+    _require_integer("samples", samples, least=1)
+    _require_integer("seed", seed, least=0)
     if theta.ndim != 1 or not np.all(np.isfinite(theta)):
         raise InputError("crank angles must be a list of finite numbers, rad")
     if samples * max(1, len(theta)) > _MOST:
         raise InputError(
             f"samples times crank angles must be at most {_MOST:,}; got {samples:,} times {len(theta):,}; take fewer"
         )
-    reach, counted = limits(mechanism, linkage), np.concatenate(counted_angles(mechanism, linkage, count=angles))
+    limits_of_sources, counted = (
+        limits(mechanism, linkage),
+        np.concatenate(counted_angles(mechanism, linkage, count=angles)),
+    )
     everywhere = np.concatenate([theta, counted])
     ideal = linkage.at(everywhere).slider_position
     errors, greatest = np.empty((samples, len(theta))), np.empty(samples)
-    done = 0
+    count = 0
     for chunk in range(-(-samples // CHUNK)):
         if cancelled is not None and cancelled():
             break
         random = np.random.default_rng([seed, chunk])
-        here = slice(done, min(done + CHUNK, samples))
-        drawn = spreads.draw(reach, CHUNK, random)
-        off = _positions(linkage, drawn, everywhere)[: here.stop - here.start] - ideal
-        errors[here] = off[:, : len(theta)]
-        greatest[here] = np.abs(off[:, len(theta) :]).max(axis=1)
-        done = here.stop
+        rows = slice(count, min(count + CHUNK, samples))
+        drawn = spreads.draw(limits_of_sources, CHUNK, random)
+        off = _positions(linkage, drawn, everywhere)[: rows.stop - rows.start] - ideal
+        errors[rows] = off[:, : len(theta)]
+        greatest[rows] = np.abs(off[:, len(theta) :]).max(axis=1)
+        count = rows.stop
         if progress is not None:
-            progress(done, samples)
-    return Simulation(theta, errors[:done], greatest[:done], int(np.isnan(greatest[:done]).sum()))
+            progress(count, samples)
+    return Simulation(theta, errors[:count], greatest[:count], int(np.isnan(greatest[:count]).sum()))
 
 
-def _require_whole(name: str, value: object, *, least: int) -> None:
+def _require_integer(name: str, value: object, *, least: int) -> None:
     if isinstance(value, bool) or not isinstance(value, int) or value < least:
         raise InputError(f"{name} must be a whole number of at least {least}; got {value!r}")
 
@@ -127,11 +130,11 @@ def _positions(linkage: Linkage, drawn: Draw, angles: Array) -> Array:
     sine, cosine = np.sin(drawn.crank_angle)[:, None], np.cos(drawn.crank_angle)[:, None]
     turned_sine = np.sin(angles) * cosine + np.cos(angles) * sine
     turned_cosine = np.cos(angles) * cosine - np.sin(angles) * sine
-    across = e - y - r * turned_sine
+    l_sin = e - y - r * turned_sine
     turns = (r > 0.0) & (l > r + np.abs(e) + np.hypot(x, y))
-    along = np.sqrt(np.where(turns, l * l - across * across, np.nan))
-    found: Array = x + r * turned_cosine + linkage.sign * along
-    return found
+    l_cos = np.sqrt(np.where(turns, l * l - l_sin * l_sin, np.nan))
+    positions: Array = x + r * turned_cosine + linkage.sign * l_cos
+    return positions
 
 
 def summarise(values: ArrayLike, *, percents: Sequence[float] = (0.135, 5.0, 50.0, 95.0, 99.865)) -> Summary:
@@ -140,12 +143,12 @@ def summarise(values: ArrayLike, *, percents: Sequence[float] = (0.135, 5.0, 50.
     0.135 and 99.865 %: three standard deviations of a normal distribution. Raises `InputError` if fewer than two
     machines are left.
     """
-    given = np.asarray(values, dtype=np.float64)
-    turning = given[np.isfinite(given)]
+    sample = np.asarray(values, dtype=np.float64)
+    turning = sample[np.isfinite(sample)]
     if len(turning) < 2:
         raise InputError(f"a summary needs two machines that turn; got {len(turning)}; simulate more")
-    found = np.percentile(turning, percents)
-    pairs = tuple((float(percent), float(value)) for percent, value in zip(percents, found, strict=True))
+    levels = np.percentile(turning, percents)
+    pairs = tuple((float(percent), float(value)) for percent, value in zip(percents, levels, strict=True))
     return Summary(float(turning.mean()), float(turning.std(ddof=1)), pairs)
 
 
@@ -167,9 +170,9 @@ def yield_within(
     sizes = np.abs(np.asarray(errors, dtype=np.float64))
     if sizes.ndim != 1 or not len(sizes):
         raise InputError(f"errors must be a list with at least one number; got an array of shape {sizes.shape}")
-    within = int(np.count_nonzero(sizes <= limit))
-    interval = binomtest(within, len(sizes)).proportion_ci(confidence, method=method)
-    return Yield(within / len(sizes), float(interval.low), float(interval.high), within, len(sizes), confidence)
+    count = int(np.count_nonzero(sizes <= limit))
+    interval = binomtest(count, len(sizes)).proportion_ci(confidence, method=method)
+    return Yield(count / len(sizes), float(interval.low), float(interval.high), count, len(sizes), confidence)
 
 
 def variances(
@@ -177,9 +180,9 @@ def variances(
 ) -> Array:
     """Return the first-order variance that each source adds to the position error, (8, m), m^2, at angles (m,), rad."""
     linkage = single(mechanism, linkage)
-    reach = limits(mechanism, linkage)
-    found: Array = (
+    limits_of_sources = limits(mechanism, linkage)
+    per_source: Array = (
         source_influences(mechanism, linkage, crank_angle) ** 2
-        * ((Spreads() if spreads is None else spreads).variances * reach * reach)[:, None]
+        * ((Spreads() if spreads is None else spreads).variances * limits_of_sources * limits_of_sources)[:, None]
     )
-    return found
+    return per_source

@@ -53,8 +53,8 @@ def limit_box(mechanism: Mechanism, linkage: Linkage) -> Array:
     Clearances widen the rod (pins) and the offset (guide). Raises `AssemblyError` unless every linkage in the box turns
     fully, `InputError` if the crank angle may be off by half a turn.
     """
-    linkage, reach = single(mechanism, linkage), limits(mechanism, linkage)
-    half = np.add(reach[:4], [0.0, reach[PINS].sum(), reach[GUIDE], 0.0])
+    linkage, limits_of_sources = single(mechanism, linkage), limits(mechanism, linkage)
+    half = np.add(limits_of_sources[:4], [0.0, limits_of_sources[PINS].sum(), limits_of_sources[GUIDE], 0.0])
     if half[3] >= math.pi:
         raise InputError(
             f"the tolerance of the crank angle must be below 180 deg; got {math.degrees(half[3]):g} deg; reduce it"
@@ -84,26 +84,28 @@ def counted_angles(mechanism: Mechanism, linkage: Linkage, *, count: int = ANGLE
     def part(first: float, last: float) -> Array:
         low, high = crowded(first, kappa), crowded(last, kappa)
         points = max(5, math.ceil(count * (high - low) / _TURN) + 1)
-        inside = [uncrowded(tau, kappa) for tau in np.linspace(low, high, points)[1:-1]]
-        return np.array([first, *inside, last])
+        inner_angles = [uncrowded(tau, kappa) for tau in np.linspace(low, high, points)[1:-1]]
+        return np.array([first, *inner_angles, last])
 
     if window.during == "cycle" and window.start == 0.0 and window.end == 1.0:
         return [part(0.0, _TURN)]
     inner, outer = (float(angle) for angle in linkage.dead_centre_angles)
     near, far = (float(x) for x in linkage.dead_centres)
 
-    def at(fraction: float, first: float, span: float) -> float:
+    def angle_at_fraction(fraction: float, first: float, span: float) -> float:
         """Crank angle, from `first` on, where the slider is at a fraction of the stroke within one stroke."""
         if fraction in (0.0, 1.0):
             return first + (span if (fraction == 1.0) == (first == inner) else 0.0)
-        both = (crank_angle_at(near + fraction * (far - near), r, l, e, second) for second in (False, True))
-        return first + min((angle - first) % _TURN for angle in both)
+        angles = (crank_angle_at(near + fraction * (far - near), r, l, e, second) for second in (False, True))
+        return first + min((angle - first) % _TURN for angle in angles)
 
     parts = []
     for first, last in ((inner, outer), (outer, inner)):
         # Counter-clockwise from the inner to the outer dead centre is the outward stroke, clockwise the inward one.
         outward = (first == inner) == (mechanism.speed >= 0.0)
         if window.during == "cycle" or (window.during == "outward stroke") == outward:
-            ends = sorted(at(fraction, first, (last - first) % _TURN) for fraction in (window.start, window.end))
+            ends = sorted(
+                angle_at_fraction(fraction, first, (last - first) % _TURN) for fraction in (window.start, window.end)
+            )
             parts.append(part(*ends))
     return parts

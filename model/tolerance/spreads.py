@@ -59,9 +59,9 @@ class Spreads:
     def __post_init__(self) -> None:
         require_word("contact", self.contact, Contact)
         for name in ("crank", "rod", "offset", "crank_angle"):
-            given = getattr(self, name)
-            if not (hasattr(given, "rvs") and hasattr(given, "var")):
-                raise InputError(f'{name} must be a distribution, such as spread("uniform"); got {given!r}')
+            distribution = getattr(self, name)
+            if not (hasattr(distribution, "rvs") and hasattr(distribution, "var")):
+                raise InputError(f'{name} must be a distribution, such as spread("uniform"); got {distribution!r}')
 
     @property
     def variances(self) -> Array:
@@ -69,14 +69,16 @@ class Spreads:
         pin, guide = {"along the rod": (1.0, 1.0), "any direction": (0.5, 1.0), "anywhere": (0.25, 1.0 / 3.0)}[
             self.contact
         ]
-        dimensions = (float(each.var()) for each in (self.crank, self.rod, self.offset, self.crank_angle))
+        dimensions = (
+            float(distribution.var()) for distribution in (self.crank, self.rod, self.offset, self.crank_angle)
+        )
         return np.array([*dimensions, pin, pin, pin, guide])
 
     def draw(self, limits: Array, count: int, random: np.random.Generator) -> Draw:
         """Return errors of `count` machines for the limits (8,) of the sources."""
         dimensions = [
-            limit * np.asarray(each.rvs(count, random_state=random))
-            for limit, each in zip(limits, (self.crank, self.rod, self.offset, self.crank_angle), strict=False)
+            limit * np.asarray(distribution.rvs(count, random_state=random))
+            for limit, distribution in zip(limits, (self.crank, self.rod, self.offset, self.crank_angle), strict=False)
         ]
         crank, rod, offset, angle = dimensions
         x, y = np.zeros(count), np.zeros(count)

@@ -27,11 +27,11 @@ def balanced_speed(turn: PeriodicTurn, drive: Drive, motor: Torque, near: float)
     static, drag = way * turn.mean(turn.terms.static), turn.mean(turn.terms.drag)
     square = way * turn.mean(turn.terms.square)
 
-    def unrubbed(speed: float) -> float:
+    def motor_surplus(speed: float) -> float:
         return way * float(motor(np.array(way * speed))[0]) - static - (drag + square * speed) * speed
 
     if isinstance(drive.motor, ConstantTorque) and drag <= 0.0 and square <= 0.0:
-        top = _rubbed_away(turn, unrubbed, near)
+        top = _speed_where_friction_balances(turn, motor_surplus, near)
         if top is None:
             raise InputError(
                 "steady running needs a torque or a load that changes with speed; got a constant motor torque of "
@@ -39,20 +39,20 @@ def balanced_speed(turn: PeriodicTurn, drive: Drive, motor: Torque, near: float)
                 "every speed; give the motor a no-load speed, or add a viscous load or drag"
             )
     elif isinstance(drive.motor, ConstantTorque | LinearMotor):  # a straight line or falling faster: beyond its zero
-        top = max(1.0, 1.01 * unrubbed(0.0) / (unrubbed(0.0) - unrubbed(1.0)))
+        top = max(1.0, 1.01 * motor_surplus(0.0) / (motor_surplus(0.0) - motor_surplus(1.0)))
     else:
         top = speed_range(drive)[1]
     friction = _friction(turn, top)
 
     def surplus(speed: float) -> float:
-        return unrubbed(speed) - friction(speed)
+        return motor_surplus(speed) - friction(speed)
 
     speeds = np.linspace(0.0, top, _TRIED)
     values = np.array([surplus(speed) for speed in speeds])
     falls = np.flatnonzero((values[:-1] > 0.0) & (values[1:] <= 0.0))
     if not len(falls):
         weak = values.max() <= 0.0
-        loads, held = ("load and friction", static + friction(0.0)) if turn.equation.rubs else ("load", static)
+        loads, static_torque = ("load and friction", static + friction(0.0)) if turn.equation.rubs else ("load", static)
         raise InputError(
             "steady running needs a speed at which motor and loads balance; got a motor that is "
             + (
@@ -60,11 +60,11 @@ def balanced_speed(turn: PeriodicTurn, drive: Drive, motor: Torque, near: float)
                 if weak
                 else "stronger than the loads where its table ends"
             )
-            + f" ({held:.6g} N m on the crank besides loads that change with speed); "
+            + f" ({static_torque:.6g} N m on the crank besides loads that change with speed); "
             + ("choose a stronger motor or a greater gear ratio" if weak else "extend the torque table")
         )
-    found = [float(brentq(surplus, speeds[i], speeds[i + 1])) for i in falls]
-    return min(found, key=lambda speed: abs(speed - near)) if near else found[0]
+    speeds_found = [float(brentq(surplus, speeds[i], speeds[i + 1])) for i in falls]
+    return min(speeds_found, key=lambda speed: abs(speed - near)) if near else speeds_found[0]
 
 
 def _mean_friction(turn: PeriodicTurn, speed: float) -> float:
@@ -83,11 +83,13 @@ def _friction(turn: PeriodicTurn, top: float) -> Callable[[float], float]:
     return lambda speed: float(spline(speed))
 
 
-def _rubbed_away(turn: PeriodicTurn, unrubbed: Callable[[float], float], near: float) -> float | None:
+def _speed_where_friction_balances(
+    turn: PeriodicTurn, motor_surplus: Callable[[float], float], near: float
+) -> float | None:
     """Return a speed, rad/s, at which friction, growing with the forces of inertia, takes all that a motor has left."""
     top = max(1.0, near)
     for _ in range(_DOUBLINGS if turn.equation.rubs else 0):
-        if unrubbed(top) <= _mean_friction(turn, top):
+        if motor_surplus(top) <= _mean_friction(turn, top):
             return top
         top *= 2.0
     return None

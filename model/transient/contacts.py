@@ -26,10 +26,10 @@ def contacts(span: Span, motion: Motion, angles: Array, speeds: Array, accelerat
     from scipy.optimize import brentq
 
     def guide(angle: float, cylinder: int) -> float:
-        state = span.rubbed(*(np.array([each]) for each in (angle, *motion(angle))))
+        state = span.with_friction(*(np.array([number]) for number in (angle, *motion(angle))))
         return float(state.guides[cylinder, 0])
 
-    values = span.rubbed(angles, speeds, accelerations).guides
+    values = span.with_friction(angles, speeds, accelerations).guides
     changes = np.nonzero(values[:, :-1] * values[:, 1:] < 0.0)
     return [
         float(brentq(guide, angles[i], angles[i + 1], args=(c,), xtol=_CLOSE)) for c, i in zip(*changes, strict=True)

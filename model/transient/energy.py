@@ -20,8 +20,8 @@ def moving_inertia(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
     Crank about its pivot; rod by the speed of the crank pin, its turning phi', and its first moment S about the pin:
     m_rod r^2 + 2 phi' r (sin S_y + cos S_x) + I_A phi'^2; slider with added masses (m_s + m_a) x'^2.
     """
-    sx = d.rod_along * m.along - d.rod_across * m.across
-    sy = d.rod_along * m.across + d.rod_across * m.along
+    sx = d.rod_along * m.l_cos - d.rod_across * m.l_sin
+    sy = d.rod_along * m.l_sin + d.rod_across * m.l_cos
     return (
         d.crank_inertia
         + d.r * (d.rod_mass * d.r + 2.0 * m.rod_1 * (sine * sy + cosine * sx))
@@ -36,15 +36,15 @@ def height_energy(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
     x = (
         (d.crank_along + d.rod_mass * d.r) * cosine
         - d.crank_across * sine
-        + d.rod_along * m.along
-        - d.rod_across * m.across
+        + d.rod_along * m.l_cos
+        - d.rod_across * m.l_sin
         + d.slider_mass * m.x
     )
     y = (
         (d.crank_along + d.rod_mass * d.r) * sine
         + d.crank_across * cosine
-        + d.rod_along * m.across
-        + d.rod_across * m.along
+        + d.rod_along * m.l_sin
+        + d.rod_across * m.l_cos
         + d.slider_mass * d.e
     )
     return -d.gravity_x * x - d.gravity_y * y

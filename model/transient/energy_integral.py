@@ -75,18 +75,18 @@ def cut_where_least(turn: PeriodicTurn, load: Array) -> PeriodicTurn:
     from scipy.optimize import brentq
 
     surplus = turn.way * (turn.mean(load) - load)
-    at = np.concatenate([[-1.0], turn.nodes, [1.0]])
+    nodes = np.concatenate([[-1.0], turn.nodes, [1.0]])
 
-    def within(x: float, panel: int) -> float:
-        return turn.within(surplus, panel, x)[0]
+    def surplus_at(x: float, panel: int) -> float:
+        return turn.value_and_integral(surplus, panel, x)[0]
 
-    found = []
+    angles = []
     for panel in range(len(turn.width)):
-        values = np.concatenate([[within(-1.0, panel)], surplus[panel], [within(1.0, panel)]])
+        values = np.concatenate([[surplus_at(-1.0, panel)], surplus[panel], [surplus_at(1.0, panel)]])
         for i in np.flatnonzero((values[:-1] < 0.0) & (values[1:] > 0.0)):
-            x = float(brentq(within, at[i], at[i + 1], args=(panel,), xtol=1e-15))
-            found.append(turn.low[panel] + 0.5 * (1.0 + x) * turn.width[panel])
-    return turn.cut(np.array(found))
+            x = float(brentq(surplus_at, nodes[i], nodes[i + 1], args=(panel,), xtol=1e-15))
+            angles.append(turn.low[panel] + 0.5 * (1.0 + x) * turn.width[panel])
+    return turn.cut(np.array(angles))
 
 
 def graded(turn: PeriodicTurn, load: Array) -> PeriodicTurn:
@@ -116,6 +116,6 @@ def _running(turn: PeriodicTurn, load: Array, inertia: float, speed: float) -> t
     size = float(nodes.max()) + 0.5 * speed**2 * float(total.max())
     low, high = math.log(_STOPS * size), math.log(2.0 * size)
     stops = not late(low) > 0.0
-    kept = math.exp(low if stops else brentq(late, low, high, xtol=1e-15, rtol=1e-14))
+    energy_sum = math.exp(low if stops else brentq(late, low, high, xtol=1e-15, rtol=1e-14))
     at_starts = turn.equation.inertia(turn.low) + inertia
-    return ((kept + nodes) / total, (kept + starts) / at_starts, turn.mean(load)), stops
+    return ((energy_sum + nodes) / total, (energy_sum + starts) / at_starts, turn.mean(load)), stops

@@ -8,7 +8,7 @@ J the moving inertia, C gravity and every load that does not depend on speed, D 
 E loads that grow with the square of the speed. Each term is the
 torque of `dynamics.forces` for a motion and a load that leave only this term: nothing is derived a second time, and
 no term is a difference of great numbers. With friction these are the terms of the same machine without it; what the
-motion takes then is `Span.rubbed`.
+motion takes then is `Span.with_friction`.
 
 C depends on which way the slider moves, hence on the direction of rotation, and is smooth between *breakpoints* only:
 dead centres and knots of load tables. A `Stretch` is the crank turning one way between two of them.
@@ -89,8 +89,8 @@ def _cut(block: Table, loads: Loads, watch: CycleWindow, cuts: Cuts) -> int:
 
 
 @kernel
-def _enter(block: Table, loads: Loads, watch: CycleWindow, inside: float, piece: Integers, shift: Row) -> bool:
-    _, outward = enter(design_at(block, 0), block, 0, inside, loads, watch, piece, shift)
+def _enter(block: Table, loads: Loads, watch: CycleWindow, probe: float, piece: Integers, shift: Row) -> bool:
+    _, outward = enter(design_at(block, 0), block, 0, probe, loads, watch, piece, shift)
     return outward
 
 
@@ -111,8 +111,8 @@ def _terms(
         out[2, i] = beside_crank_loads(static, still, block, 0, theta, way, loads, piece, shift)
         dragged = with_formulas(smooth_load(m, spin, 0.0), m, spin, block, 1, outward, loads)
         out[3, i] = forces(sine, cosine, m, bare, dragged).torque
-        done = still.branch * load * m.x_1
-        out[4, i] = done - beside_crank_loads(0.0, still, block, 0, theta, way, loads, piece, shift)
+        load_torque = still.branch * load * m.x_1
+        out[4, i] = load_torque - beside_crank_loads(0.0, still, block, 0, theta, way, loads, piece, shift)
         squared = with_formulas(0.0, m, square, block, 4, outward, loads)
         out[5, i] = forces(sine, cosine, m, bare, squared).torque
 
@@ -126,11 +126,11 @@ class Span:
     high: float
     way: float
 
-    def at(self, crank_angle: Array) -> Terms:
+    def terms_at(self, crank_angle: Array) -> Terms:
         """Return the terms at crank angles (n,), rad."""
         raise NotImplementedError
 
-    def rubbed(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
+    def with_friction(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
         """Return torque and heat with friction at crank angles, rad, speeds, rad/s, and accelerations (n,), rad/s^2."""
         raise NotImplementedError
 
@@ -180,7 +180,7 @@ class Equation:
         raise NotImplementedError
 
     def least_inertia(self, crank_angle: Array) -> Array:
-        """Return the least inertia that friction leaves, kg m^2 (`rubbed`); shape of the crank angle."""
+        """Return the least inertia that friction leaves, kg m^2 (`with_friction`); shape of the crank angle."""
         raise NotImplementedError
 
     def require_inertia(self, added: float) -> None:
@@ -196,9 +196,9 @@ class Equation:
                 "there; give the crank a mass, or the drive a flywheel"
             )
         if self.rubs:
-            left = self.least_inertia(angles) + added
-            if not left.min() > 1e-6 * inertia.max():
-                raise jamming_error(angles, left)
+            inertia_left = self.least_inertia(angles) + added
+            if not inertia_left.min() > 1e-6 * inertia.max():
+                raise jamming_error(angles, inertia_left)
 
 
 class Stretch(Span):
@@ -218,24 +218,24 @@ class Stretch(Span):
             rod = design_motion(math.sin(angle_within(low, high)), math.cos(angle_within(low, high)), d).rod_1
             slide = d.branch * (1.0 if self._outward else -1.0)
             senses = Senses(way, float(slide), math.copysign(1.0, rod * way))
-            given = self._block, _PUSH, self._loads, self._outward, senses, self._piece, self._shift
-            self._rubbing = CylinderFriction(*given)
+            arguments = self._block, _PUSH, self._loads, self._outward, senses, self._piece, self._shift
+            self._rubbing = CylinderFriction(*arguments)
 
-    def at(self, crank_angle: Array) -> Terms:
+    def terms_at(self, crank_angle: Array) -> Terms:
         """Return the terms at crank angles (n,), rad; beyond the ends the loads go on as within."""
         out = np.empty((6, len(crank_angle)))
         _terms(self._block, self._loads, self._outward, self.way, self._piece, self._shift, crank_angle, out)
         return Terms(*out)
 
-    def rubbed(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
+    def with_friction(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
         """Return torque and heat with friction, (n,)."""
-        return self._rubbing.at(crank_angle, speed, acceleration)
+        return self._rubbing.state_at(crank_angle, speed, acceleration)
 
     def accelerated(
         self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool = False
     ) -> tuple[Array, FrictionState]:
         """Return accelerations with friction, and torque and heat with them, (n,)."""
-        return self._rubbing.under(crank_angle, speed, torque, inertia, guess, by_speed=by_speed)
+        return self._rubbing.accelerate(crank_angle, speed, torque, inertia, guess, by_speed=by_speed)
 
 
 class CrankEquation(Equation):
@@ -269,12 +269,12 @@ class CrankEquation(Equation):
         self._stretches: dict[tuple[int, float], Stretch] = {}
 
     def _breakpoints(self, marks: tuple[float, ...]) -> Array:
-        room = room_for(self.loads)
-        cuts = Cuts(np.empty(room), np.empty(room, np.int64), np.empty(room), np.empty(room, np.int64))
+        cut_room = room_for(self.loads)
+        cuts = Cuts(np.empty(cut_room), np.empty(cut_room, np.int64), np.empty(cut_room), np.empty(cut_room, np.int64))
         count = _cut(self.block, self.loads, self.watch, cuts)
-        found = np.sort(np.concatenate([np.mod(marks, TURN), cuts.angle[:count]]))
-        apart = np.diff(found, prepend=found[-1] - TURN) > NEAREST
-        return np.asarray(found[apart] if len(found) > 1 else found)
+        angles = np.sort(np.concatenate([np.mod(marks, TURN), cuts.angle[:count]]))
+        is_apart = np.diff(angles, prepend=angles[-1] - TURN) > NEAREST
+        return np.asarray(angles[is_apart] if len(angles) > 1 else angles)
 
     def stretch(self, index: int, way: float) -> Stretch:
         """Return the stretch from breakpoint `index` to the next, the last one reaching beyond 2 pi."""
@@ -296,8 +296,8 @@ class CrankEquation(Equation):
         d = design_at(self.block, _PUSH)
         sine, cosine = np.sin(crank_angle), np.cos(crank_angle)
         m, mu = design_motion(sine, cosine, d), d.guide_friction
-        found: Array = np.minimum(*(least_inertia(sine, cosine, m, d, side) for side in (mu, -mu)))
-        return found
+        inertia: Array = np.minimum(*(least_inertia(sine, cosine, m, d, side) for side in (mu, -mu)))
+        return inertia
 
     def height_energy(self, crank_angle: Array) -> Array:
         """Return the potential energy of gravity, J, counted from the crank pivot; shape of the crank angle."""

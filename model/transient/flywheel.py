@@ -35,13 +35,13 @@ _BETWEEN = 12
 class FlywheelDesign:
     """A flywheel on the crank shaft.
 
-    inertia: kg m^2; 0 if none is needed. estimate: by the classical method, kg m^2. wanted: the coefficient of speed
+    inertia: kg m^2; 0 if none is needed. estimate: by the classical method, kg m^2. target: the coefficient of speed
     fluctuation. running: the steady running with it. drive: the motor, with the flywheel in it.
     """
 
     inertia: float
     estimate: float
-    wanted: float
+    target: float
     running: SteadyRunning
     drive: Drive
 
@@ -69,16 +69,16 @@ def design_flywheel(
     speed = runner.speed if drive is None else runner.balanced_speed(drive)
 
     def run(flywheel: float) -> SteadyRunning:
-        return runner.constant(flywheel) if drive is None else runner.under(replace(drive, flywheel=flywheel))
+        return runner.constant(flywheel) if drive is None else runner.running_under(replace(drive, flywheel=flywheel))
 
     @cache
     def surplus(flywheel: float) -> float:
         """Return 1 / delta, 0 where the crank does not come through the turn, less what is wanted."""
         try:
-            found = run(flywheel).fluctuation
+            delta = run(flywheel).fluctuation
         except InputError:
-            found = math.inf
-        return (1.0 / found if found > 0.0 else math.inf) - 1.0 / fluctuation
+            delta = math.inf
+        return (1.0 / delta if delta > 0.0 else math.inf) - 1.0 / fluctuation
 
     estimate = runner.energy_change(speed) / (fluctuation * speed**2) if speed else 0.0
     inertia = 0.0
@@ -106,7 +106,7 @@ def design_flywheel(
     return FlywheelDesign(
         inertia=inertia,
         estimate=estimate,
-        wanted=fluctuation,
+        target=fluctuation,
         running=running,
         drive=replace(motor, flywheel=inertia),
     )

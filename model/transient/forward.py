@@ -2,7 +2,7 @@
 
     J(theta) theta'' + J'(theta) theta'^2 / 2 + C(theta) + D(theta) theta' = T_motor(theta'),
 
-J with the drive's inertia; with friction in the joints, the acceleration of `rubbed`. Integrated over time by an
+J with the drive's inertia; with friction in the joints, the acceleration of `accelerated`. Integrated over time by an
 explicit Runge-Kutta method of order 8 (DOP853; Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I,
 2nd ed. 1993, II.5), stretch by stretch: no step crosses a dead centre at which a load changes, a knot of a table, or a
 standstill. The work of motor and loads, and the heat of friction, are integrated with it. Where a guide's force changes
@@ -61,10 +61,10 @@ Stop = Literal["edge", "standstill", "table", "time"]
 
 def drive_of(mechanism: Mechanism, drive: Drive | None) -> Drive:
     """Return the drive, the mechanism's own if None. Raises `InputError` if it has none either."""
-    found = mechanism.drive if drive is None else drive
-    if found is None:
+    chosen = mechanism.drive if drive is None else drive
+    if chosen is None:
         raise InputError("a start or a run needs a motor; got a mechanism without a drive; add a [drive]")
-    return found
+    return chosen
 
 
 def simulate(
@@ -102,13 +102,13 @@ def simulate(
         if progress is not None:
             progress(Progress(run.time, duration, (run.angle - start.angle) / TURN, run.speed))
         if verdict is None and run.at_mark:
-            made = round((run.angle - start.angle) / TURN)
-            if turns is not None and abs(made) >= turns:
+            whole_turns = round((run.angle - start.angle) / TURN)
+            if turns is not None and abs(whole_turns) >= turns:
                 verdict = "turns done"
             if run.at_cycle:
-                if verdict is None and steady is not None and made != passed:
+                if verdict is None and steady is not None and whole_turns != passed:
                     verdict = "steady" if abs(run.speed - before) <= steady * abs(run.speed) else None
-                before, passed = run.speed, made
+                before, passed = run.speed, whole_turns
         if verdict is None and cancelled is not None and cancelled():
             verdict = "cancelled"
         if verdict is not None:
@@ -178,7 +178,9 @@ class _Run:
 
     def result(self, verdict: Verdict) -> Transient:
         """Return the motion found so far, with a verdict."""
-        self.recorder.stand(self._stretch(self.way or self.equation.direction), self.turn, self.time, self._y())
+        self.recorder.add_single_state(
+            self._stretch(self.way or self.equation.direction), self.turn, self.time, self._y()
+        )
         return self.recorder.result(verdict, tuple(self.turned_back))
 
     @property
@@ -233,7 +235,7 @@ class _Run:
         """Return a speed, rad/s, against which errors are measured while the crank is slow."""
         pull, resist = abs(float(self.drive.torque(0.0, self.equation.direction))), 0.0
         for stretch in self.equation.turn(self.equation.direction):
-            terms = stretch.at(np.linspace(stretch.low, stretch.high, 9))
+            terms = stretch.terms_at(np.linspace(stretch.low, stretch.high, 9))
             pull = max(pull, float(np.abs(terms.static).max()))
             resist = max(resist, float(terms.inertia.max()) + self.drive.inertia)
         return max(abs(speed), abs(self.speed), math.sqrt(TURN * pull / resist))
@@ -248,7 +250,7 @@ class _Run:
 
         def rate(_time: float, y: Array) -> Array:
             angle[0], speed = y[0], float(y[1])
-            terms = stretch.at(angle)
+            terms = stretch.terms_at(angle)
             # Beyond its table the motor goes on as at the end, until the event below has found the end.
             torque = float(motor(min(max(speed, slowest), fastest), direction))
             drag = (terms.drag[0] + terms.square[0] * speed) * speed
@@ -283,16 +285,16 @@ class _Run:
                 f"got {self.tolerance:g}; check masses and loads for values of very different size"
             )
         names: tuple[Stop, ...] = ("edge", "standstill", "table")
-        found = solution.t_events or []
-        ended = [name for name, times in zip(names, found, strict=False) if len(times)]
+        event_times = solution.t_events or []
+        ended = [name for name, times in zip(names, event_times, strict=False) if len(times)]
         return solution, ended[0] if ended else "time"
 
     def _standing(self, stretch: Span, local: float) -> float:
         """Return the torque, N m, against which the crank starts from standstill, in the span's way."""
         at = np.array([local])
         if self.equation.rubs:
-            return float(stretch.rubbed(at, np.zeros(1), np.zeros(1)).torque[0])
-        return float(stretch.at(at).static[0])
+            return float(stretch.with_friction(at, np.zeros(1), np.zeros(1)).torque[0])
+        return float(stretch.terms_at(at).static[0])
 
     def _leave_rest(self) -> Verdict | None:
         """Find out which way the crank starts from standstill; return why it does not, if so."""

@@ -82,7 +82,7 @@ def least_inertia(sine: Any, cosine: Any, m: Motion, push: Design, mu: Any) -> A
     px, py = ax + b.crank_x, ay + b.crank_y
     pin, pivot = root(ax * ax + ay * ay), root(px * px + py * py)
     q = root(1.0 + mu * mu)
-    h_y, h_a = m.along - mu * m.across, b.moment - m.across * b.pull
+    h_y, h_a = m.l_cos - mu * m.l_sin, b.moment - m.l_sin * b.pull
     t_y, t_a = push.r * (cosine - mu * sine), b.couple + push.r * (cosine * ay - sine * ax)
     off_h_y = q * (push.crank_pin_circle + push.slider_pin_circle)
     off_h_a = push.crank_pin_circle * pin + push.slider_pin_circle * abs(b.pull)
@@ -106,8 +106,8 @@ def next_acceleration(a: Any, excess: Any, slope: Any, least: Any, low: Any, hig
 
     excess: motor torque less what the motion takes at a, N m. slope, least: of what it takes, with the drive's inertia.
     """
-    reach = a + excess / least
-    low, high = np.maximum(low, np.minimum(a, reach)), np.minimum(high, np.maximum(a, reach))
+    bound = a + excess / least
+    low, high = np.maximum(low, np.minimum(a, bound)), np.minimum(high, np.maximum(a, bound))
     new = a + excess / slope
     outside = 1.0 - 1.0 * ((low <= new) & (new <= high))
     return new + outside * (0.5 * (low + high) - new), low, high
@@ -128,15 +128,15 @@ def _fill_friction_states(
     accelerations: Row,
     torques: Row,
     inertia: float,
-    most: int,
+    step_limit: int,
     by_speed: bool,
     out: Table,
 ) -> None:
     """Fill the rows of `out` (6, n): those of `FrictionState`, in its order.
 
     stepped: the design, whose speed and acceleration are overwritten. block: its columns; push: the one at speed 0 and
-    acceleration 1, without gravity. Loads' pieces are those of the span. most: steps by which accelerations are solved
-    for, in place, given the motor's torques and the drive's inertia; 0 leaves them.
+    acceleration 1, without gravity. Loads' pieces are those of the span. step_limit: steps by which accelerations are
+    solved for, in place, given the motor's torques and the drive's inertia; 0 leaves them.
     """
     unit = design_at(block, push)
     mu = unit.guide_friction
@@ -146,10 +146,10 @@ def _fill_friction_states(
         still = design_motion(sine, cosine, unit)
         least = least_inertia(sine, cosine, still, unit, mu)
         least = min(least, least_inertia(sine, cosine, still, unit, -mu))
-        low, high, last, steps, by = -math.inf, math.inf, math.inf, 0, 0
+        low, high, last, steps, derivative = -math.inf, math.inf, math.inf, 0, 0
         while True:
-            stepped[_SPEED, 0] = complex(w, _STEP if by == 1 else 0.0)
-            stepped[_ACCELERATION, 0] = complex(a, _STEP if by == 0 else 0.0)
+            stepped[_SPEED, 0] = complex(w, _STEP if derivative == 1 else 0.0)
+            stepped[_ACCELERATION, 0] = complex(a, _STEP if derivative == 0 else 0.0)
             d = design_at(stepped, 0)
             m = design_motion(sine, cosine, d)
             load = load_on_slider(m, d, stepped, 0, theta, outward, loads, piece, shift)
@@ -159,10 +159,10 @@ def _fill_friction_states(
             f = joint_forces(sine, cosine, m, d, load, sides)
             torque = beside_crank_loads(f.torque, d, stepped, 0, theta, senses.turn, loads, piece, shift)
             rate = torque.imag / _STEP
-            out[1 + by, i] = rate
-            if by == 1:
+            out[1 + derivative, i] = rate
+            if derivative == 1:
                 break
-            if steps < most and least + inertia > 0.0:
+            if steps < step_limit and least + inertia > 0.0:
                 excess = torques[i] - inertia * a - torque.real
                 new, low, high = next_acceleration(a, excess, rate + inertia, least + inertia, low, high)
                 size = abs(new) + (abs(torques[i]) + abs(torque.real)) / (least + inertia)
@@ -182,7 +182,7 @@ def _fill_friction_states(
             out[5, i] = f.guide.real
             if not by_speed:
                 break
-            by = 1
+            derivative = 1
 
 
 class CylinderFriction:
@@ -196,42 +196,50 @@ class CylinderFriction:
         self, block: Table, push: int, loads: Loads, outward: bool, senses: Senses, piece: Integers, shift: Row
     ) -> None:
         stepped = np.array(block[:, :1], dtype=np.complex128)
-        self._given = stepped, block, push, loads, outward, senses, piece, shift
+        self._arguments = stepped, block, push, loads, outward, senses, piece, shift
 
-    def at(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
+    def state_at(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
         """Return torque and heat of a motion (n,)."""
         return self._fill(crank_angle, speed, acceleration, np.empty(0), 0.0, 0, by_speed=True)
 
-    def under(
+    def accelerate(
         self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool
     ) -> tuple[Array, FrictionState]:
         """Return the accelerations under a torque of the motor, and torque and heat of the motion with them."""
-        found = np.array(guess)
-        state = self._fill(crank_angle, speed, found, torque, inertia, ITERATIONS, by_speed=by_speed)
+        accelerations = np.array(guess)
+        state = self._fill(crank_angle, speed, accelerations, torque, inertia, ITERATIONS, by_speed=by_speed)
         require_inertia_left(crank_angle, state.least + inertia)
-        return found, state
+        return accelerations, state
 
     def _fill(
-        self, angle: Array, speed: Array, found: Array, torque: Array, inertia: float, most: int, *, by_speed: bool
+        self,
+        angle: Array,
+        speed: Array,
+        accelerations: Array,
+        torque: Array,
+        inertia: float,
+        step_limit: int,
+        *,
+        by_speed: bool,
     ) -> FrictionState:
         out = np.empty((6, len(angle)))
-        _fill_friction_states(*self._given, angle, speed, found, torque, inertia, most, by_speed, out)
+        _fill_friction_states(*self._arguments, angle, speed, accelerations, torque, inertia, step_limit, by_speed, out)
         torque, by_acceleration, rate, least, heat, _ = out
         return FrictionState(torque, by_acceleration, rate, least, heat, out[5:])
 
 
-def require_inertia_left(angle: Array, left: Array) -> None:
-    """Raise `InputError` where friction may jam a crank. angle: rad. left: inertia that friction leaves, kg m^2."""
-    if not (left > 0.0).all():
-        raise jamming_error(angle, left)
+def require_inertia_left(angle: Array, inertia: Array) -> None:
+    """Raise `InputError` where friction may jam a crank. angle: rad. inertia: inertia that friction leaves, kg m^2."""
+    if not (inertia > 0.0).all():
+        raise jamming_error(angle, inertia)
 
 
-def jamming_error(angle: Array, left: Array) -> InputError:
+def jamming_error(angle: Array, inertia: Array) -> InputError:
     """Return the error of a crank that friction may jam where least inertia is left; see `require_inertia_left`."""
-    worst = int(np.argmin(np.where(np.isnan(left), -np.inf, left)))
+    worst = int(np.argmin(np.where(np.isnan(inertia), -np.inf, inertia)))
     return InputError(
         "motion under a motor with friction needs more inertia at every crank angle than friction can give back, for "
-        f"one acceleration to follow from the torque; got {left[worst]:.3g} kg m^2 left at "
+        f"one acceleration to follow from the torque; got {inertia[worst]:.3g} kg m^2 left at "
         f"{math.degrees(angle[worst]) % 360.0:.4g} deg; give the drive a flywheel, the crank a mass, or reduce the "
         "friction"
     )

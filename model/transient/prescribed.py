@@ -108,16 +108,16 @@ def over_angle(
     angle = start + way * TURN * np.linspace(0.0, turns, max(2, math.ceil(samples * turns)) + 1)
     nodes, weights = np.polynomial.legendre.leggauss(4)
     step = np.diff(angle)[:, None]
-    between = _values("speed", motion.speed, (angle[:-1, None] + step * 0.5 * (1.0 + nodes)).ravel())
+    inner_speeds = _values("speed", motion.speed, (angle[:-1, None] + step * 0.5 * (1.0 + nodes)).ravel())
     speed, slope = _values("speed", motion.speed, angle), _values("slope", motion.slope, angle)
-    every = np.concatenate([speed, between])
-    if not np.all(every * way > 0.0):
+    all_speeds = np.concatenate([speed, inner_speeds])
+    if not np.all(all_speeds * way > 0.0):
         raise InputError(
             "a speed over crank angle must not be zero or change its sign, because the crank would never get past; "
-            f"got {every[np.argmin(every * way)]:.6g} rad/s; give the motion over time"
+            f"got {all_speeds[np.argmin(all_speeds * way)]:.6g} rad/s; give the motion over time"
         )
     _require_slope(motion.speed, motion.slope, angle)
-    time = np.concatenate([[0.0], np.cumsum(step[:, 0] * ((1.0 / between).reshape(-1, 4) @ (0.5 * weights)))])
+    time = np.concatenate([[0.0], np.cumsum(step[:, 0] * ((1.0 / inner_speeds).reshape(-1, 4) @ (0.5 * weights)))])
     return _motion(mechanism, linkage, time, angle, speed, speed * slope)
 
 
@@ -158,7 +158,7 @@ def _turned(speed: Function, time: Array) -> Array:
 
     if len(time) == 1:
         return np.zeros(1)
-    found = solve_ivp(
+    solution = solve_ivp(
         lambda t, _: _values("speed", speed, np.array([t])),
         (time[0], time[-1]),
         [0.0],
@@ -168,28 +168,28 @@ def _turned(speed: Function, time: Array) -> Array:
         atol=1e-12,
         max_step=(time[-1] - time[0]) / 50.0,
     )
-    return np.asarray(found.y[0])
+    return np.asarray(solution.y[0])
 
 
-def _table(what: str, at: Sequence[float], speeds: Sequence[float]) -> tuple[Array, Array]:
+def _table(quantity: str, at: Sequence[float], speeds: Sequence[float]) -> tuple[Array, Array]:
     """Return a table as arrays. Raises `InputError` unless it is one."""
     if len(at) != len(speeds) or len(at) < 4:
         raise InputError(
-            f"a table of speeds needs as many speeds as {what}, four at least; "
-            f"got {len(at)} {what} and {len(speeds)} speeds"
+            f"a table of speeds needs as many speeds as {quantity}, four at least; "
+            f"got {len(at)} {quantity} and {len(speeds)} speeds"
         )
     points, values = np.array(at, dtype=np.float64), np.array(speeds, dtype=np.float64)
     if not (np.all(np.isfinite(points)) and np.all(np.isfinite(values))):
-        raise InputError(f"a table of {what} and speeds must be finite throughout")
+        raise InputError(f"a table of {quantity} and speeds must be finite throughout")
     if np.any(np.diff(points) <= 0.0):
-        raise InputError(f"{what} of a table must increase; sort the table and drop what repeats")
+        raise InputError(f"{quantity} of a table must increase; sort the table and drop what repeats")
     return points, values
 
 
 def _bounded_spline(spline: Any, at: Array) -> Function:
     """Return a spline that refuses what lies beyond its table."""
 
-    def inside(time: Array) -> Array:
+    def bounded(time: Array) -> Array:
         # Differences that check a slope reach beyond the ends by a millionth of the span.
         margin = 1e-5 * (at[-1] - at[0])
         if np.any(time < at[0] - margin) or np.any(time > at[-1] + margin):
@@ -199,30 +199,28 @@ def _bounded_spline(spline: Any, at: Array) -> Function:
             )
         return np.asarray(spline(time))
 
-    return inside
+    return bounded
 
 
 def _values(name: str, function: Function, at: Array) -> Array:
     values = np.array(np.broadcast_to(np.asarray(function(at), dtype=np.float64), at.shape))
     if not np.all(np.isfinite(values)):
-        where = at[np.flatnonzero(~np.isfinite(values))[0]]
-        raise InputError(
-            f"{name} of a prescribed motion must be finite; got {name} {values[~np.isfinite(values)][0]} at {where:g}"
-        )
+        worst = np.flatnonzero(~np.isfinite(values))[0]
+        raise InputError(f"{name} of a prescribed motion must be finite; got {name} {values[worst]} at {at[worst]:g}")
     return values
 
 
 def _require_slope(function: Function, slope: Function, at: Array) -> None:
     """Raise `InputError` if a function's derivative is not what is given as such."""
     step = _STEP * ((float(np.ptp(at)) or 1.0) / len(at))
-    middle, given = _values("speed", function, at), _values("slope", slope, at)
+    middle, slopes = _values("speed", function, at), _values("slope", slope, at)
     after = (_values("speed", function, at + step) - middle) / step
     before = (middle - _values("speed", function, at - step)) / step
     # On a kink either side's slope will do, and what lies between.
-    off = np.maximum(given - np.maximum(before, after), np.minimum(before, after) - given)
-    if float(off.max()) > _CLOSE * max(float(np.abs(given).max()), float(np.abs(after).max()), 1e-6):
+    off = np.maximum(slopes - np.maximum(before, after), np.minimum(before, after) - slopes)
+    if float(off.max()) > _CLOSE * max(float(np.abs(slopes).max()), float(np.abs(after).max()), 1e-6):
         worst = int(np.argmax(off))
         raise InputError(
             "the derivative of a prescribed motion must be the slope of its function; "
-            f"got {given[worst]:.6g} where the slope is {after[worst]:.6g}, at {at[worst]:.6g}; correct it"
+            f"got {slopes[worst]:.6g} where the slope is {after[worst]:.6g}, at {at[worst]:.6g}; correct it"
         )

@@ -92,11 +92,11 @@ class Transient:
 
         The mean is that over time, 2 pi / period. Extremes are those of the points: ask for more samples for more.
         """
-        where = self.last_turn()
-        if where is None:
+        turn = self.last_turn()
+        if turn is None:
             return None
-        speeds, times = np.abs(self.speed[where]), self.time[where]
-        mean = abs(float(self.angle[-1] - self.angle[where][0])) / float(times[-1] - times[0])
+        speeds, times = np.abs(self.speed[turn]), self.time[turn]
+        mean = abs(float(self.angle[-1] - self.angle[turn][0])) / float(times[-1] - times[0])
         return float(speeds.max() - speeds.min()) / mean
 
 
@@ -118,23 +118,23 @@ class Recorder:
         time = np.append(np.concatenate(times), solution.t[-1])[1 if self._parts else 0 :]
         self._take(stretch, turn, time, solution.sol(time))
 
-    def stand(self, stretch: Span, turn: int, time: float, y: Array) -> None:
+    def add_single_state(self, stretch: Span, turn: int, time: float, y: Array) -> None:
         """Take in a single state, if there is no other."""
         if not self._parts:
             self._take(stretch, turn, np.array([time]), y[:, None], moving=0.0)
 
     def _take(self, stretch: Span, turn: int, time: Array, y: Array, *, moving: float = 1.0) -> None:
         local, speed, motor_work, load_work, *heat = y
-        terms, added = stretch.at(np.ascontiguousarray(local)), self._drive.inertia
+        terms, added = stretch.terms_at(np.ascontiguousarray(local)), self._drive.inertia
         direction = self._equation.direction
-        known = np.clip(direction * speed, *speed_range(self._drive))
-        motor = self._drive.torque(direction * known, direction)
+        speed_in_range = np.clip(direction * speed, *speed_range(self._drive))
+        motor = self._drive.torque(direction * speed_in_range, direction)
         acceleration = moving * (motor - terms.torque(speed, 0.0)) / (terms.inertia + added)
         torque = terms.torque(speed, acceleration)
         if self._equation.rubs:
             if moving:
-                given = np.ascontiguousarray(local), np.ascontiguousarray(speed), motor, added
-                acceleration, _ = stretch.accelerated(*given, acceleration)
+                motion = np.ascontiguousarray(local), np.ascontiguousarray(speed), motor, added
+                acceleration, _ = stretch.accelerated(*motion, acceleration)
             torque = motor - added * acceleration
         slider = self._linkage.at(local + self._equation.lead, speed=speed, acceleration=acceleration)
         self._parts.append(

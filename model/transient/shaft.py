@@ -36,35 +36,37 @@ class ShaftStretch(Span):
     def __init__(self, low: float, high: float, way: float, parts: list[tuple[Stretch, float]]) -> None:
         self.low, self.high, self.way, self._parts = low, high, way, parts
 
-    def at(self, crank_angle: Array) -> Terms:
+    def terms_at(self, crank_angle: Array) -> Terms:
         """Return the terms at crank angles (n,) of the shaft, rad."""
-        found = [stretch.at(crank_angle + lead) for stretch, lead in self._parts]
-        columns = zip(*((t.inertia, t.spin, t.static, t.drag, t.load, t.square) for t in found), strict=True)
+        terms = [stretch.terms_at(crank_angle + lead) for stretch, lead in self._parts]
+        columns = zip(*((t.inertia, t.spin, t.static, t.drag, t.load, t.square) for t in terms), strict=True)
         return Terms(*(np.sum(column, axis=0) for column in columns))
 
-    def rubbed(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
+    def with_friction(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
         """Return torque and heat with friction of all cylinders, (n,)."""
-        return sum_cylinders([stretch.rubbed(crank_angle + lead, speed, acceleration) for stretch, lead in self._parts])
+        return sum_cylinders(
+            [stretch.with_friction(crank_angle + lead, speed, acceleration) for stretch, lead in self._parts]
+        )
 
     def accelerated(
         self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool = False
     ) -> tuple[Array, FrictionState]:
         """Return accelerations with friction, and torque and heat of all cylinders with them, (n,)."""
-        found, last = np.array(guess), math.inf
-        low, high = np.full(found.shape, -np.inf), np.full(found.shape, np.inf)
+        accelerations, last = np.array(guess), math.inf
+        low, high = np.full(accelerations.shape, -np.inf), np.full(accelerations.shape, np.inf)
         for _ in range(ITERATIONS):
-            state = self.rubbed(crank_angle, speed, found)
+            state = self.with_friction(crank_angle, speed, accelerations)
             least = state.least + inertia
             require_inertia_left(crank_angle, least)
-            excess = torque - inertia * found - state.torque
-            new, low, high = next_acceleration(found, excess, state.by_acceleration + inertia, least, low, high)
+            excess = torque - inertia * accelerations - state.torque
+            new, low, high = next_acceleration(accelerations, excess, state.by_acceleration + inertia, least, low, high)
             size = np.abs(new) + (np.abs(torque) + np.abs(state.torque)) / least
-            step = float((np.abs(new - found) / np.where(size > 0.0, size, 1.0)).max())
-            found = new
+            step = float((np.abs(new - accelerations) / np.where(size > 0.0, size, 1.0)).max())
+            accelerations = new
             if has_converged(step, last):
                 break
             last = step
-        return found, state
+        return accelerations, state
 
 
 class ShaftEquation(Equation):
@@ -80,22 +82,27 @@ class ShaftEquation(Equation):
         self.period = turns * TURN
         self.direction = -1.0 if mechanism.speed < 0.0 else 1.0
         self.rubs = mechanism.friction.acts
-        alone = Member(mechanism, 0.0, 0.0, 0.0)
-        self._members = (alone,) if mechanism.arrangement is None else members(mechanism)
+        only_member = Member(mechanism, 0.0, 0.0, 0.0)
+        self._members = (only_member,) if mechanism.arrangement is None else members(mechanism)
         self._equations = [
-            [CrankEquation(half, self._linkage) for half in (halves(own.mechanism) if turns > 1 else (own.mechanism,))]
-            for own in self._members
+            [
+                CrankEquation(half, self._linkage)
+                for half in (halves(member.mechanism) if turns > 1 else (member.mechanism,))
+            ]
+            for member in self._members
         ]
         ends = np.asarray(self._linkage.dead_centre_angles)
-        self.dead_centres = np.concatenate([ends - own.lead for own in self._members])
+        self.dead_centres = np.concatenate([ends - member.lead for member in self._members])
         self.lead = self._members[0].lead
-        self.crowds = all(math.remainder(own.lead, math.pi) == 0.0 for own in self._members)
+        self.crowds = all(math.remainder(member.lead, math.pi) == 0.0 for member in self._members)
         parts = zip(self._members, self._equations, strict=True)
-        once = np.concatenate([each.breakpoints - own.lead for own, equations in parts for each in equations])
-        every = np.concatenate([*(once + turn * TURN for turn in range(turns)), marks])
-        every = np.sort(np.mod(every, self.period))
-        apart = np.diff(every, prepend=every[-1] - self.period) > NEAREST
-        self.breakpoints = every[apart] if apart.any() else every[:1]
+        first_turn = np.concatenate(
+            [equation.breakpoints - member.lead for member, equations in parts for equation in equations]
+        )
+        cuts = np.concatenate([*(first_turn + turn * TURN for turn in range(turns)), marks])
+        cuts = np.sort(np.mod(cuts, self.period))
+        is_apart = np.diff(cuts, prepend=cuts[-1] - self.period) > NEAREST
+        self.breakpoints = cuts[is_apart] if is_apart.any() else cuts[:1]
 
         self._stretches: dict[tuple[int, float], ShaftStretch] = {}
 
@@ -108,31 +115,31 @@ class ShaftEquation(Equation):
 
     def _stretch(self, low: float, high: float, way: float) -> ShaftStretch:
         middle, parts = 0.5 * (low + high), []
-        for own, equations in zip(self._members, self._equations, strict=True):
-            at, half = middle + own.lead, 0
+        for member, equations in zip(self._members, self._equations, strict=True):
+            at, half = middle + member.lead, 0
             if len(equations) > 1:
                 inner, outer = self._linkage.dead_centre_angles
-                half = int(half_at(own.mechanism, inner, outer, np.array(at)))
+                half = int(half_at(member.mechanism, inner, outer, np.array(at)))
             cuts = equations[half].breakpoints
             local = float(cuts[0]) + (at - float(cuts[0])) % TURN
             index = int(np.searchsorted(cuts, local, side="right")) - 1
-            parts.append((equations[half].stretch(index, way), own.lead + local - at))
+            parts.append((equations[half].stretch(index, way), member.lead + local - at))
         return ShaftStretch(low, high, way, parts)
 
     def inertia(self, crank_angle: Array) -> Array:
         """Return the moving inertia of all cylinders, kg m^2; shape of the crank angle."""
         parts = zip(self._members, self._equations, strict=True)
-        return np.asarray(sum(equations[0].inertia(crank_angle + own.lead) for own, equations in parts))
+        return np.asarray(sum(equations[0].inertia(crank_angle + member.lead) for member, equations in parts))
 
     def least_inertia(self, crank_angle: Array) -> Array:
         """Return the least inertia that friction leaves of all cylinders, kg m^2; shape of the crank angle."""
         parts = zip(self._members, self._equations, strict=True)
-        return np.asarray(sum(equations[0].least_inertia(crank_angle + own.lead) for own, equations in parts))
+        return np.asarray(sum(equations[0].least_inertia(crank_angle + member.lead) for member, equations in parts))
 
     def height_energy(self, crank_angle: Array) -> Array:
         """Return the potential energy of gravity of all cylinders, J; shape of the crank angle."""
         parts = zip(self._members, self._equations, strict=True)
-        return np.asarray(sum(equations[0].height_energy(crank_angle + own.lead) for own, equations in parts))
+        return np.asarray(sum(equations[0].height_energy(crank_angle + member.lead) for member, equations in parts))
 
 
 def equation_of(mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> Equation:

@@ -38,13 +38,13 @@ _SIZES = ("torque", "power", "guide_force", "slider_speed", "slider_acceleration
 class SpeedProfileCurves:
     """Crank speed, rad/s, and acceleration, rad/s^2, over the crank angle (n,), and the curves of the cycle there.
 
-    others: curves (n,) by name, SI: forces of the joints by their size, shaking force and moment, power.
+    named_curves: curves (n,) by name, SI: forces of the joints by their size, shaking force and moment, power.
     """
 
     speed: Array
     acceleration: Array
     curves: Cycle
-    others: Mapping[str, Array]
+    named_curves: Mapping[str, Array]
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def speed_profile_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: Ar
     speed, acceleration = crank_speed(mechanism, crank_angle)
     curves = cycle(mechanism, linkage, crank_angle, speed=speed, acceleration=acceleration)
     shaken = shaking_curves(mechanism, linkage, crank_angle, speed=speed, acceleration=acceleration)
-    others = {
+    named = {
         "pivot_force": np.hypot(curves.pivot_x, curves.pivot_y),
         "crank_pin_force": np.hypot(curves.crank_pin_x, curves.crank_pin_y),
         "slider_pin_force": np.hypot(curves.slider_pin_x, curves.slider_pin_y),
@@ -89,7 +89,7 @@ def speed_profile_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: Ar
         "slider_acceleration": curves.slider_acceleration,
         "shaking_moment": shaken.moment,
     }
-    return SpeedProfileCurves(speed, acceleration, curves, others)
+    return SpeedProfileCurves(speed, acceleration, curves, named)
 
 
 def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage) -> SpeedProfileCycle:
@@ -104,36 +104,41 @@ def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage) -> SpeedProfileC
             f"{mechanism.acceleration:g} rad/s^2"
         )
 
-    def followed(theta: Array) -> Array:
-        found = speed_profile_curves(mechanism, linkage, theta)
-        rows = [found.speed, found.acceleration, 1.0 / np.abs(found.speed), *(found.others[name] for name in _SIZES)]
-        return np.stack([*rows, *(found.others[name] ** 2 for name in _SQUARES)])
+    def curve_rows(theta: Array) -> Array:
+        curves = speed_profile_curves(mechanism, linkage, theta)
+        rows = [
+            curves.speed,
+            curves.acceleration,
+            1.0 / np.abs(curves.speed),
+            *(curves.named_curves[name] for name in _SIZES),
+        ]
+        return np.stack([*rows, *(curves.named_curves[name] ** 2 for name in _SQUARES)])
 
     turns = cycle_turns(mechanism)
     cuts, knots = breakpoints(mechanism, linkage), speed_knots(mechanism)
     start, end = cuts[0], cuts[0] + turns * TURN
-    at = [start + np.mod(knots - start, TURN) + turn * TURN for turn in range(turns)]
-    ends = np.unique(np.concatenate([cuts, *at, np.linspace(start, end, 1 + turns * _PIECES)]))
-    sizes = np.abs(followed(np.linspace(start, end, _SAMPLES))).max(axis=1)
-    found = panels_of(followed, ends, np.where(sizes > 0.0, sizes, 1.0))
-    least, greatest = found.extremes(0)
-    period = TURN * found.mean(_TIME)
-    peaks = {name: _size(found.extremes(3 + row), turns) for row, name in enumerate(_SIZES)}
+    profile_knots = [start + np.mod(knots - start, TURN) + turn * TURN for turn in range(turns)]
+    ends = np.unique(np.concatenate([cuts, *profile_knots, np.linspace(start, end, 1 + turns * _PIECES)]))
+    sizes = np.abs(curve_rows(np.linspace(start, end, _SAMPLES))).max(axis=1)
+    panels = panels_of(curve_rows, ends, np.where(sizes > 0.0, sizes, 1.0))
+    least, greatest = panels.extremes(0)
+    period = TURN * panels.mean(_TIME)
+    peaks = {name: _size(panels.extremes(3 + row), turns) for row, name in enumerate(_SIZES)}
     for row, name in enumerate(_SQUARES, start=3 + len(_SIZES)):
-        top = found.extremes(row)[1]
+        top = panels.extremes(row)[1]
         peaks[name] = Extreme(math.sqrt(max(0.0, top.value)), angle_in_cycle(top.angle, turns * TURN))
     way, torque = mechanism.direction, 3 + _SIZES.index("torque")
-    mean = found.mean(torque)
+    mean = panels.mean(torque)
     return SpeedProfileCycle(
         least_speed=Extreme(least.value, angle_in_cycle(least.angle, TURN)),
         greatest_speed=Extreme(greatest.value, angle_in_cycle(greatest.angle, TURN)),
-        acceleration=_size(found.extremes(1), 1),
+        acceleration=_size(panels.extremes(1), 1),
         period=period,
         mean_speed=way * TURN / period,
         fluctuation=(greatest.value - least.value) * period / TURN,
         peaks=peaks,
         mean_torque=mean,
-        rms_torque=math.sqrt(found.mean_square(torque, time=_TIME)),
+        rms_torque=math.sqrt(panels.mean_square(torque, time=_TIME)),
         work=way * TURN * mean,
     )
 

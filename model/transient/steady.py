@@ -66,7 +66,7 @@ class Runner:
         self.viscous = self.turn.speed_dependent
         self.works = works_over_a_turn(replace(mechanism, acceleration=0.0))
 
-    def under(self, drive: Drive) -> SteadyRunning:
+    def running_under(self, drive: Drive) -> SteadyRunning:
         """Return the steady running under a motor: see `steady_running`."""
         self.equation.require_inertia(drive.inertia)
         motor, guess = self._motor(drive), self.balanced_speed(drive)
@@ -76,14 +76,14 @@ class Runner:
                 "steady running needs a crank that comes through every turn; got none that does near the "
                 f"{guess:.6g} rad/s where motor and loads balance; add a flywheel or a stronger motor"
             )
-        found = _result(*solved, motor, drive.inertia)
-        fastest = float(np.abs(found.speed).max())
+        running = _result(*solved, motor, drive.inertia)
+        fastest = float(np.abs(running.speed).max())
         if not fastest <= speed_range(drive)[1]:
             raise InputError(
                 "steady running needs a motor torque at every speed of the turn; "
                 f"got {fastest:.6g} rad/s of the crank, beyond the torque table; extend the table"
             )
-        return found
+        return running
 
     def constant(self, inertia: float) -> SteadyRunning:
         """Return the steady running under the constant torque that keeps the mechanism's speed as the mean one.
@@ -96,10 +96,10 @@ class Runner:
         self.equation.require_inertia(inertia)
 
         def guess(turn: PeriodicTurn) -> Guess | None:
-            found = coasting(turn, inertia, self.speed)
-            if found.guess is None or found.stops:
+            coast = coasting(turn, inertia, self.speed)
+            if coast.guess is None or coast.stops:
                 return turn.even(self.speed) if self.viscous else None
-            return found.guess
+            return coast.guess
 
         turn, solved = self.turn, None
         for finer in (cut_where_least, graded):
@@ -129,10 +129,10 @@ class Runner:
             running = self.constant(inertia)
         except InputError:
             turn = cut_where_least(self.turn, coasting(self.turn, inertia, self.speed).load)
-            found = coasting(turn, inertia, self.speed)
-            if self.viscous or found.guess is None or not found.stops:
+            coast = coasting(turn, inertia, self.speed)
+            if self.viscous or coast.guess is None or not coast.stops:
                 raise
-            energy, start, added = found.guess
+            energy, start, added = coast.guess
             rate = turn.rate(energy, _no_motor, inertia)[0] + added / (turn.terms.inertia + inertia)
             stopping = _result(turn, Profile(energy, start, rate, added, 1.0), _no_motor, inertia)
             return 0.0, float(np.abs(stopping.speed).max())
@@ -160,9 +160,9 @@ class Runner:
         way, (slowest, fastest) = self.turn.way, speed_range(drive)
 
         def motor(speed: Array) -> tuple[Array, Array]:
-            known = way * np.clip(way * speed, slowest, fastest)
-            slope = drive.gear_ratio**2 * drive.motor.slope(drive.gear_ratio * way * known)
-            return drive.torque(known, way), np.where(known == speed, slope, 0.0)
+            speed_in_range = way * np.clip(way * speed, slowest, fastest)
+            slope = drive.gear_ratio**2 * drive.motor.slope(drive.gear_ratio * way * speed_in_range)
+            return drive.torque(speed_in_range, way), np.where(speed_in_range == speed, slope, 0.0)
 
         return motor
 
@@ -172,12 +172,12 @@ def _no_motor(speed: Array) -> tuple[Array, Array]:
 
 
 def _result(turn: PeriodicTurn, profile: Profile, motor: Torque, inertia: float) -> SteadyRunning:
-    whole = turn.equation.period
-    pace = turn.way / np.sqrt(2.0 * profile.energy)
-    times, _ = turn.integral(pace)
-    panels = [_points(turn, profile, pace, float(times[p]), p) for p in range(len(times))]
-    period = float(turn.width @ (pace @ turn.weights))
-    end = panels[0][:1] + np.array([[turn.way * whole, period, 0.0, 0.0]])
+    cycle_angle = turn.equation.period
+    time_per_angle = turn.way / np.sqrt(2.0 * profile.energy)
+    times, _ = turn.integral(time_per_angle)
+    panels = [_points(turn, profile, time_per_angle, float(times[p]), p) for p in range(len(times))]
+    period = float(turn.width @ (time_per_angle @ turn.weights))
+    end = panels[0][:1] + np.array([[turn.way * cycle_angle, period, 0.0, 0.0]])
     angle, time, energy, acceleration = np.concatenate([*panels, end]).T
     speed = turn.way * np.sqrt(2.0 * energy)
     torque = motor(speed)[0] + profile.added
@@ -189,11 +189,11 @@ def _result(turn: PeriodicTurn, profile: Profile, motor: Torque, inertia: float)
         acceleration=acceleration,
         motor_torque=torque,
         torque=torque - inertia * acceleration,
-        mean_speed=turn.way * whole / period,
-        work=float(turn.width @ (at_nodes @ turn.weights)) * (TURN / whole),
+        mean_speed=turn.way * cycle_angle / period,
+        work=float(turn.width @ (at_nodes @ turn.weights)) * (TURN / cycle_angle),
         inertia=inertia,
         memory=profile.memory,
-        turns=round(whole / TURN),
+        turns=round(cycle_angle / TURN),
     )
 
 
@@ -202,7 +202,7 @@ def _points(turn: PeriodicTurn, profile: Profile, pace: Array, time: float, p: i
     from scipy.optimize import brentq
 
     def rate(x: float) -> float:
-        return turn.within(profile.rate, p, x)[0]
+        return turn.value_and_integral(profile.rate, p, x)[0]
 
     at = np.concatenate([[-1.0], turn.nodes, [1.0]])
     rates = np.concatenate([[rate(-1.0)], profile.rate[p], [rate(1.0)]])
@@ -212,8 +212,8 @@ def _points(turn: PeriodicTurn, profile: Profile, pace: Array, time: float, p: i
     rows = np.stack([angles, times, profile.energy[p], profile.rate[p]], axis=1)
     for x in extremes:
         angle = turn.low[p] + 0.5 * (1.0 + x) * turn.width[p]
-        gain = turn.within(profile.rate, p, x)[1]
-        row = [angle, time + turn.within(pace, p, x)[1], profile.start[p] + gain, 0.0]
+        gain = turn.value_and_integral(profile.rate, p, x)[1]
+        row = [angle, time + turn.value_and_integral(pace, p, x)[1], profile.start[p] + gain, 0.0]
         rows = np.insert(rows, np.searchsorted(rows[:, 1], row[1]), row, axis=0)
     return np.insert(rows, 0, [turn.low[p], time, profile.start[p], rates[0]], axis=0)
 
@@ -225,4 +225,4 @@ def steady_running(mechanism: Mechanism, linkage: Linkage, drive: Drive | None =
     Raises `InputError` where there is none: the motor is too weak, nothing limits the speed, or the torque table ends
     too soon.
     """
-    return Runner(mechanism, linkage).under(drive_of(mechanism, drive))
+    return Runner(mechanism, linkage).running_under(drive_of(mechanism, drive))

@@ -121,7 +121,7 @@ class PeriodicTurn:
             low.append(ends[:-1])
             width.append(np.diff(ends))
             angle.append(at)
-            terms.append(stretch.at(at.ravel()))
+            terms.append(stretch.terms_at(at.ravel()))
             self.spans.append((stretch, slice(passed, passed + len(at))))
             passed += len(at)
         self.low, self.width, self.angle = np.concatenate(low), np.concatenate(width), np.concatenate(angle)
@@ -138,12 +138,12 @@ class PeriodicTurn:
         starts = np.concatenate([[0.0], np.cumsum(panels)[:-1]])
         return starts, starts[:, None] + self.width[:, None] * (values @ self.sums.T)
 
-    def within(self, values: Array, panel: int, x: float) -> tuple[float, float]:
+    def value_and_integral(self, values: Array, panel: int, x: float) -> tuple[float, float]:
         """Return values within a panel, at x from -1 to 1, and their integral from its start."""
         series = self._series @ values[panel]
         x = float(x)
-        inside = float(self.width[panel]) * _sum(self._integral @ series, x)
-        return _sum(series, x), inside
+        integral = float(self.width[panel]) * _sum(self._integral @ series, x)
+        return _sum(series, x), integral
 
     def rate(self, energy: Array, motor: Torque, inertia: float) -> tuple[Array, Array]:
         """Return dE / d(theta) and its derivative by E."""
@@ -162,13 +162,13 @@ class PeriodicTurn:
             torque, slope = motor(speed)
             for span, panels in self.spans:
                 angles, speeds, torques, guess = (
-                    of[panels].ravel() for of in (self.angle, speed, torque + added, rate)
+                    values[panels].ravel() for values in (self.angle, speed, torque + added, rate)
                 )
-                found, state = span.accelerated(angles, speeds, torques, inertia, guess, by_speed=True)
+                accelerations, state = span.accelerated(angles, speeds, torques, inertia, guess, by_speed=True)
                 share = 1.0 / (state.by_acceleration + inertia)
                 by_speed = (slope[panels].ravel() - state.by_speed) * share
-                for column, of in ((rate, found), (by_torque, share), (by_energy, by_speed / speeds)):
-                    column[panels] = of.reshape(column[panels].shape)
+                for column, values in ((rate, accelerations), (by_torque, share), (by_energy, by_speed / speeds)):
+                    column[panels] = values.reshape(column[panels].shape)
         return rate, by_energy, by_torque
 
     @property
@@ -178,15 +178,15 @@ class PeriodicTurn:
 
     def friction(self, speed: Array, rate: Array | float) -> Array:
         """Return the torque on the nodes, N m, that friction adds at speeds, rad/s, and accelerations, rad/s^2."""
-        found = np.zeros(self.angle.shape)
+        torque = np.zeros(self.angle.shape)
         if not self.equation.rubs:
-            return found
-        speed, rate = np.broadcast_to(speed, found.shape), np.broadcast_to(rate, found.shape)
+            return torque
+        speed, rate = np.broadcast_to(speed, torque.shape), np.broadcast_to(rate, torque.shape)
         for span, panels in self.spans:
-            rubbed = span.rubbed(*(of[panels].ravel() for of in (self.angle, speed, rate)))
-            found[panels] = rubbed.torque.reshape(found[panels].shape)
-        without: Array = self.terms.torque(speed, rate)
-        return found - without
+            state = span.with_friction(*(values[panels].ravel() for values in (self.angle, speed, rate)))
+            torque[panels] = state.torque.reshape(torque[panels].shape)
+        frictionless: Array = self.terms.torque(speed, rate)
+        return torque - frictionless
 
     def rubbing_at(self, speed: float) -> PeriodicTurn:
         """Return the turn whose panels end where guides change sides at a constant speed, rad/s, of its size."""
@@ -242,26 +242,29 @@ class PeriodicTurn:
 
         energy, rate: E and its derivative on the nodes. start: E at the panels' starts.
         """
-        found: list[float] = []
+        contacts_found: list[float] = []
         ends = self.low + self.width
         for span, panels in self.spans:
 
             def motion(angle: float, panels: slice = panels) -> tuple[float, float]:
                 p = panels.start + int(np.searchsorted(self.way * ends[panels][:-1], self.way * angle))
-                own, gain = self.within(rate, p, 2.0 * (angle - self.low[p]) / self.width[p] - 1.0)
-                return self.way * math.sqrt(2.0 * (start[p] + gain)), own
+                value, gain = self.value_and_integral(rate, p, 2.0 * (angle - self.low[p]) / self.width[p] - 1.0)
+                return self.way * math.sqrt(2.0 * (start[p] + gain)), value
 
             edges = float(self.low[panels.start]), float(ends[panels.stop - 1])
             (first, first_rate), (last, last_rate) = map(motion, edges)
             speeds = np.concatenate([[first], self.way * np.sqrt(2.0 * energy[panels].ravel()), [last]])
             rates = np.concatenate([[first_rate], rate[panels].ravel(), [last_rate]])
             angles = np.concatenate([edges[:1], self.angle[panels].ravel(), edges[1:]])
-            found += contacts(span, motion, angles, speeds, rates)
-        found.sort()
-        known = self.contacts
-        if len(found) == len(known) and np.abs(np.subtract(found, known)).max(initial=0.0) < _MOVED:
+            contacts_found += contacts(span, motion, angles, speeds, rates)
+        contacts_found.sort()
+        contacts_before = self.contacts
+        if (
+            len(contacts_found) == len(contacts_before)
+            and np.abs(np.subtract(contacts_found, contacts_before)).max(initial=0.0) < _MOVED
+        ):
             return None
-        return PeriodicTurn(self.equation, self.dimensions, self.cuts, tuple(found))
+        return PeriodicTurn(self.equation, self.dimensions, self.cuts, tuple(contacts_found))
 
     def _rough(self, values: Array) -> Mask:
         """Return the panels (panels,) on which neither the values nor their integral are resolved."""
@@ -288,7 +291,7 @@ class PeriodicTurn:
             chain = _chain(jump, 1.0 + passed[:, 1], passed[:, 2] + self.width * (by_torque @ self.weights))
             (offset, by_start, by_added), memory = chain[-1], chain[-1][1]
             if mean_speed is None:
-                change, more = (offset / (1.0 - by_start) if by_start != 1.0 else math.inf), 0.0
+                change, torque_change = (offset / (1.0 - by_start) if by_start != 1.0 else math.inf), 0.0
             else:
                 flow = np.abs(self.width)[:, None] * self.weights * (2.0 * energy) ** -1.5
                 maps = chain[:-1]
@@ -297,13 +300,13 @@ class PeriodicTurn:
                 period = float(np.sum(np.abs(self.width)[:, None] * self.weights / np.sqrt(2.0 * energy)))
                 matrix = [[1.0 - by_start, -by_added], [np.sum(flow * nodes[1]), np.sum(flow * by_torque_too)]]
                 side = [offset, period - self.equation.period / abs(mean_speed) - np.sum(flow * nodes[0])]
-                change, more = (float(value) for value in np.linalg.solve(matrix, side))
-            if not (math.isfinite(change) and math.isfinite(more)):
+                change, torque_change = (float(value) for value in np.linalg.solve(matrix, side))
+            if not (math.isfinite(change) and math.isfinite(torque_change)):
                 return None
-            starts = chain[:-1, 0] + chain[:-1, 1] * change + chain[:-1, 2] * more
-            step = moved[..., 0] + moved[..., 1] * starts[:, None] + moved[..., 2] * more
+            starts = chain[:-1, 0] + chain[:-1, 1] * change + chain[:-1, 2] * torque_change
+            step = moved[..., 0] + moved[..., 1] * starts[:, None] + moved[..., 2] * torque_change
             share = min(1.0, 0.9 / max(float((-step / energy).max()), float((-starts / start).max()), 1e-300))
-            energy, start, added = energy + share * step, start + share * starts, added + share * more
+            energy, start, added = energy + share * step, start + share * starts, added + share * torque_change
             size = float(np.abs(step).max() / energy.max())
             if share == 1.0 and size < 1e-8 and (size < _EXACT or size >= 0.5 * last):
                 rate = self.rates(energy, motor, inertia, added)[0]

@@ -142,7 +142,7 @@ class Designs:
     def rod_angle(self, angle: Numbers) -> Numbers:
         """Return the angle between rod and slider line, rad, positive where the rod rises outward."""
         m = self._motion(angle)
-        return cast(Numbers, np.arcsin(m.across / self.rod))
+        return cast(Numbers, np.arcsin(m.l_sin / self.rod))
 
     def transmission_angle(self, angle: Numbers) -> Numbers:
         """Return the angle between rod and the normal of the slider line, rad."""

@@ -76,7 +76,7 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
     acting = cycle(mechanism, linkage, crank_angle)
     moving = acting if mechanism.speed else cycle(replace(mechanism, speed=1.0), linkage, crank_angle)
     nothing = np.full(len(acting.crank_angle), np.nan)
-    if not mechanism.tolerances.given:
+    if not mechanism.tolerances.are_stated:
         acting = replace(acting, position_error=nothing, position_error_rss=nothing)
     speed = mechanism.speed
     rates, note = (_RATES, "") if speed else (_RATES_PER_ANGLE, " per crank speed")
@@ -95,7 +95,7 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
         Curve("slider_velocity", f"slider velocity{note}", velocity, rates[0]),
         Curve("slider_acceleration", f"slider acceleration{note}", acceleration, rates[1]),
         Curve("slider_jerk", f"slider jerk{note}", jerk, rates[2]),
-        Curve("rod_angle", "rod angle", direction(m.across, m.along), ANGLE),
+        Curve("rod_angle", "rod angle", direction(m.l_sin, m.l_cos), ANGLE),
         Curve("transmission_angle", "transmission angle", moving.transmission_angle, ANGLE),
         Curve("torque", f"drive torque{all_cylinders}", torque, TORQUE),
         Curve(

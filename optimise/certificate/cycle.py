@@ -41,7 +41,7 @@ def best_angles(peak: CyclePeak, mechanism: Mechanism, designs: Array) -> Array:
     """Return the crank angle, rad, of each design's peak (n,)."""
     if screens(mechanism, peak.signal, during=peak.during):
         return screen(mechanism, (peak.signal,), designs, places=True)[0].angles
-    angles = find_peaks(mechanism, peak.signal, designs, during=peak.during, kept=1).angles[:, 0]
+    angles = find_peaks(mechanism, peak.signal, designs, during=peak.during, limit=1).angles[:, 0]
     return np.where(np.isfinite(angles), angles, 0.0)
 
 

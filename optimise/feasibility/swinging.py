@@ -47,13 +47,13 @@ def unswung(problem: Problem) -> str:
         if driven(machine, motion, able).any():
             return ""
         stuck.append((machine, able))
-    factor, unit = (180.0 / math.pi, "deg") if motion.of == "crank" else (1e3, "mm of the slider")
+    factor, unit = (180.0 / math.pi, "deg") if motion.stated_for == "crank" else (1e3, "mm of the slider")
     asked = f"the swing from {factor * motion.start:.6g} to {factor * motion.end:.6g} {unit}"
     if any(
         start_column(problem.part(branch.variant).mechanism) is not None for branch in elimination_branches(problem)
     ):
         asked = f"the swing by {factor * (motion.end - motion.start):.6g} {unit}" if motion.follows else "the swing"
-    if not closing and motion.of == "slider":
+    if not closing and motion.stated_for == "slider":
         return (
             f"no design within the ranges reaches {asked} with the crank pin on the {motion.side} of the line to "
             "the slider pin: at both ends the slider's distance from the crank pivot must be between |rod - crank| "

@@ -69,7 +69,7 @@ def _part(table: model.Table) -> type[LoadPart]:
         fields[SOURCE] = (values.Source, values.source())
     part = create_model(table.name, __base__=LoadPart, __doc__=table.help, **fields)
     part.model_config["json_schema_extra"] = {
-        "x-load": {"key": table.key, "title": table.title, "first": dict(table.first), "motion": table.motion}
+        "x-load": {"key": table.key, "title": table.title, "first": dict(table.initial), "motion": table.motion}
     }
     part.model_rebuild(force=True)
     part.makes = staticmethod(table.build)

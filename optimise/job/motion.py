@@ -67,7 +67,7 @@ def _swing(
         law=law,
         duration=duration,
         actuator_tolerance=actuator_tolerance,
-        of=of,
+        stated_for=of,
         side=crank_side,
         follows=span is not None,
         points=_points(law, law_times, law_shares),
@@ -263,15 +263,15 @@ def require_apart(motion: Swing | None, varying: tuple[Varying, ...]) -> None:
     """Raise JobError for a range of starts about an end that stays: swings of next to nothing would be the best."""
     if motion is None or motion.follows:
         return
-    name = _STARTS[motion.of]
-    factor, unit = (ANGLE.metric.factor, "deg") if motion.of == "crank" else (1e3, "mm")
+    name = _STARTS[motion.stated_for]
+    factor, unit = (ANGLE.metric.factor, "deg") if motion.stated_for == "crank" else (1e3, "mm")
     for item in varying:
         if item.name == f"motion.{name}" and item.lower <= motion.end <= item.upper:
             raise JobError(
                 f"motion.{name}: starts must lie on one side of the end of the swing, where nothing is left of it; got "
                 f"{factor * item.lower:.6g} to {factor * item.upper:.6g} {unit} with an end at "
-                f"{factor * motion.end:.6g} {unit}; narrow the range, or give {_SPANS[motion.of]} instead of "
-                f"{_ENDS[motion.of]}"
+                f"{factor * motion.end:.6g} {unit}; narrow the range, or give {_SPANS[motion.stated_for]} instead of "
+                f"{_ENDS[motion.stated_for]}"
             )
 
 

@@ -158,7 +158,7 @@ class Problem:
         keep_tuples(self, "objectives", "constraints", "own", "choices", "variants", "left_out")
         keep_tuples(self, "catalogue", "discrete", "warnings")
         require_kinds(self, _KINDS, _CHANGE)
-        require_kinds(self, _EACH, _CHANGE, each=True)
+        require_kinds(self, _EACH, _CHANGE, item_by_item=True)
         require_known(self.discrete, [*self.ranges])
         if self.motion is not None:
             self._take(self.motion)

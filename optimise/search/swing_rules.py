@@ -47,11 +47,11 @@ def swing_rules(problem: Problem, wanted: Mapping[str, float], sign: float) -> I
     free = () if column is None else (problem.mechanism.varying[column - 3].name,)
     given = (sign, motion.start, motion.end, float(motion.follows))
     travel, angle = ACTUATOR_TRAVEL.name, SWING_ANGLE.name
-    if motion.of == "crank" and travel in wanted:
+    if motion.stated_for == "crank" and travel in wanted:
         numbers = (wanted[travel], *given)
         yield SwingRule(travel, "rod", ("crank", "offset", *free), numbers, _rod_of_travel, 2)
         yield SwingRule(travel, "offset", ("crank", "rod", *free), numbers, _offset_of_travel, 4)
-    if motion.of == "slider" and angle in wanted:
+    if motion.stated_for == "slider" and angle in wanted:
         numbers = (wanted[angle], *given)
         yield SwingRule(angle, "crank", ("rod", "offset", *free), numbers, _crank_of_angle, 4)
         yield SwingRule(angle, "rod", ("crank", "offset", *free), numbers, _rod_of_angle, 4)

@@ -98,7 +98,7 @@ def joint_loads(mechanism: Mechanism, linkage: Linkage) -> JointLoads:
     axial = -np.concatenate([(pin * rod).sum(axis=0), (end * rod).sum(axis=0)])
     dimensions = np.array([[linkage.crank, linkage.rod, linkage.offset]], dtype=np.float64)
     pivot, crank_pin, slider_pin = (
-        float(find_peaks(mechanism, signal, dimensions, kept=1).values[0, 0])
+        float(find_peaks(mechanism, signal, dimensions, limit=1).values[0, 0])
         for signal in (Signal.PIVOT_FORCE, Signal.CRANK_PIN_FORCE, Signal.SLIDER_PIN_FORCE)
     )
     return JointLoads(

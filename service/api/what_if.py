@@ -129,7 +129,7 @@ def show_requirements(stored_front: FrontDep, design: DesignNumber) -> Requireme
         slow_stroke=stored.part.slow_stroke,
         speed_rpm=speed_rpm(stored.mechanism),
         names=quantity_names(stored.part),
-        tolerances=stored.mechanism.tolerances.given,
+        tolerances=stored.mechanism.tolerances.are_stated,
     )
 
 

@@ -134,7 +134,7 @@ def curves_at_even_times(
 
 def has_position_error(mechanism: Mechanism, swing: Swing) -> bool:
     """Return whether the driven side has an error."""
-    return mechanism.tolerances.given or swing.actuator_tolerance > 0.0
+    return mechanism.tolerances.are_stated or swing.actuator_tolerance > 0.0
 
 
 def swing_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> list[dict[str, Any]]:

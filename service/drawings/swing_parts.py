@@ -65,7 +65,7 @@ def swing_look(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingLoo
     """Return how a linkage that swings is drawn. Raises what `require_swing` raises."""
     checked = require_swing(mechanism, linkage, swing)
     swing = placed(mechanism, checked, swing)
-    turning = [dead_angle for dead in dead_points(checked) for dead_angle in swing.inside(dead)]
+    turning = [dead_angle for dead in dead_points(checked) for dead_angle in swing.occurrences(dead)]
     ways = [pin_positions(checked, angle)[1][0] for angle in (swing.start, swing.end, *turning)]
     slider_range = (min(ways), max(ways))
     body = _body(mechanism, checked)
@@ -92,7 +92,7 @@ def _swept(linkage: Linkage, swing: Swing, body: Point | None) -> tuple[float, f
     """Return the box of the crank's way and of its body's, mm."""
     r = _MM * float(linkage.crank)
     angles = np.linspace(swing.start, swing.end, 181)
-    quarters = [angle for k in range(4) for angle in swing.inside(0.5 * math.pi * k)]
+    quarters = [angle for k in range(4) for angle in swing.occurrences(0.5 * math.pi * k)]
     angles = np.concatenate([angles, quarters])
     x, y = [np.zeros(1), r * np.cos(angles)], [np.zeros(1), r * np.sin(angles)]
     if body is not None:

@@ -68,7 +68,7 @@ def swing_panels(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> PanelF
     ]
     if swing.duration is not None:
         panels.append(_panel("power of the drive", "power", POWER, ways))
-    if mechanism.tolerances.given or swing.actuator_tolerance:
+    if mechanism.tolerances.are_stated or swing.actuator_tolerance:
         panels.append(_panel(driven, "driven_error", error_kind(swing), ways[:1]))
     return PanelFigure(
         f"Swing driven at the {swing.driver}",

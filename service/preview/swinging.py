@@ -66,7 +66,7 @@ def possible_swing(tables: Mapping[str, Any], whole: Problem | None) -> Possible
         return None
     given = tables.get("mechanism")
     crossed = isinstance(given, Mapping) and given.get("branch") == "crossed"
-    cheap = ACTUATOR_TRAVEL if swing.of == "crank" else SWING_ANGLE
+    cheap = ACTUATOR_TRAVEL if swing.stated_for == "crank" else SWING_ANGLE
     wanted = (Objective(quantity=cheap.name, sense="minimise"),)
     free = () if whole is None else tuple(item for item in whole.mechanism.varying if item.paths[0] in STARTS.values())
     light = Problem(
@@ -103,7 +103,7 @@ def _possible(
     shown = None
     if example is not None:
         one = ends_of(light.mechanism, swing, example[None])
-        shown = replace(swing, start=float(one.start[0]), end=float(one.end[0]), of="crank", follows=False)
+        shown = replace(swing, start=float(one.start[0]), end=float(one.end[0]), stated_for="crank", follows=False)
     return PossibleSwing(
         swing=swing,
         shown=shown,

@@ -172,13 +172,13 @@ def _motion(problem: Problem) -> list[str]:
     swing = problem.motion
     if swing is None:
         return []
-    factor, unit = (180.0 / math.pi, "deg") if swing.of == "crank" else (1e3, "mm")
+    factor, unit = (180.0 / math.pi, "deg") if swing.stated_for == "crank" else (1e3, "mm")
     start, end = (f"{factor * value:.6g}" for value in (swing.start, swing.end))
-    ends = f"{'crank' if swing.of == 'crank' else 'slider'} swings from {start} to {end} {unit} and back"
+    ends = f"{swing.stated_for} swings from {start} to {end} {unit} and back"
     if start_column(problem.mechanism) is not None:
         moved = f"by {factor * (swing.end - swing.start):.6g} {unit}" if swing.follows else f"to {end} {unit}"
-        ends = f"{'crank' if swing.of == 'crank' else 'slider'} swings {moved} from the start of each design, and back"
-    if swing.of == "slider":
+        ends = f"{swing.stated_for} swings {moved} from the start of each design, and back"
+    if swing.stated_for == "slider":
         ends += f", the crank pin {swing.side} of the line to the slider pin"
     timed = "" if swing.duration is None else f", {swing.duration:.6g} s per stroke"
     lines = [f"{ends}; driven at the {swing.driver}, law {swing.law}{timed}"]

@@ -52,7 +52,10 @@ class Case:
 
 
 def random_profile(random: np.random.Generator, seed: int) -> Profile:
-    """Return up to six harmonics down to a tenth of the mean speed, or a table with a speed ratio up to five."""
+    """Return a profile: up to six harmonics, or a table.
+
+    Harmonics go down to a tenth of the mean speed, the speeds of a table differ by a ratio of up to five.
+    """
     if seed % 2:
         waves = random.normal(size=(2, random.integers(1, 7)))
         waves *= random.uniform(0.1, 0.9) / np.hypot(*waves).sum()

@@ -171,6 +171,6 @@ def test_a_run_that_is_cancelled_within_the_first_turn_keeps_what_it_has() -> No
 
 def test_the_uncertainty_is_the_confidence_interval_of_the_mean() -> None:
     """Student's t for 3 degrees of freedom at 99 % is 5.841 (any table)."""
-    estimate = Estimate.of(np.array([1.0, 2.0, 3.0, 6.0]))
+    estimate = Estimate.from_turns(np.array([1.0, 2.0, 3.0, 6.0]))
     assert estimate.value == 3.0
     assert estimate.uncertainty == pytest.approx(5.841 * math.sqrt(14.0 / 3.0) / 2.0, rel=1e-4)

@@ -1,4 +1,4 @@
-"""The speed of a crank over its angle: each derivative is that of the one before, and the mean is one."""
+"""The speed of a crank over its angle: derivatives agree with each other, and the mean is one."""
 
 from __future__ import annotations
 

@@ -266,7 +266,7 @@ def test_a_motor_settles_where_it_gives_what_the_compressor_takes() -> None:
     drive = Drive(motor=motor, flywheel=5.0)
     speed = Runner(machine, linkage).balanced_speed(drive)
     wanted = -indicated(AIR, float(linkage.stroke)) / (2.0 * math.pi)
-    assert float(motor.at(speed)) == pytest.approx(wanted, rel=1e-8)
+    assert float(motor.torque_at(speed)) == pytest.approx(wanted, rel=1e-8)
 
 
 @pytest.mark.parametrize(

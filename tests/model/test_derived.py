@@ -22,7 +22,7 @@ def unset(shape: tuple[int, ...], dtype: Any = float) -> Any:
 
 @pytest.mark.parametrize("machine", MACHINES.values(), ids=MACHINES)
 def test_no_row_is_left_as_the_memory_was(machine: Mechanism, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Rows that a load does not have too: sums over whole blocks warned of what was found there, now and then."""
+    """Rows that a load does not use are set too: sums over whole blocks warned of random memory there."""
     raw, loads = raw_vector(machine), load_structure(machine)
     rows = DESIGN + LOAD_ROWS * len(loads.kind)
     blocks, steps = unset((2, rows, 1)), unset((6, rows, 1), np.complex128)

@@ -97,7 +97,7 @@ def test_a_motor_settles_where_it_gives_what_drag_takes() -> None:
     motor = LinearMotor(stall_torque=4.0, no_load_speed=40.0)
     speed = Runner(machine, LINKAGE).balanced_speed(Drive(motor=motor))
     wanted = dissipated(np.array([0.05, 0.2, 0.03]), 35.0, speed) / (2.0 * math.pi)
-    assert float(motor.at(speed)) == pytest.approx(wanted, rel=1e-8)
+    assert float(motor.torque_at(speed)) == pytest.approx(wanted, rel=1e-8)
 
 
 def test_drag_of_a_job_file_is_in_si_and_must_be_positive() -> None:

@@ -129,7 +129,7 @@ def test_mean_torque_without_loads_is_zero() -> None:
     random = np.random.default_rng(35)
     for part in np.split(designs, 50):
         machine = dataclasses.replace(random_machine(random, loads=False), acceleration=0.0)
-        peak = find_peaks(machine, Signal.TORQUE, part, kept=1).values[:, 0]
+        peak = find_peaks(machine, Signal.TORQUE, part, limit=1).values[:, 0]
         mean = average_torque(machine, part).mean
         assert np.max(np.abs(mean) / peak) < 1e-12
 
@@ -141,7 +141,7 @@ def test_mean_torque_against_springs_is_zero() -> None:
         slider_mass=1.0,
         loads=(Spring(stiffness=900.0), Spring(stiffness=500.0, free_position=0.02, datum="outer dead centre")),
     )
-    peak = find_peaks(machine, Signal.TORQUE, designs, kept=1).values[:, 0]
+    peak = find_peaks(machine, Signal.TORQUE, designs, limit=1).values[:, 0]
     assert np.max(np.abs(average_torque(machine, designs).mean) / peak) < 1e-12
 
 

@@ -152,7 +152,7 @@ def test_friction_of_next_to_nothing_is_no_friction() -> None:
             size = np.abs(getattr(one, name)).max()
             np.testing.assert_allclose(getattr(other, name), getattr(one, name), rtol=0, atol=1e-12 * size)
         for kind in (Signal.TORQUE, Signal.GUIDE_FORCE, Signal.PIVOT_FORCE, Signal.POWER):
-            peaks = [find_peaks(each, kind, design[None], kept=1, gradients=True) for each in (plain, rubbed)]
+            peaks = [find_peaks(each, kind, design[None], limit=1, gradients=True) for each in (plain, rubbed)]
             np.testing.assert_allclose(peaks[1].values, peaks[0].values, rtol=1e-12)
             assert peaks[0].gradients is not None
             assert peaks[1].gradients is not None
@@ -181,7 +181,7 @@ def test_peaks_are_those_of_a_dense_sweep() -> None:
         cuts = breakpoints(machine, linkage)
         swept = cycle(machine, linkage, spacing * np.arange(20_000))
         for kind, size in SIZES.items():
-            peak = find_peaks(machine, kind, design[None], kept=1)
+            peak = find_peaks(machine, kind, design[None], limit=1)
             best = float(size(swept).max())
             half = spacing
             for _ in range(4):  # around the peak found too: both must agree on what is highest

@@ -80,7 +80,7 @@ def test_gravity_loads_and_friction_do_not_shake_the_frame() -> None:
         friction=Friction(guide=0.1),
     )
     for kind in (Signal.SHAKING_FORCE, Signal.SHAKING_MOMENT, Signal.REFLECTED_INERTIA):
-        one, two = (find_peaks(each, kind, design, kept=1).values[0, 0] for each in (machine, other))
+        one, two = (find_peaks(each, kind, design, limit=1).values[0, 0] for each in (machine, other))
         assert one == two
 
 
@@ -91,7 +91,7 @@ def test_peaks_and_root_mean_squares_are_those_of_the_curves() -> None:
             (Signal.SHAKING_FORCE, np.hypot(got.force_x, got.force_y)),
             (Signal.SHAKING_MOMENT, np.abs(got.moment)),
         ):
-            peak = find_peaks(machine, kind, design[None], kept=1).values[0, 0]
+            peak = find_peaks(machine, kind, design[None], limit=1).values[0, 0]
             # A sample is at most 1.6e-4 rad from the peak; margins from 5 % curve by less than 1e2 of the peak.
             assert curve.max() * (1.0 - 1e-12) <= peak <= curve.max() * (1.0 + 1e-5)
             rms = average(machine, kind, design[None]).rms[0]
@@ -103,8 +103,8 @@ def test_counterweight_balances_a_crank_in_full() -> None:
     weight = Counterweight(mass=0.6, radius=0.1, angle=math.pi)
     design = np.array([[0.05, 0.2, 0.01]])
     turning = Mechanism(speed=20.0, crank=crank)
-    alone = find_peaks(turning, Signal.SHAKING_FORCE, design, kept=1).values[0, 0]
-    balanced = find_peaks(dataclasses.replace(turning, counterweight=weight), Signal.SHAKING_FORCE, design, kept=1)
+    alone = find_peaks(turning, Signal.SHAKING_FORCE, design, limit=1).values[0, 0]
+    balanced = find_peaks(dataclasses.replace(turning, counterweight=weight), Signal.SHAKING_FORCE, design, limit=1)
     assert alone == pytest.approx(2.0 * 0.03 * 400.0, rel=1e-13)
     assert balanced.values[0, 0] < 1e-13 * alone
 
@@ -114,7 +114,7 @@ def test_half_the_reciprocating_mass_as_counterweight_halves_the_peak_shaking_fo
     machine = Mechanism(speed=10.0, slider_mass=3.0)
     half = dataclasses.replace(machine, counterweight=Counterweight(mass=1.5, radius=0.05, angle=math.pi))
     design = np.array([[0.05, 5.0, 0.0]])
-    whole, halved = (find_peaks(each, Signal.SHAKING_FORCE, design, kept=1).values[0, 0] for each in (machine, half))
+    whole, halved = (find_peaks(each, Signal.SHAKING_FORCE, design, limit=1).values[0, 0] for each in (machine, half))
     # The slider's second harmonic is r / l = 0.01 of the first.
     assert whole == pytest.approx(3.0 * 0.05 * 100.0 * 1.01, rel=1e-12)
     assert halved == pytest.approx(0.5 * 3.0 * 0.05 * 100.0, rel=0.021)
@@ -132,7 +132,7 @@ def test_reflected_inertia_is_twice_the_kinetic_energy_at_unit_speed() -> None:
         got = shaking_curves(machine, linkage, THETA).reflected_inertia
         np.testing.assert_allclose(got, expected, rtol=1e-12)
         dense = shaking_curves(machine, linkage, np.linspace(0.0, 2.0 * math.pi, 20_001)[:-1])
-        peak = find_peaks(machine, Signal.REFLECTED_INERTIA, design[None], kept=1).values[0, 0]
+        peak = find_peaks(machine, Signal.REFLECTED_INERTIA, design[None], limit=1).values[0, 0]
         assert peak == pytest.approx(dense.reflected_inertia.max(), rel=1e-6)
         mean = average(machine, Signal.REFLECTED_INERTIA, design[None]).mean[0]
         assert mean == pytest.approx(dense.reflected_inertia.mean(), rel=1e-12)

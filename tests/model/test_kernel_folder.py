@@ -97,7 +97,7 @@ def test_a_place_that_cannot_even_be_looked_at_is_refused_like_others(
     found = choose_folder()
     assert found.folder == home / "slidercrank/kernels"
     assert "cannot be written" in found.refused
-    assert found.others == ()
+    assert found.readable == ()
 
 
 @pytest.mark.parametrize("open_to_others", [False, True])
@@ -112,4 +112,4 @@ def test_kernels_that_nobody_else_can_have_put_there_are_read_where_nothing_can_
     found = choose_folder()
     assert found.folder is not None
     assert found.folder.parent.name == f"slidercrank-{os.getuid()}"
-    assert found.others == (() if open_to_others else (kernels,))
+    assert found.readable == (() if open_to_others else (kernels,))

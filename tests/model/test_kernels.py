@@ -27,7 +27,7 @@ from slidercrank.model.kernel import compile_all, compiler, disk
 from slidercrank.model.kernel.arithmetic import arcsine
 from slidercrank.model.kernel.closure import digest
 from slidercrank.model.kernel.compile_all import compile_missing
-from slidercrank.model.kernel.disk import Wanted, keep, read
+from slidercrank.model.kernel.disk import KernelSource, keep, read
 from slidercrank.model.kernel.interruption import interrupted_by
 from slidercrank.model.kernel.kernel import KERNELS, Integers, Kernel, Row, Table, kernel
 from slidercrank.model.kernel.machine_code import Leaf, MachineCode, load
@@ -122,11 +122,11 @@ def test_on_a_full_disk_a_process_compiles_what_it_needs_and_no_other_is_started
     needed = [of_source(PLAIN.format(**SAME | {"c": float(number)})) for number in range(3)]
     tasks = [compile_all._task(each, tmp_path) for each in needed]
 
-    def compiles(wanted: Wanted) -> MachineCode:
+    def compiles(wanted: KernelSource) -> MachineCode:
         compiled.append(wanted.name)
         return code
 
-    monkeypatch.setattr(Wanted, "compile", compiles)
+    monkeypatch.setattr(KernelSource, "compile", compiles)
     monkeypatch.setattr(disk, "kernel_folder", lambda: tmp_path)
     monkeypatch.setattr(disk, "compile_beside", lambda *given: begun.append(given[2]))
     monkeypatch.setattr(compile_all, "_tasks", lambda *_: tasks)
@@ -136,7 +136,7 @@ def test_on_a_full_disk_a_process_compiles_what_it_needs_and_no_other_is_started
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(Path, "write_bytes", full)
-    assert [disk.machine_code(each.wanted()) for each in needed] == [code] * 3
+    assert [disk.machine_code(each.source()) for each in needed] == [code] * 3
     assert len(begun) == 1
     assert len(compiled) == 3
     compile_missing(tmp_path, "")
@@ -144,7 +144,7 @@ def test_on_a_full_disk_a_process_compiles_what_it_needs_and_no_other_is_started
     monkeypatch.setattr(Path, "write_bytes", write)
     compile_missing(tmp_path, "")
     assert len(compiled) == 7
-    assert [disk.machine_code(each.wanted()) for each in needed] == [code] * 3
+    assert [disk.machine_code(each.source()) for each in needed] == [code] * 3
     assert len(compiled) == 7
 
 
@@ -271,13 +271,13 @@ def f(x: float) -> float:
 @pytest.mark.parametrize("body", ["return np.zeros(3) + x", "a = np.zeros(3)\n    return a, x"])
 def test_a_formula_that_makes_an_array_is_refused(body: str) -> None:
     with pytest.raises(numba.TypingError, match="returning of array passed into the function"):
-        of_source(MAKES.format(body=body)).wanted().compile()
+        of_source(MAKES.format(body=body)).source().compile()
 
 
 def test_a_formula_that_hands_an_array_on_is_refused() -> None:
     found = of_source(MAKES.format(body="return x").replace("x: float", "x: Row"))
     with pytest.raises(TypeError, match="must return no array; got one of g"):
-        found.wanted().compile()
+        found.source().compile()
 
 
 def test_digests_do_not_depend_on_the_process() -> None:
@@ -286,7 +286,7 @@ def test_digests_do_not_depend_on_the_process() -> None:
         "import slidercrank.model.signals.peaks;"
         "import slidercrank.model.signals.screening, slidercrank.model.signals.complex_forces;"
         "from slidercrank.model.kernel.kernel import KERNELS; from slidercrank.model.kernel.closure import digest;"
-        "print(json.dumps({w.name: digest(w.function, w.examples) for w in (k.wanted() for k in KERNELS)}))"
+        "print(json.dumps({w.name: digest(w.function, w.examples) for w in (k.source() for k in KERNELS)}))"
     )
     found = []
     for seed in ("1", "2"):
@@ -409,7 +409,7 @@ def f(x: float, j: int) -> float:
 def test_a_formula_is_compiled_once_whoever_calls_it_with_a_variable_or_a_number() -> None:
     found = of_source(ONCE)
     with event.install_recorder("numba:run_pass") as recorder:
-        found.wanted().compile()
+        found.source().compile()
     passes = [each.data for _, each in recorder.buffer if each.is_start]
     assert sorted(each["qualname"] for each in passes if each["name"].startswith("native_lowering")) == ["f", "g", "h"]
 
@@ -419,7 +419,7 @@ def test_the_frames_of_the_compiler_do_not_fetch_memory_at_every_call() -> None:
         if depth:
             return faults(depth - 1)
         before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
-        of_source(ONCE).wanted().compile()
+        of_source(ONCE).source().compile()
         return resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before
 
     faults(0)  # what numba fetches once

@@ -93,7 +93,7 @@ def test_one_cylinder_is_the_machine_alone(seed: int) -> None:
     design = np.array([[linkage.crank, linkage.rod, linkage.offset]])
     found = multi_cylinder_cycle(replace(machine, arrangement=Arrangement(phases=(0.7,))), linkage)
     machine = single_cylinder(machine)
-    peak = find_peaks(machine, Signal.TORQUE, design, kept=1)
+    peak = find_peaks(machine, Signal.TORQUE, design, limit=1)
     averages = average_torque(machine, design)
     assert abs(found.peak.value) == pytest.approx(peak.values[0, 0], rel=1e-10)
     assert math.remainder(found.peak.angle + 0.7 - peak.angles[0, 0], TURN) == pytest.approx(0.0, abs=1e-6)
@@ -103,7 +103,7 @@ def test_one_cylinder_is_the_machine_alone(seed: int) -> None:
         (Signal.SHAKING_FORCE, found.shaking_force.value, found.rms_shaking_force),
         (Signal.SHAKING_MOMENT, found.shaking_moment.value, found.rms_shaking_moment),
     ):
-        assert value == pytest.approx(find_peaks(machine, kind, design, kept=1).values[0, 0], rel=1e-10)
+        assert value == pytest.approx(find_peaks(machine, kind, design, limit=1).values[0, 0], rel=1e-10)
         assert rms == pytest.approx(average(machine, kind, design).rms[0], rel=1e-10)
 
 

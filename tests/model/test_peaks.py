@@ -45,7 +45,7 @@ OF_ONE = [signal for signal in Signal if signal is not Signal.ROCKING_COUPLE]  #
 
 
 def highest(machine: Mechanism, signal: Signal, designs: Array = DESIGNS, during: str = "cycle") -> Array:
-    found: Array = find_peaks(machine, signal, designs, during=during, kept=1).values[:, 0]
+    found: Array = find_peaks(machine, signal, designs, during=during, limit=1).values[:, 0]
     return found
 
 
@@ -169,7 +169,7 @@ def test_one_peak_asked_for_is_the_highest_of_all(seed: int) -> None:
         dataclasses.replace(machine, loads=(spikes,)),
     ):
         for signal in OF_ONE:
-            one, all_of_them = (find_peaks(other, signal, designs, kept=kept) for kept in (1, KEPT))
+            one, all_of_them = (find_peaks(other, signal, designs, limit=kept) for kept in (1, KEPT))
             np.testing.assert_array_equal(one.values, all_of_them.values[:, :1])
             np.testing.assert_array_equal(one.angles, all_of_them.angles[:, :1])
 
@@ -337,7 +337,7 @@ def test_higher_of_two_close_peaks_is_found_where_the_samples_show_only_the_lowe
         lambda d, theta: cycle(machine, Linkage(*d.reshape(3)), theta.ravel()).guide.reshape(theta.shape), design
     )
     for angles in (20, 22, 40, 128):
-        found = find_peaks(machine, Signal.GUIDE_FORCE, design, angles=angles, kept=1).values
+        found = find_peaks(machine, Signal.GUIDE_FORCE, design, angles=angles, limit=1).values
         np.testing.assert_allclose(found[0, 0], swept[0], rtol=EXACT, err_msg=f"{angles} angles")
 
 

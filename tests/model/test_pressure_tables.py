@@ -88,7 +88,7 @@ def test_the_crank_under_a_motor_feels_the_same_load(seed: int) -> None:
         theta = np.linspace(stretch.low, stretch.high, 7)[1:-1]
         load = cycle(machine, linkage, theta)
         power = load.load * load.slider_velocity * np.sign(load.slider_position) / machine.speed
-        assert np.abs(stretch.at(theta).load - power).max() <= 1e-10 * np.abs(power).max() + 1e-12
+        assert np.abs(stretch.terms_at(theta).load - power).max() <= 1e-10 * np.abs(power).max() + 1e-12
 
 
 def test_the_loaded_stroke_counts_from_the_dead_centre() -> None:

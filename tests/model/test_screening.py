@@ -59,13 +59,13 @@ def test_screening_holds_for_random_smooth_machines() -> None:
                 Viscous(coefficient=30.0),
             ),
         )
-        exact = find_peaks(machine, Signal.TORQUE, designs, kept=1).values[:, 0]
+        exact = find_peaks(machine, Signal.TORQUE, designs, limit=1).values[:, 0]
         np.testing.assert_allclose(screen(machine, Signal.TORQUE, designs).values, exact, rtol=1e-12)
 
 
 def test_screening_is_never_above_and_hardly_below_where_a_load_changes_at_the_dead_centres() -> None:
     machine = dataclasses.replace(STROKES, tolerances=TOLERANCES)
-    exact = find_peaks(machine, Signal.TORQUE, DESIGNS, kept=1).values[:, 0]
+    exact = find_peaks(machine, Signal.TORQUE, DESIGNS, limit=1).values[:, 0]
     fast = screen(machine, Signal.TORQUE, DESIGNS).values
     assert np.all(fast <= exact * (1.0 + 1e-12))
     # The spacing of 64 angles, to the first order of a kink.

@@ -41,7 +41,7 @@ ANGLE_DATUMS = ("zero crank angle", "inner dead centre", "outer dead centre")
 
 @dataclass(frozen=True)
 class Case:
-    """A machine with one table that steps, its linkage, and the same table with ramps of a width in place of steps."""
+    """A machine with a table that steps, its linkage, and the same machine with ramps instead of steps."""
 
     machine: Mechanism
     linkage: Linkage
@@ -198,7 +198,7 @@ CASES = [*(over_position(seed) for seed in range(9)), *(over_angle(seed) for see
 def test_peak_mean_and_rms_torque_of_a_table_with_steps_are_those_of_an_own_integration(case: Case) -> None:
     """The step counts by the limits from both sides; samples miss a smooth top by 1e-8, sides by their distance."""
     peak, mean, rms = numbers(case)
-    found = find_peaks(case.machine, Signal.TORQUE, case.design, kept=1).values[0, 0]
+    found = find_peaks(case.machine, Signal.TORQUE, case.design, limit=1).values[0, 0]
     assert peak * (1.0 - 1e-7) <= found <= peak * (1.0 + 1e-6)
     averages = average_torque(case.machine, case.design)
     assert averages.mean[0] == pytest.approx(mean, abs=1e-9 * rms)
@@ -212,8 +212,8 @@ def test_derivatives_of_a_table_with_steps_are_differences_of_neighbours(case: C
     design = case.design
     for read, own_slopes in (
         (
-            lambda at: find_peaks(case.machine, Signal.TORQUE, at, kept=1).values[0, 0],
-            find_peaks(case.machine, Signal.TORQUE, design, kept=1, gradients=True).gradients,
+            lambda at: find_peaks(case.machine, Signal.TORQUE, at, limit=1).values[0, 0],
+            find_peaks(case.machine, Signal.TORQUE, design, limit=1, gradients=True).gradients,
         ),
         (
             lambda at: average_torque(case.machine, at).mean[0],
@@ -236,13 +236,13 @@ def test_derivatives_of_a_table_with_steps_are_differences_of_neighbours(case: C
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [20, 22, 23, 24])
 def test_a_step_is_the_limit_of_ever_steeper_ramps_with_friction_too(seed: int) -> None:
-    """Of ramps of a millionth of the stroke and of half of it, the limit is off by the square of that."""
+    """With ramps of a millionth of the stroke and half of it, the limit errs by that squared."""
     case = (over_position if seed % 2 else over_angle)(seed)
     rubbing = replace(case.machine, friction=random_friction(np.random.default_rng(seed)))
     case = replace(case, machine=rubbing)
     for kind in (Signal.TORQUE, Signal.GUIDE_FORCE, Signal.CRANK_PIN_FORCE):
         wide, narrow, step = (
-            find_peaks(machine, kind, case.design, kept=1).values[0, 0]
+            find_peaks(machine, kind, case.design, limit=1).values[0, 0]
             for machine in (case.with_ramps(2e-6), case.with_ramps(1e-6), case.machine)
         )
         assert step == pytest.approx(2.0 * narrow - wide, rel=1e-8)
@@ -262,7 +262,7 @@ def test_means_with_friction_move_with_a_step_as_differences_say(seed: int) -> N
 
 @pytest.mark.slow
 def test_a_swing_meets_a_step_as_the_limit_of_ramps() -> None:
-    """Peak of the drive with its derivatives, and work, forth and back; the limit is off by the square of the ramp."""
+    """Peak drive with derivatives, and work both ways; the limit has an error of the ramp squared."""
     random = np.random.default_rng(7)
     for machine, linkage, swing in [*random_swings(8, seed=5), *random_swings(4, seed=6, friction=True)]:
         distance = linkage.sign * linkage.at(np.linspace(swing.start, swing.end, 400)).slider_position
@@ -273,7 +273,7 @@ def test_a_swing_meets_a_step_as_the_limit_of_ramps() -> None:
             for width in (0.0, 1e-6, 2e-6)
         )
         design = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
-        peaks = [swing_peaks(each, swing, DRIVE, design, gradients=True, kept=1) for each in (step, narrow, wide)]
+        peaks = [swing_peaks(each, swing, DRIVE, design, gradients=True, limit=1) for each in (step, narrow, wide)]
         values = [found.values[0, 0] for found in peaks]
         assert values[0] == pytest.approx(2.0 * values[1] - values[2], rel=1e-7)
         moved = [np.asarray(found.gradients)[0, 0] for found in peaks]
@@ -283,7 +283,7 @@ def test_a_swing_meets_a_step_as_the_limit_of_ramps() -> None:
 
 
 def test_a_shear_that_ends_in_a_step_has_its_peak_just_before() -> None:
-    """A blank of 4 mm is sheared from 20 mm before the end of the stroke on: the force falls from 600 kN to nothing."""
+    """A 4 mm blank is sheared from 20 mm before the end of the stroke: 600 kN fall to zero."""
     table = PositionTable(
         positions=(0.016, 0.020, 0.020), forces=(0.0, -6e5, 0.0), datum="outer dead centre", during="outward stroke"
     )
@@ -292,7 +292,7 @@ def test_a_shear_that_ends_in_a_step_has_its_peak_just_before() -> None:
     linkage = Linkage(0.06, 0.3, 0.0)
     angle = brentq(lambda theta: 0.36 - float(linkage.at(theta).slider_position) - 0.020, -1.5, -0.1)
     lever = -0.06 * math.sin(angle) * (1.0 + 0.06 * math.cos(angle) / math.sqrt(0.09 - (0.06 * math.sin(angle)) ** 2))
-    found = find_peaks(machine, Signal.TORQUE, np.array([[0.06, 0.3, 0.0]]), kept=1)
+    found = find_peaks(machine, Signal.TORQUE, np.array([[0.06, 0.3, 0.0]]), limit=1)
     assert found.values[0, 0] == pytest.approx(6e5 * lever, rel=1e-12)
     assert found.angles[0, 0] == pytest.approx(angle + TURN, abs=1e-12)
 
@@ -350,7 +350,7 @@ def test_every_table_of_a_job_may_step(table: dict[str, Any]) -> None:
     }
     machine = parse_job(job).mechanism
     assert machine.loads[0].steps
-    peak = find_peaks(machine, Signal.TORQUE, np.array([[0.04, 0.15, 0.0]]), kept=1, gradients=True)
+    peak = find_peaks(machine, Signal.TORQUE, np.array([[0.04, 0.15, 0.0]]), limit=1, gradients=True)
     assert np.isfinite(peak.values).all()
     assert np.isfinite(np.asarray(peak.gradients)).all()
 

@@ -23,7 +23,7 @@ def test_each_change_is_made_alone() -> None:
     for variation, linkage in zip(found.varied, others, strict=True):
         expected = linkage.at(TURN, speed=SPEED, acceleration=3.0)
         np.testing.assert_array_equal(variation.motion.slider_acceleration, expected.slider_acceleration)
-    np.testing.assert_array_equal(found.meant.slider_velocity, SIEVE.at(TURN, speed=SPEED).slider_velocity)
+    np.testing.assert_array_equal(found.nominal.slider_velocity, SIEVE.at(TURN, speed=SPEED).slider_velocity)
 
 
 def test_small_variation_is_the_first_order_influence() -> None:
@@ -31,20 +31,20 @@ def test_small_variation_is_the_first_order_influence() -> None:
     found = vary(SIEVE, [("crank", 0.14 + step), ("rod", 0.31 + step), ("offset", 0.06 + step)], TURN)
     i = SIEVE.error_influences(TURN)
     for variation, influence in zip(found.varied, (i.crank, i.rod, i.offset), strict=True):
-        moved = variation.motion.slider_position - found.meant.slider_position
+        moved = variation.motion.slider_position - found.nominal.slider_position
         # The second order is step / l, 1e-5.
         np.testing.assert_allclose(moved / step, influence, rtol=0.0, atol=2e-5)
 
 
 def test_longer_crank_of_case_two_lengthens_the_stroke_and_a_longer_rod_hardly_does() -> None:
     found = vary(SIEVE, [("crank", 0.15), ("rod", 0.32)], np.linspace(0.0, 2.0 * math.pi, 20001), speed=SPEED)
-    strokes = [np.ptp(motion.slider_position) for motion in (found.meant, *(v.motion for v in found.varied))]
+    strokes = [np.ptp(motion.slider_position) for motion in (found.nominal, *(v.motion for v in found.varied))]
     exact = [SIEVE.stroke, Linkage(0.15, 0.31, 0.06).stroke, Linkage(0.14, 0.32, 0.06).stroke]
     np.testing.assert_allclose(strokes, exact, rtol=1e-7)
     assert strokes[1] - strokes[0] > 0.02
     assert abs(strokes[2] - strokes[0]) < 0.002
     accelerations = [np.abs(v.motion.slider_acceleration).max() for v in found.varied]
-    assert accelerations[0] > np.abs(found.meant.slider_acceleration).max() > accelerations[1]
+    assert accelerations[0] > np.abs(found.nominal.slider_acceleration).max() > accelerations[1]
 
 
 def test_wrong_changes_are_refused() -> None:

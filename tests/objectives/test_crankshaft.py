@@ -70,7 +70,7 @@ def test_peaks_and_averages_of_the_whole_are_those_of_polynomials_through_its_su
         (Signal.SHAKING_MOMENT, whole.shaking_moment.value, whole.rms_shaking_moment),
         (Signal.ROCKING_COUPLE, whole.couple.value, None),
     ):
-        assert find_peaks(machine, kind, design, kept=1).values[0, 0] == pytest.approx(wanted, rel=1e-12)
+        assert find_peaks(machine, kind, design, limit=1).values[0, 0] == pytest.approx(wanted, rel=1e-12)
         if rms is not None:
             assert average(machine, kind, design).rms[0] == pytest.approx(rms, rel=1e-12)
     mean = QUANTITIES["mean_torque"].evaluate(machine, design).values[0]
@@ -85,7 +85,7 @@ def test_peaks_along_a_profile_are_those_of_its_curves(seed: int) -> None:
     found, design = speed_profile_cycle(machine, linkage), row(linkage)
     for name, kind in MOVING.items():
         wanted = found.peaks[name].value
-        assert find_peaks(machine, kind, design, kept=1).values[0, 0] == pytest.approx(wanted, rel=1e-12)
+        assert find_peaks(machine, kind, design, limit=1).values[0, 0] == pytest.approx(wanted, rel=1e-12)
     averages = average(machine, Signal.TORQUE, design)
     assert averages.rms[0] == pytest.approx(found.rms_torque, rel=1e-12)
     assert averages.mean[0] == pytest.approx(found.mean_torque, rel=1e-10, abs=1e-12 * found.rms_torque)
@@ -99,7 +99,7 @@ def test_the_jerk_along_a_profile_is_the_slope_of_the_acceleration() -> None:
     ahead, behind = (speed_profile_curves(machine, linkage, theta + step) for step in (h, -h))
     slope = (ahead.curves.slider_acceleration - behind.curves.slider_acceleration) / (2.0 * h)
     jerk = np.abs(slope * 0.5 * (ahead.speed + behind.speed))
-    found = find_peaks(machine, Signal.SLIDER_JERK, row(linkage), kept=1)
+    found = find_peaks(machine, Signal.SLIDER_JERK, row(linkage), limit=1)
     assert found.values[0, 0] == pytest.approx(jerk.max(), rel=1e-5)
 
 
@@ -190,7 +190,7 @@ def test_four_strokes_in_line_are_a_dense_sweep_of_their_sum() -> None:
     torque = np.zeros(len(theta))
     for own in members(machine):
         torque += cycle(own.mechanism, linkage, theta + own.lead).torque
-    found = find_peaks(machine, Signal.TORQUE, design, kept=1)
+    found = find_peaks(machine, Signal.TORQUE, design, limit=1)
     assert found.values[0, 0] == pytest.approx(np.abs(torque).max(), rel=1e-6)
     at = multi_cylinder_curves(machine, linkage, found.angles[0] + np.array([-1e-9, 1e-9])).torque
     assert np.abs(at).max() == pytest.approx(found.values[0, 0], rel=1e-6)
@@ -228,7 +228,7 @@ def boxer(**changed: Any) -> Problem:
 
 def test_a_boxer_shakes_by_a_couple_alone_and_says_so() -> None:
     machine = boxer().mechanism
-    found = find_peaks(machine, Signal.SHAKING_FORCE, np.array([[0.03, 0.1, 0.0]]), kept=1, gradients=True)
+    found = find_peaks(machine, Signal.SHAKING_FORCE, np.array([[0.03, 0.1, 0.0]]), limit=1, gradients=True)
     assert found.values[0, 0] == 0.0
     assert found.gradients is not None
     assert not found.gradients.any()

@@ -99,7 +99,7 @@ def test_the_greater_magnitude_of_both_extremes_is_the_peak(seed: int) -> None:
         for found in extremes:
             name = found.name
             if name in PEAKS:
-                peak = float(find_peaks(mechanism, PEAKS[name], design, kept=1).values[0, 0])
+                peak = float(find_peaks(mechanism, PEAKS[name], design, limit=1).values[0, 0])
                 greatest = max(abs(found.least.value), abs(found.greatest.value))
                 # Where friction locks the peak is infinite, and there is no extreme.
                 assert math.isnan(greatest) if math.isinf(peak) else greatest == pytest.approx(peak, rel=1e-9), name

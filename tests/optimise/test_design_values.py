@@ -88,7 +88,7 @@ def test_quick_peaks_are_exact_ones_where_loads_change_at_the_dead_centres() -> 
         found = sc.evaluate(of, some, ["peak_torque"])[:, 0]
         wanted = exact.evaluate(of, some).values
         np.testing.assert_allclose(found, wanted, rtol=1e-10)
-        at = find_peaks(of, Signal.TORQUE, some, kept=1).angles[:, 0]
+        at = find_peaks(of, Signal.TORQUE, some, limit=1).angles[:, 0]
         r, l, e = some.T
         for angle in (np.arcsin(e / (l + r)), np.pi + np.arcsin(e / (l - r))):
             kinks += int((np.abs(np.sin(0.5 * (at - (angle if branch == "open" else np.pi - angle)))) < 1e-9).sum())

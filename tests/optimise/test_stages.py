@@ -128,7 +128,7 @@ def test_designs_with_thousands_of_steps_are_analysed_few_at_a_time_and_come_out
 
     def columns(some: Array) -> Columns:
         asked.append(0)
-        with interrupted_by(lambda: None, between=lambda: asked.append(asked.pop() + 1)):
+        with interrupted_by(lambda: None, between_parts=lambda: asked.append(asked.pop() + 1)):
             return columns_of(stepping, np.zeros(len(some), np.int64), some)
 
     whole = columns(designs)

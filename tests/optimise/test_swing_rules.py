@@ -10,7 +10,7 @@ import pytest
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.machine.varying import Varying
 from slidercrank.model.swing.closure import passes
-from slidercrank.model.swing.ends import ends_of, farthest
+from slidercrank.model.swing.ends import ends_of, greatest_pin_distance
 from slidercrank.model.swing.swing import Swing
 from slidercrank.model.swing.swing_types import Side
 from slidercrank.optimise.problem.problem import Problem
@@ -53,7 +53,11 @@ def test_equalities_of_a_swing_hold_to_rounding_and_miss_no_design(of: str, free
             place = random.uniform(0.5, 2.5) * (1.0 if branch == "open" else -1.0)
             side: Side = "left" if random.random() < 0.5 else "right"
             swing = Swing(
-                start=place, end=place + ways * random.uniform(0.2, 1.2), of="slider", side=side, driver="slider"
+                start=place,
+                end=place + ways * random.uniform(0.2, 1.2),
+                stated_for="slider",
+                side=side,
+                driver="slider",
             )
         fixed = random.random() < 0.3
         length = random.uniform(0.8, 3.0)
@@ -77,7 +81,9 @@ def test_equalities_of_a_swing_hold_to_rounding_and_miss_no_design(of: str, free
                 tried = tried[np.isfinite(tried).all(axis=1)]
                 tried = tried[passes(own.mechanism, own.motion or swing, tried)]
                 ends = ends_of(own.mechanism, own.motion or swing, tried)
-                tried = tried[farthest(tried, [ends.start, ends.end]) < 0.995 * tried[:, 1]]  # else it opens: no digits
+                tried = tried[
+                    greatest_pin_distance(tried, [ends.start, ends.end]) < 0.995 * tried[:, 1]
+                ]  # else it opens: no digits
                 values = own.evaluate(tried, [name])[:, 0]
                 true = np.abs(values / value - 1.0) < 1e-6  # others are of a spurious root, which the search refuses
                 assert np.abs(values[true] / value - 1.0).max(initial=0.0) < 1e-12

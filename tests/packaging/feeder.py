@@ -67,8 +67,8 @@ def _kinematics() -> dict[str, float]:
     m = motion(math.sin(ANGLE), math.cos(ANGLE), 0.040, 0.064, -0.020, 1.0)
     at = FEEDER.at(ANGLE, speed=251.0)
     return {
-        "rod across": 1e3 * float(m.across),
-        "rod along": 1e3 * float(m.along),
+        "rod across": 1e3 * float(m.l_sin),
+        "rod along": 1e3 * float(m.l_cos),
         "rod angle": math.degrees(float(at.rod_angle)),
         "transmission angle": math.degrees(float(at.transmission_angle)),
         "slider position": 1e3 * float(m.x),
@@ -101,11 +101,11 @@ def _forces() -> dict[str, float]:
 
 def _cycle() -> dict[str, float]:
     def peak(kind: Signal, mechanism: Mechanism = MACHINE) -> tuple[float, float]:
-        found = find_peaks(mechanism, kind, _DESIGN, kept=1)
+        found = find_peaks(mechanism, kind, _DESIGN, limit=1)
         return float(found.values[0, 0]), math.degrees(float(found.angles[0, 0]))
 
     torque, angle = peak(Signal.TORQUE)
-    slopes = find_peaks(MACHINE, Signal.TORQUE, _DESIGN, kept=1, gradients=True).gradients
+    slopes = find_peaks(MACHINE, Signal.TORQUE, _DESIGN, limit=1, gradients=True).gradients
     assert slopes is not None
     return {
         "peak torque": torque,
@@ -135,5 +135,5 @@ def _errors() -> dict[str, float]:
         "bound of what first order leaves out": 1e3 * float(first.remainder[0]),
         "position error, root-sum-square": 1e3 * float(first.root_sum_square[0]),
         "worst case, greatest over the cycle": 1e3
-        * float(find_peaks(MACHINE, Signal.POSITION_ERROR, _DESIGN, kept=1).values[0, 0]),
+        * float(find_peaks(MACHINE, Signal.POSITION_ERROR, _DESIGN, limit=1).values[0, 0]),
     }

@@ -65,7 +65,7 @@ def test_numbers_of_the_tolerances_are_those_of_the_model(mechanism: Mechanism) 
     json.dumps(found, allow_nan=False)
     design = np.array([[1.4, 1.8, -0.05]])
     for key, signal in (("worst_case", Signal.POSITION_ERROR), ("root_sum_square", Signal.POSITION_ERROR_RSS)):
-        peak = find_peaks(mechanism, signal, design, kept=1)
+        peak = find_peaks(mechanism, signal, design, limit=1)
         assert found[f"{key}_mm"] == 1e3 * peak.values[0, 0]
         assert found[f"{key}_angle_deg"] == pytest.approx(np.degrees(peak.angles[0, 0]))
     exact = worst(mechanism, SUPPORT)

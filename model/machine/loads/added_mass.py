@@ -1,4 +1,4 @@
-"""A mass that moves with the slider besides it: fluid in a pipe, rollers or a flywheel that the slider turns."""
+"""A mass that moves with the slider: fluid in a pipe, rollers, or a flywheel that the slider turns."""
 
 from __future__ import annotations
 

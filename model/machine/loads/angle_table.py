@@ -62,16 +62,16 @@ class AngleTable(Load):
 
     def __post_init__(self) -> None:
         keep_tuples(self, "angles", "forces")
-        require_table("angles", self.angles, self.forces, of=self.tabulated[0])
+        require_table("angles", self.angles, self.forces, values=self.tabulated[0])
         require_word("during", self.during, During)
         require_word("datum", self.datum, AngleDatum)
         require_word("cycle", self.cycle, CycleAngle)
         span = self.angles[-1] - self.angles[0]
         if span > self._period + _ROUNDING:
-            more = self.cycle == "720 deg" or span > 2.0 * _TURN + _ROUNDING
+            two_turns = self.cycle == "720 deg" or span > 2.0 * _TURN + _ROUNDING
             raise InputError(
                 f"angles of a periodic table must span {self.cycle} at most; got {math.degrees(span):.6g} deg; "
-                + ("give two turns at most" if more else 'for a cycle of two turns give cycle = "720 deg"')
+                + ("give two turns at most" if two_turns else 'for a cycle of two turns give cycle = "720 deg"')
             )
         if self._closed and (self.angles[1] == self.angles[0] or self.angles[-2] == self.angles[-1]):
             raise InputError(
@@ -119,11 +119,11 @@ class AngleTable(Load):
             at, forces = np.r_[at[0], at[:-1]], np.r_[forces[-1], forces[:-1]]
         at = np.concatenate([at + (shift + n * self._period) for n in (-1, 0, 1, 2)])  # also where one turn has no knot
         forces = np.tile(forces, 4)
-        inside = (at > _ROUNDING) & (at < _TURN - _ROUNDING)
+        is_inner = (at > _ROUNDING) & (at < _TURN - _ROUNDING)
         low, high = (int(np.searchsorted(at, end)) for end in (_ROUNDING, _TURN - _ROUNDING))
         first = forces[low - 1] if at[low - 1] >= -_ROUNDING else np.interp(0.0, at, forces)
         last = forces[high] if at[high] <= _TURN + _ROUNDING else np.interp(_TURN, at, forces)
-        return [0.0, *at[inside].tolist(), _TURN], [float(first), *forces[inside].tolist(), float(last)]
+        return [0.0, *at[is_inner].tolist(), _TURN], [float(first), *forces[is_inner].tolist(), float(last)]
 
     def _force(self, angle: Any) -> Any:
         at, forces = replace(self, turn=0).knots()
@@ -172,7 +172,7 @@ class AngleTable(Load):
 
     @property
     def effect(self) -> str:
-        """What it does to its stroke, or over the cycle to either motion."""
+        """Effect on its stroke, or on either motion over the cycle."""
         return effect_by_direction(self.forces, SLIDES, "motion") if self.push is None else super().effect
 
     @property

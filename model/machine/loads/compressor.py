@@ -29,10 +29,10 @@ class Compressor(Cylinder):
         ratio = self.high / self.low
         n = min(self.compression_exponent, self.expansion_exponent)
         if n > 0.0:
-            most = 1.0 / (ratio ** (1.0 / n) - 1.0)
-            if self.clearance >= most:
+            limit = 1.0 / (ratio ** (1.0 / n) - 1.0)
+            if self.clearance >= limit:
                 raise InputError(
-                    f"the clearance must be below {most:.4g} of the swept volume, else nothing is delivered at "
+                    f"the clearance must be below {limit:.4g} of the swept volume, else nothing is delivered at "
                     f"{ratio:.4g} times the suction pressure with exponent {n:g}; got {self.clearance:g}; reduce the "
                     "clearance or the pressure ratio"
                 )
@@ -50,13 +50,13 @@ class Compressor(Cylinder):
     @property
     def size(self) -> str:
         """Pressures, exponents and size."""
-        what = "pump" if self.compression_exponent == 0.0 else "compressor"
-        how = (
+        machine = "pump" if self.compression_exponent == 0.0 else "compressor"
+        exponents = (
             ""
             if self.compression_exponent == 0.0
             else f", exponents {self.compression_exponent:.6g} and {self.expansion_exponent:.6g}"
         )
-        return f"{what} from {1e-5 * self.low:.6g} to {1e-5 * self.high:.6g} bar{how}, {self.size_text}"
+        return f"{machine} from {1e-5 * self.low:.6g} to {1e-5 * self.high:.6g} bar{exponents}, {self.size_text}"
 
 
 def _built(

@@ -44,7 +44,7 @@ class CrankTable(AngleTable):
 
     @property
     def effect(self) -> str:
-        """What it does to a rotation in either sense."""
+        """Effect on a rotation in either sense."""
         return effect_by_direction(self.forces, TURNS, "rotation")
 
 

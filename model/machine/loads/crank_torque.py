@@ -38,8 +38,8 @@ class CrankTorque(Load):
 
     def __post_init__(self) -> None:
         require_numbers(self, "torque", "free_angle")
-        require_numbers(self, "resistance", what="the {} of the crank", least=0.0, unit="N m")
-        require_numbers(self, "crank_stiffness", what="the stiffness of a spring on the crank", least=0.0)
+        require_numbers(self, "resistance", phrase="the {} of the crank", least=0.0, unit="N m")
+        require_numbers(self, "crank_stiffness", phrase="the stiffness of a spring on the crank", least=0.0)
 
     def numbers(self) -> tuple[float, ...]:
         """Return the numbers of `slots` after factors of one."""

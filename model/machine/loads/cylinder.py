@@ -68,12 +68,12 @@ class Cylinder(Load):
     tables: ClassVar[tuple[Table, ...]] = ()
 
     def __post_init__(self) -> None:
-        require_numbers(self, "bore", what="the {}", above=0.0, unit="m")
-        require_numbers(self, "piston_rod", what="the diameter of the piston rod", least=0.0, unit="m")
-        require_numbers(self, "clearance", "clearance_volume", what="the {}", least=0.0)
-        require_numbers(self, "low", "high", what="the {} pressure, absolute,", above=0.0, unit="Pa")
-        require_numbers(self, "back_pressure", what="the back pressure, absolute,", least=0.0, unit="Pa")
-        require_numbers(self, "compression_exponent", "expansion_exponent", what="the {}", least=0.0)
+        require_numbers(self, "bore", phrase="the {}", above=0.0, unit="m")
+        require_numbers(self, "piston_rod", phrase="the diameter of the piston rod", least=0.0, unit="m")
+        require_numbers(self, "clearance", "clearance_volume", phrase="the {}", least=0.0)
+        require_numbers(self, "low", "high", phrase="the {} pressure, absolute,", above=0.0, unit="Pa")
+        require_numbers(self, "back_pressure", phrase="the back pressure, absolute,", least=0.0, unit="Pa")
+        require_numbers(self, "compression_exponent", "expansion_exponent", phrase="the {}", least=0.0)
         for exponent in (self.compression_exponent, self.expansion_exponent):
             if 0.0 < exponent < _LEAST_EXPONENT:
                 raise InputError(
@@ -196,4 +196,6 @@ def piston_forces(
             "add what is missing"
         )
     area = piston_area(bore, piston_rod)
-    return tuple((-area if head == "outer dead centre" else area) * (one - back_pressure) for one in pressures)
+    return tuple(
+        (-area if head == "outer dead centre" else area) * (pressure - back_pressure) for pressure in pressures
+    )

@@ -92,9 +92,9 @@ class Engine(Cylinder):
 
 @dataclass(frozen=True, kw_only=True)
 class LimitedPressure(Engine):
-    """An engine that burns at its top at once to `high` pressure, and from there at that pressure: the dual cycle.
+    """An engine with a dual cycle: it burns at its top up to `high` pressure, then at that pressure.
 
-    heat: set free per swept volume, J/m^3. heat_capacity_ratio: of the burning gas. Without a rise of pressure at the
+    heat: released per swept volume, J/m^3. heat_capacity_ratio: of the burning gas. Without a rise of pressure at the
     top it is the Diesel cycle.
     """
 
@@ -107,8 +107,8 @@ class LimitedPressure(Engine):
     _raised: ClassVar = "heat"
 
     def _require_burning(self) -> None:
-        require_numbers(self, "heat", what="the {}", above=0.0, unit="J/m^3")
-        require_numbers(self, "heat_capacity_ratio", what="the heat capacity ratio", above=1.0)
+        require_numbers(self, "heat", phrase="the {}", above=0.0, unit="J/m^3")
+        require_numbers(self, "heat_capacity_ratio", phrase="the heat capacity ratio", above=1.0)
         if not self.high >= self.compressed:
             raise InputError(
                 f"the peak pressure must not be below that of compression alone, {1e-5 * self.compressed:.6g} bar; got "
@@ -124,9 +124,9 @@ class LimitedPressure(Engine):
                 "bar; raise the heat, lower the peak pressure, or leave it out"
             )
         if share > 1.0:
-            most = at_once + self.high * k / (k - 1.0)
+            heat_limit = at_once + self.high * k / (k - 1.0)
             raise InputError(
-                f"burning must end within the stroke, with at most {1e-6 * most:.6g} MJ/m^3 of heat; got "
+                f"burning must end within the stroke, with at most {1e-6 * heat_limit:.6g} MJ/m^3 of heat; got "
                 f"{1e-6 * self.heat:.6g} MJ/m^3; lower the heat, or raise the peak pressure"
             )
 
@@ -156,8 +156,8 @@ class LimitedPressure(Engine):
 
     @property
     def _gas_text(self) -> str:
-        where = f"at peak pressure over {100.0 * self.burning_share:.4g} % of the stroke"
-        return f"{super()._gas_text}, heat {1e-6 * self.heat:.6g} MJ/m^3, {where}"
+        burning = f"at peak pressure over {100.0 * self.burning_share:.4g} % of the stroke"
+        return f"{super()._gas_text}, heat {1e-6 * self.heat:.6g} MJ/m^3, {burning}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -177,7 +177,7 @@ class FourStroke(Engine):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_numbers(self, "exhaust", what="the {} pressure, absolute,", above=0.0, unit="Pa")
+        require_numbers(self, "exhaust", phrase="the {} pressure, absolute,", above=0.0, unit="Pa")
 
     @property
     def cycle_turns(self) -> int:
@@ -193,8 +193,8 @@ class FourStroke(Engine):
         """Return the two-stroke cycle of turn 1, or the change of gas of turn 2, each stroke at constant pressure."""
         if turn == 1:
             return self.working(**{field.name: getattr(self, field.name) for field in fields(self.working)})
-        own = {field.name: getattr(self, field.name) for field in fields(Cylinder)}
-        return Cylinder(**own | {"high": self.exhaust, "compression_exponent": 0.0, "expansion_exponent": 0.0})
+        values = {field.name: getattr(self, field.name) for field in fields(Cylinder)}
+        return Cylinder(**values | {"high": self.exhaust, "compression_exponent": 0.0, "expansion_exponent": 0.0})
 
     def number_on_turn(self, name: str, turn: int) -> str | None:
         """Return its name; the exhaust pressure is the high one of turn 2, which has neither peak nor exponents."""

@@ -95,7 +95,7 @@ class Entry:
 class Table:
     """A table [[load]] of a job file, told from others by its key.
 
-    title: of the form's list. help: a sentence. first: the form's first values. build: from values in SI, by name.
+    title: of the form's list. help: a sentence. initial: the form's first values. build: from values in SI, by name.
     motion: of the crank that it is of, which turns through or swings; "" for either.
     """
 
@@ -104,17 +104,21 @@ class Table:
     title: str
     help: str
     entries: tuple[Entry, ...]
-    first: Mapping[str, Any]
+    initial: Mapping[str, Any]
     build: Callable[..., Load]
     motion: Literal["", "turn", "swing"] = ""
 
     def __post_init__(self) -> None:
         if self.key not in {entry.name for entry in self.entries}:
             raise ValueError(f"a table of loads is told by the key of one of its entries; got {self.key!r}; name one")
-        keys, taken = {entry.name for entry in self.entries}, signature(self.build).parameters.values()
-        named = {each.name for each in taken if each.kind is not Parameter.VAR_KEYWORD}
-        needed = {each.name for each in taken if each.name in named and each.default is Parameter.empty}
-        unknown = keys - named if len(named) == len(taken) else set()
+        keys, parameters = {entry.name for entry in self.entries}, signature(self.build).parameters.values()
+        named = {parameter.name for parameter in parameters if parameter.kind is not Parameter.VAR_KEYWORD}
+        needed = {
+            parameter.name
+            for parameter in parameters
+            if parameter.name in named and parameter.default is Parameter.empty
+        }
+        unknown = keys - named if len(named) == len(parameters) else set()
         if unknown or needed - keys:
             raise ValueError(
                 f"the build of a load table must take its entries by name; got {_listed(unknown)}, which the build of "
@@ -247,9 +251,9 @@ class Load:
 
     @property
     def effect(self) -> str:
-        """What it does to the strokes, and whether it gives back over a cycle what it takes."""
-        said = [] if self.push is None else [effect_in_strokes(*self.push)]
-        return ", ".join([*said, "no net work over a cycle"] if self.by_position and self.acts else said)
+        """Effect on the strokes, and whether the net work over a cycle is zero."""
+        parts = [] if self.push is None else [effect_in_strokes(*self.push)]
+        return ", ".join([*parts, "no net work over a cycle"] if self.by_position and self.acts else parts)
 
     @property
     def range(self) -> str:
@@ -270,10 +274,10 @@ def built(kind: Callable[..., Load], **fields: str) -> Callable[..., Load]:
     """Return the function that builds a load from the values of its table. fields: of the load, by keys that differ."""
     keys = {field: key for key, field in fields.items()}
 
-    def build(**given: Any) -> Load:
-        return kind(**{fields.get(key, key): value for key, value in given.items()})
+    def build(**values: Any) -> Load:
+        return kind(**{fields.get(key, key): value for key, value in values.items()})
 
-    named = [each.replace(name=keys.get(name, name)) for name, each in signature(kind).parameters.items()]
+    named = [parameter.replace(name=keys.get(name, name)) for name, parameter in signature(kind).parameters.items()]
     build.__signature__ = Signature(named)  # type: ignore[attr-defined]
     return build
 
@@ -289,20 +293,24 @@ def require_word(name: str, value: object, words: object) -> None:
         raise InputError(f"{name} must be {' or '.join(map(repr, get_args(words)))}; got {value!r}")
 
 
-def require_table(what: str, at: Sequence[float], forces: Sequence[float], *, of: str = "forces") -> None:
-    """Refuse a table that decreases or has three points at one place, is not finite or has fewer than two points."""
+def require_table(argument: str, at: Sequence[float], forces: Sequence[float], *, values: str = "forces") -> None:
+    """Raise `InputError` for a table that decreases, has three points at one place or fewer than two at all.
+
+    Its numbers must be finite. argument, values: names of both columns, for the message.
+    """
     if len(at) != len(forces) or len(at) < 2:
         raise InputError(
-            f"a table needs as many {of} as {what}, two at least; got {len(at)} {what} and {len(forces)} {of}"
+            f"a table needs as many {values} as {argument}, two at least; "
+            f"got {len(at)} {argument} and {len(forces)} {values}"
         )
-    require_all_finite(f"a table of {what} and {of}", (*at, *forces), "throughout")
+    require_all_finite(f"a table of {argument} and {values}", (*at, *forces), "throughout")
     n = out_of_order(at)
     if n is not None:
-        raise InputError(f"{what} of a table {order_rule(n, at, f'{at[n]:g}', f'{at[n - 1]:g}')}")
+        raise InputError(f"{argument} of a table {order_rule(n, at, f'{at[n]:g}', f'{at[n - 1]:g}')}")
 
 
 def out_of_order(at: Sequence[float]) -> int | None:
-    """Return the place of the first point of a table that is below the one before it, or the third at one place."""
+    """Return the first index of a point below the one before it, or the third at one place, else None."""
     for n in range(1, len(at)):
         if at[n] < at[n - 1] or (n > 1 and at[n] == at[n - 2]):
             return n
@@ -310,7 +318,7 @@ def out_of_order(at: Sequence[float]) -> int | None:
 
 
 def order_rule(n: int, at: Sequence[float], point: str, before: str) -> str:
-    """Return what the points of a table must do, and how point n, out of order, does not; both points as typed."""
+    """Return the rule that point n of a table breaks, with point n and the one before it as typed."""
     if at[n] < at[n - 1]:
         return f"must increase; got {point} after {before}; sort the table"
     return f"must increase, but for two at a step; got {point} three times; keep the values before and after the step"

@@ -16,12 +16,21 @@ _SEPARATORS = re.compile(r"([ ,;()]+)")
 
 
 def range_text(low: str, high: str) -> str:
-    """Return one text for two ends of a range: numbers that differ as "200 to 400", other differences side by side."""
+    """Return one text for both ends of a range: "200 to 400 N" where only numbers differ.
+
+    Other differences are shown side by side.
+    """
     words = [_SEPARATORS.split(text) for text in (low, high)]
     pairs = list(zip(*words, strict=False))
     alike = len(words[0]) == len(words[1])
-    if alike and all(one == other or (_NUMBER.fullmatch(one) and _NUMBER.fullmatch(other)) for one, other in pairs):
-        return "".join(one if one == other else " to ".join(sorted((one, other), key=float)) for one, other in pairs)
+    if alike and all(
+        low_word == high_word or (_NUMBER.fullmatch(low_word) and _NUMBER.fullmatch(high_word))
+        for low_word, high_word in pairs
+    ):
+        return "".join(
+            low_word if low_word == high_word else " to ".join(sorted((low_word, high_word), key=float))
+            for low_word, high_word in pairs
+        )
     return f"{low}; at the other end of the range {high}"
 
 
@@ -30,11 +39,11 @@ def sized(forces: Iterable[float], unit: str = "N", ways: Ways = SLIDES) -> str:
     low, high = min(forces := tuple(forces)), max(forces)
     if low < 0.0 < high:
         return f"{-low:.6g} {unit} {ways[1]} to {high:.6g} {unit} {ways[0]}"
-    least, most = sorted((abs(low), abs(high)))
-    if not most:
+    least, greatest = sorted((abs(low), abs(high)))
+    if not greatest:
         return f"0 {unit}"
-    between = "" if least == most else f"{least:.6g} to " if least else "up to "
-    return f"{between}{most:.6g} {unit} {ways[0] if high > 0.0 else ways[1]}"
+    start = "" if least == greatest else f"{least:.6g} to " if least else "up to "
+    return f"{start}{greatest:.6g} {unit} {ways[0] if high > 0.0 else ways[1]}"
 
 
 def without_steps_from_zero(at: Sequence[float], forces: Sequence[float]) -> Sequence[float]:
@@ -45,31 +54,31 @@ def without_steps_from_zero(at: Sequence[float], forces: Sequence[float]) -> Seq
 
 
 def effect_in_strokes(outward: Sequence[float], inward: Sequence[float]) -> str:
-    """Return what forces, N outward, do to each stroke: "helps the outward stroke"."""
+    """Return the effect of forces, N outward, on each stroke: "helps the outward stroke"."""
     verbs = _verb(outward), _verb([-force for force in inward])
     if verbs[0] == verbs[1]:
         return f"{verbs[0]} both strokes" if verbs[0] else "no effect"
     return " and ".join(f"{verb} the {way} stroke" for verb, way in zip(verbs, SLIDES, strict=True) if verb)
 
 
-def effect_by_direction(forces: Sequence[float], ways: Ways, what: str) -> str:
-    """Return what forces do to a motion in either direction, whatever the stroke. what: "motion" or "rotation"."""
+def effect_by_direction(forces: Sequence[float], ways: Ways, motion: str) -> str:
+    """Return the effect of forces on a motion in either direction. motion: "motion" or "rotation"."""
     low, high = min(forces), max(forces)
     if low < 0.0 < high:
         return "helps or resists by crank angle"
     helped, resisted = ways if high > 0.0 else ways[::-1]
-    return f"helps {helped} and resists {resisted} {what}" if low or high else "no effect"
+    return f"helps {helped} and resists {resisted} {motion}" if low or high else "no effect"
 
 
 def spring_effect(stiffness: float) -> str:
-    """Return what a spring does to a motion away from where it is free, and back."""
+    """Return the effect of a spring on a motion away from its free position, and back."""
     away, back = ("resists", "helps") if stiffness >= 0.0 else ("helps", "resists")
     return f"{away} motion away from there and {back} motion back, no net work over a cycle"
 
 
-def _verb(along: Sequence[float]) -> str:
-    """Return what forces along the motion do."""
-    helps, resists = max(along) > 0.0, min(along) < 0.0
+def _verb(forces: Sequence[float]) -> str:
+    """Return the verb for forces along the motion: "helps", "resists", both, or none."""
+    helps, resists = max(forces) > 0.0, min(forces) < 0.0
     if helps and resists:
         return "partly helps and partly resists"
     return "helps" if helps else "resists" if resists else ""
@@ -81,16 +90,16 @@ def range_of_positions(positions: Sequence[float], forces: Sequence[float], datu
     inner_end = datum == "crank pivot" or positions[0] > 0.0
     towards = (datum, during) in (("outer dead centre", "outward stroke"), ("inner dead centre", "inward stroke"))
     if datum == "crank pivot":
-        where = f"between {low} and {high} from the crank pivot"
+        place = f"between {low} and {high} from the crank pivot"
     elif during == "cycle":
-        where = f"from {low} to {high} from the {datum}" if inner_end else f"within {high} of the {datum}"
+        place = f"from {low} to {high} from the {datum}" if inner_end else f"within {high} of the {datum}"
     elif towards:
-        where = f"from {high} to {low} before the {datum}" if inner_end else f"from {high} before the {datum} to it"
+        place = f"from {high} to {low} before the {datum}" if inner_end else f"from {high} before the {datum} to it"
     else:
-        where = f"from {low} to {high} after the {datum}" if inner_end else f"from the {datum} to {high} after it"
+        place = f"from {low} to {high} after the {datum}" if inner_end else f"from the {datum} to {high} after it"
     constant = len(set(forces)) == 1
     near, far = ("zero" if not end else "constant" if constant else sized((end,)) for end in (forces[0], forces[-1]))
-    return f"{where}; {near} nearer and {far} beyond" if inner_end and near != far else f"{where}; {far} beyond"
+    return f"{place}; {near} nearer and {far} beyond" if inner_end and near != far else f"{place}; {far} beyond"
 
 
 def range_of_angles(angles: Sequence[float], datum: str, cycle: str) -> str:

@@ -15,7 +15,7 @@ from .load import Enters, Load
 def kinds() -> tuple[type[Load], ...]:
     """Return all kinds of load in the order of `Enters`; those with a formula by the name of their module."""
     package = import_module(__package__)
-    modules = sorted(found.name for found in pkgutil.iter_modules(package.__path__, f"{__package__}."))
+    modules = sorted(module.name for module in pkgutil.iter_modules(package.__path__, f"{__package__}."))
     declared = [
         value
         for name in modules
@@ -46,10 +46,10 @@ def _choice() -> Any:
     return chosen
 
 
-def _either(own: int, formula: Any, otherwise: Any) -> Any:
+def _either(own_code: int, formula: Any, otherwise: Any) -> Any:
     @analytic
     def chosen(code: Any, position: Any, velocity: Any, way: Any, first: Any, second: Any) -> Any:
-        if code == own:
+        if code == own_code:
             return formula(position, velocity, way, first, second)
         return otherwise(code, position, velocity, way, first, second)
 

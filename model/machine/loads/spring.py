@@ -41,7 +41,7 @@ class Spring(Load):
 
     @property
     def effect(self) -> str:
-        """What it does to a motion away from where it is free, and back."""
+        """Effect on a motion away from its free position, and back."""
         return spring_effect(self.stiffness)
 
     @property

@@ -68,21 +68,24 @@ class StrokeForce(Load):
         return "throughout"
 
 
-def _force_along_motion(force: float, stroke: str, over: StrokePart, *, drives: bool = False) -> Load:
-    """Return a force along the motion, N, in a part of a stroke, or all of it, or of both ("motion")."""
+def _force_along_motion(force: float, stroke: str, part: StrokePart, *, drives: bool = False) -> Load:
+    """Return a load with a force along the motion, N, in all or part of a stroke.
+
+    stroke: "motion" for both strokes.
+    """
     outward = 0.0 if stroke == "inward stroke" else force
     inward = 0.0 if stroke == "outward stroke" else -force
-    if over.part == "whole":
+    if part.part == "whole":
         return StrokeForce(outward=outward, inward=inward, drives=drives)
     if stroke == "motion":
         raise InputError(
-            f"the {over.part} part of a stroke needs one stroke; got both, as motion; name the outward or the inward "
+            f"the {part.part} part of a stroke needs one stroke; got both, as motion; name the outward or the inward "
             "stroke, and give each its own load"
         )
-    from_outer = (stroke == "outward stroke") == (over.part == "last")
+    from_outer = (stroke == "outward stroke") == (part.part == "last")
     size = outward + inward
     return PositionTable(
-        positions=(0.0, over.length, over.length),
+        positions=(0.0, part.length, part.length),
         forces=(size, size, 0.0),
         datum="outer dead centre" if from_outer else "inner dead centre",
         during="outward stroke" if stroke == "outward stroke" else "inward stroke",

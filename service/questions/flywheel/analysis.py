@@ -75,7 +75,7 @@ def _fluctuation_without_flywheel(
         if drive is None:
             least, greatest = runner.speeds(0.0)
             return ((greatest - least) / runner.speed, least), None
-        running = runner.under(replace(drive, flywheel=0.0))
+        running = runner.running_under(replace(drive, flywheel=0.0))
         return (running.fluctuation, float(abs(running.speed).min())), None
     except InputError as error:
         return None, str(error)
@@ -141,7 +141,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCT
         try:
             if mechanism.drive is None:
                 return runner.constant(flywheel)
-            return runner.under(replace(mechanism.drive, flywheel=flywheel))
+            return runner.running_under(replace(mechanism.drive, flywheel=flywheel))
         except InputError:
             return None
 

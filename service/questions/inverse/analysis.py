@@ -111,14 +111,14 @@ def _solutions_in_swing(solutions: tuple[CrankSolution, ...], swing: Swing) -> t
     """Return the solutions of a swing between crank angles, their angles as it has them."""
     within_swing = []
     for solution in solutions:
-        angles = [at for near in (0.0, _NEAR, -_NEAR) for at in swing.inside(solution.crank_angle + near)]
+        angles = [at for near in (0.0, _NEAR, -_NEAR) for at in swing.occurrences(solution.crank_angle + near)]
         within_swing += [replace(solution, crank_angle=angles[0])] if angles else []
     return tuple(sorted(within_swing, key=lambda solution: solution.crank_angle))
 
 
 def _turning_angles(linkage: Linkage, swing: Swing) -> list[float]:
     """Return the ends of a swing, and where the slider turns back within."""
-    return [swing.start, swing.end, *(angle for dead in dead_points(linkage) for angle in swing.inside(dead))]
+    return [swing.start, swing.end, *(angle for dead in dead_points(linkage) for angle in swing.occurrences(dead))]
 
 
 def _degrees(angle: float) -> str:

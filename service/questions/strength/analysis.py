@@ -103,7 +103,7 @@ def _extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str, fl
     cycle = TURN * cycle_turns(mechanism)
     for place, (sign, criterion) in enumerate(zip(_SIGNS, STATIC, strict=True)):
         stress_path = (WholeBar(LINKS[name].part),)
-        (peak,) = stress_peaks(mechanism, stress_path, row_of(linkage), np.array([criterion]), kept=1)
+        (peak,) = stress_peaks(mechanism, stress_path, row_of(linkage), np.array([criterion]), limit=1)
         share, _, *angles = peak.places[0, 0]
         value = peak.values[0, 0]
         if not value > 0.0:  # of the other sign all along and all the time

@@ -201,7 +201,7 @@ def _extremes(mechanism: Mechanism, summary: SwingSummary) -> dict[str, Any]:
     strokes = SwingCycle(mechanism, summary.linkage, summary.swing)
     entries: dict[str, Any] = {}
     for curve in (*motion_and_drive(summary.swing), *force_magnitudes()):
-        least, greatest = strokes.ends_of(curve.attribute)
+        least, greatest = strokes.value_range(curve.attribute)
         acts = curve.kind not in (FORCE, TORQUE, POWER) and curve.attribute != "driven_error"
         if curve.name == "crank_angle" or (not acts and least.value == greatest.value == 0.0):
             continue

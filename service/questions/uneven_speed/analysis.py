@@ -137,6 +137,6 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
         comparison_panel(
             "slider acceleration", ACCELERATION, now.curves.slider_acceleration, even.curves.slider_acceleration
         ),
-        comparison_panel("shaking force", FORCE, now.others["shaking_force"], even.others["shaking_force"]),
+        comparison_panel("shaking force", FORCE, now.named_curves["shaking_force"], even.named_curves["shaking_force"]),
     )
     return PanelFigure("Uneven crank speed", "", panels, width=6.4, height=2.25, stacked=True)

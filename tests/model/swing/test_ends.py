@@ -37,7 +37,11 @@ def by_places(case: Case) -> Case | None:
     if side[0] != side[1] or abs(m.x[1] - m.x[0]) < 1e-3 or abs(middle) > 1.5:
         return None
     first, last = m.x.tolist()
-    return machine, linkage, replace(swing, start=first, end=last, of="slider", side="left" if side[0] > 0 else "right")
+    return (
+        machine,
+        linkage,
+        replace(swing, start=first, end=last, stated_for="slider", side="left" if side[0] > 0 else "right"),
+    )
 
 
 def cases(count: int, seed: int) -> list[tuple[Case, Case]]:
@@ -121,9 +125,9 @@ def test_places_that_no_linkage_reaches_are_refused() -> None:
     machine, linkage = Mechanism(), Linkage(0.1, 0.3, 0.02)
     for start, end, words in ((0.25, 0.45, "between 200 and 400 mm"), (-0.35, 0.3, "crossed branch there")):
         with pytest.raises(AssemblyError, match=words):
-            summarise(machine, linkage, Swing(start=start, end=end, of="slider"))
+            summarise(machine, linkage, Swing(start=start, end=end, stated_for="slider"))
     with pytest.raises(InputError, match="two different slider positions"):
-        Swing(start=0.3, end=0.3, of="slider")
+        Swing(start=0.3, end=0.3, stated_for="slider")
 
 
 def test_a_table_of_motion_is_the_complete_cubic_spline() -> None:

@@ -29,7 +29,7 @@ def test_extremes_of_curves_are_those_of_dense_samples_of_both_ways(friction: bo
         for name in CURVES:
             values = np.concatenate([getattr(way, name) for way in ways])
             span = float(np.ptp(values)) or 1.0
-            least, most = over.ends_of(name)
+            least, most = over.value_range(name)
             assert least.value <= values.min() + 1e-9 * span, name
             assert most.value >= values.max() - 1e-9 * span, name
             for at in (least, most):

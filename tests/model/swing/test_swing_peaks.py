@@ -17,7 +17,7 @@ from tests.model.swing.swings import random_swings
 Search = Callable[[Mechanism, Swing, Array], SwingPeaks]
 SEARCHES: dict[str, Search] = {
     "drive": lambda machine, swing, designs: swing_peaks(machine, swing, DRIVE, designs, gradients=True),
-    "power": lambda machine, swing, designs: swing_peaks(machine, swing, POWER, designs, kept=1),
+    "power": lambda machine, swing, designs: swing_peaks(machine, swing, POWER, designs, limit=1),
     "error": lambda machine, swing, designs: swing_peaks(machine, swing, ERROR, designs, gradients=True),
     "least": lambda machine, swing, designs: least_drives(machine, swing, designs, back=True, gradients=True),
 }

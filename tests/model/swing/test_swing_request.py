@@ -77,7 +77,7 @@ def test_what_is_not_asked_stays_as_the_job_has_it() -> None:
     slow = resolve_swing(machine, JOB, SwingRequest(law="slow"))[1]
     assert (slow.law, slow.duration, slow.driver) == ("slow", None, "slider")
     places = resolve_swing(machine, JOB, SwingRequest(slider_start=3.0, slider_end=1.0, side="right"))[1]
-    assert (places.of, places.side, places.law, places.driver) == ("slider", "right", "harmonic", "slider")
+    assert (places.stated_for, places.side, places.law, places.driver) == ("slider", "right", "harmonic", "slider")
     table = replace(JOB, law="table", points=((0.0, 0.0), (0.5, 0.4), (1.0, 1.0)))
     assert resolve_swing(machine, table, SwingRequest(law="table"))[1] == table
     assert resolve_swing(machine, table, SwingRequest(law="cycloidal"))[1].points == ()

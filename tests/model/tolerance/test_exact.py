@@ -171,7 +171,7 @@ def test_worst_over_the_whole_cycle_is_exact() -> None:
 
 
 def test_worst_case_of_case_four_is_just_beyond_its_first_order() -> None:
-    first = find_peaks(PUBLISHED, Signal.POSITION_ERROR, np.array([[1.4, 1.8, -0.05]]), kept=1)
+    first = find_peaks(PUBLISHED, Signal.POSITION_ERROR, np.array([[1.4, 1.8, -0.05]]), limit=1)
     exact = worst(PUBLISHED, SUPPORT)
     remainder = first_order(PUBLISHED, SUPPORT, first.angles[0]).remainder[0]
     assert first.values[0, 0] < exact.size < first.values[0, 0] + remainder

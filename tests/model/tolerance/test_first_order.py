@@ -93,12 +93,12 @@ def test_root_sum_square_counts_each_clearance_by_itself() -> None:
 @pytest.mark.parametrize("signal", [Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS])
 def test_gradients_with_clearances_are_those_of_differences(signal: Signal) -> None:
     designs, machine = random_designs(100, seed=83, least_margin=0.1), with_gaps(SMOOTH)
-    found = find_peaks(machine, signal, designs, gradients=True, kept=1)
+    found = find_peaks(machine, signal, designs, gradients=True, limit=1)
     assert found.gradients is not None
     for v in range(3):
         step = np.zeros(3)
         step[v] = 1e-7
-        up, down = (find_peaks(machine, signal, designs + s * step, kept=1).values[:, 0] for s in (1.0, -1.0))
+        up, down = (find_peaks(machine, signal, designs + s * step, limit=1).values[:, 0] for s in (1.0, -1.0))
         # Central differences: 1e-16 / 1e-7 of rounding and the square of 1e-7 over a tenth of the shortest offset.
         size = np.abs(found.gradients[:, 0]).max(axis=1)
         away = np.abs(found.gradients[:, 0, v] - (up - down) / 2e-7) / size
@@ -109,7 +109,7 @@ def test_screening_is_consistent_with_clearances() -> None:
     designs, machine = random_designs(500, seed=84), with_gaps(SMOOTH)
     assert screens(machine, Signal.POSITION_ERROR)
     fast = screen(machine, (Signal.POSITION_ERROR,), designs)[0]
-    exact = find_peaks(machine, Signal.POSITION_ERROR, designs, kept=1)
+    exact = find_peaks(machine, Signal.POSITION_ERROR, designs, limit=1)
     np.testing.assert_allclose(fast.values, exact.values[:, 0], rtol=1e-12)
     assert not screens(machine, Signal.POSITION_ERROR_RSS)
     assert screens(SMOOTH, Signal.POSITION_ERROR_RSS)

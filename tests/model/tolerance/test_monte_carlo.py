@@ -84,7 +84,7 @@ def test_yield_of_a_linear_error_is_that_of_the_normal_distribution() -> None:
         share = yield_within(found.errors[:, 0], limit, confidence=0.9999)
         true = 2.0 * stats.norm.cdf(limit / 1e-4) - 1.0
         assert share.low < true < share.high
-        assert share.share == pytest.approx(share.within / SAMPLES)
+        assert share.share == pytest.approx(share.count_within / SAMPLES)
 
 
 @pytest.mark.parametrize("method", ["exact", "wilson"])

@@ -17,29 +17,29 @@ LAWS: dict[str, Motor] = {"constant": ConstantTorque(torque=3.0), "line": LINE, 
 
 
 def test_a_line_goes_through_stall_and_no_load_and_beyond() -> None:
-    assert LINE.at(0.0) == 8.0
-    assert LINE.at(200.0) == 0.0
-    np.testing.assert_allclose(LINE.at([-100.0, 100.0, 250.0]), [12.0, 4.0, -2.0], rtol=1e-15)
+    assert LINE.torque_at(0.0) == 8.0
+    assert LINE.torque_at(200.0) == 0.0
+    np.testing.assert_allclose(LINE.torque_at([-100.0, 100.0, 250.0]), [12.0, 4.0, -2.0], rtol=1e-15)
 
 
 def test_a_line_can_be_given_by_its_rated_point() -> None:
     motor = LinearMotor.through(torque=5.0, speed=148.0, no_load_speed=157.0)
-    assert motor.at(148.0) == pytest.approx(5.0, rel=1e-14)
-    assert motor.at(157.0) == 0.0
+    assert motor.torque_at(148.0) == pytest.approx(5.0, rel=1e-14)
+    assert motor.torque_at(157.0) == 0.0
 
 
 def test_a_table_is_met_at_its_points_does_not_overshoot_and_is_undefined_beyond() -> None:
-    np.testing.assert_allclose(TABLE.at(TABLE.speeds), TABLE.torques, rtol=1e-14, atol=1e-14)
-    between = TABLE.at(np.linspace(-5.0, 90.0, 300))
+    np.testing.assert_allclose(TABLE.torque_at(TABLE.speeds), TABLE.torques, rtol=1e-14, atol=1e-14)
+    between = TABLE.torque_at(np.linspace(-5.0, 90.0, 300))
     assert between.min() >= 0.0
     assert between.max() <= 9.0
-    assert np.isnan(TABLE.at([-5.1, 90.1])).all()
+    assert np.isnan(TABLE.torque_at([-5.1, 90.1])).all()
 
 
 @pytest.mark.parametrize("motor", LAWS.values(), ids=LAWS)
 def test_slopes_are_those_of_the_torque(motor: Motor) -> None:
     speeds = np.array([1.0, 30.0, 70.0])
-    rise = (motor.at(speeds + 1e-4) - motor.at(speeds - 1e-4)) / 2e-4
+    rise = (motor.torque_at(speeds + 1e-4) - motor.torque_at(speeds - 1e-4)) / 2e-4
     np.testing.assert_allclose(motor.slope(speeds), rise, rtol=1e-7, atol=1e-9)
 
 

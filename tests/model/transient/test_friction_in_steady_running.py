@@ -90,7 +90,7 @@ def test_a_motion_that_starts_in_steady_running_stays_in_it(machine: Mechanism) 
 
 @pytest.mark.parametrize("machine", RUBBED.values(), ids=RUBBED)
 def test_the_energy_integral_holds_over_the_turn(machine: Mechanism) -> None:
-    """Work of the motor: that on the loads and the heat of joint forces, by the trapezoidal rule at its speeds."""
+    """The work of the motor is that on the loads plus the heat in the joints, by the trapezoidal rule."""
     linkage = on_branch(machine)
     running, count = Runner(machine, linkage).constant(0.3), 60_000
     way = float(np.sign(machine.speed))
@@ -123,7 +123,7 @@ def test_friction_of_next_to_nothing_is_no_friction() -> None:
     for machine in RUBBED.values():
         both = (replace(machine, friction=friction) for friction in (Friction(), nearly))
         runners = [Runner(each, on_branch(each)) for each in both]
-        for one, other in zip(*((each.constant(0.3), each.under(MOTOR)) for each in runners), strict=True):
+        for one, other in zip(*((each.constant(0.3), each.running_under(MOTOR)) for each in runners), strict=True):
             for name in ("mean_speed", "fluctuation", "work"):
                 assert getattr(other, name) == pytest.approx(getattr(one, name), rel=1e-10)
             assert other.memory == pytest.approx(one.memory, abs=1e-9)

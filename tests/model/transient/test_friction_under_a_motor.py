@@ -239,7 +239,7 @@ def test_torque_rises_with_the_acceleration_by_no_less_than_the_bound() -> None:
                 angle = random.uniform(span.low, span.high, 20)
                 speed, size = way * random.uniform(0.0, 30.0, 20), 10.0 ** random.uniform(0.0, 4.0, 20)
                 low, high = np.sort(random.normal(size=(2, 20)), axis=0) * size
-                one, other = span.rubbed(angle, speed, low), span.rubbed(angle, speed, high)
+                one, other = span.with_friction(angle, speed, low), span.with_friction(angle, speed, high)
                 rise = (other.torque - one.torque) / (high - low)
                 scale = equation.inertia(angle)
                 assert np.all(rise >= one.least - 1e-9 * scale)

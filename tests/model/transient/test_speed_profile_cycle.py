@@ -99,10 +99,12 @@ def test_peaks_stand_above_a_dense_sweep(seed: int) -> None:
     machine, linkage = random_uneven(seed, friction=seed % 2 == 0)
     found = speed_profile_cycle(machine, linkage)
     swept = speed_profile_curves(machine, linkage, np.linspace(0.0, TURN, 20_000))
-    for name, values in swept.others.items():
+    for name, values in swept.named_curves.items():
         size = np.abs(values).max()
         assert found.peaks[name].value >= size * (1.0 - 1e-9), name
-        near = speed_profile_curves(machine, linkage, found.peaks[name].angle + np.array([-1e-9, 1e-9])).others[name]
+        near = speed_profile_curves(machine, linkage, found.peaks[name].angle + np.array([-1e-9, 1e-9])).named_curves[
+            name
+        ]
         assert np.abs(np.abs(near) / found.peaks[name].value - 1.0).min() < 1e-5, name
     assert found.greatest_speed.value == pytest.approx(swept.speed.max(), rel=1e-6)
 
@@ -112,7 +114,7 @@ def test_without_a_profile_it_is_the_cycle() -> None:
     found = speed_profile_cycle(machine, Linkage(0.05, 0.2, 0.03))
     for name, kind in (("torque", Signal.TORQUE), ("shaking_force", Signal.SHAKING_FORCE), ("power", Signal.POWER)):
         assert found.peaks[name].value == pytest.approx(
-            find_peaks(machine, kind, design, kept=1).values[0, 0], rel=1e-10
+            find_peaks(machine, kind, design, limit=1).values[0, 0], rel=1e-10
         )
     assert found.rms_torque == pytest.approx(average_torque(machine, design).rms[0], rel=1e-12)
     theta = np.linspace(0.0, TURN, 50)

@@ -139,7 +139,7 @@ def test_a_peak_on_a_step_is_bounded_the_better_the_smaller_the_box() -> None:
     )
     machine = Mechanism(speed=20.0, loads=(table,))
     middle = np.array([[0.05, 0.2, 0.01]])
-    peak = find_peaks(machine, Signal.TORQUE, middle, kept=1)
+    peak = find_peaks(machine, Signal.TORQUE, middle, limit=1)
     for width in (1e-3, 1e-4, 1e-5):
         low, high = middle * (1.0 - width), middle * (1.0 + width)
         sides = [coordinate(low[:, k], high[:, k], k, 3) for k in range(3)]

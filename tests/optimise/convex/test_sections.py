@@ -263,7 +263,7 @@ def test_sampled_pin_forces_are_within_what_the_peaks_say() -> None:
     assert joints.rod.peak == pytest.approx(joints.slider_pin, rel=1e-5)
     heavy = joint_loads(replace(MACHINE, rod=Bar(width=0.03, depth=0.02, density=7850.0)), LINKAGE)
     assert heavy.rod.peak <= max(heavy.slider_pin, heavy.crank_pin) * (1.0 + 1e-9)
-    torque = find_peaks(MACHINE, Signal.TORQUE, np.array([[0.05, 0.2, 0.03]]), kept=1).values[0, 0]
+    torque = find_peaks(MACHINE, Signal.TORQUE, np.array([[0.05, 0.2, 0.03]]), limit=1).values[0, 0]
     assert joints.bending.peak == pytest.approx(torque, rel=1e-5)  # a massless crank's moment is the drive's torque
 
 
