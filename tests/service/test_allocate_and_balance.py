@@ -234,7 +234,7 @@ def test_the_figure_of_a_balance_draws_what_the_model_gives(space: RodSpace | No
     problem = load_job(job)
     mechanism = problem.mechanism
     found = balance(mechanism, LINKAGE, rod=space)
-    sheet = counterweight.figure(mechanism, LINKAGE, found=found, problem=problem)
+    sheet = counterweight.figure(mechanism, LINKAGE, optimum=found, problem=problem)
     assert len(sheet.panels) == (2 if space is None else 3)
     theta = np.radians(sheet.panels[1].lines[0].x)
     for n, machine in enumerate((mechanism, found.after)):

@@ -96,22 +96,22 @@ def prepare(
             "allocation needs the costs of the tolerances; this job has no [costs]; add for example [costs] crank = { "
             'cost = 8.0, at = "0.05 mm" }'
         )
-    found = allocate(linkage, problem.costs, limit, kind, mechanism=mechanism)
-    return {"found": found, "costs": problem.costs}
+    allocation = allocate(linkage, problem.costs, limit, kind, mechanism=mechanism)
+    return {"allocation": allocation, "costs": problem.costs}
 
 
-def numbers(before: Mechanism, linkage: Linkage, *, found: Allocation, costs: Costs, **_: Any) -> Tolerances:
+def numbers(before: Mechanism, linkage: Linkage, *, allocation: Allocation, costs: Costs, **_: Any) -> Tolerances:
     """Return an allocation ready for JSON.
 
     before: the mechanism as it was; cost and error of its own tolerances are None unless it has all that have a cost.
     The exact worst case is None where a linkage within the tolerances does not turn.
     """
     try:
-        exact = 1e3 * worst(found.mechanism, linkage).size
+        exact = 1e3 * worst(allocation.mechanism, linkage).size
     except AssemblyError:
         exact = None
     tolerances: list[Tolerance] = []
-    for part in found.parts:
+    for part in allocation.parts:
         angle = part.name == "crank_angle"
         unit = float(np.degrees(1.0)) if angle else 1e3
         tolerances.append(
@@ -120,31 +120,31 @@ def numbers(before: Mechanism, linkage: Linkage, *, found: Allocation, costs: Co
                 "tolerance_mm": None if angle else unit * part.tolerance,
                 "tolerance_deg": unit * part.tolerance if angle else None,
                 "cost": part.cost,
-                "share_of_cost_percent": 100.0 * part.cost / found.cost,
+                "share_of_cost_percent": 100.0 * part.cost / allocation.cost,
                 "bound": part.bound,
                 "bound_saving_per_um": None if angle else 1e-6 * part.saving,
                 "bound_saving_per_mdeg": 1e-3 * part.saving / unit if angle else None,
             }
         )
     was = costs_before(costs, linkage, before)
-    error = Signal.POSITION_ERROR if found.kind == "worst case" else Signal.POSITION_ERROR_RSS
+    error = Signal.POSITION_ERROR if allocation.kind == "worst case" else Signal.POSITION_ERROR_RSS
     return {
-        "kind": found.kind,
-        "limit_mm": 1e3 * found.limit,
-        "cost": found.cost,
-        "error_mm": 1e3 * found.error,
+        "kind": allocation.kind,
+        "limit_mm": 1e3 * allocation.limit,
+        "cost": allocation.cost,
+        "error_mm": 1e3 * allocation.error,
         "exact_worst_case_mm": exact,
-        "saving_per_um": 1e-6 * found.saving,
+        "saving_per_um": 1e-6 * allocation.saving,
         "tolerances": tolerances,
         "active_angles": [
             {"crank_angle_deg": float(np.degrees(angle)), "saving_per_um": 1e-6 * float(saving)}
-            for angle, saving in zip(found.angles, found.savings, strict=True)
+            for angle, saving in zip(allocation.angles, allocation.savings, strict=True)
         ],
         "cost_before": None if was is None else sum(was.values()),
         "error_before_mm": None if was is None else 1e3 * peak(before, error, linkage).value,
-        "rounds": found.rounds,
-        "residual": found.residual,
-        "converged": found.converged,
+        "rounds": allocation.rounds,
+        "residual": allocation.residual,
+        "converged": allocation.converged,
     }
 
 
@@ -154,11 +154,13 @@ def notes(numbers: Tolerances) -> list[str]:
     return [] if numbers["converged"] else [f"not proven to be the cheapest: {residual}"]
 
 
-def figure(before: Mechanism, linkage: Linkage, *, found: Allocation, costs: Costs, units: System, **_: Any) -> Figure:
+def figure(
+    before: Mechanism, linkage: Linkage, *, allocation: Allocation, costs: Costs, units: System, **_: Any
+) -> Figure:
     """Return error and costs over the cycle."""
     from .figure import allocation_curves, allocation_figure
 
-    return allocation_figure(allocation_curves(found, linkage, costs, before), units)
+    return allocation_figure(allocation_curves(allocation, linkage, costs, before), units)
 
 
 def blocks(numbers: Tolerances) -> list[Block]:

@@ -97,7 +97,7 @@ def prepare(
 ) -> dict[str, Any]:
     """Return one balance for numbers and figure. inputs: what is left of them, in SI."""
     at = radius or mechanism.counterweight.radius or float(linkage.crank)
-    found = balance(
+    optimum = balance(
         mechanism,
         linkage,
         measure=measure,
@@ -106,7 +106,7 @@ def prepare(
         greatest_moment=None if mass is None else mass * at,
         rod=_rod_space(inputs, words or {}),
     )
-    return {"found": found}
+    return {"optimum": optimum}
 
 
 def _rod_space(inputs: Mapping[str, Any], labels: Mapping[str, str]) -> RodSpace | None:
@@ -121,16 +121,18 @@ def _rod_space(inputs: Mapping[str, Any], labels: Mapping[str, str]) -> RodSpace
     return RodSpace(radius=radius, mass=mass)
 
 
-def numbers(_: Mechanism, __: Linkage, *, found: Balance, measure: Measure = "peak", **options: Any) -> BalanceNumbers:
+def numbers(
+    _: Mechanism, __: Linkage, *, optimum: Balance, measure: Measure = "peak", **options: Any
+) -> BalanceNumbers:
     """Return a balance ready for JSON; the angle of the counterweight is from the crank's direction."""
-    rod = found.rod
+    rod = optimum.rod
     weighs = rod is not None and rod.mass > 0.0
     return {
         "measure": measure,
-        "counterweight_moment_kg_m": found.moment,
-        "counterweight_angle_deg": float(np.degrees(found.angle)),
-        "counterweight_radius_mm": 1e3 * found.radius,
-        "counterweight_kg": found.mass,
+        "counterweight_moment_kg_m": optimum.moment,
+        "counterweight_angle_deg": float(np.degrees(optimum.angle)),
+        "counterweight_radius_mm": 1e3 * optimum.radius,
+        "counterweight_kg": optimum.mass,
         "rod_balance": None
         if rod is None
         else {
@@ -141,13 +143,13 @@ def numbers(_: Mechanism, __: Linkage, *, found: Balance, measure: Measure = "pe
             "centre_along_mm": 1e3 * rod.along / rod.mass if weighs else None,
             "centre_across_mm": 1e3 * rod.across / rod.mass if weighs else None,
         },
-        "before": _shaking(found.shaking_before),
-        "after": _shaking(found.shaking_after),
-        "objective_N": found.objective,
-        "least_possible_N": found.bound,
-        "saving_N_per_kg": found.saving * found.radius,
-        "rounds": found.rounds,
-        "converged": found.converged,
+        "before": _shaking(optimum.shaking_before),
+        "after": _shaking(optimum.shaking_after),
+        "objective_N": optimum.objective,
+        "least_possible_N": optimum.bound,
+        "saving_N_per_kg": optimum.saving * optimum.radius,
+        "rounds": optimum.rounds,
+        "converged": optimum.converged,
     }
 
 
@@ -210,11 +212,11 @@ def _centre(rod: RodBalance) -> Text:
     return words("mass centre {along} along and {across} across the rod", **places)
 
 
-def figure(_: Mechanism, __: Linkage, *, found: Balance, problem: Problem, **options: Any) -> PanelFigure:
+def figure(_: Mechanism, __: Linkage, *, optimum: Balance, problem: Problem, **options: Any) -> PanelFigure:
     """Return hodograph, force and, where a rod balance changes it, moment before and after."""
     theta = np.linspace(0.0, 2.0 * np.pi, _SAMPLES)
     degrees = np.degrees(theta)
-    curves = list(enumerate(zip(("before", "after"), found.hodograph(theta), strict=True)))
+    curves = list(enumerate(zip(("before", "after"), optimum.hodograph(theta), strict=True)))
     hodographs = tuple(Line(name, shaking.force_x, shaking.force_y, n) for n, (name, shaking) in curves)
     sizes = (Line(name, degrees, np.hypot(shaking.force_x, shaking.force_y), n) for n, (name, shaking) in curves)
     x_title = words("horizontal: along the slider line, {unit}; vertical: across it", unit=Unit(FORCE))
@@ -222,16 +224,16 @@ def figure(_: Mechanism, __: Linkage, *, found: Balance, problem: Problem, **opt
         Panel("hodograph of the shaking force", x_title, hodographs, kind=FORCE, x_kind=FORCE, equal=True),
         crank_angle_panel("size of the shaking force", *sizes, kind=FORCE),
     ]
-    angle = format_number(float(np.degrees(found.angle)) % 360.0)
-    mass, radius = Value(found.mass, MASS, 4), Value(found.radius, LENGTH, 4)
+    angle = format_number(float(np.degrees(optimum.angle)) % 360.0)
+    mass, radius = Value(optimum.mass, MASS, 4), Value(optimum.radius, LENGTH, 4)
     parts: list[Text] = [
         words(f"counterweight {{mass}} at {{radius}}, {angle}° from the crank", mass=mass, radius=radius)
     ]
-    if found.rod is not None:
+    if optimum.rod is not None:
         moments = (Line(name, degrees, shaking.moment, n) for n, (name, shaking) in curves)
         panels.append(crank_angle_panel("moment about the pivot", *moments, kind=TORQUE))
-        added = words("{mass} added to the rod", mass=Value(found.rod.mass, MASS, 4))
-        parts.append(added if found.rod.mass else "nothing added to the rod")
+        added = words("{mass} added to the rod", mass=Value(optimum.rod.mass, MASS, 4))
+        parts.append(added if optimum.rod.mass else "nothing added to the rod")
     return PanelFigure(
         f"{problem.name}: balance", joined(parts), tuple(panels), columns=len(panels), width=5.0, height=4.4
     )
