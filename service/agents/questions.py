@@ -263,15 +263,14 @@ def _key(name: str) -> dict[str, Any]:
             {
                 "description": form.get("description", ""),
                 "required": form.get("required", []),
-                "keys": {key: _facts(inner) for key, inner in form["properties"].items()},
+                "keys": {
+                    key: {fact: inner[fact] for fact in _OF_KEY if fact in inner}
+                    for key, inner in form["properties"].items()
+                },
             }
             for form in forms
         ],
     }
-
-
-def _facts(node: Mapping[str, Any]) -> dict[str, Any]:
-    return {key: node[key] for key in _OF_KEY if key in node}
 
 
 def _keys_in_words(key: Mapping[str, Any]) -> Iterator[str]:

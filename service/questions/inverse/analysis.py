@@ -80,9 +80,9 @@ def numbers(
         solutions = _solutions_in_swing(every, swing)
         ends = f"from {_degrees(swing.start)} to {_degrees(swing.end)} deg"
         if not solutions:
-            places = sorted(
-                1e3 * float(swinging.at(angle).slider_position) for angle in _turning_angles(swinging, swing)
-            )
+            reversals = (angle for dead in dead_points(swinging) for angle in swing.occurrences(dead))
+            angles = (swing.start, swing.end, *reversals)
+            places = sorted(1e3 * float(swinging.at(angle).slider_position) for angle in angles)
             raise AssemblyError(
                 f"the position must be between {places[0]:.9g} and {places[-1]:.9g} mm, the slider's travel while the "
                 f"crank swings {ends}; got {1e3 * slider_position:.9g} mm; choose one in this range"
@@ -102,7 +102,15 @@ def numbers(
         "slider_position_mm": 1e3 * slider_position,
         "slider_velocity_m_s": slider_velocity,
         "slider_acceleration_m_s2": slider_acceleration,
-        "solutions": [_solution_record(solution) for solution in solutions],
+        "solutions": [
+            {
+                "crank_angle_deg": ANGLE.metric.factor * solution.crank_angle,
+                "stroke": solution.stroke,
+                "crank_speed_rpm": None if solution.speed is None else ANGULAR_SPEED.metric.factor * solution.speed,
+                "crank_acceleration_rad_s2": solution.acceleration,
+            }
+            for solution in solutions
+        ],
         "note": "; ".join(notes),
     }
 
@@ -114,11 +122,6 @@ def _solutions_in_swing(solutions: tuple[CrankSolution, ...], swing: Swing) -> t
         angles = [at for near in (0.0, _NEAR, -_NEAR) for at in swing.occurrences(solution.crank_angle + near)]
         within_swing += [replace(solution, crank_angle=angles[0])] if angles else []
     return tuple(sorted(within_swing, key=lambda solution: solution.crank_angle))
-
-
-def _turning_angles(linkage: Linkage, swing: Swing) -> list[float]:
-    """Return the ends of a swing, and where the slider turns back within."""
-    return [swing.start, swing.end, *(angle for dead in dead_points(linkage) for angle in swing.occurrences(dead))]
 
 
 def _degrees(angle: float) -> str:
@@ -150,12 +153,3 @@ def blocks(record: CrankAngles) -> list[Block]:
         sentence("slider: {given}", given=joined(motion_texts)),
         Table((*heads, *(head for _, head in rate_columns)), tuple(rows), ruled=True),
     ]
-
-
-def _solution_record(solution: CrankSolution) -> Solution:
-    return {
-        "crank_angle_deg": ANGLE.metric.factor * solution.crank_angle,
-        "stroke": solution.stroke,
-        "crank_speed_rpm": None if solution.speed is None else ANGULAR_SPEED.metric.factor * solution.speed,
-        "crank_acceleration_rad_s2": solution.acceleration,
-    }
