@@ -266,7 +266,7 @@ def test_what_if_says_why_a_linkage_does_not_turn_and_shows_the_design_itself(op
     release(page)
     ranges = page.get_by_label("Rod", exact=True)
     name = page.locator(".objectives .whose")
-    said = page.locator(".take-away [role=status]")
+    said = page.locator(".exports [role=status]")
     ranges.fill(f"{1.01 * float(ranges.input_value()):.6g}")
     expect(name).to_have_text("What if: design 3, changed")
     expect(said).to_have_text("of design 3, changed")
@@ -341,7 +341,7 @@ def test_designs_stand_side_by_side_at_the_same_angle(opened: Opened) -> None:
     assert columns == ["Quantity", "Design 3", "Design 1", "change", "Design 5", "change", "Unit"]
     requirements = page.get_by_role("region", name="Requirements of the job")
     assert requirements.evaluate("node => node.scrollWidth <= node.clientWidth")  # the whole width is theirs
-    page.get_by_label("Take design 1 away").click()
+    page.get_by_label("Remove design 1").click()
     expect(page.locator(".machine .mechanism")).to_have_count(2)
     assert "beside=5" in page.url
 
@@ -408,7 +408,7 @@ def test_the_way_back_is_to_the_front_as_it_was_left(opened: Opened, solved: Sol
 
 def exports(page: Page) -> Locator:
     """Return the links of the menu of exports, open or not."""
-    return page.get_by_role("navigation", name="Take away").locator("a")
+    return page.get_by_role("navigation", name="Exports").locator("a")
 
 
 def test_everything_to_take_away_is_linked(opened: Opened, solved: Solved) -> None:
@@ -428,7 +428,7 @@ def test_what_is_taken_away_is_the_design_on_the_screen(opened: Opened, solved: 
     bare = links.evaluate_all("nodes => nodes.map(node => node.getAttribute('href'))")
     row = solved.result.designs[2]
     page.get_by_label("Crank", exact=True).fill(str(float(row["crank_mm"] or 0.0) * 0.98))
-    expect(page.get_by_role("navigation", name="Take away")).to_contain_text("of design 3, changed")
+    expect(page.get_by_role("navigation", name="Exports")).to_contain_text("of design 3, changed")
     expect(page.locator(".numbers td[data-design='What if'][data-key='crank_mm']")).to_be_visible()
     shown = dict(page.locator(".numbers td[data-design='What if'][data-value]").evaluate_all(NUMBERS))
     href = links.first.get_attribute("href")
@@ -437,7 +437,7 @@ def test_what_is_taken_away_is_the_design_on_the_screen(opened: Opened, solved: 
     drawn = sorted((line.dxf.end - line.dxf.start).magnitude for line in skeleton)
     assert drawn == pytest.approx([float(shown["crank_mm"]), float(shown["rod_mm"])], rel=1e-9)
     assert drawn[0] != pytest.approx(row["crank_mm"], rel=1e-3)
-    page.get_by_role("navigation", name="Take away").get_by_text("Export", exact=True).click()
+    page.get_by_role("navigation", name="Exports").get_by_text("Export", exact=True).click()
     with page.expect_download() as taken:
         page.get_by_role("link", name="Sheet SVG").click()
     expect(page.get_by_role("link", name="Sheet SVG")).not_to_have_attribute("aria-busy", "true")
@@ -446,7 +446,7 @@ def test_what_is_taken_away_is_the_design_on_the_screen(opened: Opened, solved: 
         assert "crank_mm=" in str(link.get_attribute("href"))
     page.keyboard.press("Escape")
     page.get_by_role("button", name="Reset").click()
-    expect(page.get_by_role("navigation", name="Take away")).not_to_contain_text("changed")
+    expect(page.get_by_role("navigation", name="Exports")).not_to_contain_text("changed")
     assert links.evaluate_all("nodes => nodes.map(node => node.getAttribute('href'))") == bare
 
 

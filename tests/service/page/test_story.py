@@ -78,9 +78,9 @@ def test_from_a_preset_to_drawing_table_report_and_a_link(form: Open, store: Sto
 
 def taken_away(page: Page, name: str, folder: Path) -> Path:
     """Return a file of the design on the page, downloaded."""
-    page.get_by_role("navigation", name="Take away").get_by_text("Export", exact=True).click()
+    page.get_by_role("navigation", name="Exports").get_by_text("Export", exact=True).click()
     with page.expect_download() as download:
-        page.get_by_role("navigation", name="Take away").get_by_role("link", name=name, exact=True).click()
+        page.get_by_role("navigation", name="Exports").get_by_role("link", name=name, exact=True).click()
     page.keyboard.press("Escape")
     file = folder / download.value.suggested_filename
     download.value.save_as(file)

@@ -67,14 +67,7 @@ export function exportMenu(job, number) {
   );
   const button = menu("Export", h("div", { class: "chooser-list panel at-left" }, list));
   return {
-    node: h(
-      "nav",
-      { class: "take-away row", "aria-label": "Take away" },
-      button,
-      print,
-      copy,
-      status,
-    ),
+    node: h("nav", { class: "exports row", "aria-label": "Exports" }, button, print, copy, status),
     show,
   };
 }

@@ -98,7 +98,7 @@ function compare({ job, number, front, others }) {
           "a",
           {
             href: to(numbers.filter((other) => other !== one.number)),
-            "aria-label": `Take design ${one.number} away`,
+            "aria-label": `Remove design ${one.number}`,
             class: "chip-close",
           },
           "×",

@@ -27,7 +27,7 @@ export function bindingPanel(explorer) {
     h(
       "p",
       { class: "quiet hint" },
-      "Designs at a limit of the job might improve beyond it. Widening one starts a new run, shown in front of this front.",
+      "Designs at a limit of the job might improve beyond it. Widening a limit starts a new run; this front is drawn behind the new one.",
     ),
     list,
     wrong,
