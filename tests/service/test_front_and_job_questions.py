@@ -411,7 +411,7 @@ from pathlib import Path
 from slidercrank.service.agents.server import TOOLS
 from slidercrank.service.designs.stored_designs import front_of
 from slidercrank.service.runs.stored_runs import problem_of, read_run
-from tests.service.test_wider_questions_at_every_door import ASK, call_in
+from tests.service.test_front_and_job_questions import ASK, call_in
 
 folder = Path(sys.argv[2])
 front = front_of(problem_of(folder, read_run(folder)), read_run(folder))
