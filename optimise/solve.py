@@ -66,9 +66,9 @@ def solve(
     require_ranking(problem)
     require_possible(problem)
     checkpoints = Checkpoints(cancelled=cancelled, keep=keep, past=resume, identity=partial(identity_of, problem))
-    with ExitStack() as shown:
+    with ExitStack() as stack:
         if progress is True:
-            progress = shown.enter_context(progress_bar())
+            progress = stack.enter_context(progress_bar())
             stages = stages or progress
         listener = progress or None
         solver = _ContinuousSolver(checkpoints, engine, listener, stages, fronts, bool(resume))
@@ -197,15 +197,15 @@ def _best(problem: Problem, *, run: Run, evaluators: list[Evaluator]) -> Best | 
     def report(at: Progress) -> None:
         run.report_stage(_DIAGNOSING, at.round, at.rounds)
 
-    found = best_of(problem, run.checkpoints, evaluators[0].engine, report)
+    best = best_of(problem, run.checkpoints, evaluators[0].engine, report)
     run.report_round(_DIAGNOSING, searched_evaluators(evaluators), Archive.empty(len(run.problem.objectives)))
-    return found
+    return best
 
 
 def _seed_archive(archive: Archive, evaluators: list[Evaluator], dimensions: Array) -> None:
     """Add designs of the feasibility search to the archive, in the coordinates of their branch."""
     for index, evaluator in enumerate(evaluators):
         branch = evaluator.branch
-        own = dimensions[np.sign(dimensions[:, 2]) != -branch.sign]
-        if len(own):
-            archive.screen(index, evaluator, branch.coordinates(own))
+        on_side = dimensions[np.sign(dimensions[:, 2]) != -branch.sign]
+        if len(on_side):
+            archive.screen(index, evaluator, branch.coordinates(on_side))

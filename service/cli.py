@@ -104,15 +104,15 @@ class Commands(TyperGroup):
 def _input_warnings_said() -> Iterator[None]:
     """Say each warning about an input once, on a line of its own, without file and line of the program."""
     with warnings.catch_warnings():
-        others, shown = warnings.showwarning, set[str]()
+        show_other, already_said = warnings.showwarning, set[str]()
 
         def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
             if issubclass(category, InputWarning):
-                if str(message) not in shown:
+                if str(message) not in already_said:
                     print_message(f"warning: {message}")
-                shown.add(str(message))
+                already_said.add(str(message))
             else:
-                others(message, category, *place, **more)
+                show_other(message, category, *place, **more)
 
         warnings.showwarning = show
         warnings.simplefilter("always", InputWarning)
@@ -173,8 +173,8 @@ app = typer.Typer(
 )
 
 
-def _version(asked: bool) -> None:
-    if asked:
+def _version(show: bool) -> None:
+    if show:
         from importlib.metadata import PackageNotFoundError, version
 
         try:

@@ -49,19 +49,19 @@ def jax_function(problem: Problem, quantities: Sequence[str] | None = None) -> J
             lambda y: problem.evaluate(np.asarray(y), names, gradients=True)[1], shape, x, vmap_method="broadcast_all"
         )
 
-    found = jax.custom_vjp(outside)
-    found.defvjp(
+    differentiable = jax.custom_vjp(outside)
+    differentiable.defvjp(
         lambda x: (outside(x), slopes(x)),
         lambda jacobian, pushed: (jax.numpy.einsum("...q,...qd->...d", pushed, jacobian),),
     )
 
     def function(x: jax.Array) -> jax.Array:
-        given = jax.numpy.asarray(x)
-        if given.shape[-1:] != (width,):
+        designs = jax.numpy.asarray(x)
+        if designs.shape[-1:] != (width,):
             raise InputError(
-                f"the last axis must have {width} numbers, one design; got an array of shape {given.shape}"
+                f"the last axis must have {width} numbers, one design; got an array of shape {designs.shape}"
             )
-        values: jax.Array = found(given)
+        values: jax.Array = differentiable(designs)
         return values
 
     return function

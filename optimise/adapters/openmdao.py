@@ -33,8 +33,8 @@ def openmdao_component(problem: Problem, quantities: Sequence[str] | None = None
     except ImportError as error:
         raise require("openmdao", error) from None
     if quantities is None:
-        asked = [*(o.quantity for o in problem.objectives), *(c.quantity for c in problem.constraints)]
-        quantities = list(dict.fromkeys(asked))
+        requested = [*(o.quantity for o in problem.objectives), *(c.quantity for c in problem.constraints)]
+        quantities = list(dict.fromkeys(requested))
     names = list(quantities)
     varying = problem.mechanism.varying
     inputs = dict.fromkeys(DIMENSIONS, "m")
@@ -60,11 +60,11 @@ def openmdao_component(problem: Problem, quantities: Sequence[str] | None = None
         def compute_partials(self, inputs_: DefaultVector, partials: dict[tuple[str, str], Array]) -> None:
             _, jacobian = problem.evaluate(_design(inputs_), names, gradients=True)
             for row, name in enumerate(names):
-                for column, of in enumerate(inputs):
-                    partials[name, of] = jacobian[row, column]
+                for column, source in enumerate(inputs):
+                    partials[name, source] = jacobian[row, column]
 
-    def _design(given: DefaultVector) -> list[float]:
-        return [np.asarray(given[name]).item() for name in inputs]
+    def _design(vector: DefaultVector) -> list[float]:
+        return [np.asarray(vector[name]).item() for name in inputs]
 
     return SliderCrank()
 

@@ -36,14 +36,14 @@ def optuna_objective(
                 for name, low, high in zip(form.names, form.lower.tolist(), form.upper.tolist(), strict=True)
             ]
         )
-        found = form.arrays(x)
-        for place, (name, value) in enumerate(zip(form.inequalities, found.G.tolist(), strict=True)):
+        arrays = form.arrays(x)
+        for place, (name, value) in enumerate(zip(form.inequalities, arrays.G.tolist(), strict=True)):
             trial.set_constraint(f"{place} {name}", min(value, _FAR))
-        for name, value in zip(form.equalities, found.H.tolist(), strict=True):
+        for name, value in zip(form.equalities, arrays.H.tolist(), strict=True):
             trial.set_constraint(name, min(abs(value) - _TOLERANCE, _FAR))
         design = form.designs(x)
         trial.set_user_attr("design", design.tolist() if np.isfinite(design).all() else None)
-        return tuple(min(value, _FAR) for value in found.F.tolist())
+        return tuple(min(value, _FAR) for value in arrays.F.tolist())
 
     return objective
 

@@ -45,11 +45,11 @@ def pymoo_problem(problem: Problem, *, eliminate: bool = True, elimination_branc
             self.form = form
 
         def __reduce__(self) -> tuple[object, ...]:
-            made = partial(pymoo_problem, eliminate=eliminate, elimination_branch=elimination_branch)
-            return made, (problem,)  # a class inside a function cannot be pickled by name
+            rebuild = partial(pymoo_problem, eliminate=eliminate, elimination_branch=elimination_branch)
+            return rebuild, (problem,)  # a class inside a function cannot be pickled by name
 
         def _evaluate(self, x: Array, out: dict[str, Array], *args: object, **options: object) -> None:
-            found = form.arrays(x)
-            out["F"], out["G"], out["H"] = (np.minimum(part, _FAR) for part in (found.F, found.G, found.H))
+            arrays = form.arrays(x)
+            out["F"], out["G"], out["H"] = (np.minimum(part, _FAR) for part in (arrays.F, arrays.G, arrays.H))
 
     return SliderCrank()

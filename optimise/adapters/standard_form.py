@@ -70,7 +70,7 @@ class StandardForm:
     objectives: tuple[str, ...]
     inequalities: tuple[str, ...]
     equalities: tuple[str, ...]
-    _asked: tuple[Constraint, ...]
+    _constraints: tuple[Constraint, ...]
     _branch: EliminationBranch | None = None
 
     def designs(self, x: ArrayLike) -> Array:
@@ -78,8 +78,8 @@ class StandardForm:
         points = given_designs(x, self.names)
         if self._branch is None:
             return points
-        found: Array = self._branch.dimensions(points.reshape(-1, len(self.names)))
-        return found.reshape(*points.shape[:-1], found.shape[1])
+        designs: Array = self._branch.dimensions(points.reshape(-1, len(self.names)))
+        return designs.reshape(*points.shape[:-1], designs.shape[1])
 
     def arrays(self, x: ArrayLike, *, gradients: bool = False) -> Arrays:
         """Return F, G and H of points x (n, 3 + k), and with `gradients` their Jacobians.
@@ -90,7 +90,7 @@ class StandardForm:
         """
         points = given_designs(x, self.names)
         x = self.designs(points)
-        names = tuple(dict.fromkeys([*self.objectives, *(c.quantity for c in self._asked)]))
+        names = tuple(dict.fromkeys([*self.objectives, *(c.quantity for c in self._constraints)]))
         values, slopes = (
             self.problem.evaluate(x, names, gradients=True)
             if gradients
@@ -98,10 +98,10 @@ class StandardForm:
         )
         at = {name: (values[..., i], slopes[..., i, :]) for i, name in enumerate(names)}
         f = [_minimised(objective, *at[objective.quantity]) for objective in self.problem.objectives]
-        g, h = _turning(x, self._asked, slopes.shape[-1]) if self._turns else [], list[Row]()
-        for asked in self._asked:
-            value, slope = at[asked.quantity]
-            for word, bound in reversed(asked.sides):
+        g, h = _turning(x, self._constraints, slopes.shape[-1]) if self._turns else [], list[Row]()
+        for constraint in self._constraints:
+            value, slope = at[constraint.quantity]
+            for word, bound in reversed(constraint.sides):
                 (h if word == "equals" else g).append(_scaled(value, slope, bound, -1.0 if word == "min" else 1.0))
         if self._branch is not None:
             g += _ranges(x, self._branch, slopes.shape[-1])
@@ -130,7 +130,7 @@ class StandardForm:
         constraints: list[LinearConstraint | NonlinearConstraint] = []
         first = 0
         if self._branch is None and self._turns:
-            share, rest = _share(self._asked), np.zeros((2, len(self.names) - 3))
+            share, rest = _share(self._constraints), np.zeros((2, len(self.names) - 3))
             turning = np.column_stack([[[1.0, -share, 1.0], [1.0, -share, -1.0]], rest])
             constraints.append(LinearConstraint(turning, -np.inf, 0.0, keep_feasible=keep_feasible))
             first = 2  # rows of G that are linear
@@ -138,8 +138,8 @@ class StandardForm:
             inner, slope = (lambda x: self.arrays(x).G[first:]), (lambda x: self.arrays(x, gradients=True).dG[first:])
             constraints.append(NonlinearConstraint(inner, -np.inf, 0.0, jac=slope))
         if self.equalities:
-            held, slope = (lambda x: self.arrays(x).H), (lambda x: self.arrays(x, gradients=True).dH)
-            constraints.append(NonlinearConstraint(held, 0.0, 0.0, jac=slope))
+            equations, slope = (lambda x: self.arrays(x).H), (lambda x: self.arrays(x, gradients=True).dH)
+            constraints.append(NonlinearConstraint(equations, 0.0, 0.0, jac=slope))
         return ScipyForm(
             lambda x: float(self.arrays(x).F[column]),
             lambda x: self.arrays(x, gradients=True).dF[column],
@@ -155,12 +155,12 @@ class StandardForm:
         """
         if self._branch is not None or not self._turns:
             grid = self.lower + np.random.default_rng(1).random((4096, len(self.names))) * (self.upper - self.lower)
-            found = self.arrays(grid)
-            worst = np.concatenate([found.G, np.abs(found.H)], axis=1).max(axis=1, initial=-1e300)
-            worst[~np.isfinite(found.F).all(axis=1)] = np.inf
+            arrays = self.arrays(grid)
+            worst = np.concatenate([arrays.G, np.abs(arrays.H)], axis=1).max(axis=1, initial=-1e300)
+            worst[~np.isfinite(arrays.F).all(axis=1)] = np.inf
             if not np.isfinite(worst).any():
-                what = "makes the swing" if self._branch is None else "meets the equalities"
-                raise InputError(f"no design within the ranges {what}; 4,096 were tried; widen the ranges")
+                task = "makes the swing" if self._branch is None else "meets the equalities"
+                raise InputError(f"no design within the ranges {task}; 4,096 were tried; widen the ranges")
             return np.asarray(grid[np.argmin(worst)])
         middle = 0.5 * (self.lower + self.upper)
         near = min(max(0.0, self.lower[2]), self.upper[2])
@@ -218,7 +218,7 @@ def standard_form(problem: Problem, *, eliminate: bool = False, elimination_bran
             f"elimination_branch needs eliminated equalities; got elimination_branch={elimination_branch!r} with "
             "eliminate=False; set eliminate=True, or leave out elimination_branch"
         )
-    asked = constraints_of(problem)
+    constraints = constraints_of(problem)
     branch = _requested_branch(problem, elimination_branch) if eliminate else None
     if branch is None:
         names, ranges = tuple(problem.ranges), problem.ranges.values()
@@ -228,8 +228,8 @@ def standard_form(problem: Problem, *, eliminate: bool = False, elimination_bran
             lower[2], upper[2] = (max(lower[2], 0.0), upper[2]) if side > 0.0 else (lower[2], min(upper[2], 0.0))
     else:
         names, lower, upper = branch.free, np.zeros(len(branch.free)), np.ones(len(branch.free))
-        asked = tuple(c for c in asked if c.quantity not in branch.eliminated)
-    bounded = [c.quantity for c in asked if not c.equality for _ in c.sides]
+        constraints = tuple(c for c in constraints if c.quantity not in branch.eliminated)
+    bounded = [c.quantity for c in constraints if not c.equality for _ in c.sides]
     computed = [] if branch is None else [name for name in _computed(branch) for _ in range(2)]
     return StandardForm(
         problem,
@@ -238,8 +238,8 @@ def standard_form(problem: Problem, *, eliminate: bool = False, elimination_bran
         upper,
         tuple(objective.quantity for objective in problem.objectives),
         (*(() if problem.motion else ("turning", "turning")), *bounded, *computed),
-        tuple(c.quantity for c in asked if c.equality),
-        asked,
+        tuple(c.quantity for c in constraints if c.equality),
+        constraints,
         branch,
     )
 
@@ -249,28 +249,28 @@ def _requested_branch(problem: Problem, index: int | None) -> EliminationBranch 
 
     None if there is nothing to eliminate and no branch is requested. Raises `InputError`.
     """
-    found = elimination_branches(problem)
-    if index is None and len(found) > 1 and not any(constraint.equality for constraint in problem.constraints):
+    branches = elimination_branches(problem)
+    if index is None and len(branches) > 1 and not any(constraint.equality for constraint in problem.constraints):
         return None
-    if index is None and len(found) == 1:
+    if index is None and len(branches) == 1:
         index = 0
-    if isinstance(index, bool) or not isinstance(index, int) or not 0 <= index < len(found):
-        if len(found) == 1:
+    if isinstance(index, bool) or not isinstance(index, int) or not 0 <= index < len(branches):
+        if len(branches) == 1:
             raise InputError(
                 f"eliminating equalities gives one branch here, 0; got elimination_branch={index!r}; leave "
                 "elimination_branch out"
             )
-        several = "; ".join(f"{place}: offset {_side(branch)}" for place, branch in enumerate(found))
+        several = "; ".join(f"{place}: offset {_side(branch)}" for place, branch in enumerate(branches))
         raise InputError(
-            f"eliminating equalities needs one of their branches; got {index!r} of {len(found)} ({several}); make a "
-            f"form for each, with elimination_branch=0 to {len(found) - 1}, or keep the equalities, with "
+            f"eliminating equalities needs one of their branches; got {index!r} of {len(branches)} ({several}); make a "
+            f"form for each, with elimination_branch=0 to {len(branches) - 1}, or keep the equalities, with "
             "eliminate=False"
         )
-    if not found[index].free:
+    if not branches[index].free:
         raise InputError(
             "the equalities and ranges must leave something free; no unknown is left; widen a range, or use solve"
         )
-    return found[index]
+    return branches[index]
 
 
 def _side(branch: EliminationBranch) -> str:
@@ -301,22 +301,22 @@ def _ranges(x: Array, branch: EliminationBranch, width: int) -> list[Row]:
 
 def _without_spurious(rows: list[Row], x: Array, problem: Problem, branch: EliminationBranch) -> list[Row]:
     """Return rows that are infinite where an eliminated equality does not hold: its formula gave another root."""
-    wanted = [c for c in problem.constraints if c.quantity in branch.eliminated]
-    values = problem.evaluate(x, [c.quantity for c in wanted])
-    target = np.array([c.lower for c in wanted], dtype=np.float64)
+    equalities = [c for c in problem.constraints if c.quantity in branch.eliminated]
+    values = problem.evaluate(x, [c.quantity for c in equalities])
+    target = np.array([c.lower for c in equalities], dtype=np.float64)
     holds = (np.abs(values - target) <= FEASIBLE * np.maximum(np.abs(target), 1e-9)).all(axis=-1)
     return [(np.where(holds, value, np.inf), slope) for value, slope in rows]
 
 
-def _share(asked: tuple[Constraint, ...]) -> float:
+def _share(constraints: tuple[Constraint, ...]) -> float:
     """Share of the rod that crank + |offset| may take."""
-    floor = next((c.lower for c in asked if c.quantity == TRANSMISSION_ANGLE.name and c.lower is not None), None)
+    floor = next((c.lower for c in constraints if c.quantity == TRANSMISSION_ANGLE.name and c.lower is not None), None)
     return 1.0 - _KEPT if floor is None or not 0.0 < floor < 1.5 else float(np.cos(floor))
 
 
-def _turning(x: Array, asked: tuple[Constraint, ...], width: int) -> list[Row]:
+def _turning(x: Array, constraints: tuple[Constraint, ...], width: int) -> list[Row]:
     """Rows of G that keep the crank turning: the floor on the transmission angle, linear in the dimensions."""
-    share, rows = _share(asked), []
+    share, rows = _share(constraints), []
     for sign in (1.0, -1.0):
         size = np.abs(x[..., 1])
         slope = np.zeros((*x.shape[:-1], width))
@@ -330,18 +330,18 @@ def _turning(x: Array, asked: tuple[Constraint, ...], width: int) -> list[Row]:
 
 
 def _minimised(objective: Objective, value: Array, slope: Array) -> tuple[Array, Array]:
-    found = minimised(objective, value)
+    objectives = minimised(objective, value)
     if objective.sense == "maximise":
         slope = -slope
     elif objective.target is not None:
         slope = np.sign(value - objective.target)[..., None] * slope
-    return np.where(np.isnan(found), np.inf, found), slope
+    return np.where(np.isnan(objectives), np.inf, objectives), slope
 
 
 def _scaled(value: Array, slope: Array, bound: float, sign: float) -> tuple[Array, Array]:
     scale = sign / (abs(bound) or 1.0)
-    found = scale * (value - bound)
-    return np.where(np.isnan(found), np.inf, found), scale * slope
+    excess = scale * (value - bound)
+    return np.where(np.isnan(excess), np.inf, excess), scale * slope
 
 
 def _joined(rows: list[Row], shape: tuple[int, ...], width: int) -> tuple[Array, Array]:

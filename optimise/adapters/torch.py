@@ -54,7 +54,7 @@ def torch_function(problem: Problem, quantities: Sequence[str] | None = None) ->
                 f"designs are double-precision tensors on the processor; got {x.dtype} on {x.device}; "
                 "write x.double().cpu()"
             )
-        found: torch.Tensor = Quantities.apply(x)
-        return found
+        quantities_of_x: torch.Tensor = Quantities.apply(x)
+        return quantities_of_x
 
     return apply

@@ -60,14 +60,14 @@ def unbounded_reason(problem: Problem, objective: Objective) -> str:
 
 
 def cranks_of(mechanism: Mechanism, signal: Signal) -> tuple[Mechanism, ...]:
-    """Return machines of one crank at constant speed whose highest peak of a signal is that of a machine, if any.
+    """Return single-crank machines at constant speed whose highest peak of a signal is that of the machine.
 
-    Of a cycle of two turns each turn is one.
+    None if there are no such machines. Each turn of a two-turn cycle is a machine of its own.
     """
     single = equivalent_single_cranks(mechanism, signal) if is_shaft(mechanism) else (mechanism,)
     if not signal.needs_forces:
         return single
-    return tuple(half for one in single for half in (halves(one) if cycle_turns(one) > 1 else (one,)))
+    return tuple(half for machine in single for half in (halves(machine) if cycle_turns(machine) > 1 else (machine,)))
 
 
 def is_usable(problem: Problem, constraint: Constraint) -> bool:
@@ -75,8 +75,8 @@ def is_usable(problem: Problem, constraint: Constraint) -> bool:
     quantity = problem.quantity(constraint.quantity)
     if quantity.formulas(problem.mechanism):
         return True
-    wanted = Objective(quantity=constraint.quantity, sense="minimise")
-    return constraint.upper is not None and not unbounded_reason(problem, wanted)
+    objective = Objective(quantity=constraint.quantity, sense="minimise")
+    return constraint.upper is not None and not unbounded_reason(problem, objective)
 
 
 @dataclass
@@ -112,17 +112,17 @@ class Boxes:
                     f"this job cannot be certified: {reason}; leave this objective out; the residuals of the front "
                     "show how close its designs are to optimal"
                 )
-        asked = restated_constraints(problem)
-        least = max(c.lower or 0.0 for c in asked if c.quantity == TRANSMISSION_ANGLE.name)
+        constraints = restated_constraints(problem)
+        least = max(c.lower or 0.0 for c in constraints if c.quantity == TRANSMISSION_ANGLE.name)
         self.raw = raw_vector(problem.mechanism)
         self.lean = math.cos((1.0 - _SLACK) * least)
-        used = [c for c in asked if is_usable(problem, c)]
-        self.cheap = [c for c in used if problem.quantity(c.quantity).formulas(problem.mechanism)]
-        self.costly = [c for c in used if c not in self.cheap]
+        usable = [c for c in constraints if is_usable(problem, c)]
+        self.cheap = [c for c in usable if problem.quantity(c.quantity).formulas(problem.mechanism)]
+        self.costly = [c for c in usable if c not in self.cheap]
         names = [item.quantity for item in self.costly] + [item.quantity for item in self.objectives]
         peaks = [problem.quantity(name) for name in names]
         self.curves = {
-            peak.name: [Curve(one, peak) for one in cranks_of(problem.mechanism, peak.signal)]
+            peak.name: [Curve(machine, peak) for machine in cranks_of(problem.mechanism, peak.signal)]
             for peak in peaks
             if isinstance(peak, CyclePeak)
         }
@@ -140,8 +140,8 @@ class Boxes:
             middle, angles = self._angles(rows, lower, upper)
             part = [_select_boxes(x, rows) for x in (r, l, e)]
             curves = {
-                name: _scatter_boxes(_enclose_curves(of, part, angles[name], middle), rows, n)
-                for name, of in self.curves.items()
+                name: _scatter_boxes(_enclose_curves(curves_of_peak, part, angles[name], middle), rows, n)
+                for name, curves_of_peak in self.curves.items()
             }
             for constraint in self.costly:
                 curve = curves[constraint.quantity]
@@ -150,14 +150,18 @@ class Boxes:
             corner, smear = np.zeros((n, len(self.objectives))), 0.0 * lower
             for column, objective in enumerate(self.objectives):
                 if objective.quantity in curves:
-                    known: tuple[Enclosure, Array | None, Array | None] = curves[objective.quantity], np.zeros(n), None
+                    enclosed: tuple[Enclosure, Array | None, Array | None] = (
+                        curves[objective.quantity],
+                        np.zeros(n),
+                        None,
+                    )
                 else:
-                    known = self._closed(objective.quantity, r, l, e)
-                value, least, most = known
-                below, above = (end.max(axis=1) for end in value.ends(low, high))
-                below = below if least is None else np.maximum(below, least)
-                above = above if most is None else np.minimum(above, most)
-                corner[:, column] = _minimised_bound(objective, below, above)
+                    enclosed = self._closed(objective.quantity, r, l, e)
+                value, least, greatest = enclosed
+                lowest, highest = (end.max(axis=1) for end in value.ends(low, high))
+                lowest = lowest if least is None else np.maximum(lowest, least)
+                highest = highest if greatest is None else np.minimum(highest, greatest)
+                corner[:, column] = _minimised_bound(objective, lowest, highest)
                 wide = np.abs(value.slopes).max(axis=2) * (high - low) / self.span[column]
                 smear = np.fmax(smear, wide.T)
             centre, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
@@ -180,51 +184,51 @@ class Boxes:
         def everywhere(value: float) -> Enclosure:
             return Enclosure(np.full((n, 1), value), np.zeros((k, n, 1)), np.zeros((n, 1)))
 
-        known = {name: everywhere(bounds.lower) for name, bounds in branch.bounds.items() if bounds.fixed}
+        unknowns = {name: everywhere(bounds.lower) for name, bounds in branch.bounds.items() if bounds.fixed}
         for column, name in enumerate(branch.free):
             first, last = [
                 branch.lower[column] * (1.0 - u[:, column]) + branch.upper[column] * u[:, column]
                 for u in (lower, upper)
             ]
-            known[name] = coordinate(first, last, column, k)
+            unknowns[name] = coordinate(first, last, column, k)
         for step in branch.steps:
-            given = [known[name] for name in step.sources]
-            found = step.formula(*given) if given else everywhere(float(step.formula()))
+            sources = [unknowns[name] for name in step.sources]
+            computed = step.formula(*sources) if sources else everywhere(float(step.formula()))
             bounds = branch.bounds[step.target]
             scale = max(bounds.upper, 1e-300)
-            limits.add((found - bounds.upper) * (1.0 / scale))
-            limits.add((bounds.lower - found) * (1.0 / scale))
-            known[step.target] = found.confined(*_computed_ends(step.target, known, bounds, self.lean, n))
-        return known["crank"], known["rod"], known["offset"] * branch.sign
+            limits.add((computed - bounds.upper) * (1.0 / scale))
+            limits.add((bounds.lower - computed) * (1.0 / scale))
+            unknowns[step.target] = computed.confined(*_computed_ends(step.target, unknowns, bounds, self.lean, n))
+        return unknowns["crank"], unknowns["rod"], unknowns["offset"] * branch.sign
 
     def _closed(
         self, name: str, r: Enclosure, l: Enclosure, e: Enclosure
     ) -> tuple[Enclosure, Array | None, Array | None]:
         """Return the forms of a quantity (n, forms), and what is known of it beside them: from below and above."""
         quantity = self.problem.quantity(name)
-        known: dict[int, Enclosure] = {Raw.CRANK: r, Raw.ROD: l, Raw.OFFSET: e}
+        slots: dict[int, Enclosure] = {Raw.CRANK: r, Raw.ROD: l, Raw.OFFSET: e}
 
         def number(slot: int) -> Any:
-            return known[slot] if slot in known else float(self.raw[slot])
+            return slots[slot] if slot in slots else float(self.raw[slot])
 
-        found = [formula(number) for formula in quantity.formulas(self.problem.mechanism)]
-        value = reduce(side_by_side, [each if isinstance(each, Enclosure) else 0.0 * r + each for each in found])
-        most = value.ends()[1].max(axis=1)
+        forms = [formula(number) for formula in quantity.formulas(self.problem.mechanism)]
+        value = reduce(side_by_side, [form if isinstance(form, Enclosure) else 0.0 * r + form for form in forms])
+        greatest = value.ends()[1].max(axis=1)
         if not isinstance(quantity, ClosedFormQuantity) or quantity.rises is None:
-            return value, None, most
+            return value, None, greatest
         ends = [x.ends() for x in (r, l, magnitude(e))]
         least_at, most_at = [
             [np.maximum(pair[rises != upper], 0.0)[:, 0] for pair, rises in zip(ends, quantity.rises, strict=True)]
             for upper in (True, False)
         ]
-        least, other = [
+        least, highest = [
             np.where(
                 l > r + a, closed_form(int(quantity.forms[0]), r, l, a), np.nan
             )  # of those that rotate fully fully
             for r, l, a in (least_at, most_at)
         ]
-        least, other = least - _ROUNDED * np.abs(least), other + _ROUNDED * np.abs(other)
-        return value, np.where(np.isnan(least), -np.inf, least), np.fmin(most, other)
+        least, highest = least - _ROUNDED * np.abs(least), highest + _ROUNDED * np.abs(highest)
+        return value, np.where(np.isnan(least), -np.inf, least), np.fmin(greatest, highest)
 
     def _angles(self, rows: Whole, lower: Array, upper: Array) -> tuple[Array, dict[str, list[Array]]]:
         """Return the middle designs of some boxes and the angles of their peaks; any where the middle does not turn.
@@ -233,41 +237,43 @@ class Boxes:
         """
         middle = self.branch.dimensions(0.5 * (lower[rows] + upper[rows]))
         turns = (middle[:, 0] > 0.0) & (middle[:, 1] > middle[:, 0] + np.abs(middle[:, 2]))
-        found = {}
+        angles_by_name = {}
         for name, curves in self.curves.items():
-            found[name] = [np.full(len(rows), 0.5 * np.pi) for _ in curves]
-            for angles, curve in zip(found[name], curves, strict=True):
+            angles_by_name[name] = [np.full(len(rows), 0.5 * np.pi) for _ in curves]
+            for angles, curve in zip(angles_by_name[name], curves, strict=True):
                 if turns.any():
                     angles[turns] = best_angles(curve.peak, curve.mechanism, middle[turns])
-        return middle, found
+        return middle, angles_by_name
 
 
 def _enclose_curves(curves: list[Curve], part: list[Enclosure], angles: list[Array], middle: Array) -> Enclosure:
     """Return the curves of a quantity side by side, of which the greatest bounds its peak."""
-    found = [curve.enclose(part, at, middle) for curve, at in zip(curves, angles, strict=True)]
-    return reduce(side_by_side, found)
+    enclosures = [curve.enclose(part, at, middle) for curve, at in zip(curves, angles, strict=True)]
+    return reduce(side_by_side, enclosures)
 
 
-def _computed_ends(name: str, known: dict[str, Enclosure], bounds: Range, lean: float, n: int) -> tuple[Array, Array]:
+def _computed_ends(
+    name: str, unknowns: dict[str, Enclosure], bounds: Range, lean: float, n: int
+) -> tuple[Array, Array]:
     """Return the ends (n, 1) of a computed dimension from its range and r + |e| <= lean l."""
-    others = [known[other].ends() for other in DIMENSIONS if other != name and other in known]
+    ends = [unknowns[dimension].ends() for dimension in DIMENSIONS if dimension != name and dimension in unknowns]
     slack = _SLACK * bounds.upper
     low, high = np.full((n, 1), bounds.lower - slack), np.full((n, 1), bounds.upper + slack)
-    if len(others) < 2:
+    if len(ends) < 2:
         return low, high
-    (one, two), (three, four) = others  # in the order crank, rod, offset
+    (first_low, two), (three, four) = ends  # in the order crank, rod, offset
     if name == "rod":
-        return np.maximum(low, (one + three) / lean), high
-    return low, np.minimum(high, lean * four - one if name == "offset" else lean * two - three)
+        return np.maximum(low, (first_low + three) / lean), high
+    return low, np.minimum(high, lean * four - first_low if name == "offset" else lean * two - three)
 
 
-def _minimised_bound(objective: Objective, below: Array, above: Array) -> Array:
+def _minimised_bound(objective: Objective, lowest: Array, highest: Array) -> Array:
     """Return a lower bound on an objective as it is minimised, from the ends of its value."""
     if objective.sense == "maximise":
-        return -above
+        return -highest
     if objective.target is not None:
-        return np.maximum(np.maximum(below - objective.target, objective.target - above), 0.0)
-    return below
+        return np.maximum(np.maximum(lowest - objective.target, objective.target - highest), 0.0)
+    return lowest
 
 
 def _select_boxes(value: Enclosure, rows: Whole) -> Enclosure:

@@ -64,7 +64,7 @@ class Certificate:
 
 
 def message_of(
-    status: Status, asked: float, proven: float, delivered: float, gap: float, designs: int, added: int
+    status: Status, requested: float, proven: float, delivered: float, gap: float, designs: int, added: int
 ) -> str:
     """Return the proof in words."""
 
@@ -73,14 +73,14 @@ def message_of(
 
     if not np.isfinite(proven):
         return "nothing is proven yet: part of the design box has no bound; allow more time"
-    some = f"the {designs} designs" if designs > 1 else "the design"
-    whole = f"{some} and {added} added ones" if added else some
-    most = f"at most {share(proven)} of each objective's range"
-    text = f"proven: for every feasible design, one of {whole} is worse by {most}"
+    delivered_set = f"the {designs} designs" if designs > 1 else "the design"
+    completed_set = f"{delivered_set} and {added} added ones" if added else delivered_set
+    worst_loss = f"at most {share(proven)} of each objective's range"
+    text = f"proven: for every feasible design, one of {completed_set} is worse by {worst_loss}"
     if added:
-        text += f"; {some} alone: {share(delivered)}"
-        if gap > asked:
+        text += f"; {delivered_set} alone: {share(delivered)}"
+        if gap > requested:
             text += f", and a design that is better by {share(gap)} is known"
     if status == "out of budget":
-        text += f"; {share(asked)} was requested; allow more time or a larger epsilon"
+        text += f"; {share(requested)} was requested; allow more time or a larger epsilon"
     return f"interrupted; {text}" if status == "cancelled" else text

@@ -49,10 +49,10 @@ def certify_designs(
             "designs are to optimal"
         )
     listed = (f"the values of {item.name}" for item in problem.discrete)
-    more = [*(item.name for item in problem.mechanism.varying), *problem.choices, *listed]
-    if more:
+    varying = [*(item.name for item in problem.mechanism.varying), *problem.choices, *listed]
+    if varying:
         raise InputError(
-            f"only crank, rod and offset may vary in a certificate; got {', '.join(more)} as well; fix their values "
+            f"only crank, rod and offset may vary in a certificate; got {', '.join(varying)} as well; fix their values "
             "in the job and certify that"
         )
     if not len(dimensions):

@@ -38,17 +38,17 @@ def excess(
     points: Array,
     designs: Array,
     *,
-    known: Array | None = None,
+    earlier_excess: Array | None = None,
     first: Whole | None = None,
     enough: float = -np.inf,
 ) -> Array:
     """Return the excess (n,) of points (n, m) over designs (p, m), infinite without any.
 
-    known: excess over other designs, whose least counts. first: (n,), the designs before it are left out. enough: a
-    value that need not be improved.
+    earlier_excess: excess over other designs; the lesser one counts. first: (n,), index of the first design compared.
+    enough: a value that need not be improved.
     """
     n = len(points)
-    out = np.full(n, np.inf) if known is None else known.copy()
+    out = np.full(n, np.inf) if earlier_excess is None else earlier_excess.copy()
     start = np.zeros(n, dtype=np.int64) if first is None else first
     points, designs = np.ascontiguousarray(points), np.ascontiguousarray(designs)
 
@@ -109,8 +109,8 @@ def greedy_cover(points: Array, values: Array, epsilon: float) -> Whole:
 
 def volume(values: Array) -> float:
     """Return the hypervolume of scaled values in the units of fronts; what lies beyond the ideal counts too."""
-    none, one = np.zeros(values.shape[1]), np.ones(values.shape[1])
-    return hypervolume(values[nondominated(values)], none, one, within=False)
+    ideal, span = np.zeros(values.shape[1]), np.ones(values.shape[1])
+    return hypervolume(values[nondominated(values)], ideal, span, clip_at_ideal=False)
 
 
 def volume_gap(front: Array, designs: Array, epsilon: float, points: Array) -> float:
@@ -121,11 +121,11 @@ def volume_gap(front: Array, designs: Array, epsilon: float, points: Array) -> f
     """
     if not np.isfinite(epsilon):
         return float("inf")
-    most = volume(designs - epsilon)
-    beyond = np.concatenate([front - epsilon, points])
-    beyond = beyond[np.isfinite(beyond).all(axis=1)] if np.isfinite(points).all() else beyond[:0]
-    if len(beyond):
-        beyond = beyond[nondominated(beyond)]
-        if len(beyond) <= _EXACT:
-            most = min(most, volume(beyond))
-    return max(0.0, most - volume(front))
+    largest = volume(designs - epsilon)
+    bounds = np.concatenate([front - epsilon, points])
+    bounds = bounds[np.isfinite(bounds).all(axis=1)] if np.isfinite(points).all() else bounds[:0]
+    if len(bounds):
+        bounds = bounds[nondominated(bounds)]
+        if len(bounds) <= _EXACT:
+            largest = min(largest, volume(bounds))
+    return max(0.0, largest - volume(front))

@@ -65,7 +65,7 @@ class Curve:
         It has two parts where it may jump at the angle, and three where a table steps. The rest is not a number where
         the angle does not count in all of the box.
         """
-        found = self._enclose_at(dimensions, angles, middle)
+        enclosure = self._enclose_at(dimensions, angles, middle)
         if self.steps:
             # A peak on a step moves with the design: beside it all designs of the box are on one side of the step.
             r, l, e = middle.T
@@ -74,8 +74,8 @@ class Curve:
             width = np.sum([high[:, 0] - low[:, 0] for low, high in ends], axis=0)
             away = np.minimum(width / np.maximum(pace, 1e-3 * r) + width / r + _BESIDE, _FARTHEST)
             for side in (-away, away):
-                found = side_by_side(found, self._enclose_at(dimensions, angles + side, middle))
-        return found
+                enclosure = side_by_side(enclosure, self._enclose_at(dimensions, angles + side, middle))
+        return enclosure
 
     def _enclose_at(self, dimensions: list[Enclosure], angles: Array, middle: Array) -> Enclosure:
         """Return the signal as `enclose` does, at these angles alone."""
@@ -126,20 +126,20 @@ class Curve:
                 if self.loads.start[k] < self.loads.start[k + 1] and not self.loads.factor[k, 2]:
                     load = load + self._table(k, m, d, block, theta, outward)
             f = forces(sine, cosine, m, d, load)
-            whole = f._replace(torque=f.torque - self._on_crank(m, d, block, theta, outward))
-            return cast(Enclosure, size_of_force(int(self.kind), whole, m, d))
+            total = f._replace(torque=f.torque - self._on_crank(m, d, block, theta, outward))
+            return cast(Enclosure, size_of_force(int(self.kind), total, m, d))
         return cast(Enclosure, signal(int(self.kind), sine, cosine, m, d, None))
 
     def _on_crank(self, m: Any, d: Design, block: Any, theta: Array, outward: Enclosure) -> Any:
         """Return the torque of the loads on the crank, N m: as `beside_crank_loads` has it."""
-        found: Any = 0.0
+        torque: Any = 0.0
         for k, load in enumerate(self.mechanism.loads):
             if load.on_crank and self.loads.kind[k] == Enters.CRANK_TORQUE:
                 q = DESIGN + LOAD_ROWS * k + AREA
-                found = found + (block[q, 0] - self.direction * block[q + 1, 0])
+                torque = torque + (block[q, 0] - self.direction * block[q + 1, 0])
             elif load.on_crank:
-                found = found + self._table(k, m, d, block, theta, outward)
-        return found
+                torque = torque + self._table(k, m, d, block, theta, outward)
+        return torque
 
     def _table(self, k: int, m: Any, d: Design, block: Any, theta: Array, outward: Enclosure) -> Enclosure:
         loads: Loads = self.loads
@@ -166,13 +166,13 @@ def interpolated(x: Enclosure, at: Array, force: Array) -> Enclosure:
     first, last = np.interp(low, at, force), np.interp(high, at, force)
     wide = high > low
     slope = np.where(wide, (last - first) / np.where(wide, high - low, 1.0), 0.0)
-    above, below = np.zeros_like(low), np.zeros_like(low)
+    highest, lowest = np.zeros_like(low), np.zeros_like(low)
     for knot, value in zip(at, force, strict=True):
         off = np.where((low < knot) & (knot < high), value - (first + slope * (knot - low)), 0.0)
-        above, below = np.maximum(above, off), np.minimum(below, off)
-    chord = (x - low) * slope + (first + 0.5 * (above + below))
-    most = UNIT * (np.abs(force).max() + np.abs(slope) * x.size)
-    return Enclosure(chord.centre, chord.slopes, chord.rest + 0.5 * (above - below) + 4.0 * most, chord.empty)
+        highest, lowest = np.maximum(highest, off), np.minimum(lowest, off)
+    chord = (x - low) * slope + (first + 0.5 * (highest + lowest))
+    rounding = UNIT * (np.abs(force).max() + np.abs(slope) * x.size)
+    return Enclosure(chord.centre, chord.slopes, chord.rest + 0.5 * (highest - lowest) + 4.0 * rounding, chord.empty)
 
 
 def _by_stroke(outward: Enclosure, out: Any, back: Any) -> Enclosure:
@@ -180,8 +180,8 @@ def _by_stroke(outward: Enclosure, out: Any, back: Any) -> Enclosure:
     low, high = outward.ends()
     k = len(outward.slopes)
     least = np.where(low > 0.0, out, np.where(high < 0.0, back, min(out, back)))
-    most = np.where(low > 0.0, out, np.where(high < 0.0, back, max(out, back)))
-    return interval(least, most, k)
+    greatest = np.where(low > 0.0, out, np.where(high < 0.0, back, max(out, back)))
+    return interval(least, greatest, k)
 
 
 def _at_share(
@@ -212,13 +212,13 @@ def _at_dead_centre(d: Design, sine: Array, cosine: Array, middle: Array) -> tup
     """Return where the middle design is on a dead centre, and sine and cosine of an angle that stays there."""
     r, l, e = (column[:, None] for column in middle.T)
     at = motion(sine, cosine, r, l, e, d.branch)
-    on = np.abs(at.x_1) < _AT_REST * r
+    on_dead_centre = np.abs(at.x_1) < _AT_REST * r
     far = at.x * d.branch > np.sqrt(l * l - e * e)  # between the two dead centres
     q = select(far, d.r / (d.l + d.r), -d.r / (d.l - d.r))
     x = select(far, d.outer * d.branch, d.inner * d.branch)
     k = len(q.slopes)
     return (
-        on,
-        select(on, q * d.e / d.r, interval(sine, sine, k)),
-        select(on, q * x / d.r, interval(cosine, cosine, k)),
+        on_dead_centre,
+        select(on_dead_centre, q * d.e / d.r, interval(sine, sine, k)),
+        select(on_dead_centre, q * x / d.r, interval(cosine, cosine, k)),
     )

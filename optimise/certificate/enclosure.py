@@ -62,40 +62,40 @@ class Enclosure:
         low, high: (k, n), the part of [-1, 1]^k that matters; all of it by default.
         """
         swing = np.abs(self.slopes).sum(axis=0)
-        below, above = -swing, swing
+        lowest, highest = -swing, swing
         if low is not None and high is not None:
             if self.centre.ndim > 1:
                 low, high = low[..., None], high[..., None]
-            one, two = self.slopes * low, self.slopes * high
-            below, above = np.minimum(one, two).sum(axis=0), np.maximum(one, two).sum(axis=0)
-        room = self.rest + INFLATION * self.size
-        least, most = self.centre + below - room, self.centre + above + room
-        known = np.isfinite(least) & np.isfinite(most)
-        return np.where(known, least, -np.inf), np.where(known, most, np.inf)
+            at_low, at_high = self.slopes * low, self.slopes * high
+            lowest, highest = np.minimum(at_low, at_high).sum(axis=0), np.maximum(at_low, at_high).sum(axis=0)
+        margin = self.rest + INFLATION * self.size
+        least, greatest = self.centre + lowest - margin, self.centre + highest + margin
+        is_finite = np.isfinite(least) & np.isfinite(greatest)
+        return np.where(is_finite, least, -np.inf), np.where(is_finite, greatest, np.inf)
 
     def confined(self, low: Array, high: Array) -> Enclosure:
         """Return the number where only values from low to high (n, ...) matter: they alone where it reaches farther."""
         clear = self.radius <= high - low
         if clear.all():
             return self
-        found = select(clear, self, interval(low, np.maximum(low, high), len(self.slopes)))
-        found.empty = self.empty
-        return found
+        confined = select(clear, self, interval(low, np.maximum(low, high), len(self.slopes)))
+        confined.empty = self.empty
+        return confined
 
     def magnitude(self) -> Enclosure:
         """Return the absolute value."""
         low, high = self.centre - self.radius, self.centre + self.radius
         sign = np.where(low >= 0.0, 1.0, -1.0)
-        both = (low < 0.0) & (high > 0.0)
-        if not both.any():
+        straddles_zero = (low < 0.0) & (high > 0.0)
+        if not straddles_zero.any():
             return self._scaled(sign)
         # On [low, high] the absolute value lies between its chord and the chord less its height above zero.
-        width = np.where(both, high - low, 1.0)
-        slope = np.where(both, (high + low) / width, sign)
-        height = np.where(both, -2.0 * low * high / width, 0.0)
-        found = self._scaled(slope)
+        width = np.where(straddles_zero, high - low, 1.0)
+        slope = np.where(straddles_zero, (high + low) / width, sign)
+        height = np.where(straddles_zero, -2.0 * low * high / width, 0.0)
+        chord = self._scaled(slope)
         return Enclosure(
-            found.centre + 0.5 * height, found.slopes, found.rest + 0.5 * height + UNIT * self.size, self.empty
+            chord.centre + 0.5 * height, chord.slopes, chord.rest + 0.5 * height + UNIT * self.size, self.empty
         )
 
     def _scaled(self, factor: Any) -> Enclosure:
@@ -163,10 +163,10 @@ class Enclosure:
         size, radius = np.abs(self.centre), self.radius
         clear = size > radius * (1.0 + INFLATION)
         inverse = 1.0 / np.where(clear, self.centre, np.nan)
-        most = (radius * inverse) ** 2 / (size - radius)
+        bend = (radius * inverse) ** 2 / (size - radius)
         square = inverse * inverse
-        rest = self.rest * square + 0.5 * most + UNIT * (np.abs(inverse) + radius * square + most)
-        return Enclosure(inverse + np.sign(inverse) * 0.5 * most, -self.slopes * square, rest, self.empty)
+        rest = self.rest * square + 0.5 * bend + UNIT * (np.abs(inverse) + radius * square + bend)
+        return Enclosure(inverse + np.sign(inverse) * 0.5 * bend, -self.slopes * square, rest, self.empty)
 
     def _root(self) -> Enclosure:
         """Return an enclosure of the square root.
@@ -174,7 +174,7 @@ class Enclosure:
         With w^2 = c + t and q^2 = c: w = q + t / (2 q) - (q - w)^2 / (2 q), the last largest at the lower end.
         """
         radius = self.radius
-        least, most = self.centre - radius, self.centre + radius
+        least, greatest = self.centre - radius, self.centre + radius
         clear = least > 0.0
         q = np.sqrt(np.where(clear, self.centre, 1.0))
         bend = (q - np.sqrt(np.where(clear, least, 1.0))) ** 2 / (2.0 * q)
@@ -183,16 +183,16 @@ class Enclosure:
         if clear.all():
             return Enclosure(centre, slopes, rest, self.empty)
         # What is defined lies between zero and the root of the greatest value.
-        half = np.where(np.isfinite(most), 0.5 * np.sqrt(np.maximum(most, 0.0)) * (1.0 + INFLATION), np.nan)
-        found = select(clear, Enclosure(centre, slopes, rest), Enclosure(half, 0.0, half))
-        found.empty = _merge_empty(self.empty, most < -INFLATION * np.abs(self.centre))
-        return found
+        half = np.where(np.isfinite(greatest), 0.5 * np.sqrt(np.maximum(greatest, 0.0)) * (1.0 + INFLATION), np.nan)
+        root = select(clear, Enclosure(centre, slopes, rest), Enclosure(half, 0.0, half))
+        root.empty = _merge_empty(self.empty, greatest < -INFLATION * np.abs(self.centre))
+        return root
 
     def _arcsine(self) -> Enclosure:
         """Tangent at the centre; the second derivative x / (1 - x^2)^(3/2) grows with |x|."""
-        most = self.size
-        clear = most < 1.0
-        c, x = np.where(clear, self.centre, 0.0), np.where(clear, most, 0.0)
+        largest = self.size
+        clear = largest < 1.0
+        c, x = np.where(clear, self.centre, 0.0), np.where(clear, largest, 0.0)
         slope = 1.0 / np.sqrt(1.0 - c * c)
         bend = 0.5 * self.radius**2 * x / (1.0 - x * x) ** 1.5
         centre, slopes = np.arcsin(c), self.slopes * slope
@@ -203,9 +203,9 @@ class Enclosure:
         high = np.arcsin(np.clip(self.centre + self.radius, -1.0, 1.0))
         outside = np.abs(self.centre) - self.radius > 1.0 + INFLATION
         wide = Enclosure(0.5 * (low + high), 0.0, 0.5 * (high - low) + 8.0 * UNIT)
-        found = select(clear, Enclosure(centre, slopes, rest), wide)
-        found.empty = _merge_empty(self.empty, outside)
-        return found
+        arcsine = select(clear, Enclosure(centre, slopes, rest), wide)
+        arcsine.empty = _merge_empty(self.empty, outside)
+        return arcsine
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
         """Run NumPy's functions on enclosures: what formulas call, and arrays on the left of an operator."""
@@ -232,13 +232,13 @@ def interval(low: Any, high: Any, k: int) -> Enclosure:
     return Enclosure(0.5 * (low + high), np.zeros((k, *low.shape)), rest)
 
 
-def side_by_side(one: Enclosure, two: Enclosure) -> Enclosure:
+def side_by_side(left: Enclosure, right: Enclosure) -> Enclosure:
     """Return the parts (n, p) of one and of another side by side."""
-    empty = None if one.empty is None or two.empty is None else one.empty & two.empty
+    empty = None if left.empty is None or right.empty is None else left.empty & right.empty
     return Enclosure(
-        np.concatenate([one.centre, two.centre], axis=1),
-        np.concatenate([one.slopes, two.slopes], axis=2),
-        np.concatenate([one.rest, two.rest], axis=1),
+        np.concatenate([left.centre, right.centre], axis=1),
+        np.concatenate([left.slopes, right.slopes], axis=2),
+        np.concatenate([left.rest, right.rest], axis=1),
         empty,
     )
 
@@ -251,23 +251,27 @@ def coordinate(low: Array, high: Array, column: int, k: int) -> Enclosure:
     return Enclosure(0.5 * (low + high)[:, None], slopes, (UNIT * size)[:, None])
 
 
-def select(mask: Mask, one: Enclosure, two: Enclosure) -> Enclosure:
+def select(mask: Mask, chosen: Enclosure, alternative: Enclosure) -> Enclosure:
     """Return one number where the mask holds, another elsewhere."""
     empty = None
-    if one.empty is not None or two.empty is not None:
-        empty = np.where(mask, False if one.empty is None else one.empty, False if two.empty is None else two.empty)
+    if chosen.empty is not None or alternative.empty is not None:
+        empty = np.where(
+            mask,
+            False if chosen.empty is None else chosen.empty,
+            False if alternative.empty is None else alternative.empty,
+        )
     return Enclosure(
-        np.where(mask, one.centre, two.centre),
-        np.where(mask, one.slopes, two.slopes),
-        np.where(mask, one.rest, two.rest),
+        np.where(mask, chosen.centre, alternative.centre),
+        np.where(mask, chosen.slopes, alternative.slopes),
+        np.where(mask, chosen.rest, alternative.rest),
         empty,
     )
 
 
-def _merge_empty(one: Mask | None, two: Mask | None) -> Mask | None:
-    if one is None or two is None:
-        return one if two is None else two
-    return one | two
+def _merge_empty(first: Mask | None, second: Mask | None) -> Mask | None:
+    if first is None or second is None:
+        return first if second is None else second
+    return first | second
 
 
 def _broadcast_slopes(slopes: Array, centre: Array) -> Array:

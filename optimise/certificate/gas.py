@@ -21,8 +21,10 @@ def gas_force(load: Cylinder, share: Enclosure, stroke: Enclosure, outward: Encl
     low, high = outward.ends()
     sides = [_pressure(load, share, stroke, expanding=(sign > 0.0) == way) for way in (True, False)]
     ends = [side.ends() for side in sides]
-    both = interval(np.minimum(ends[0][0], ends[1][0]), np.maximum(ends[0][1], ends[1][1]), len(outward.slopes))
-    pressure = select(low > 0.0, sides[0], select(high < 0.0, sides[1], both))
+    either_stroke = interval(
+        np.minimum(ends[0][0], ends[1][0]), np.maximum(ends[0][1], ends[1][1]), len(outward.slopes)
+    )
+    pressure = select(low > 0.0, sides[0], select(high < 0.0, sides[1], either_stroke))
     return (pressure - load.back_pressure) * (sign * load.area)
 
 
@@ -32,14 +34,14 @@ def _pressure(load: Cylinder, share: Enclosure, stroke: Enclosure, *, expanding:
     first, last = (np.clip(end, 0.0, 1.0) for end in share.ends())
     if load.clearance_volume and load.compression_exponent:
         # It rises (expansion) or falls (compression) with the clearance: a bound by the corners.
-        least, most = (load.clearance + load.clearance_volume / (load.area * end) for end in stroke.ends()[::-1])
-        near, far = (most, least) if expanding else (least, most)
+        least, greatest = (load.clearance + load.clearance_volume / (load.area * end) for end in stroke.ends()[::-1])
+        near, far = (greatest, least) if expanding else (least, greatest)
         return interval(_pressure_at(load, last, far, expanding), _pressure_at(load, first, near, expanding), k)
     at_first, at_last = (_pressure_at(load, end, load.clearance, expanding) for end in (first, last))
     wide = last > first
     slope = np.where(wide, (at_last - at_first) / np.where(wide, last - first, 1.0), 0.0)
     n = load.expansion_exponent if expanding else load.compression_exponent
-    below, above = np.zeros_like(first), np.zeros_like(first)
+    lowest, highest = np.zeros_like(first), np.zeros_like(first)
     if n:
         ratio, c = load.high / load.low, load.clearance
         event = c * (ratio ** (1.0 / n) - 1.0) if expanding else (1.0 + c) * ratio ** (-1.0 / n) - c
@@ -54,11 +56,11 @@ def _pressure(load: Cylinder, share: Enclosure, stroke: Enclosure, *, expanding:
         # Chords of the two pieces meet on the event; each curve hangs below its own by bend width^2 / 8 at most.
         off = _pressure_at(load, event, c, expanding) - (at_first + slope * (event - first))
         between_ends = (first < event) & (event < last)
-        below = np.where(between_ends, np.minimum(off, 0.0), 0.0) - 0.125 * bend * (last - first) ** 2
-        above = np.where(between_ends, np.maximum(off, 0.0), 0.0)
-    chord = (share - first) * slope + (at_first + 0.5 * (above + below))
+        lowest = np.where(between_ends, np.minimum(off, 0.0), 0.0) - 0.125 * bend * (last - first) ** 2
+        highest = np.where(between_ends, np.maximum(off, 0.0), 0.0)
+    chord = (share - first) * slope + (at_first + 0.5 * (highest + lowest))
     most_of = UNIT * (load.high + np.abs(slope) * share.size)
-    return Enclosure(chord.centre, chord.slopes, chord.rest + 0.5 * (above - below) + 8.0 * most_of, chord.empty)
+    return Enclosure(chord.centre, chord.slopes, chord.rest + 0.5 * (highest - lowest) + 8.0 * most_of, chord.empty)
 
 
 def _pressure_at(load: Cylinder, share: Any, clearance: Any, expanding: bool) -> Array:

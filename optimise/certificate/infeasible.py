@@ -29,10 +29,10 @@ def prove_infeasible(problem: Problem, *, seconds: float = SECONDS, poll: Callab
     if problem.mechanism.varying or problem.choices or problem.motion is not None:
         return False
     start = time.perf_counter()
-    one = np.ones(len(problem.objectives))
+    unit_span = np.ones(len(problem.objectives))
     tree = Tree.of_branches(
         [
-            Boxes(_requirement_evaluator(problem, branch), one, objectives=False)
+            Boxes(_requirement_evaluator(problem, branch), unit_span, objectives=False)
             for branch in elimination_branches(problem)
         ]
     )

@@ -27,17 +27,17 @@ class Limits:
             self.alive &= ~value.empty.any(axis=1)
         self.alive &= ~(value.ends()[0] > FEASIBLE).any(axis=1)
         for part in range(value.centre.shape[1]):
-            known = np.isfinite(value.size[:, part])
+            is_finite = np.isfinite(value.size[:, part])
             self.rows.append(
                 (
-                    np.where(known, value.centre[:, part], -np.inf),
-                    np.where(known, value.slopes[:, :, part], 0.0),
-                    np.where(known, value.rest[:, part], 0.0),
+                    np.where(is_finite, value.centre[:, part], -np.inf),
+                    np.where(is_finite, value.slopes[:, :, part], 0.0),
+                    np.where(is_finite, value.rest[:, part], 0.0),
                 )
             )
 
-    def hold(self, constraint: Constraint, value: Enclosure, least: Array | None, most: Array | None) -> None:
-        """Require a constraint on the greatest of a quantity's parts; least, most: what else is known of it."""
+    def hold(self, constraint: Constraint, value: Enclosure, least: Array | None, greatest: Array | None) -> None:
+        """Require a constraint on the greatest of a quantity's parts; least, greatest: what else is known of it."""
         upper, lower = constraint.upper, constraint.lower
         if upper is not None:
             scale = abs(upper) or 1.0
@@ -48,8 +48,8 @@ class Limits:
             scale = abs(lower) or 1.0
             if value.centre.shape[1] == 1:
                 self.add((lower - value) * (1.0 / scale))
-            if most is not None:
-                self.alive &= ~(lower - most > FEASIBLE * scale)
+            if greatest is not None:
+                self.alive &= ~(lower - greatest > FEASIBLE * scale)
 
     def contracted(self) -> tuple[Array, Array]:
         """Return low and high (k, n), the part of [-1, 1]^k that holds all feasible designs."""
@@ -57,10 +57,10 @@ class Limits:
         for centre, slopes, rest in self.rows:
             # centre + slopes . d - rest <= FEASIBLE, with all coordinates but one at their best.
             best = np.minimum(slopes * low, slopes * high)
-            room = FEASIBLE - centre + rest + INFLATION * (np.abs(centre) + np.abs(slopes).sum(axis=0))
+            slack = FEASIBLE - centre + rest + INFLATION * (np.abs(centre) + np.abs(slopes).sum(axis=0))
             for i in range(self.k):
                 slope = slopes[i]
-                limit = (room - best.sum(axis=0) + best[i]) / np.where(slope == 0.0, np.nan, slope)
+                limit = (slack - best.sum(axis=0) + best[i]) / np.where(slope == 0.0, np.nan, slope)
                 limit = np.where(np.isfinite(limit), limit, np.where(slope < 0.0, -np.inf, np.inf))
                 high[i] = np.where(slope > 0.0, np.minimum(high[i], limit + INFLATION), high[i])
                 low[i] = np.where(slope < 0.0, np.maximum(low[i], limit - INFLATION), low[i])
@@ -72,16 +72,16 @@ class Limits:
         d = 0.5 * (low + high)
         for _ in range(_ROUNDS):
             for centre, slopes, rest in self.rows:
-                over = centre + (slopes * d).sum(axis=0) + rest + _INSIDE
+                violation = centre + (slopes * d).sum(axis=0) + rest + _INSIDE
                 steep = (slopes * slopes).sum(axis=0)
-                step = np.where((over > 0.0) & (steep > 0.0), over / np.where(steep > 0.0, steep, 1.0), 0.0)
+                step = np.where((violation > 0.0) & (steep > 0.0), violation / np.where(steep > 0.0, steep, 1.0), 0.0)
                 d = np.clip(d - step * slopes, low, high)
         return d
 
     def smear(self, low: Array, high: Array) -> Array:
         """Return the effect of the width along each axis on the conditions not sure to hold, (n, k)."""
-        most = np.zeros((len(self.alive), self.k))
+        widest = np.zeros((len(self.alive), self.k))
         for centre, slopes, rest in self.rows:
             open_ = centre + np.maximum(slopes * low, slopes * high).sum(axis=0) + rest > 0.0
-            most = np.fmax(most, (np.abs(slopes) * (high - low) * open_).T)
-        return most
+            widest = np.fmax(widest, (np.abs(slopes) * (high - low) * open_).T)
+        return widest

@@ -100,65 +100,65 @@ class Search:
         tree.excess[rows] = excess(
             tree.corner[rows],
             self.designs,
-            known=tree.excess[rows],
+            earlier_excess=tree.excess[rows],
             first=tree.counted_designs[rows],
             enough=self.epsilon,
         )
         tree.counted_designs[rows] = len(self.designs)
-        done = tree.excess[rows] <= self.epsilon
-        self._close(tree.corner[rows[done]], tree.excess[rows[done]])
-        kept = np.ones(len(tree), dtype=bool)
-        kept[rows[done]] = False
-        if done.any():
-            tree.keep(kept)
-        return np.asarray(np.cumsum(kept)[rows[~done]] - 1)
+        covered = tree.excess[rows] <= self.epsilon
+        self._close(tree.corner[rows[covered]], tree.excess[rows[covered]])
+        is_open = np.ones(len(tree), dtype=bool)
+        is_open[rows[covered]] = False
+        if covered.any():
+            tree.keep(is_open)
+        return np.asarray(np.cumsum(is_open)[rows[~covered]] - 1)
 
     def _take(self, index: int, lower: Array, upper: Array, threads: object) -> None:
         """Bound boxes of a branch, close what can be closed, open the rest."""
         boxes = self.tree.bound(index, lower, upper, threads)  # type: ignore[arg-type]
         corner = self._scaled(boxes.corner)
-        found = excess(corner, self.designs, enough=self.epsilon)
-        wanting = np.flatnonzero(found > self.epsilon)
+        gaps = excess(corner, self.designs, enough=self.epsilon)
+        wanting = np.flatnonzero(gaps > self.epsilon)
         if len(wanting):
-            found[wanting] = self._add(index, boxes.trial[wanting], corner[wanting], found[wanting])
-        done = found <= self.epsilon
-        self._close(corner[done], found[done])
-        self.tree.add(index, boxes[~done], corner[~done], found[~done], len(self.designs))
+            gaps[wanting] = self._add(index, boxes.trial[wanting], corner[wanting], gaps[wanting])
+        covered = gaps <= self.epsilon
+        self._close(corner[covered], gaps[covered])
+        self.tree.add(index, boxes[~covered], corner[~covered], gaps[~covered], len(self.designs))
 
-    def _add(self, index: int, trial: Array, corner: Array, found: Array) -> Array:
+    def _add(self, index: int, trial: Array, corner: Array, gaps: Array) -> Array:
         """Add designs that cover the corner of their box where no other does; return the excess of the corners."""
         evaluator = self.evaluators[index]
         dimensions, values, violation = evaluator.screen(trial)
         good = np.flatnonzero(violation <= FEASIBLE)
         if not len(good):
-            return found
+            return gaps
         scaled = self._scaled(values[good])
-        beyond = excess(scaled, self.front)
-        most = int(np.argmax(beyond))
-        if beyond[most] > self.gap:
-            self._note(dimensions[good[most]])
+        lead = excess(scaled, self.front)
+        farthest = int(np.argmax(lead))
+        if lead[farthest] > self.gap:
+            self._note(dimensions[good[farthest]])
         rows = good[choose_covering(corner[good], scaled, self.epsilon)]
         if not len(rows):
-            return found
+            return gaps
         fresh = self._exact(dimensions[rows])
-        own = Candidates(np.full(len(rows), index), trial[rows], fresh, np.ones(len(rows), np.bool_))
-        self.added = self.added.join(own)
+        additions = Candidates(np.full(len(rows), index), trial[rows], fresh, np.ones(len(rows), np.bool_))
+        self.added = self.added.join(additions)
         self.designs = np.concatenate([self.designs, fresh])
-        return excess(corner, fresh, known=found, enough=self.epsilon)
+        return excess(corner, fresh, earlier_excess=gaps, enough=self.epsilon)
 
     def _exact(self, dimensions: Array) -> Array:
         return self._scaled(_objectives(self.problem, dimensions))
 
     def _note(self, design: Array) -> None:
         """Remember a design that lies farther beyond the front than any before."""
-        beyond = float(excess(self._exact(design[None]), self.front)[0])
-        if beyond > self.gap:
-            self.gap, self.hole = beyond, design
+        lead = float(excess(self._exact(design[None]), self.front)[0])
+        if lead > self.gap:
+            self.gap, self.hole = lead, design
 
-    def _close(self, corner: Array, found: Array) -> None:
+    def _close(self, corner: Array, gaps: Array) -> None:
         if not len(corner):
             return
-        self.closed = max(self.closed, float(found.max()))
+        self.closed = max(self.closed, float(gaps.max()))
         alone = excess(corner, self.front, enough=self.epsilon)
         self.closed_by_front = max(self.closed_by_front, float(alone.max()))
         self.needy.append(corner[alone > self.epsilon])
@@ -184,16 +184,16 @@ class Search:
         self._drop_redundant(needy)
         self.designs = np.concatenate([self.front, self.added.values])
         dimensions = self.added.dimensions(self.evaluators)
-        beyond = excess(self.added.values, self.front)
-        if len(beyond) and beyond.max() > self.gap:
-            self._note(dimensions[int(np.argmax(beyond))])
+        leads = excess(self.added.values, self.front)
+        if len(leads) and leads.max() > self.gap:
+            self._note(dimensions[int(np.argmax(leads))])
         # Whoever is covered by an added design is covered by the front to the sum of both excesses.
         least = max(self.closed_by_front, float(excess(tree.corner, self.front).max(initial=0.0)))
-        delivered = max(min(least, proven + float(beyond.max(initial=0.0))), self.gap)
+        delivered = max(min(least, proven + float(leads.max(initial=0.0))), self.gap)
         status: Status = "cancelled" if self.stopped else "out of budget"
         if proven <= self.epsilon:
             status = "proven"
-        where = self._worst_open_range() if len(tree) else None
+        open_range = self._worst_open_range() if len(tree) else None
         return Certificate(
             status=status,
             asked=self.epsilon,
@@ -209,21 +209,21 @@ class Search:
             boxes=tree.bounded,
             open=len(tree),
             remaining=tree.volume(),
-            where=where,
+            where=open_range,
             notes=self._notes(),
             seconds=time.perf_counter() - self.start,
             message=message_of(status, self.epsilon, proven, delivered, self.gap, len(self.front), len(dimensions)),
         )
 
     def _notes(self) -> tuple[str, ...]:
-        found = []
+        notes = []
         for constraint in restated_constraints(self.problem):
             quantity = self.problem.quantity(constraint.quantity)
             if not is_usable(self.problem, constraint):
-                found.append(f"the bounds ignore the requirement on {quantity.title}")
+                notes.append(f"the bounds ignore the requirement on {quantity.title}")
             elif isinstance(quantity, CyclePeak) and constraint.lower is not None:
-                found.append(f"the bounds ignore the minimum of {quantity.title}")
-        return tuple(found)
+                notes.append(f"the bounds ignore the minimum of {quantity.title}")
+        return tuple(notes)
 
     def _drop_redundant(self, needy: Array) -> None:
         """Leave out added designs whose corners others cover."""
@@ -235,9 +235,9 @@ class Search:
         if len(self.added) > _POLISHED:
             return
         for index, evaluator in enumerate(self.evaluators):
-            own = np.flatnonzero(self.added.branch == index)
-            for begin in range(0, len(own), 32):
-                rows = own[begin : begin + 32]
+            added = np.flatnonzero(self.added.branch == index)
+            for begin in range(0, len(added), 32):
+                rows = added[begin : begin + 32]
                 if time.perf_counter() - self.start > self.seconds or self.stopped:
                     return
                 k = evaluator.dimension
@@ -254,5 +254,5 @@ class Search:
         k = evaluator.dimension
         low, high = tree.lower[row, :k], tree.upper[row, :k]
         corners = np.array(list(itertools.product((0.0, 1.0), repeat=k))).reshape(2**k, k)
-        found = evaluator.branch.dimensions(low + (high - low) * corners)
-        return np.stack([found.min(axis=0), found.max(axis=0)], axis=1)
+        corner_designs = evaluator.branch.dimensions(low + (high - low) * corners)
+        return np.stack([corner_designs.min(axis=0), corner_designs.max(axis=0)], axis=1)

@@ -41,17 +41,24 @@ class Tree(Table):
     @classmethod
     def of_branches(cls, branches: list[Boxes]) -> Tree:
         """Return a tree without boxes."""
-        none, wide = np.zeros(0, np.int64), np.zeros((0, 3))
+        empty_rows, wide = np.zeros(0, np.int64), np.zeros((0, 3))
         return cls(
-            none, wide, wide, np.zeros((0, len(branches[0].objectives))), np.zeros(0), none, none, branches=branches
+            empty_rows,
+            wide,
+            wide,
+            np.zeros((0, len(branches[0].objectives))),
+            np.zeros(0),
+            empty_rows,
+            empty_rows,
+            branches=branches,
         )
 
     def volume(self) -> float:
         """Return the fraction of the design box that is open; all branches count alike."""
         total = 0.0
         for index, boxes in enumerate(self.branches):
-            own, k = self.branch == index, len(boxes.branch.free)
-            total += float(np.prod((self.upper - self.lower)[own][:, :k], axis=1).sum())
+            on_branch, k = self.branch == index, len(boxes.branch.free)
+            total += float(np.prod((self.upper - self.lower)[on_branch][:, :k], axis=1).sum())
         return total / len(self.branches)
 
     def initial_boxes(self, index: int) -> tuple[Array, Array]:
@@ -65,9 +72,9 @@ class Tree(Table):
         """Return the bounds of boxes of a branch, without boxes that cannot hold a feasible design."""
         self.bounded += len(lower)
         parts = [slice(begin, begin + _CHUNK) for begin in range(0, len(lower), _CHUNK)]
-        first, *others = pool.map(lambda part: self.branches[index].bound(lower[part], upper[part]), parts)
-        found = first.join(*others)
-        return found[found.alive]
+        first, *rest = pool.map(lambda part: self.branches[index].bound(lower[part], upper[part]), parts)
+        bounded = first.join(*rest)
+        return bounded[bounded.alive]
 
     def add(self, index: int, boxes: Bounded, corner: Array, excess: Array, counted: int) -> None:
         """Add boxes."""
@@ -77,8 +84,8 @@ class Tree(Table):
         smear = np.where(np.isfinite(boxes.smear), boxes.smear, 0.0) + 0.05 * wide
         smear = np.where(wide > _FINEST, smear, -1.0)
         axis = np.where(smear.max(axis=1) < 0.0, -1, smear.argmax(axis=1)) if k else np.full(n, -1)
-        own = (np.full(n, index), boxes.lower, boxes.upper, corner, excess, np.full(n, counted), axis)
-        self.become(self.join(Tree(*own, branches=self.branches)))
+        columns = (np.full(n, index), boxes.lower, boxes.upper, corner, excess, np.full(n, counted), axis)
+        self.become(self.join(Tree(*columns, branches=self.branches)))
 
     def keep(self, rows: Whole | Mask) -> None:
         """Keep only these boxes."""
@@ -93,22 +100,22 @@ class Tree(Table):
 
     def halved(self, rows: Whole) -> list[tuple[int, Array, Array]]:
         """Remove boxes and return their halves by branch: index, lower, upper (n, k)."""
-        found = []
+        halves = []
         for index, boxes in enumerate(self.branches):
-            own, k = rows[self.branch[rows] == index], len(boxes.branch.free)
-            if not len(own):
+            on_branch, k = rows[self.branch[rows] == index], len(boxes.branch.free)
+            if not len(on_branch):
                 continue
-            low, high, axis = self.lower[own][:, :k], self.upper[own][:, :k], self.axis[own]
-            at = np.arange(len(own))
+            low, high, axis = self.lower[on_branch][:, :k], self.upper[on_branch][:, :k], self.axis[on_branch]
+            at = np.arange(len(on_branch))
             middle = 0.5 * (low[at, axis] + high[at, axis])
             left, right = high.copy(), low.copy()
             left[at, axis] = right[at, axis] = middle
             # Halves side by side: neighbours are likely to be covered by the same design.
             lower = np.stack([low, right], axis=1).reshape(-1, k)
             upper = np.stack([left, high], axis=1).reshape(-1, k)
-            found.append((index, lower, upper))
+            halves.append((index, lower, upper))
         self.keep(np.setdiff1d(np.arange(len(self)), rows, assume_unique=True))
-        return found
+        return halves
 
 
 def pool() -> ThreadPoolExecutor:

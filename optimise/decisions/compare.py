@@ -80,7 +80,7 @@ def compare(fronts: Sequence[Array], *, tolerance: float = TOLERANCE) -> Compari
             excess = np.array([np.min(np.max(scaled[a] - point, axis=1)) for point in scaled[b]])
             coverage[a, b] = float(np.mean(excess <= tolerance))
             epsilon[a, b] = float(excess.max())
-    whole = coverage == 1.0
+    covers_all = coverage == 1.0
     return Comparison(
         sizes=np.array([len(front) for front in fronts]),
         ideal=ideal,
@@ -91,7 +91,7 @@ def compare(fronts: Sequence[Array], *, tolerance: float = TOLERANCE) -> Compari
         in_union=np.array([_undominated(front, scaled, tolerance) for front in scaled]),
         coverage=coverage,
         epsilon=epsilon,
-        dominates=whole & ~whole.T,
+        dominates=covers_all & ~covers_all.T,
         tolerance=tolerance,
     )
 
@@ -99,8 +99,8 @@ def compare(fronts: Sequence[Array], *, tolerance: float = TOLERANCE) -> Compari
 def _scaling(everything: Array) -> tuple[Array, Array]:
     """Return ideal and range of the union front; the range of all designs where it has none."""
     best = everything[nondominated(everything)]
-    reach = spread(best)
-    return best.min(axis=0), np.where(reach > 0.0, reach, scaling(everything)[1])
+    best_range = spread(best)
+    return best.min(axis=0), np.where(best_range > 0.0, best_range, scaling(everything)[1])
 
 
 def _undominated(front: Array, fronts: Sequence[Array], tolerance: float) -> int:

@@ -49,9 +49,9 @@ _ROUNDS = 30
 _BEATEN = 1e-6  # of the objectives' range: a domination that is more than rounding
 
 
-def distance(values: Array, given: Array, span: Array) -> Array:
+def distance(values: Array, reference: Array, span: Array) -> Array:
     """Return the distance (n,) of designs (n, m) from a given one (m,), objectives divided by `span` (m,)."""
-    return np.asarray(np.linalg.norm((values - given) / span, axis=1))
+    return np.asarray(np.linalg.norm((values - reference) / span, axis=1))
 
 
 def nearest(
@@ -72,22 +72,24 @@ def nearest(
     """
     ranges = ranges or {}
     _require_new(problem, row, constraints, ranges)
-    asked, contradiction = extended(problem, constraints, ranges)
-    require_gradients(asked, "the search for a design like another")
-    evaluators = [Evaluator(asked, branch) for branch in elimination_branches(asked)]
-    run = Run(asked, 1)
+    extended_problem, contradiction = extended(problem, constraints, ranges)
+    require_gradients(extended_problem, "the search for a design like another")
+    evaluators = [Evaluator(extended_problem, branch) for branch in elimination_branches(extended_problem)]
+    run = Run(extended_problem, 1)
     if contradiction:
-        return empty_front(asked, evaluators, run, "infeasible", f"no design meets all requirements: {contradiction}")
-    finished = enumerate_branches(asked, evaluators, run).only_enumerated(span)
+        return empty_front(
+            extended_problem, evaluators, run, "infeasible", f"no design meets all requirements: {contradiction}"
+        )
+    finished = enumerate_branches(extended_problem, evaluators, run).only_enumerated(span)
     free = searched_evaluators(evaluators)
-    archive = explore(asked, free, run) if free else Archive.empty(len(span))
+    archive = explore(extended_problem, free, run) if free else Archive.empty(len(span))
     order = np.argsort(distance(archive.values, values, span), kind="stable")[:_STARTS]
     for index, u in archive[order].by_branch(evaluators):
         finished.add(index, polish(evaluators[index], u, span))
     if not len(finished):
-        return _nearest(solve(asked), values, span)
-    _zoom(finished, free, archive, values, asked.settings.seed)
-    return assemble(asked, evaluators, finished[_ranked(finished, archive, values)[:1]], run)
+        return _nearest(solve(extended_problem), values, span)
+    _zoom(finished, free, archive, values, extended_problem.settings.seed)
+    return assemble(extended_problem, evaluators, finished[_ranked(finished, archive, values)[:1]], run)
 
 
 def like(
@@ -120,28 +122,28 @@ def extended(
     problem: Problem, constraints: Sequence[Constraint], ranges: Mapping[str, Ends]
 ) -> tuple[Problem, str | None]:
     """Return the problem with added requirements, merged with its own; what leaves nothing is said, and left out."""
-    held = {constraint.quantity: constraint for constraint in problem.constraints}
+    constraints_by_name = {constraint.quantity: constraint for constraint in problem.constraints}
     dimensions = {name: getattr(problem, name) for name in DIMENSIONS}
     contradictions, keys = [], []
     for added in constraints:
-        own = held.get(added.quantity)
-        ends = common((added.lower, added.upper), (own.lower, own.upper) if own else (None, None))
-        of = problem.quantity(added.quantity)
+        required = constraints_by_name.get(added.quantity)
+        ends = common((added.lower, added.upper), (required.lower, required.upper) if required else (None, None))
+        quantity = problem.quantity(added.quantity)
         if ends is None:
-            assert own is not None
-            both = f"{_words((own.lower, own.upper), of.unit.factor, of.unit.symbol)} is required already"
-            contradictions.append(
-                f"{of.title} {_words((added.lower, added.upper), of.unit.factor, of.unit.symbol)}, where {both}"
-            )
+            assert required is not None
+            unit = quantity.unit
+            existing = f"{_words((required.lower, required.upper), unit.factor, unit.symbol)} is required already"
+            stricter = _words((added.lower, added.upper), unit.factor, unit.symbol)
+            contradictions.append(f"{quantity.title} {stricter}, where {existing}")
             keys.append(key_of(["constraints", added.quantity]))
         else:
-            held[added.quantity] = Constraint(quantity=added.quantity, lower=ends[0], upper=ends[1])
-    for name, wanted in ranges.items():
+            constraints_by_name[added.quantity] = Constraint(quantity=added.quantity, lower=ends[0], upper=ends[1])
+    for name, requested in ranges.items():
         own_range = dimensions[name]
-        ends = common(wanted, (own_range.lower, own_range.upper))
+        ends = common(requested, (own_range.lower, own_range.upper))
         if ends is None:
-            both = f"{_words((own_range.lower, own_range.upper), 1e3, 'mm')} is its range"
-            contradictions.append(f"{name} {_words(wanted, 1e3, 'mm')}, where {both}")
+            existing = f"{_words((own_range.lower, own_range.upper), 1e3, 'mm')} is its range"
+            contradictions.append(f"{name} {_words(requested, 1e3, 'mm')}, where {existing}")
             keys.append(f"variables.{name}")
         else:
             assert ends[0] is not None
@@ -151,15 +153,15 @@ def extended(
     # The search serves to come near, whatever method made the front.
     settings = Settings(designs=problem.settings.designs, seed=problem.settings.seed)
     return (
-        replace(problem, constraints=tuple(held.values()), settings=settings, **dimensions),
+        replace(problem, constraints=tuple(constraints_by_name.values()), settings=settings, **dimensions),
         "; ".join([*contradictions, *remedy]) or None,
     )
 
 
-def common(one: Ends, other: Ends) -> Ends | None:
+def common(first: Ends, second: Ends) -> Ends | None:
     """Return the range that two have in common, None if there is none."""
-    lower = max((end for end in (one[0], other[0]) if end is not None), default=None)
-    upper = min((end for end in (one[1], other[1]) if end is not None), default=None)
+    lower = max((end for end in (first[0], second[0]) if end is not None), default=None)
+    upper = min((end for end in (first[1], second[1]) if end is not None), default=None)
     return None if lower is not None and upper is not None and lower > upper else (lower, upper)
 
 
@@ -176,8 +178,8 @@ def _require_new(
 ) -> None:
     columns: list[tuple[str, float, Ends]] = []
     for item in constraints:
-        of = problem.quantity(item.quantity)
-        columns.append((of.field, of.unit.factor, (item.lower, item.upper)))
+        quantity = problem.quantity(item.quantity)
+        columns.append((quantity.field, quantity.unit.factor, (item.lower, item.upper)))
     for name, ends in ranges.items():
         if name not in DIMENSIONS:
             raise InputError(f"a range must name crank, rod or offset; got {name!r}; name one of them")
@@ -189,11 +191,11 @@ def _require_new(
         columns.append((f"{name}_mm", 1e3, ends))
     if not columns:
         raise InputError("nothing differs from the given design; add a constraint or a range")
-    if all(key in row and _within(row[key], ends, factor) for key, factor, ends in columns):
+    if all(key in row and _lies_within(row[key], ends, factor) for key, factor, ends in columns):
         raise InputError("the design already meets the added conditions; make them stricter")
 
 
-def _within(value: object, ends: Ends, factor: float) -> bool:
+def _lies_within(value: object, ends: Ends, factor: float) -> bool:
     lower, upper = (None if end is None else end * factor for end in ends)
     assert isinstance(value, float)
     return (lower is None or value >= lower - FEASIBLE * abs(lower)) and (
@@ -227,11 +229,11 @@ def _ranked(finished: FrontCandidates, archive: Archive, values: Array) -> Whole
     """Return the rows of designs that nothing dominates, nearest first; stationary ones before all others."""
     rows = finished.best()
     if archive.is_feasible.any():  # samples within a band around the constraints prove nothing
-        own, screened = finished.values[rows] / finished.span, archive.values[archive.is_feasible] / finished.span
-        beaten = dominating(-own, -screened, clearly=_BEATEN)
+        scaled, screened = finished.values[rows] / finished.span, archive.values[archive.is_feasible] / finished.span
+        beaten = dominating(-scaled, -screened, clearly=_BEATEN)
         rows = rows[~beaten] if not beaten.all() else rows
-    apart = distance(finished.values[rows], values, finished.span)
-    return rows[np.lexsort((apart, finished.residual[rows] > STATIONARY))]
+    distances = distance(finished.values[rows], values, finished.span)
+    return rows[np.lexsort((distances, finished.residual[rows] > STATIONARY))]
 
 
 def _nearest(front: ParetoFront, values: Array, span: Array) -> ParetoFront:

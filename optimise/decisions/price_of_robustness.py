@@ -18,12 +18,12 @@ from ..solve import solve
 class RobustCost:
     """A robust front and the nominal one, objectives (n, m) in shown units.
 
-    nominal: of the nominal designs, as they are drawn. within: of the same designs, within tolerances. robust: of the
-    robust designs, within tolerances. keeps: how many nominal designs keep all requirements within tolerances.
+    nominal: of the nominal designs, as drawn. toleranced: of the same designs, within tolerances. robust: of the robust
+    designs, within tolerances. keeps: number of nominal designs that meet all requirements within tolerances.
     """
 
     nominal: Array
-    within: Array
+    toleranced: Array
     robust: Array
     keeps: int
 
@@ -41,14 +41,14 @@ def robust_cost(front: ParetoFront) -> RobustCost | None:
     if not len(plain) or not len(front):
         return None
     keeps = 0
-    within = np.zeros(plain.values.shape)
+    toleranced = np.zeros(plain.values.shape)
     for row in range(len(plain)):
         part = problem.part(plain.variants[row] if plain.variants else 0)
-        within[row] = _values(part, plain.dimensions[row : row + 1])
+        toleranced[row] = _values(part, plain.dimensions[row : row + 1])
         keeps += _keeps(part, plain.dimensions[row : row + 1])
     names = [plain.problem.quantity(objective.quantity).field for objective in plain.objectives]
     fields = [problem.quantity(objective.quantity).field for objective in front.objectives]
-    return RobustCost(plain.designs[names].to_numpy(float), within, front.designs[fields].to_numpy(float), keeps)
+    return RobustCost(plain.designs[names].to_numpy(float), toleranced, front.designs[fields].to_numpy(float), keeps)
 
 
 def _values(problem: Problem, design: Array) -> list[float]:

@@ -22,7 +22,7 @@ def quantities(problem: Problem | None = None) -> pd.DataFrame:
     """
     if problem is not None:
         require_problem(problem, "quantities")
-    known = (*FACTS.values(), *(problem.own if problem else ()))
+    listed = (*FACTS.values(), *(problem.own if problem else ()))
     rows = {
         item.name: {
             "title": item.title,
@@ -32,11 +32,11 @@ def quantities(problem: Problem | None = None) -> pd.DataFrame:
             "better": item.better,
             "needs": _needs(item),
         }
-        for item in known
+        for item in listed
     }
     return pd.DataFrame.from_dict(rows, orient="index")
 
 
-def _needs(of: Quantity) -> str:
-    table = [f"it needs the table [{of.table}]"] if of.table else []
-    return "; ".join(dict.fromkeys([*table, *(need.rule for need in of.needs)]))
+def _needs(quantity: Quantity) -> str:
+    table = [f"it needs the table [{quantity.table}]"] if quantity.table else []
+    return "; ".join(dict.fromkeys([*table, *(need.rule for need in quantity.needs)]))

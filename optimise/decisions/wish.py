@@ -71,15 +71,15 @@ class Wishes:
         sizes = [abs(objective.target or 0.0) for objective in front.objectives]
         self.span = ranges_or_sizes(front.values, self.ideal, sizes)
         self._branches = drop_mirrored_branches(front.problem, elimination_branches(front.problem))
-        self._starts = self._known()
+        self._starts = self._starting_designs()
 
-    def wish(self, given: Mapping[str, object], *, row: int | None = None) -> Wished:
+    def wish(self, texts: Mapping[str, object], *, row: int | None = None) -> Wished:
         """Return the design that comes nearest to wishes, see `wish`."""
         front = self.front
         if row is not None:
             front.part(row)  # refuses what is no row
             row = int(row) % len(front)
-        wishes = read_wishes(front, given, row)
+        wishes = read_wishes(front, texts, row)
         form, aims = self._form(wishes, row)
         evaluators = self._evaluators()
         best = self._solve(form, evaluators)
@@ -91,29 +91,34 @@ class Wishes:
         index, u, value = best
         finished = FrontCandidates.without_designs(self.span)
         finished.add(index, polish(evaluators[index], u[None], self.span, iterations=0))
-        found = assemble(front.problem, evaluators, finished, run)
-        outcomes = outcomes_of(front, wishes, aims, row, found)
-        return Wished(found=found, row=row, wishes=wishes, value=value, outcomes=outcomes)
+        front_of_wish = assemble(front.problem, evaluators, finished, run)
+        outcomes = outcomes_of(front, wishes, aims, row, front_of_wish)
+        return Wished(found=front_of_wish, row=row, wishes=wishes, value=value, outcomes=outcomes)
 
     def _evaluators(self) -> list[Evaluator]:
         return [Evaluator(self.front.problem, branch) for branch in self._branches]
 
-    def _known(self) -> Candidates:
+    def _starting_designs(self) -> Candidates:
         """Return the designs of the front on their branches, and their numbers on all others."""
         front, parts = self.front, []
         variants = np.array(front.variants or np.zeros(len(front)), dtype=np.int64)
         for index, evaluator in enumerate(self._evaluators()):
             branch = evaluator.branch
-            own = (variants == branch.variant) & (np.sign(front.dimensions[:, 2]) != -branch.sign)
+            on_branch = (variants == branch.variant) & (np.sign(front.dimensions[:, 2]) != -branch.sign)
             u = branch.coordinates(front.dimensions)
-            if own.any():
-                met = np.ones(int(own.sum()), np.bool_)
-                parts.append(Candidates(np.full(len(met), index), u[own], front.values[own], met))
-            other = np.unique(u[~own], axis=0)
-            if len(other):
-                _, values, violation = evaluator.screen(other, band=BANDS[-1])
-                some = np.isfinite(values).all(axis=1) & evaluator.valid(other)
-                rest = (np.full(int(some.sum()), index), other[some], values[some], violation[some] <= FEASIBLE)
+            if on_branch.any():
+                feasible = np.ones(int(on_branch.sum()), np.bool_)
+                parts.append(Candidates(np.full(len(feasible), index), u[on_branch], front.values[on_branch], feasible))
+            elsewhere = np.unique(u[~on_branch], axis=0)
+            if len(elsewhere):
+                _, values, violation = evaluator.screen(elsewhere, band=BANDS[-1])
+                usable = np.isfinite(values).all(axis=1) & evaluator.valid(elsewhere)
+                rest = (
+                    np.full(int(usable.sum()), index),
+                    elsewhere[usable],
+                    values[usable],
+                    violation[usable] <= FEASIBLE,
+                )
                 parts.append(Candidates(*rest))
         return parts[0].join(*parts[1:])
 
@@ -121,7 +126,7 @@ class Wishes:
         """Return the achievement function, and the values of wishes as objectives are minimised, SI."""
         m = len(wishes)
         weights, reference, ceilings = np.zeros(m), np.zeros(m), np.full(m, np.inf)
-        own = None if row is None else self._scaled(self.front.values[row])
+        reference_values = None if row is None else self._scaled(self.front.values[row])
         aims: list[float | None] = [None] * m
         for column, wish in enumerate(wishes):
             if wish.value is not None:
@@ -131,8 +136,8 @@ class Wishes:
                     weights[column], reference[column] = 1.0, scaled
                 else:
                     ceilings[column] = scaled
-            elif wish.kind != "free" and own is not None:
-                ceilings[column] = own[column]
+            elif wish.kind != "free" and reference_values is not None:
+                ceilings[column] = reference_values[column]
                 weights[column] = float(wish.kind == "improve")
         return Form(weights, reference, ceilings, SUM), aims
 
@@ -142,16 +147,16 @@ class Wishes:
     def _solve(self, form: Form, evaluators: list[Evaluator]) -> tuple[int, Array, float] | None:
         """Return branch, point (k,) and value of the form at its minimiser; None where no start leads to a design."""
         scaled = self._scaled(self._starts.values)
-        over = np.maximum(scaled - form.ceilings, 0.0).max(axis=1)
+        excess = np.maximum(scaled - form.ceilings, 0.0).max(axis=1)
         free = replace(form, ceilings=np.full(len(form.weights), np.inf))
-        worth = free.value(scaled) + _OUTSIDE * (over + ~self._starts.is_feasible)
-        branch, tried = self._starts.branch, np.zeros(len(worth), np.bool_)
+        merits = free.value(scaled) + _OUTSIDE * (excess + ~self._starts.is_feasible)
+        branch, tried = self._starts.branch, np.zeros(len(merits), np.bool_)
         ends: list[tuple[float, int, Array]] = []  # the best first
-        chosen = self._promising(worth)
+        chosen = self._promising(merits)
         for count in (_NEAREST, _MORE) if len(chosen) == 1 else (1, _NEAREST, _MORE):
             for index in chosen:
-                own = np.flatnonzero((branch == index) & ~tried)
-                rows = own[distant_rows(worth[own], self._starts.u[own], branch[own], count)]
+                untried = np.flatnonzero((branch == index) & ~tried)
+                rows = untried[distant_rows(merits[untried], self._starts.u[untried], branch[untried], count)]
                 tried[rows] = True
                 ends += self._ends(form, evaluators[index], index, rows)
             ends.sort(key=lambda end: end[0])
@@ -165,33 +170,38 @@ class Wishes:
         value, index, u = ends[0]
         return index, u, value
 
-    def _promising(self, worth: Array) -> list[int]:
+    def _promising(self, merits: Array) -> list[int]:
         """Return the branches to try, the best first."""
-        found = {index: float(worth[self._starts.branch == index].min()) for index in set(self._starts.branch.tolist())}
-        order = sorted(found, key=lambda index: (found[index], index))
-        return [index for index in order if found[index] <= found[order[0]] + _WORSE][:_BRANCHES]
+        merit_by_branch = {
+            index: float(merits[self._starts.branch == index].min()) for index in set(self._starts.branch.tolist())
+        }
+        order = sorted(merit_by_branch, key=lambda index: (merit_by_branch[index], index))
+        return [index for index in order if merit_by_branch[index] <= merit_by_branch[order[0]] + _WORSE][:_BRANCHES]
 
     def _ends(self, form: Form, evaluator: Evaluator, index: int, rows: Whole) -> list[tuple[float, int, Array]]:
         """Return where the starts on a branch end, with the form's value there; none that is not feasible."""
         if not len(rows):
             return []
         start = self._starts.u[rows][:, : evaluator.dimension]
-        seen = Achievement(evaluator, form, self.ideal, self.span)
-        found = polish(seen, start, np.ones(1 + len(self.span)), hold=False)
-        good = (found.violation <= FEASIBLE) & np.isfinite(found.values).all(axis=1)
-        return [(float(found.values[at].sum()), index, found.u[at]) for at in np.flatnonzero(good).tolist()]
+        achievement = Achievement(evaluator, form, self.ideal, self.span)
+        polished_starts = polish(achievement, start, np.ones(1 + len(self.span)), hold=False)
+        good = (polished_starts.violation <= FEASIBLE) & np.isfinite(polished_starts.values).all(axis=1)
+        return [
+            (float(polished_starts.values[at].sum()), index, polished_starts.u[at])
+            for at in np.flatnonzero(good).tolist()
+        ]
 
     def _why_none(self, wishes: Sequence[Wish]) -> str:
         """Return in words that no design stays within what is allowed, and what the front has."""
-        told = []
+        phrases = []
         for column, wish in enumerate(wishes):
             if wish.kind == "limit":
-                of = self.front.problem.quantity(self.front.objectives[column].quantity)
-                best = self.front.columns[of.field][int(np.argmin(self.front.values[:, column]))]
-                allowed = f"{(wish.value or 0.0) * of.unit.factor:.4g} {of.unit.symbol}".rstrip()
-                has = f"{best:.4g} {of.unit.symbol}".rstrip()
-                told.append(f"{of.title} {allowed} or better, but the best on the front is {has}")
-        return f"no design was found with {' and '.join(told)}; allow more"
+                quantity = self.front.problem.quantity(self.front.objectives[column].quantity)
+                best = self.front.columns[quantity.field][int(np.argmin(self.front.values[:, column]))]
+                allowed = f"{(wish.value or 0.0) * quantity.unit.factor:.4g} {quantity.unit.symbol}".rstrip()
+                has = f"{best:.4g} {quantity.unit.symbol}".rstrip()
+                phrases.append(f"{quantity.title} {allowed} or better, but the best on the front is {has}")
+        return f"no design was found with {' and '.join(phrases)}; allow more"
 
 
 def wish(front: ParetoFront, wishes: Mapping[str, object], *, row: int | None = None) -> Wished:

@@ -51,19 +51,19 @@ class Outcome:
 
     def text(self, system: System = "metric") -> str:
         """Return wish and outcome in words: "peak torque 109.2 N m of 110 N m wished"."""
-        own = f"{self.quantity.title} {self._value(self.reached, system)}"
+        reached = f"{self.quantity.title} {self._value(self.reached, system)}"
         if self.kind == "value":
-            return own + self._against_wish(system)
+            return reached + self._against_wish(system)
         if self.kind == "limit":
             worst = {"minimise": "most", "maximise": "least", "target": "worst"}[self.objective.sense]
-            return f"{own}, at {worst} {self._value(cast(float, self.wished), system)} allowed"
+            return f"{reached}, at {worst} {self._value(cast(float, self.wished), system)} allowed"
         if self.kind == "free" and self.changed is None:
-            return f"{own}, free"
+            return f"{reached}, free"
         free = ", free" if self.kind == "free" else ""
         changed = cast(float, self.changed)
         if abs(changed) <= _ROUNDING * self.range_:
-            return f"{own}, as before{free}"
-        return f"{own}, {self._amount(changed, system)} {'worse' if changed > 0.0 else 'better'} than before{free}"
+            return f"{reached}, as before{free}"
+        return f"{reached}, {self._amount(changed, system)} {'worse' if changed > 0.0 else 'better'} than before{free}"
 
     def _against_wish(self, system: System) -> str:
         short, wished = cast(float, self.short), self._value(cast(float, self.wished), system)
@@ -128,8 +128,10 @@ class Wished:
                 return "the objectives to improve do so as far as the others allow"
             return "nothing improves while the other objectives stay as required"
         if not self.possible:
-            one = "no design reaches the desired value" if len(wished) == 1 else "no design reaches all desired values"
-            return f"{one}; this one is nearest"
+            verdict = (
+                "no design reaches the desired value" if len(wished) == 1 else "no design reaches all desired values"
+            )
+            return f"{verdict}; this one is nearest"
         if all(cast(float, outcome.short) < -_ROUNDING * outcome.range_ for outcome in wished):
             return "the wish can be had, and better" + (" in all of it" if len(wished) > 1 else "")
         return "the wish can be had"

@@ -39,27 +39,27 @@ class Wish:
 FREE = Wish("free")
 
 
-def read_wishes(front: ParetoFront, given: Mapping[str, object], row: int | None) -> tuple[Wish, ...]:
+def read_wishes(front: ParetoFront, texts: Mapping[str, object], row: int | None) -> tuple[Wish, ...]:
     """Return the wish for every objective, in their order.
 
-    given: by objective, a number in SI, "110 N m", "improve", "keep", "may worsen to 120 N m" or "free". row: of the
+    texts: by objective, a number in SI, "110 N m", "improve", "keep", "may worsen to 120 N m" or "free". row: of the
     design that improve, keep and worsen speak of. Raises `InputError` for an unknown objective, a value of another
     unit, what wishes nothing, and what contradicts itself.
     """
-    if not isinstance(given, Mapping):
+    if not isinstance(texts, Mapping):
         raise InputError(
-            f"wishes must be a dict by objective; got {given!r}; write them like {{'peak_torque': '110 N m'}}"
+            f"wishes must be a dict by objective; got {texts!r}; write them like {{'peak_torque': '110 N m'}}"
         )
-    found = dict.fromkeys(range(len(front.objectives)), FREE)
-    for name, text in given.items():
+    wishes_by_column = dict.fromkeys(range(len(front.objectives)), FREE)
+    for name, text in texts.items():
         column = _column(front, name)
-        if found[column] is not FREE:
+        if wishes_by_column[column] is not FREE:
             raise InputError(
                 f"an objective may have only one wish; got two for {front.objectives[column].quantity}; leave out one"
             )
         wish = _read(front, column, text)
-        found[column] = Wish("free") if wish.kind == "free" else wish
-    wishes = tuple(found.values())
+        wishes_by_column[column] = Wish("free") if wish.kind == "free" else wish
+    wishes = tuple(wishes_by_column.values())
     _require_sense(front, wishes, row)
     return wishes
 
@@ -72,28 +72,32 @@ def _column(front: ParetoFront, name: object) -> int:
         raise InputError(f"a wish must name one of the objectives {names}; got {name!r}; name one of them") from None
 
 
-def _read(front: ParetoFront, column: int, given: object) -> Wish:
-    of = front.problem.quantity(front.objectives[column].quantity)
-    text = " ".join(given.split()) if isinstance(given, str) else ""
+def _read(front: ParetoFront, column: int, text_or_value: object) -> Wish:
+    quantity = front.problem.quantity(front.objectives[column].quantity)
+    text = " ".join(text_or_value.split()) if isinstance(text_or_value, str) else ""
     for word in ("improve", "keep", "free"):
         if text.lower() == word:
             return Wish(word)
     limit = _LIMIT.fullmatch(text)
-    kind, value = of.kind, limit[1] if limit else given
+    kind, value = quantity.kind, limit[1] if limit else text_or_value
     if kind.unit and isinstance(value, str) and _NUMBER.fullmatch(value.strip()):
         raise InputError(
-            f"the wish for {of.name} must be {kind.name} with its unit; got {quote(value)}; write it like "
+            f"the wish for {quantity.name} must be {kind.name} with its unit; got {quote(value)}; write it like "
             f'"{kind.example}"'
         )
     try:
-        value = to_si(value, kind, plain=not isinstance(given, str))
+        value = to_si(value, kind, plain=not isinstance(text_or_value, str))
     except InputError as error:
         words = "" if text[:1] in _VALUE else f"; a wish must be {_WORDS.format(example=kind.example)}"
-        raise InputError(f"the wish for {of.name} {error}{words}") from None
-    turning = front.problem.motion is None or isinstance(of, SwingQuantity)  # below one, proportions may swing
-    if turning and of.domain is not None and value > of.domain.upper:  # degrees without their unit, a share in percent
-        got = f"{value * of.unit.factor:.6g} {of.unit.symbol}".rstrip()
-        raise InputError(f"the wish for {of.name}: {of.domain.rule}; got {got}; {of.domain.remedy}")
+        raise InputError(f"the wish for {quantity.name} {error}{words}") from None
+    turning = front.problem.motion is None or isinstance(quantity, SwingQuantity)  # below one, proportions may swing
+    if (
+        turning and quantity.domain is not None and value > quantity.domain.upper
+    ):  # degrees without their unit, a share in percent
+        shown_value = f"{value * quantity.unit.factor:.6g} {quantity.unit.symbol}".rstrip()
+        raise InputError(
+            f"the wish for {quantity.name}: {quantity.domain.rule}; got {shown_value}; {quantity.domain.remedy}"
+        )
     return Wish("limit" if limit else "value", value)
 
 
@@ -118,12 +122,12 @@ def _require_sense(front: ParetoFront, wishes: tuple[Wish, ...], row: int | None
             "worsen; got improve or keep for every objective; free one, or let it worsen to a value"
         )
     for column, wish in enumerate(wishes):
-        of = front.problem.quantity(names[column])
-        own = front.values[row, column]
-        if wish.kind == "limit" and aimed(front, column, wish) < own - 1e-9 * abs(own):
+        quantity = front.problem.quantity(names[column])
+        reference = front.values[row, column]
+        if wish.kind == "limit" and aimed(front, column, wish) < reference - 1e-9 * abs(reference):
             raise InputError(
                 f"{names[column]} may worsen to a value worse than that of design {row + 1}; got "
-                f"{wish.value * of.unit.factor:.6g} {of.unit.symbol}".rstrip()  # type: ignore[operator]
+                f"{wish.value * quantity.unit.factor:.6g} {quantity.unit.symbol}".rstrip()  # type: ignore[operator]
                 + ", which is better; write only the value to wish for it"
             )
 

@@ -44,18 +44,18 @@ class Axes:
     @classmethod
     def of_problem(cls, part: Problem) -> Axes:
         """Return the axes of a problem without choices; a fixed number has its one value."""
-        given = {item.name: item for item in part.discrete}
-        found: list[Array | None] = []
+        discrete = {item.name: item for item in part.discrete}
+        axes: list[Array | None] = []
         for name, ends in part.ranges.items():
             if ends.fixed:
-                found.append(np.array([ends.lower]))
-            elif name in given:
+                axes.append(np.array([ends.lower]))
+            elif name in discrete:
                 side = part.slow_side() if name == "offset" else None
-                values = given[name].values_in(ends)
-                found.append(values if side is None else values[side * values > 0.0])
+                values = discrete[name].values_in(ends)
+                axes.append(values if side is None else values[side * values > 0.0])
             else:
-                found.append(None)
-        return cls(part, tuple(found))
+                axes.append(None)
+        return cls(part, tuple(axes))
 
     @property
     def is_complete(self) -> bool:
@@ -87,8 +87,8 @@ class Axes:
         """
         places = np.stack(self._places(designs), axis=1)
         ways = np.array(list(itertools.product(*((-1, 0, 1) if size > 1 else (0,) for size in self._sizes))))
-        around = np.clip(places[:, None] + ways, 0, np.array(self._sizes) - 1)
-        return np.asarray(np.ravel_multi_index(tuple(np.moveaxis(around, 2, 0)), self._sizes), np.int64)
+        neighbours_at = np.clip(places[:, None] + ways, 0, np.array(self._sizes) - 1)
+        return np.asarray(np.ravel_multi_index(tuple(np.moveaxis(neighbours_at, 2, 0)), self._sizes), np.int64)
 
     def numbers(self, designs: Array) -> Whole:
         """Return the number of each combination (n, 3 + v), as `designs` counts them."""
@@ -126,14 +126,14 @@ class Judged:
         """Return no designs."""
         return cls(part, np.zeros((0, len(part.ranges))), np.zeros((0, len(part.objectives))), 0, None, np.inf)
 
-    def merge(self, other: Judged) -> Judged:
+    def merge(self, others: Judged) -> Judged:
         """Return these designs together with others; the nearest miss is the smaller of both."""
-        nearer = other if other.missed < self.missed else self
+        nearer = others if others.missed < self.missed else self
         return Judged(
             nearer.part,
-            np.concatenate([self.dimensions, other.dimensions]),
-            np.concatenate([self.values, other.values]),
-            self.judged + other.judged,
+            np.concatenate([self.dimensions, others.dimensions]),
+            np.concatenate([self.values, others.values]),
+            self.judged + others.judged,
             nearer.nearest,
             nearer.missed,
         )
@@ -149,14 +149,14 @@ def judge_all(axes: Axes, report: ReportProgress = ignore_progress, *, dimension
 
     report: called after every few thousand. dimensions_only: judge only what needs no cycle, without objectives.
     """
-    found = Judged.empty(axes.part)
+    judged = Judged.empty(axes.part)
     step = _AT_ONCE_ROBUST if asks_robust(axes.part) and not dimensions_only else _AT_ONCE
     for begin in range(0, axes.count, step):
         report(begin, axes.count)
-        some = judge(axes.part, axes.designs(begin, begin + step), dimensions_only=dimensions_only)
-        found = found.merge(some)
-        found = found.best() if len(found.values) > _HELD else found
-    return found
+        batch = judge(axes.part, axes.designs(begin, begin + step), dimensions_only=dimensions_only)
+        judged = judged.merge(batch)
+        judged = judged.best() if len(judged.values) > _HELD else judged
+    return judged
 
 
 def judge(part: Problem, designs: Array, *, dimensions_only: bool = False) -> Judged:
@@ -165,71 +165,71 @@ def judge(part: Problem, designs: Array, *, dimensions_only: bool = False) -> Ju
     constraints = constraints_of(part)
     slow = [item for item in constraints if costly(part.quantity(item.quantity))]
     worst = greatest_violation(part, turning, [item for item in constraints if item not in slow])
-    kept = np.flatnonzero(worst <= FEASIBLE)
+    rows = np.flatnonzero(worst <= FEASIBLE)
     if slow and not dimensions_only:
-        worst[kept] = np.maximum(worst[kept], greatest_violation(part, turning[kept], slow))
-        kept = kept[worst[kept] <= FEASIBLE]
-    values = np.zeros((len(kept), len(part.objectives)))
-    if len(kept) and not dimensions_only:
-        values = all_minimised(part, part.evaluate(turning[kept]))
-    had = np.isfinite(values).all(axis=1)
+        worst[rows] = np.maximum(worst[rows], greatest_violation(part, turning[rows], slow))
+        rows = rows[worst[rows] <= FEASIBLE]
+    values = np.zeros((len(rows), len(part.objectives)))
+    if len(rows) and not dimensions_only:
+        values = all_minimised(part, part.evaluate(turning[rows]))
+    has_values = np.isfinite(values).all(axis=1)
     nearest = int(np.argmin(worst)) if len(worst) and np.isfinite(worst).any() else None
     return Judged(
         part,
-        turning[kept][had],
-        values[had],
+        turning[rows][has_values],
+        values[has_values],
         len(designs),
         None if nearest is None else turning[nearest],
         np.inf if nearest is None else float(worst[nearest]),
     )
 
 
-def neighbours(axes: Axes, designs: Array, most: int) -> Array:
+def neighbours(axes: Axes, designs: Array, limit: int) -> Array:
     """Return combinations (n, 3 + v) around designs, NaN where a number is free; the nearest of each design first.
 
-    The window around each design is as wide as `most` allows, at least the values on either side.
+    The window around each design is as wide as `limit` allows, at least the values on either side.
     """
     if not len(designs):
         return designs
     free = sum(values is not None and len(values) > 1 for values in axes.values)
     width = 2
-    while free and (width + 2) ** free * len(designs) <= most:
+    while free and (width + 2) ** free * len(designs) <= limit:
         width += 2
-    found = [_combinations_around(axes.values, design, width) for design in designs]
-    ranks = np.concatenate([np.arange(len(part)) for part in found])
-    stacked = np.concatenate(found)[np.argsort(ranks, kind="stable")]
+    windows = [_combinations_around(axes.values, design, width) for design in designs]
+    ranks = np.concatenate([np.arange(len(part)) for part in windows])
+    stacked = np.concatenate(windows)[np.argsort(ranks, kind="stable")]
     _, first = np.unique(np.nan_to_num(stacked, nan=0.0), axis=0, return_index=True)
-    return np.asarray(stacked[np.sort(first)][:most])
+    return np.asarray(stacked[np.sort(first)][:limit])
 
 
 def judge_near(
-    axes: Axes, designs: Array, window: int, most: int, report: ReportProgress = ignore_progress
+    axes: Axes, designs: Array, window: int, limit: int, report: ReportProgress = ignore_progress
 ) -> tuple[Judged, Whole]:
     """Return the best combinations around designs of a fully discrete variant, and the numbers of all judged ones.
 
     First, a window of at most `window` combinations around the designs is judged. Then the neighbours of the best so
-    far follow, until all of them are judged, or `most` are.
+    far follow, until all of them are judged, or `limit` are.
     """
-    found, seen = Judged.empty(axes.part), np.zeros(0, np.int64)
+    best, judged_numbers = Judged.empty(axes.part), np.zeros(0, np.int64)
     fresh = np.unique(axes.numbers(neighbours(axes, designs, window)))
     while len(fresh):
         for begin in range(0, len(fresh), _AT_ONCE):
-            report(len(seen) + begin, most)
-            some = judge(axes.part, axes.numbered(fresh[begin : begin + _AT_ONCE]))
-            found = found.merge(some.best()).best()
-        seen = np.union1d(seen, fresh)
+            report(len(judged_numbers) + begin, limit)
+            batch = judge(axes.part, axes.numbered(fresh[begin : begin + _AT_ONCE]))
+            best = best.merge(batch.best()).best()
+        judged_numbers = np.union1d(judged_numbers, fresh)
         fresh = np.zeros(0, np.int64)
-        for begin in range(0, len(found.dimensions), _EXPANDED):
-            report(len(seen), most)
-            around = axes.next_to(found.dimensions[begin : begin + _EXPANDED])
-            fresh = np.union1d(fresh, np.setdiff1d(around, seen))
-        fresh = fresh[: max(0, most - len(seen))]
-    return found, seen
+        for begin in range(0, len(best.dimensions), _EXPANDED):
+            report(len(judged_numbers), limit)
+            next_numbers = axes.next_to(best.dimensions[begin : begin + _EXPANDED])
+            fresh = np.union1d(fresh, np.setdiff1d(next_numbers, judged_numbers))
+        fresh = fresh[: max(0, limit - len(judged_numbers))]
+    return best, judged_numbers
 
 
-def has_judged_neighbours(axes: Axes, designs: Array, seen: Whole) -> Mask:
+def has_judged_neighbours(axes: Axes, designs: Array, judged_numbers: Whole) -> Mask:
     """Return which combinations (n, 3 + v) have all those next to them among the numbers seen."""
-    return np.array([bool(np.isin(axes.next_to(row[None]), seen).all()) for row in designs], np.bool_)
+    return np.array([bool(np.isin(axes.next_to(row[None]), judged_numbers).all()) for row in designs], np.bool_)
 
 
 def _combinations_around(axes: Sequence[Array | None], design: Array, width: int) -> Array:
@@ -245,8 +245,8 @@ def _combinations_around(axes: Sequence[Array | None], design: Array, width: int
         near = near if len(near) else values[-1:]
         ladders.append(near)
         ways.append(np.abs(near - value) / max(float(np.ptp(near)), 1e-300))
-    grid = np.stack([each.ravel() for each in np.meshgrid(*ladders, indexing="ij")], axis=1)
-    way = sum(each.ravel() for each in np.meshgrid(*ways, indexing="ij"))
+    grid = np.stack([axis.ravel() for axis in np.meshgrid(*ladders, indexing="ij")], axis=1)
+    way = sum(axis.ravel() for axis in np.meshgrid(*ways, indexing="ij"))
     return np.asarray(grid[np.argsort(way, kind="stable")])
 
 
@@ -259,10 +259,10 @@ def with_values(problem: Problem, chosen: Sequence[tuple[int, Array]]) -> Proble
     parts = problem.parts()
     for index, design in chosen:
         part = parts[index]
-        given = problem.variants[index] if problem.variants else None
+        variant = problem.variants[index] if problem.variants else None
         ends = [
-            of if math.isnan(value) else Range(lower=value, upper=value)
-            for of, value in zip((part.crank, part.rod, part.offset), design[:3].tolist(), strict=True)
+            range_ if math.isnan(value) else Range(lower=value, upper=value)
+            for range_, value in zip((part.crank, part.rod, part.offset), design[:3].tolist(), strict=True)
         ]
         varying = tuple(
             item if math.isnan(value) else replace(item, lower=value, upper=value)
@@ -270,15 +270,15 @@ def with_values(problem: Problem, chosen: Sequence[tuple[int, Array]]) -> Proble
         )
         variants.append(
             Variant(
-                labels=given.labels if given else (),
+                labels=variant.labels if variant else (),
                 mechanism=replace(part.mechanism, varying=varying),
                 crank=ends[0],
                 rod=ends[1],
                 offset=ends[2],
-                limits=given.limits if given else (),
-                slow_stroke=given.slow_stroke if given else None,
-                amounts=given.amounts if given else (),
-                notes=given.notes if given else (),
+                limits=variant.limits if variant else (),
+                slow_stroke=variant.slow_stroke if variant else None,
+                amounts=variant.amounts if variant else (),
+                notes=variant.notes if variant else (),
             )
         )
     return replace(problem, discrete=(), variants=tuple(variants))

@@ -44,61 +44,69 @@ def discrete_front(
     search: solves a problem without. nothing: makes an empty front of a status and a message. report: asked in between.
     """
     axes = [Axes.of_problem(part) for part in problem.parts()]
-    whole, count = all(each.is_complete for each in axes), sum(each.count for each in axes)
-    most = (_MOST_ROBUST if asks_robust(problem) else MOST) if whole else SOLVED
-    exact = count <= most
-    found: Judged | None = None
+    is_complete, count = all(axis.is_complete for axis in axes), sum(axis.count for axis in axes)
+    limit = (_MOST_ROBUST if asks_robust(problem) else MOST) if is_complete else SOLVED
+    exact = count <= limit
+    judged: Judged | None = None
     chosen: Chosen = []
-    seen: list[Whole] = []
-    if exact and whole:
-        chosen, found = _designs_to_deliver(problem, axes, [judge_all(each, report) for each in axes])
+    judged_numbers: list[Whole] = []
+    if exact and is_complete:
+        chosen, judged = _designs_to_deliver(problem, axes, [judge_all(axis, report) for axis in axes])
         if not chosen:
-            return nothing("infeasible", failure_message(problem, found))
+            return nothing("infeasible", failure_message(problem, judged))
     continuous = search(replace(problem, discrete=()))
     if continuous.status == "cancelled":
         return nothing("cancelled", "cancelled before any design with discrete values was evaluated")
     if not exact and not len(continuous):
         return replace(continuous, problem=problem)
-    if not whole:
-        for index, each in enumerate(axes):
+    if not is_complete:
+        for index, axis in enumerate(axes):
             rows = (
-                each.designs(0, each.count)
+                axis.designs(0, axis.count)
                 if exact
-                else neighbours(each, _designs_of_variant(continuous, index), SOLVED)
+                else neighbours(axis, _designs_of_variant(continuous, index), SOLVED)
             )
             chosen += [(index, row) for row in rows]
         chosen = _first_of_each_variant(chosen)
-        for index, each in enumerate(axes):
-            own = [row for of, row in chosen if of == index]
-            seen.append(each.numbers(np.array(own)) if own else np.zeros(0, np.int64))
+        for index, axis in enumerate(axes):
+            rows_of_axis = [row for owner, row in chosen if owner == index]
+            judged_numbers.append(axis.numbers(np.array(rows_of_axis)) if rows_of_axis else np.zeros(0, np.int64))
     elif not exact:
-        share, window = most // len(axes), min(most, _WINDOW) // len(axes)
-        both = [
-            judge_near(each, _designs_of_variant(continuous, index), window, share, report)
-            for index, each in enumerate(axes)
+        share, window = limit // len(axes), min(limit, _WINDOW) // len(axes)
+        judged_parts = [
+            judge_near(axis, _designs_of_variant(continuous, index), window, share, report)
+            for index, axis in enumerate(axes)
         ]
-        seen = [numbers for _, numbers in both]
-        chosen, found = _designs_to_deliver(problem, axes, [part for part, _ in both])
+        judged_numbers = [numbers for _, numbers in judged_parts]
+        chosen, judged = _designs_to_deliver(problem, axes, [part for part, _ in judged_parts])
     if not chosen:
-        return nothing("infeasible", failure_message(problem, found or Judged.empty(axes[0].part)))
-    answer = DiscreteAnswer(
+        return nothing("infeasible", failure_message(problem, judged or Judged.empty(axes[0].part)))
+    summary = DiscreteAnswer(
         exact=exact,
         combinations=count,
-        judged=found.judged if found else len(chosen),
+        judged=judged.judged if judged else len(chosen),
         rules={item.name: item.rule for item in problem.discrete},
         continuous=tuple(continuous.values.min(axis=0).tolist()) if len(continuous) else (),
     )
     front = search(with_values(problem, chosen))
     if not exact and len(front):
-        front = _downgrade_unproven(front, axes, chosen, seen)
-    return _front_of_problem(problem, front, continuous, chosen, answer)
+        front = _downgrade_unproven(front, axes, chosen, judged_numbers)
+    return _front_of_problem(problem, front, continuous, chosen, summary)
 
 
-def _downgrade_unproven(front: ParetoFront, axes: list[Axes], chosen: Chosen, seen: list[Whole]) -> ParetoFront:
+def _downgrade_unproven(
+    front: ParetoFront, axes: list[Axes], chosen: Chosen, judged_numbers: list[Whole]
+) -> ParetoFront:
     """Return a front of combinations that are called stationary only where all those next to them were judged."""
-    own = [chosen[row] for row in front.variants]
-    around = np.array([has_judged_neighbours(axes[of], design[None], seen[of])[0] for of, design in own], np.bool_)
-    status = np.where(around, front.columns[STATUS], "best found")
+    combinations = [chosen[row] for row in front.variants]
+    surrounded = np.array(
+        [
+            has_judged_neighbours(axes[variant], design[None], judged_numbers[variant])[0]
+            for variant, design in combinations
+        ],
+        np.bool_,
+    )
+    status = np.where(surrounded, front.columns[STATUS], "best found")
     return replace(front, columns={**front.columns, STATUS: status})
 
 
@@ -130,9 +138,9 @@ def _distinct_rows(values: Array) -> Array:
 
 def _designs_of_variant(front: ParetoFront, variant: int) -> Array:
     """Return the designs of a variant, the best in an objective first."""
-    own = np.flatnonzero(np.array(front.variants) == variant) if front.variants else np.arange(len(front))
-    first = [row for row in front.extremes().values() if row in own]
-    order = [*dict.fromkeys(first), *(row for row in own.tolist() if row not in first)]
+    rows = np.flatnonzero(np.array(front.variants) == variant) if front.variants else np.arange(len(front))
+    first = [row for row in front.extremes().values() if row in rows]
+    order = [*dict.fromkeys(first), *(row for row in rows.tolist() if row not in first)]
     return front.dimensions[order]
 
 
@@ -147,7 +155,7 @@ def _first_of_each_variant(chosen: Chosen) -> Chosen:
 
 
 def _front_of_problem(
-    problem: Problem, front: ParetoFront, continuous: ParetoFront, chosen: Chosen, answer: DiscreteAnswer
+    problem: Problem, front: ParetoFront, continuous: ParetoFront, chosen: Chosen, summary: DiscreteAnswer
 ) -> ParetoFront:
     """Return the front of combinations as one of the problem that states them."""
     columns = dict(front.columns)
@@ -157,16 +165,20 @@ def _front_of_problem(
             columns[column] = np.array([drop_conversion_rounding(value) for value in shown.tolist()])
     # A design of discrete values is one of the continuous problem too.
     best = front.values.min(axis=0, initial=np.inf).tolist()
-    least = tuple(min(one, other) for one, other in zip(answer.continuous, best, strict=False))
-    answer = replace(answer, continuous=least)
-    found = replace(
+    least = tuple(
+        min(previous, discrete_best) for previous, discrete_best in zip(summary.continuous, best, strict=False)
+    )
+    summary = replace(summary, continuous=least)
+    stated = replace(
         front,
         problem=problem,
         columns=columns,
         variants=tuple(chosen[row][0] for row in front.variants) if problem.variants else (),
-        evaluations=continuous.evaluations + front.evaluations + answer.judged,
-        discrete=answer,
+        evaluations=continuous.evaluations + front.evaluations + summary.judged,
+        discrete=summary,
     )
     if front.status == "cancelled":
-        return found
-    return replace(found, message=result_message(found) if len(found) else f"{result_message(found)}; {front.message}")
+        return stated
+    return replace(
+        stated, message=result_message(stated) if len(stated) else f"{result_message(stated)}; {front.message}"
+    )

@@ -24,19 +24,19 @@ def require_meetable(problem: Problem) -> None:
     if not problem.discrete:
         return
     axes = [_of_dimensions(Axes.of_problem(part)) for part in problem.parts()]
-    if not all(each.is_complete for each in axes) or sum(each.count for each in axes) > MOST:
+    if not all(axis.is_complete for axis in axes) or sum(axis.count for axis in axes) > MOST:
         return
-    found = Judged.empty(axes[0].part)
-    for each in axes:
-        found = found.merge(judge_all(each, dimensions_only=True))
-        if len(found.dimensions):
+    judged = Judged.empty(axes[0].part)
+    for axis in axes:
+        judged = judged.merge(judge_all(axis, dimensions_only=True))
+        if len(judged.dimensions):
             return
     sizes = tuple(item for item in problem.discrete if item.name in DIMENSIONS)
     if sizes:
-        raise InfeasibleError(f"variables.{sizes[0].name}: {failure_message(replace(problem, discrete=sizes), found)}")
+        raise InfeasibleError(f"variables.{sizes[0].name}: {failure_message(replace(problem, discrete=sizes), judged)}")
 
 
 def _of_dimensions(axes: Axes) -> Axes:
     """Return axes with one value of each other number: what is looked at depends on the dimensions alone."""
-    others = [np.array([item.lower]) for item in axes.part.mechanism.varying]
-    return Axes(axes.part, (*axes.values[:3], *others))
+    fixed_values = [np.array([item.lower]) for item in axes.part.mechanism.varying]
+    return Axes(axes.part, (*axes.values[:3], *fixed_values))

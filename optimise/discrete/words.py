@@ -18,64 +18,69 @@ def rules_text(problem: Problem) -> str:
 
 def result_message(front: ParetoFront) -> str:
     """Return how many designs were found among how many combinations, and the best with continuous values."""
-    answer, problem = front.discrete, front.problem
-    assert answer is not None
+    summary, problem = front.discrete, front.problem
+    assert summary is not None
     rules = rules_text(problem)
     if not len(front):
-        return f"no design among {_count_combinations(answer.judged)} of {rules} meets every requirement"
+        return f"no design among {_count_combinations(summary.judged)} of {rules} meets every requirement"
     count = counted(len(front), "design")
     if len(front) >= problem.settings.designs:
         count += ", as many as requested"
-    if answer.exact:
-        every = "all " if answer.combinations > 1 else ""
-        text = f"{count}, exact: {every}{_count_combinations(answer.combinations)} of {rules} judged"
+    if summary.exact:
+        every = "all " if summary.combinations > 1 else ""
+        text = f"{count}, exact: {every}{_count_combinations(summary.combinations)} of {rules} judged"
     else:
-        some = f"{answer.judged} of {answer.combinations} combinations of {rules}"
-        left = answer.combinations - answer.judged
-        text = f"{count}, {answer.how}: {some} evaluated, the other {left} not"
-    told = []
-    for place, wanted in enumerate(front.objectives if answer.continuous else ()):
-        of = problem.quantity(wanted.quantity)
-        sign = -1.0 if wanted.sense == "maximise" else 1.0
-        here, there = (
-            sign * of.unit.factor * best for best in (front.values[:, place].min(), answer.continuous[place])
+        part = f"{summary.judged} of {summary.combinations} combinations of {rules}"
+        left = summary.combinations - summary.judged
+        text = f"{count}, {summary.how}: {part} evaluated, the other {left} not"
+    costs = []
+    for place, objective in enumerate(front.objectives if summary.continuous else ()):
+        quantity = problem.quantity(objective.quantity)
+        sign = -1.0 if objective.sense == "maximise" else 1.0
+        discrete_best, continuous_best = (
+            sign * quantity.unit.factor * best for best in (front.values[:, place].min(), summary.continuous[place])
         )
-        near = " from its target" if wanted.sense == "target" else ""
-        told.append(f"{of.title} {there:.6g} {of.unit.symbol}".rstrip() + f"{near} (here {here:.6g})")
-    return f"{text}; with continuous values the best would be {', '.join(told)}" if told else text
+        near = " from its target" if objective.sense == "target" else ""
+        costs.append(
+            f"{quantity.title} {continuous_best:.6g} {quantity.unit.symbol}".rstrip()
+            + f"{near} (here {discrete_best:.6g})"
+        )
+    return f"{text}; with continuous values the best would be {', '.join(costs)}" if costs else text
 
 
-def failure_message(problem: Problem, found: Judged) -> str:
+def failure_message(problem: Problem, judged: Judged) -> str:
     """Return that no combination keeps every requirement, by how much the nearest misses, and a remedy."""
     rules = rules_text(problem)
-    none = (
-        f"none of {_count_combinations(found.judged)} of {rules}"
-        if found.judged != 1
+    subject = (
+        f"none of {_count_combinations(judged.judged)} of {rules}"
+        if judged.judged != 1
         else f"not even the one combination of {rules}"
     )
-    if found.nearest is None:
-        return f"{none} rotates fully and has all required quantities; give smaller steps or wider ranges"
-    told_of = {*DIMENSIONS, *(item.name for item in problem.discrete)}
-    columns = columns_of_numbers(found.part.mechanism.varying).items()
+    if judged.nearest is None:
+        return f"{subject} rotates fully and has all required quantities; give smaller steps or wider ranges"
+    listed_names = {*DIMENSIONS, *(item.name for item in problem.discrete)}
+    columns = columns_of_numbers(judged.part.mechanism.varying).items()
     sizes = ", ".join(
         f"{name} {value * unit.factor:.6g} {column.rpartition('_')[2]}"
-        for (name, (column, unit)), value in zip(columns, found.nearest.tolist(), strict=True)
-        if name in told_of
+        for (name, (column, unit)), value in zip(columns, judged.nearest.tolist(), strict=True)
+        if name in listed_names
     )
-    worst, told, remedy = 0.0, "", ""
-    for item in constraints_of(found.part):
-        of = found.part.quantity(item.quantity)
-        value = found.part.evaluate(found.nearest[None], [item.quantity])[:, 0]
-        here, short = float(value[0]), float(violated_by(item, value)[0])
-        asked = item.upper if item.upper is not None and here > item.upper else item.lower
-        if short > worst and asked is not None:
+    worst, shortfall, remedy = 0.0, "", ""
+    for item in constraints_of(judged.part):
+        quantity = judged.part.quantity(item.quantity)
+        value = judged.part.evaluate(judged.nearest[None], [item.quantity])[:, 0]
+        value_of_nearest, short = float(value[0]), float(violated_by(item, value)[0])
+        bound = item.upper if item.upper is not None and value_of_nearest > item.upper else item.lower
+        if short > worst and bound is not None:
             worst = short
-            shown = f"{here * of.unit.factor:.7g} {of.unit.symbol}".rstrip()
-            off = f"{abs(here - asked) * of.unit.factor:.3g} {of.unit.symbol}".rstrip()
-            told = f"{of.title} {shown}, {off} {'above' if here > asked else 'below'} what is asked"
+            text = f"{value_of_nearest * quantity.unit.factor:.7g} {quantity.unit.symbol}".rstrip()
+            off = f"{abs(value_of_nearest - bound) * quantity.unit.factor:.3g} {quantity.unit.symbol}".rstrip()
+            shortfall = (
+                f"{quantity.title} {text}, {off} {'above' if value_of_nearest > bound else 'below'} what is asked"
+            )
             remedy = "ask for a range instead of one value" if item.equality else "relax it"
     remedies = f"{remedy}, or give smaller steps or other ranges"
-    return f"{none} meets every requirement; the nearest, {sizes}, has {told}; {remedies}"
+    return f"{subject} meets every requirement; the nearest, {sizes}, has {shortfall}; {remedies}"
 
 
 def _count_combinations(count: int) -> str:

@@ -62,9 +62,9 @@ class Shared(Generic[Value]):
 @lru_cache(maxsize=16)
 def _shared_value(pickled: bytes) -> Shared[Any]:
     """Return the value of these bytes, the same one for the same bytes."""
-    found = Shared(pickle.loads(pickled))
-    found.__dict__["pickled"] = pickled
-    return found
+    shared = Shared(pickle.loads(pickled))
+    shared.__dict__["pickled"] = pickled
+    return shared
 
 
 @dataclass
@@ -97,7 +97,7 @@ class Chunked(Generic[Subject]):
     def __call__(
         self,
         work: Work[Subject, Asked, Part],
-        asked: Asked,
+        question: Asked,
         rows: Array,
         *,
         kind: Hashable = None,
@@ -111,8 +111,8 @@ class Chunked(Generic[Subject]):
         """
         n = len(rows)
         if n == 0 or (isinstance(self.engine, Serial) and self.poll is None):
-            return [work(self.shared.value, asked, rows)]
-        pace = self._paces.setdefault((work, asked if kind is None else kind), _Pace())
+            return [work(self.shared.value, question, rows)]
+        pace = self._paces.setdefault((work, question if kind is None else kind), _Pace())
         parts: list[Part] = []
         begin, count = 0, n if together else _FIRST
         while begin < n:
@@ -120,37 +120,39 @@ class Chunked(Generic[Subject]):
             light = pace.row * left < 2.0 * CHUNK
             if pace.seconds >= _SURE and not light:
                 if self.engine.should_map(pace.row * left):
-                    return parts + self._mapped(work, asked, rows[begin:], pace, 1 if together else _EACH)
+                    return parts + self._mapped(work, question, rows[begin:], pace, 1 if together else _EACH)
                 light = True
             if self.poll is not None:
                 self.poll()
             if pace.seconds >= 0.0 and not together:
                 count = left if light else max(2 * count if pace.seconds > 0.0 else 1, int(CHUNK / pace.row))
             start = perf_counter()
-            parts.append(work(self.shared.value, asked, rows[begin : begin + count]))
+            parts.append(work(self.shared.value, question, rows[begin : begin + count]))
             pace.measured(perf_counter() - start, min(count, left))
             begin += count
         return parts
 
     def _mapped(
-        self, work: Work[Subject, Asked, Part], asked: Asked, rows: Array, pace: _Pace, each: int
+        self, work: Work[Subject, Asked, Part], question: Asked, rows: Array, pace: _Pace, per_worker: int
     ) -> list[Part]:
         engine = self.engine
         if not isinstance(engine, Serial) and not self.shared.portable:
             engine = Serial()
         seconds = pace.row * len(rows)
-        most = each * engine.workers if each == 1 else max(each * engine.workers, int(seconds / LONGEST))
-        count = max(1, min(int(seconds / CHUNK), most, len(rows)))
+        limit = (
+            per_worker * engine.workers if per_worker == 1 else max(per_worker * engine.workers, int(seconds / LONGEST))
+        )
+        count = max(1, min(int(seconds / CHUNK), limit, len(rows)))
         edges = np.linspace(0, len(rows), count + 1).astype(int)
         chunks = [rows[a:b] for a, b in pairwise(edges.tolist())]
-        found = engine.map(partial(_run_timed, work, self.shared, asked), chunks, poll=self.poll)
-        pace.row = median(seconds / len(chunk) for chunk, (seconds, _) in zip(chunks, found, strict=True))
-        return [part for _, part in found]
+        timed_parts = engine.map(partial(_run_timed, work, self.shared, question), chunks, poll=self.poll)
+        pace.row = median(seconds / len(chunk) for chunk, (seconds, _) in zip(chunks, timed_parts, strict=True))
+        return [part for _, part in timed_parts]
 
 
 def _run_timed(
-    work: Work[Subject, Asked, Part], shared: Shared[Subject], asked: Asked, rows: Array
+    work: Work[Subject, Asked, Part], shared: Shared[Subject], question: Asked, rows: Array
 ) -> tuple[float, Part]:
     start = perf_counter()
-    part = work(shared.value, asked, rows)
+    part = work(shared.value, question, rows)
     return perf_counter() - start, part

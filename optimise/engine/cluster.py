@@ -59,10 +59,12 @@ class Cluster:
         """
         scheme, _, rest = address.partition("://")
         if scheme not in ("tcp", "tls") or "@" in rest or not rest.rpartition(":")[2].isdigit():
-            shown = f"***@{address.rpartition('@')[2]}" if "@" in address else address  # before it may be a password
+            address_shown = (
+                f"***@{address.rpartition('@')[2]}" if "@" in address else address
+            )  # before it may be a password
             raise InputError(
                 "a scheduler's address must look like tcp://host:8786 or tls://host:8786, without a user; got "
-                f"{shown!r}; correct it"
+                f"{address_shown!r}; correct it"
             )
         if (scheme == "tls") != (tls is not None):
             raise InputError(
@@ -89,12 +91,12 @@ class Cluster:
         Raises `EngineError` when there is no scheduler or no worker for longer than the patience, when workers have
         other versions, and for an item under which workers died again and again.
         """
-        found: dict[int, Found] = {}
+        results: dict[int, Found] = {}
         killed = [0] * len(items)
         delay, self._reached = _DELAYS[0], time.monotonic()
-        while len(found) < len(items):
+        while len(results) < len(items):
             try:
-                self._round(self._connected(), function, items, found, killed, poll)
+                self._round(self._connected(), function, items, results, killed, poll)
             except (_Lost, OSError, CancelledError, TimeoutError) as error:
                 lost = self._client is not None
                 self.close()
@@ -106,7 +108,7 @@ class Cluster:
                 _log.warning("connection to scheduler %s lost (%s); reconnecting", self.address, _error_text(error))
                 delay = _DELAYS[0] if lost else min(2.0 * delay, _DELAYS[1])
                 _pause(delay, poll)
-        return [found[index] for index in range(len(items))]
+        return [results[index] for index in range(len(items))]
 
     def close(self) -> None:
         """End the connection; the cluster goes on."""
@@ -120,11 +122,11 @@ class Cluster:
         client: Any,
         function: Callable[[Item], Found],
         items: Sequence[Item],
-        found: dict[int, Found],
+        results: dict[int, Found],
         killed: list[int],
         poll: Poll | None,
     ) -> None:
-        """Put the results that are missing into `found`; raise `_Lost` and the like when the scheduler goes."""
+        """Put the results that are missing into `results`; raise `_Lost` and the like when the scheduler goes."""
         dask: Any = import_module("distributed")
         self.workers = max(1, sum(client.nthreads().values()))
         pending: dict[Any, int] = {}
@@ -135,23 +137,23 @@ class Cluster:
             futures = client.map(_run_task, [(_versions(), function, items[index]) for index in indices], key=keys)
             pending.update(zip(futures, indices, strict=True))
 
-        give([index for index in range(len(items)) if index not in found])
-        heard = looked = time.monotonic()
+        give([index for index in range(len(items)) if index not in results])
+        last_report = looked = time.monotonic()
         waits = False
         try:
             while pending:
                 with contextlib.suppress(TimeoutError), client.as_current():
                     dask.wait(list(pending), timeout=_TICK, return_when="FIRST_COMPLETED")
-                done = [future for future in pending if future.done()]
-                states = {future.status for future in done}
+                completed = [future for future in pending if future.done()]
+                states = {future.status for future in completed}
                 if client.status != "running" or states & {"cancelled", "lost"}:
                     raise _Lost("it no longer knows this client")
                 self._reached = time.monotonic()
-                good = [future for future in done if future.status == "finished"]
+                good = [future for future in completed if future.status == "finished"]
                 for future, result in zip(good, client.gather(good), strict=True):
-                    found[pending.pop(future)] = result
+                    results[pending.pop(future)] = result
                 again = []
-                for future in done:
+                for future in completed:
                     if future.status == "error":
                         index, error = pending.pop(future), future.exception()
                         if not isinstance(error, dask.KilledWorker):
@@ -169,11 +171,11 @@ class Cluster:
                 if poll is not None:
                     poll()
                 now = time.monotonic()
-                heard = now if done else heard
-                if now - max(heard, looked) > _LOOK:
+                last_report = now if completed else last_report
+                if now - max(last_report, looked) > _LOOK:
                     looked = now
                     self.workers = max(1, sum(threads := client.nthreads().values()))
-                    heard = now if threads else heard
+                    last_report = now if threads else last_report
                     if not threads and not waits:
                         _log.warning(
                             "waiting for a worker: the scheduler at %s has none; giving up after %g s; start some: "
@@ -181,7 +183,7 @@ class Cluster:
                             *(self.address, self.patience, self.address),
                         )
                     waits = not threads
-                    if not threads and now - heard > self.patience:
+                    if not threads and now - last_report > self.patience:
                         raise EngineError(
                             f"a cluster needs workers; the scheduler at {self.address} had none for "
                             f"{self.patience:g} s; start some"

@@ -57,12 +57,12 @@ class Serial:
 
     def map(self, function: Callable[[Item], Found], items: Sequence[Item], *, poll: Poll | None = None) -> list[Found]:
         """Return function(item) for every item; see `Engine`."""
-        found = []
+        results = []
         for item in items:
             if poll is not None:
                 poll()
-            found.append(function(item))
-        return found
+            results.append(function(item))
+        return results
 
     def close(self) -> None:
         """Do nothing."""

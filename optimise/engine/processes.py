@@ -51,14 +51,14 @@ class Processes:
 
         Raises `EngineError` for an item under which the processes ended three times.
         """
-        found: dict[int, Found] = {}
+        results: dict[int, Found] = {}
         suspects, breaks = set[int](), [0] * len(items)
-        while len(found) < len(items):
-            left = [index for index in range(len(items)) if index not in found]
+        while len(results) < len(items):
+            left = [index for index in range(len(items)) if index not in results]
             # Those that were under way when processes ended go one at a time: who ends one alone is to blame, not who
             # was beside it.
             alone = next((index for index in left if index in suspects), None)
-            broken = self._take(function, items, left if alone is None else [alone], found, poll)
+            broken = self._take(function, items, left if alone is None else [alone], results, poll)
             suspects.update(broken)
             for index in broken:
                 breaks[index] += len(broken) == 1
@@ -68,7 +68,7 @@ class Processes:
                         f"{index + 1} of {len(items)}); check for too little memory or a crash in a custom function, "
                         "or evaluate without processes"
                     )
-        return [found[index] for index in range(len(items))]
+        return [results[index] for index in range(len(items))]
 
     def close(self) -> None:
         """End the processes, when they have finished what they are at."""
@@ -81,10 +81,10 @@ class Processes:
         function: Callable[[Item], Found],
         items: Sequence[Item],
         chosen: list[int],
-        found: dict[int, Found],
+        results: dict[int, Found],
         poll: Poll | None,
     ) -> list[int]:
-        """Put the chosen items' results into `found` until the processes break; return what was under way then."""
+        """Put the chosen items' results into `results` until the processes break; return what was under way then."""
         running: dict[Future[Found], int] = {}
         waiting = iter(chosen)
         try:
@@ -96,7 +96,7 @@ class Processes:
                 if not running:
                     return []
                 for future in wait(running, timeout=_TICK, return_when=FIRST_COMPLETED).done:
-                    found[running[future]] = future.result()
+                    results[running[future]] = future.result()
                     del running[future]
                 if poll is not None:
                     poll()
@@ -105,8 +105,8 @@ class Processes:
             self.close()
             for future, index in running.items():
                 if future.done() and not future.cancelled() and future.exception() is None:
-                    found[index] = future.result()
-            return [index for index in running.values() if index not in found]
+                    results[index] = future.result()
+            return [index for index in running.values() if index not in results]
         except BaseException:
             for future in running:
                 future.cancel()
@@ -172,8 +172,8 @@ def follow_parent() -> None:
     parent = multiprocessing.parent_process()
     assert parent is not None
 
-    def follow() -> None:
+    def exit_with_parent() -> None:
         wait_for([cast(Any, parent).sentinel])
         os._exit(1)
 
-    threading.Thread(target=follow, name="end with the parent", daemon=True).start()
+    threading.Thread(target=exit_with_parent, name="end with the parent", daemon=True).start()

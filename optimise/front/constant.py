@@ -28,8 +28,8 @@ def is_constant(values: ArrayLike, *, size: ArrayLike = 0.0) -> Mask:
 def spread(values: ArrayLike, *, size: ArrayLike = 0.0) -> Array:
     """Return the range of each column of values, as `is_constant` takes them; exactly 0 where it is constant."""
     values = np.ascontiguousarray(np.moveaxis(np.asarray(values, dtype=np.float64), 0, -1))  # ten times as quick
-    known = np.where(np.isfinite(values), values, np.nan)
-    low = np.fmin.reduce(known, axis=-1, initial=np.inf)
-    high = np.fmax.reduce(known, axis=-1, initial=-np.inf)
-    reach = SAME * np.maximum(np.maximum(np.abs(low), np.abs(high)), size)
-    return np.where(high - low <= reach, 0.0, high - low)
+    finite = np.where(np.isfinite(values), values, np.nan)
+    low = np.fmin.reduce(finite, axis=-1, initial=np.inf)
+    high = np.fmax.reduce(finite, axis=-1, initial=-np.inf)
+    tolerance = SAME * np.maximum(np.maximum(np.abs(low), np.abs(high)), size)
+    return np.where(high - low <= tolerance, 0.0, high - low)

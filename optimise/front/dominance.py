@@ -43,9 +43,9 @@ def nondominated(values: Array) -> Whole:
     bits, upto = np.zeros((len(ordered) * words, words), np.int64), np.empty(ordered.shape, np.int64)
     _mark_prefixes(ordered, ranked, bits, upto)
     by_word = np.pad(ordered, ((0, 0), (0, words * _WORD - count))).reshape(-1, words, _WORD)
-    kept = np.ones(count, np.bool_)
-    in_chunks(count, lambda begin, end: _filter(by_word, bits, upto, begin, end, kept), size=_CHUNK)
-    return np.sort(order[kept])
+    undominated = np.ones(count, np.bool_)
+    in_chunks(count, lambda begin, end: _filter(by_word, bits, upto, begin, end, undominated), size=_CHUNK)
+    return np.sort(order[undominated])
 
 
 @kernel
@@ -72,52 +72,57 @@ def _mark_prefixes(ordered: Table, ranked: IntegerTable, bits: IntegerTable, upt
 
 
 @kernel
-def _filter(by_word: Cube, bits: IntegerTable, upto: IntegerTable, begin: int, end: int, kept: Flags) -> None:
+def _filter(by_word: Cube, bits: IntegerTable, upto: IntegerTable, begin: int, end: int, undominated: Flags) -> None:
     """Say of which designs from `begin` to `end` one before them is as good in all of these objectives."""
-    some = np.empty(bits.shape[1], np.int64)
+    candidates = np.empty(bits.shape[1], np.int64)
     for i in range(begin, end):
         words, first, second = 1 + i // _WORD, upto[0, i], upto[1, i]
         for w in range(words):
-            some[w] = bits[first, w] & bits[second, w]
+            candidates[w] = bits[first, w] & bits[second, w]
         for column in range(2, by_word.shape[0]):
             row = upto[column, i]
             for w in range(words):
-                some[w] &= bits[row, w]
-        some[words - 1] &= (1 << (i % _WORD)) - 1  # those before this design
+                candidates[w] &= bits[row, w]
+        candidates[words - 1] &= (1 << (i % _WORD)) - 1  # those before this design
         for w in range(words):
             for column in range(by_word.shape[0]):
-                if not some[w]:
+                if not candidates[w]:
                     break
-                own, as_good = by_word[column, words - 1, i % _WORD], 0
+                value, as_good = by_word[column, words - 1, i % _WORD], 0
                 for k in range(_WORD):
-                    as_good |= (by_word[column, w, k] <= own) << k
-                some[w] &= as_good
-            if some[w]:
-                kept[i] = False
+                    as_good |= (by_word[column, w, k] <= value) << k
+                candidates[w] &= as_good
+            if candidates[w]:
+                undominated[i] = False
                 break
 
 
 @kernel
-def _mark_dominating(points: Table, others: Table, clearly: float, slightly: float, found: Flags) -> None:
+def _mark_dominating(points: Table, rivals: Table, clearly: float, slightly: float, dominates: Flags) -> None:
     for i in range(points.shape[0]):
-        for k in range(others.shape[0]):
-            worst, best, known = -np.inf, np.inf, True
-            for j in range(others.shape[1]):
-                apart = points[i, j] - others[k, j]
-                worst, best, known = max(worst, apart), min(best, apart), known and not math.isnan(apart)
-            if known and ((worst <= 0.0 and -best > clearly) or (worst <= clearly and -best > slightly)):
-                found[i] = True
+        for k in range(rivals.shape[0]):
+            worst, best, comparable = -np.inf, np.inf, True
+            for j in range(rivals.shape[1]):
+                difference = points[i, j] - rivals[k, j]
+                worst, best, comparable = (
+                    max(worst, difference),
+                    min(best, difference),
+                    comparable and not math.isnan(difference),
+                )
+            if comparable and ((worst <= 0.0 and -best > clearly) or (worst <= clearly and -best > slightly)):
+                dominates[i] = True
                 break
 
 
-def dominating(points: Array, others: Array, *, clearly: float, slightly: float = np.inf) -> Mask:
+def dominating(points: Array, rivals: Array, *, clearly: float, slightly: float = np.inf) -> Mask:
     """Return which points (n, m) dominate one of some others (k, m) and are better by more than `clearly` somewhere.
 
     slightly: where they are better by more than that, they may be worse by up to `clearly` elsewhere.
     """
-    found = np.zeros(len(points), dtype=bool)
-    points, others = np.ascontiguousarray(points), np.ascontiguousarray(others)
+    dominates = np.zeros(len(points), dtype=bool)
+    points, rivals = np.ascontiguousarray(points), np.ascontiguousarray(rivals)
     in_chunks(
-        len(points), lambda begin, end: _mark_dominating(points[begin:end], others, clearly, slightly, found[begin:end])
+        len(points),
+        lambda begin, end: _mark_dominating(points[begin:end], rivals, clearly, slightly, dominates[begin:end]),
     )
-    return found
+    return dominates

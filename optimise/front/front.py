@@ -94,8 +94,8 @@ class ParetoFront:
         return len(self.values)
 
     def __repr__(self) -> str:
-        found = f"{len(self)} design" + ("" if len(self) == 1 else "s")
-        return f"ParetoFront({self.problem.name!r}: {self.status}, {found}; {'; '.join(self._labels())})"
+        count = f"{len(self)} design" + ("" if len(self) == 1 else "s")
+        return f"ParetoFront({self.problem.name!r}: {self.status}, {count}; {'; '.join(self._labels())})"
 
     def _repr_html_(self) -> str:
         """Table of the first designs and a picture, for notebooks."""
@@ -133,10 +133,10 @@ class ParetoFront:
         Raises `InputError` for a row that is none of the front.
         """
         try:
-            known = 0 <= operator.index(row) < len(self)
+            is_row = 0 <= operator.index(row) < len(self)
         except TypeError:
-            known = False
-        if not known:
+            is_row = False
+        if not is_row:
             has = f"rows 0 to {len(self) - 1}" if len(self) else "no design"
             raise InputError(f"a row must be one of the front's, which are {has}; got {row!r}")
         return self.problem.part(self.variants[row] if self.variants else 0)
@@ -165,17 +165,21 @@ class ParetoFront:
         Zero for a design that does not; quantities of which none does are left out.
         """
         variants = np.array(self.variants or [0] * len(self))
-        found: dict[str, Array] = {}
+        excess_by_name: dict[str, Array] = {}
         for variant in dict.fromkeys(variants.tolist()):
             rows = variants == variant
 
             def values_of(name: str, rows: Mask = rows) -> Array | None:
-                of = QUANTITIES[name]
-                return self.columns[of.field][rows] / of.unit.factor if of.field in self.columns else None
+                quantity = QUANTITIES[name]
+                return (
+                    self.columns[quantity.field][rows] / quantity.unit.factor
+                    if quantity.field in self.columns
+                    else None
+                )
 
-            for name, beyond in violations(self.problem.part(variant).mechanism, values_of).items():
-                found.setdefault(name, np.zeros(len(self)))[rows] = beyond
-        return found
+            for name, excess in violations(self.problem.part(variant).mechanism, values_of).items():
+                excess_by_name.setdefault(name, np.zeros(len(self)))[rows] = excess
+        return excess_by_name
 
     def extremes(self) -> dict[str, int]:
         """Return for each objective the row of its best design; ties go to the better in the other objectives."""
@@ -212,8 +216,8 @@ class ParetoFront:
         for item in order:
             if not isinstance(item, Priority):
                 raise InputError(f"a ranking may only contain names and Priority(...); got {item!r}; name an objective")
-        given = [(self.column_of(item.quantity), item.absolute, item.share) for item in order]
-        return lexicographic(self.values, given, size=self._sizes)
+        ranking = [(self.column_of(item.quantity), item.absolute, item.share) for item in order]
+        return lexicographic(self.values, ranking, size=self._sizes)
 
     @property
     def _sizes(self) -> list[float]:
@@ -238,7 +242,7 @@ class ParetoFront:
         objective = self.column_of(best)
         if not len(self):
             raise InputError(f"a pick needs a front with designs; this one is empty: {self.message}")
-        keep, there = np.ones(len(self), dtype=bool), []
+        keep, ranges = np.ones(len(self), dtype=bool), []
         for column, ends in bounds.items():
             least, greatest = pair(column, ends)
             values = self.columns[column] if column in self.columns else self._evaluate(column)
@@ -248,25 +252,25 @@ class ParetoFront:
                 keep &= values >= least
             if greatest is not None:
                 keep &= values <= greatest
-            there.append(f"{column} is {values.min():.6g} to {values.max():.6g}")
+            ranges.append(f"{column} is {values.min():.6g} to {values.max():.6g}")
         if not keep.any():
-            raise InputError(f"no design of the front is within {bounds}, whose {' and '.join(there)}; widen a bound")
+            raise InputError(f"no design of the front is within {bounds}, whose {' and '.join(ranges)}; widen a bound")
         rows = np.flatnonzero(keep)
         return int(rows[np.argmin(self.values[rows, objective])])
 
     def _evaluate(self, name: str) -> Array:
         """Return a quantity or formula of every design, SI."""
-        found = np.full(len(self), np.nan)
+        values = np.full(len(self), np.nan)
         variants = np.array(self.variants or [0] * len(self))
         for variant in set(variants.tolist()):
             rows = np.flatnonzero(variants == variant)
             try:
-                found[rows] = self.problem.part(variant).evaluate(self.dimensions[rows], [name])[:, 0]
+                values[rows] = self.problem.part(variant).evaluate(self.dimensions[rows], [name])[:, 0]
             except InputError:
                 if not name.isidentifier():
                     raise
                 raise InputError(f"the table has no column {name!r}; see front.designs.columns") from None
-        return found
+        return values
 
     def rounded(
         self,
@@ -287,11 +291,11 @@ class ParetoFront:
         """
         for doubt in doubtful_misses(self.part(row), allow or {}):
             warn_user(f"allowed misses are in SI: {doubt}")
-        for found in self.rounding(row, to, count=count, allow=allow):
-            if isinstance(found, Rounded):
-                return found
+        for stage in self.rounding(row, to, count=count, allow=allow):
+            if isinstance(stage, Rounded):
+                return stage
             if progress is not None:
-                progress(found)
+                progress(stage)
         raise AssertionError("the search ends with its answer")
 
     def rounding(
@@ -303,7 +307,7 @@ class ParetoFront:
         allow: Mapping[str, float | str] | None = None,
     ) -> Generator[Stage | Rounded, None, None]:
         """Yield where the search of `rounded` is, several times a second, and at last its answer; closing ends it."""
-        part, given = self.part(row), self.dimensions[row]
+        part, design = self.part(row), self.dimensions[row]
         labels = self.problem.variants[self.variants[row]].labels if self.variants else ()
         stay = []
         for name, label in zip(self.problem.choices, labels, strict=True):
@@ -311,7 +315,7 @@ class ParetoFront:
             also = f"; the least that also suffices for the given design is {least}" if least not in ("", label) else ""
             stay.append(f"{name} stays {label}{also}")
         span = ranges_or_sizes(self.values, self.values[row], self._sizes)
-        yield (yield from rounding(part, given, span, to, count=count, allow=allow, notes=stay))
+        yield (yield from rounding(part, design, span, to, count=count, allow=allow, notes=stay))
 
     def rates(self, row: int) -> Array:
         """Return the trade-off rates (m, m) at a design: `[a, b]` is objective a's loss per unit gained in b.
@@ -325,8 +329,8 @@ class ParetoFront:
         owner, slopes = self.goals[row]
         m, k = len(self.objectives), slopes.shape[1]
         units = np.array([quantity.unit.factor for quantity in self._quantities])
-        reach = spread(self.values, size=self._sizes)
-        spans = units * np.where(reach > 0.0, reach, 1.0)
+        ranges = spread(self.values, size=self._sizes)
+        spans = units * np.where(ranges > 0.0, ranges, 1.0)
         left = self.values[row] - self.values.min(axis=0)
         slopes = slopes * (units / spans)[owner.astype(int)][:, None]
         residual, shares, pushes = multipliers(slopes, self.active[row]) if k else (np.inf, 0.0, 0.0)
@@ -336,7 +340,7 @@ class ParetoFront:
             slopes = slopes - (shares @ slopes + pushes @ self.active[row])
         rates = np.full((m, m), np.nan)
         for b in range(m):
-            gains = k and left[b] > _NOTHING * reach[b] and (owner == b).any()
+            gains = k and left[b] > _NOTHING * ranges[b] and (owner == b).any()
             losses = _cheapest(slopes, owner, self.active[row], b, m) if gains else None
             if losses is not None:
                 rates[:, b] = np.where(losses > _NOTHING, losses, 0.0) * spans / spans[b]
@@ -351,23 +355,23 @@ class ParetoFront:
         units that they are told in.
         """
         require_word("system", system, System)
-        rates, reach = self.rates(row), spread(self.values, size=self._sizes)
+        rates, ranges = self.rates(row), spread(self.values, size=self._sizes)
         units = np.array([quantity.unit.factor for quantity in self._quantities])
         better = (self.values[row] - self.values.min(axis=0)) * units
         worse = (self.values.max(axis=0) - self.values[row]) * units
         sentences = []
         for b, gain in enumerate(self.objectives):
             payers = [a for a in range(len(self.objectives)) if rates[a, b] > 0.0]
-            span = reach[b] * units[b]
+            span = ranges[b] * units[b]
             if span == 0.0:
                 continue
             if better[b] <= _NOTHING * span:
                 sentences.append(self._best(gain))
             elif payers:
-                most = min(0.1 * span, better[b], *(worse[a] / rates[a, b] for a in payers))
-                if most > _LEAST * span:
-                    one = self._unit(gain, system)[1]
-                    step = 10.0 ** np.floor(np.log10(most * one)) / one  # a readable one where it is shown
+                largest = min(0.1 * span, better[b], *(worse[a] / rates[a, b] for a in payers))
+                if largest > _LEAST * span:
+                    factor = self._unit(gain, system)[1]
+                    step = 10.0 ** np.floor(np.log10(largest * factor)) / factor  # a readable one where it is shown
                     costs = [self._change(self.objectives[a], step * rates[a, b], system, gain=False) for a in payers]
                     sentences.append(f"{self._change(gain, step, system, gain=True)} costs {' and '.join(costs)}")
         return sentences
@@ -385,13 +389,13 @@ class ParetoFront:
 
     def _change(self, objective: Objective, amount: float, system: System, *, gain: bool) -> str:
         """Return a change of an objective, given in its metric unit, in words."""
-        shown = self.problem.quantity(objective.quantity)
+        quantity = self.problem.quantity(objective.quantity)
         unit, factor = self._unit(objective, system)
         size = f"{amount * factor:.3g} {unit}".strip()
         if objective.sense == "target":
-            return f"{shown.title} {size} {'nearer to' if gain else 'farther from'} its target"
-        more = (objective.sense == "maximise") == gain
-        return f"{size} {'more' if more else 'less'} {shown.title}"
+            return f"{quantity.title} {size} {'nearer to' if gain else 'farther from'} its target"
+        is_more = (objective.sense == "maximise") == gain
+        return f"{size} {'more' if is_more else 'less'} {quantity.title}"
 
 
 def _cheapest(slopes: Array, owner: Array, active: Array, b: int, m: int) -> Array | None:
@@ -417,23 +421,23 @@ def _cheapest(slopes: Array, owner: Array, active: Array, b: int, m: int) -> Arr
         ]
     )
     target = np.concatenate([limits, -cost, [0.0]])
-    found = nonnegative_least_squares(matrix, target)
-    if found is None or np.abs(matrix @ found - target).max() > _UNMET:
+    solution = nonnegative_least_squares(matrix, target)
+    if solution is None or np.abs(matrix @ solution - target).max() > _UNMET:
         return None
-    return found[k : k + m]
+    return solution[k : k + m]
 
 
 def pair(name: str, ends: object) -> tuple[float | None, float | None]:
     """Return least and greatest of a name, None for open. Raises `InputError` for what is no such pair of numbers."""
-    given = tuple(ends) if isinstance(ends, tuple | list) else ()
-    if len(given) != 2 or not all(end is None or (isinstance(end, Real) and not math.isnan(end)) for end in given):
+    bounds = tuple(ends) if isinstance(ends, tuple | list) else ()
+    if len(bounds) != 2 or not all(end is None or (isinstance(end, Real) and not math.isnan(end)) for end in bounds):
         raise InputError(
             f"bounds of {name} must be (least, greatest), numbers or None; got {ends!r}; write for example (1.0, None)"
         )
-    return given
+    return bounds
 
 
-def require_front(front: object, what: str) -> None:
-    """Refuse what is no front. what: takes one."""
+def require_front(front: object, caller: str) -> None:
+    """Refuse what is no front. caller: takes one."""
     if not isinstance(front, ParetoFront):
-        raise InputError(f"{what} needs a front; got {type(front).__name__}; solve(problem) returns one")
+        raise InputError(f"{caller} needs a front; got {type(front).__name__}; solve(problem) returns one")

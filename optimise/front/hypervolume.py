@@ -19,7 +19,7 @@ ReportProgress = Callable[[int, int], None]
 """Called many times a second by long work: how much of it is done, and of how much."""
 
 
-def ignore_progress(done: int, of: int) -> None:
+def ignore_progress(done: int, total: int) -> None:
     """Take no note of where work stands."""
 
 
@@ -29,14 +29,14 @@ def scaling(values: Array) -> tuple[Array, Array]:
     return ideal, np.where(span > 0.0, span, np.maximum(np.abs(ideal), 1e-12))
 
 
-def hypervolume(values: Array, ideal: Array, span: Array, *, within: bool = True) -> float:
+def hypervolume(values: Array, ideal: Array, span: Array, *, clip_at_ideal: bool = True) -> float:
     """Return the share of the box from ideal to 1.1 times the range beyond it that the designs dominate.
 
-    within: what they dominate on the far side of the ideal does not count; else the share may exceed 1.
+    clip_at_ideal: what they dominate on the far side of the ideal does not count; else the share may exceed 1.
     """
     if not len(values):
         return 0.0
-    scaled = np.clip((values - ideal) / span, 0.0 if within else None, None)
+    scaled = np.clip((values - ideal) / span, 0.0 if clip_at_ideal else None, None)
     scaled = scaled[(scaled < REFERENCE).all(axis=1)]
     if not len(scaled):
         return 0.0
@@ -49,15 +49,15 @@ def hypervolume(values: Array, ideal: Array, span: Array, *, within: bool = True
 
 
 @kernel
-def _shared_corners(taken: Table, count: int, point: Row, corners: Table) -> int:
+def _shared_corners(chosen: Table, count: int, point: Row, corners: Table) -> int:
     """Put the corners of what a point dominates with the first taken ones, without dominated ones; how many."""
-    kept = 0
+    count_kept = 0
     for i in range(count):
         covered = False
-        for k in range(kept):
+        for k in range(count_kept):
             covered = True
             for j in range(point.shape[0]):
-                if corners[k, j] > max(taken[i, j], point[j]):
+                if corners[k, j] > max(chosen[i, j], point[j]):
                     covered = False
                     break
             if covered:
@@ -65,18 +65,18 @@ def _shared_corners(taken: Table, count: int, point: Row, corners: Table) -> int
         if covered:
             continue
         left = 0
-        for k in range(kept):
+        for k in range(count_kept):
             stays = False
             for j in range(point.shape[0]):
-                stays = stays or corners[k, j] < max(taken[i, j], point[j])
+                stays = stays or corners[k, j] < max(chosen[i, j], point[j])
             if stays:
                 for j in range(point.shape[0]):
                     corners[left, j] = corners[k, j]
                 left += 1
         for j in range(point.shape[0]):
-            corners[left, j] = max(taken[i, j], point[j])
-        kept = left + 1
-    return kept
+            corners[left, j] = max(chosen[i, j], point[j])
+        count_kept = left + 1
+    return count_kept
 
 
 class Bounds:
@@ -104,8 +104,8 @@ class Bounds:
         union = self.most + self.more + size - self.both - common
         union += all_three - np.minimum(self.second, shared).prod(axis=0)
         rows = np.flatnonzero(size > self.more)
-        above = size[rows] > self.most[rows]
-        first, next_ = rows[above], rows[~above]
+        is_largest = size[rows] > self.most[rows]
+        first, next_ = rows[is_largest], rows[~is_largest]
         self.second[:, first], self.more[first] = self.largest[:, first], self.most[first]
         self.largest[:, first], self.most[first] = shared[:, first], size[first]
         self.second[:, next_], self.more[next_] = shared[:, next_], size[next_]
@@ -135,11 +135,11 @@ def choose(
     scaled = np.ascontiguousarray((values - ideal) / span)
     bounds = Bounds(scaled)
     gains, fresh = bounds.boxes.copy(), np.full(n, -1)
-    taken, corners = np.empty((count, scaled.shape[1])), np.empty((count, scaled.shape[1]))
+    chosen, corners = np.empty((count, scaled.shape[1])), np.empty((count, scaled.shape[1]))
     picked: list[int] = []
 
     def pick(index: int) -> None:
-        taken[len(picked)] = scaled[index]
+        chosen[len(picked)] = scaled[index]
         picked.append(index)
         if n <= _BOUNDED:
             np.minimum(gains, bounds.with_design(index), out=gains)
@@ -155,7 +155,7 @@ def choose(
         if fresh[index] == len(picked):
             pick(index)
         else:
-            shared = corners[: _shared_corners(taken, len(picked), scaled[index], corners)]
+            shared = corners[: _shared_corners(chosen, len(picked), scaled[index], corners)]
             gains[index] = bounds.boxes[index] - (float(volume(shared)) if len(shared) else 0.0)
             fresh[index] = len(picked)
     return np.array(sorted(picked))

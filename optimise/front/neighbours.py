@@ -16,31 +16,31 @@ def neighbours(points: Array, count: int) -> tuple[Array, Whole]:
     """
     order = np.argsort(points[:, 0], kind="stable")
     distance = np.full((len(points), count), np.inf)
-    found = np.zeros(len(points) * count, dtype=np.int64)
+    nearest = np.zeros(len(points) * count, dtype=np.int64)
     ordered = points[order]
-    in_chunks(len(points), lambda begin, end: _search(ordered, begin, end, distance, found))
+    in_chunks(len(points), lambda begin, end: _search(ordered, begin, end, distance, nearest))
     rows = np.empty_like(order)
     rows[order] = np.arange(len(order))
-    return distance[rows], order[found.reshape(-1, count)[rows]]
+    return distance[rows], order[nearest.reshape(-1, count)[rows]]
 
 
 @kernel
-def _search(points: Table, begin: int, end: int, distance: Table, found: Integers) -> None:
+def _search(points: Table, begin: int, end: int, distance: Table, nearest: Integers) -> None:
     """Points in the order of their first coordinate: beyond the farthest of the nearest there, none is nearer."""
     n, m = points.shape
     count = distance.shape[1]
     for i in range(begin, end):
-        distance[i, 0], found[i * count] = 0.0, i
-        worst, below, above = distance[i, count - 1], i - 1, i + 1
-        while below >= 0 or above < n:  # in turn, so that near ones on either side end the way of both
-            for k in (below, above):
+        distance[i, 0], nearest[i * count] = 0.0, i
+        worst, before, after = distance[i, count - 1], i - 1, i + 1
+        while before >= 0 or after < n:  # in turn, so that near ones on either side end the way of both
+            for k in (before, after):
                 if not 0 <= k < n:
                     continue
                 if (points[k, 0] - points[i, 0]) ** 2 >= worst:
                     if k < i:
-                        below = -1
+                        before = -1
                     else:
-                        above = n
+                        after = n
                     continue
                 square = 0.0
                 for column in range(m):
@@ -49,10 +49,10 @@ def _search(points: Table, begin: int, end: int, distance: Table, found: Integer
                     place = count - 1
                     while place > 1 and distance[i, place - 1] > square:
                         distance[i, place] = distance[i, place - 1]
-                        found[i * count + place] = found[i * count + place - 1]
+                        nearest[i * count + place] = nearest[i * count + place - 1]
                         place -= 1
-                    distance[i, place], found[i * count + place] = square, k
+                    distance[i, place], nearest[i * count + place] = square, k
                     worst = distance[i, count - 1]
-            below, above = below - 1, above + 1
+            before, after = before - 1, after + 1
         for place in range(count):
             distance[i, place] = np.sqrt(distance[i, place])

@@ -44,11 +44,11 @@ def _reflect(mirror: Row, pivot: int, up: float, column: Row) -> None:
 
 
 @kernel
-def _solve(columns: Table, target: Row, most: int, solution: Row) -> bool:
+def _solve(columns: Table, target: Row, max_steps: int, solution: Row) -> bool:
     n, m = columns.shape
     order = np.arange(n)  # first the columns whose x may be positive, by which the others are made triangular
     free, steps = 0, 0
-    trial, slope, kept = np.zeros(m), np.zeros(n), np.zeros(m)
+    trial, slope, unconstrained = np.zeros(m), np.zeros(n), np.zeros(m)
     while free < min(n, m):
         for place in range(free, n):
             column = order[place]
@@ -68,17 +68,17 @@ def _solve(columns: Table, target: Row, most: int, solution: Row) -> bool:
             largest = 0.0
             for row in range(free, m):
                 largest = max(largest, abs(mirror[row]))
-            above, below = 0.0, 0.0
+            head, tail = 0.0, 0.0
             for row in range(free):
-                above += mirror[row] * mirror[row]
-            above = np.sqrt(above)
+                head += mirror[row] * mirror[row]
+            head = np.sqrt(head)
             if largest > 0.0:
                 for row in range(free, m):
-                    below += (mirror[row] / largest) * (mirror[row] / largest)
+                    tail += (mirror[row] / largest) * (mirror[row] / largest)
             pivot = mirror[free]
-            mirror[free] = -largest * np.sqrt(below) if pivot > 0.0 else largest * np.sqrt(below)
+            mirror[free] = -largest * np.sqrt(tail) if pivot > 0.0 else largest * np.sqrt(tail)
             up = pivot - mirror[free]
-            if above + abs(mirror[free]) * _INDEPENDENT > above:
+            if head + abs(mirror[free]) * _INDEPENDENT > head:
                 for row in range(m):
                     trial[row] = target[row]
                 _reflect(mirror, free, up, trial)
@@ -97,42 +97,42 @@ def _solve(columns: Table, target: Row, most: int, solution: Row) -> bool:
         free += 1
         while True:
             steps += 1
-            if steps > most:
+            if steps > max_steps:
                 return False
             for row in range(free):
-                kept[row] = target[row]
+                unconstrained[row] = target[row]
             for place in range(free - 1, -1, -1):
-                kept[place] /= columns[order[place], place]
+                unconstrained[place] /= columns[order[place], place]
                 for row in range(place):
-                    kept[row] -= kept[place] * columns[order[place], row]
+                    unconstrained[row] -= unconstrained[place] * columns[order[place], row]
             share, leaving = 2.0, -1
             for place in range(free):
-                if kept[place] <= 0.0:
+                if unconstrained[place] <= 0.0:
                     old = solution[order[place]]
-                    part = old / (old - kept[place])
+                    part = old / (old - unconstrained[place])
                     if part < share:
                         share, leaving = part, place
             if leaving < 0:
                 break
             for place in range(free):
                 column = order[place]
-                solution[column] += share * (kept[place] - solution[column])
+                solution[column] += share * (unconstrained[place] - solution[column])
             while leaving >= 0:
                 column = order[leaving]
                 solution[column] = 0.0
                 for place in range(leaving + 1, free):
                     moved = order[place]
                     order[place - 1] = moved
-                    above, below = columns[moved, place - 1], columns[moved, place]
-                    length = np.hypot(above, below)
+                    head, tail = columns[moved, place - 1], columns[moved, place]
+                    length = np.hypot(head, tail)
                     if length > 0.0:
-                        cosine, sine = above / length, below / length
-                        for other in range(n):
-                            above, below = columns[other, place - 1], columns[other, place]
-                            columns[other, place - 1] = cosine * above + sine * below
-                            columns[other, place] = cosine * below - sine * above
-                        above, below = target[place - 1], target[place]
-                        target[place - 1], target[place] = cosine * above + sine * below, cosine * below - sine * above
+                        cosine, sine = head / length, tail / length
+                        for row_of_pair in range(n):
+                            head, tail = columns[row_of_pair, place - 1], columns[row_of_pair, place]
+                            columns[row_of_pair, place - 1] = cosine * head + sine * tail
+                            columns[row_of_pair, place] = cosine * tail - sine * head
+                        head, tail = target[place - 1], target[place]
+                        target[place - 1], target[place] = cosine * head + sine * tail, cosine * tail - sine * head
                         columns[moved, place] = 0.0
                 free -= 1
                 order[free] = column
@@ -142,5 +142,5 @@ def _solve(columns: Table, target: Row, most: int, solution: Row) -> bool:
                         leaving = place
                         break
         for place in range(free):
-            solution[order[place]] = kept[place]
+            solution[order[place]] = unconstrained[place]
     return True

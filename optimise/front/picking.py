@@ -53,8 +53,8 @@ def by_range(values: Array, *, size: ArrayLike = 0.0) -> Array:
 
 def knee(values: Array, *, size: ArrayLike = 0.0) -> int:
     """Return the row nearest to the ideal point, every objective scaled by its range over the designs."""
-    apart = np.linalg.norm(by_range(values, size=size), axis=1)
-    return int(np.flatnonzero(apart <= apart.min() + _TIE)[0])
+    distances = np.linalg.norm(by_range(values, size=size), axis=1)
+    return int(np.flatnonzero(distances <= distances.min() + _TIE)[0])
 
 
 def closeness(
@@ -87,16 +87,16 @@ def closeness(
     scaled = scaled * share / share.sum()
     best = np.linalg.norm(scaled - scaled.min(axis=0), axis=1)
     worst = np.linalg.norm(scaled - scaled.max(axis=0), axis=1)
-    whole = best + worst
-    return np.where(whole > 0.0, worst / np.where(whole > 0.0, whole, 1.0), 1.0)
+    total = best + worst
+    return np.where(total > 0.0, worst / np.where(total > 0.0, total, 1.0), 1.0)
 
 
 def topsis(
     values: Array, weights: Sequence[float], *, normalisation: Normalisation = "range", size: ArrayLike = 0.0
 ) -> int:
     """Return the row of the greatest `closeness`; ties go to the better in the other objectives."""
-    found = closeness(values, weights, normalisation=normalisation, size=size)
-    return _least_total(values, np.flatnonzero(found >= found.max() - _TIE), size)
+    scores = closeness(values, weights, normalisation=normalisation, size=size)
+    return _least_total(values, np.flatnonzero(scores >= scores.max() - _TIE), size)
 
 
 def lexicographic(values: Array, order: Sequence[tuple[int, float, float]], *, size: ArrayLike = 0.0) -> int:
@@ -117,14 +117,14 @@ def lexicographic(values: Array, order: Sequence[tuple[int, float, float]], *, s
     for place, (column, absolute, share) in enumerate(order):
         last = place == len(order) - 1
         if span[column] > 0.0:
-            own = scaled[rows, column]
-            rows = rows[own <= own.min() + _TIE + (0.0 if last else absolute / span[column] + share)]
+            values_left = scaled[rows, column]
+            rows = rows[values_left <= values_left.min() + _TIE + (0.0 if last else absolute / span[column] + share)]
     return _least_total(values, rows, size)
 
 
 def _least_total(values: Array, rows: np.ndarray, size: ArrayLike) -> int:
-    worth = by_range(values, size=size)[rows].sum(axis=1)
-    return int(rows[np.flatnonzero(worth <= worth.min() + _TIE)[0]])
+    totals = by_range(values, size=size)[rows].sum(axis=1)
+    return int(rows[np.flatnonzero(totals <= totals.min() + _TIE)[0]])
 
 
 def _require_designs(values: Array) -> None:

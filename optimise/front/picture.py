@@ -21,11 +21,11 @@ def svg(values: Array, labels: Sequence[str]) -> str:
     x = values[:, 0]
     y = values[:, 1] if values.shape[1] > 1 else np.arange(len(values), dtype=np.float64)
     names = [*labels, "design"][:2]
-    across = _ROOM + (_WIDTH - 2 * _ROOM) * _share(x)
+    horizontal = _ROOM + (_WIDTH - 2 * _ROOM) * _share(x)
     down = _ROOM + (_HEIGHT - 2 * _ROOM) * (1.0 - _share(y))
     spots = "".join(
         f'<circle cx="{a:.1f}" cy="{b:.1f}" r="3" fill="currentColor" fill-opacity="0.6"/>'
-        for a, b in zip(across, down, strict=True)
+        for a, b in zip(horizontal, down, strict=True)
     )
     frame = (
         f'<path d="M{_ROOM:g} {_ROOM / 2:g} V{_HEIGHT - _ROOM / 2:g} H{_WIDTH - _ROOM / 2:g}" '
@@ -48,16 +48,16 @@ def figure(values: Array, labels: Sequence[str], title: str) -> Figure:
     """
     from ...model.notebook_figure import NotebookFigure
 
-    others = max(1, values.shape[1] - 1)
-    found = NotebookFigure(figsize=(6.4, 1.2 + 2.4 * others), layout="constrained")
-    for column, axes in enumerate(np.atleast_1d(found.subplots(others, 1, sharex=True)), start=1):
+    rows = max(1, values.shape[1] - 1)
+    drawing = NotebookFigure(figsize=(6.4, 1.2 + 2.4 * rows), layout="constrained")
+    for column, axes in enumerate(np.atleast_1d(drawing.subplots(rows, 1, sharex=True)), start=1):
         alone = values.shape[1] == 1
         y = np.arange(len(values), dtype=np.float64) if alone else values[:, column]
         axes.plot(values[:, 0], y, "o", markersize=4, alpha=0.7)
         axes.set_ylabel("design" if alone else labels[column])
         axes.set_xlabel(labels[0])
-    found.suptitle(title)
-    return found
+    drawing.suptitle(title)
+    return drawing
 
 
 def _share(values: Array) -> Array:

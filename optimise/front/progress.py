@@ -1,4 +1,4 @@
-"""Progress of a search, as it is told while it runs: in numbers, in words, and as a live bar."""
+"""Progress of a running search: in numbers, in words, and as a live bar."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from threading import Event, Thread
 from typing import Any
 
 LOADING = "loading"
-"""Stage before a search: what it computes with, its job, and what is kept of an earlier run are read."""
+"""Stage before a search: its libraries, its job and the records of an earlier run are loaded."""
 REPEATING = "repeating rounds"
-"""Stage of a search that goes on: its rounds are those of the earlier run, without evaluating anything."""
+"""Stage of a resumed search that repeats the recorded rounds without evaluating anything."""
 
 
 @dataclass(frozen=True)
@@ -21,8 +21,8 @@ class Progress:
     """Progress of a search after one of its rounds, or in a long stage between two.
 
     round, rounds: this one and how many are planned. feasible: designs found so far that meet every constraint.
-    hypervolume: what those dominate; it never falls. While the search goes on it is told in boxes that the first
-    feasible designs span, and may exceed 1; in the history of a front, as a share of the box of that front. Not
+    hypervolume: what those dominate; it never falls. During the search it is reported in boxes spanned by the
+    first feasible designs, and may exceed 1; in the history of a front, as a share of the box of that front. Not
     comparable between runs. step, steps: how far the stage is, 0 of 0 at the end of a round.
     """
 
@@ -38,7 +38,7 @@ class Progress:
 
     @property
     def prepares(self) -> bool:
-        """Whether nothing new is searched yet: the search loads, or repeats what an earlier run of it did."""
+        """Whether the search is still loading, or repeating the rounds of an earlier run."""
         return self.stage in (LOADING, REPEATING)
 
 
@@ -47,23 +47,23 @@ def stage_text(progress: Mapping[str, Any]) -> str:
 
     progress: fields of `Progress`; those of early stores have no steps.
     """
-    of = progress.get("steps", 0)
-    done, of = (progress["step"], of) if of else (progress["round"], progress["rounds"])
-    return f"{progress['stage']} {done:,}/{of:,}"
+    total = progress.get("steps", 0)
+    count, total = (progress["step"], total) if total else (progress["round"], progress["rounds"])
+    return f"{progress['stage']} {count:,}/{total:,}"
 
 
 @contextlib.contextmanager
 def progress_bar() -> Iterator[Callable[[Progress], None]]:
     """Show a live bar while entered, on standard error or in a notebook; yield the callback that moves it.
 
-    Its clock goes on while nothing is told.
+    Its clock keeps running between reports.
     """
     from tqdm.auto import tqdm
 
     form, ended, (columns, rows) = "{desc} {bar:24} {unit} {elapsed}", Event(), _terminal_size()
     with tqdm(desc="starting", unit="", bar_format=form, total=1, leave=False, ncols=columns, nrows=rows) as bar:
 
-        def tell(at: Progress) -> None:
+        def update_bar(at: Progress) -> None:
             bar.total, bar.n = at.steps or at.rounds, at.step if at.steps else at.round
             bar.unit = f"{at.feasible:,} feasible, hypervolume {at.hypervolume:.4f}"
             bar.set_description_str(stage_text(vars(at)))
@@ -75,14 +75,14 @@ def progress_bar() -> Iterator[Callable[[Progress], None]]:
         clock = Thread(target=tick, daemon=True)
         clock.start()
         try:
-            yield tell
+            yield update_bar
         finally:
             ended.set()
             clock.join()
 
 
 def _terminal_size() -> tuple[int | None, int | None]:
-    """Return the columns and rows of a terminal where it says that it has none, as some remote ones; else None."""
+    """Return columns and rows to assume for a terminal that reports none, as some remote ones do; else None."""
     try:
         columns, rows = os.get_terminal_size(sys.stderr.fileno())
     except (OSError, ValueError, AttributeError):

@@ -98,17 +98,17 @@ class Rounded:
             near += f" (not {REACHES[0]}, because {len(self.steps)} numbers are rounded together)"
         if self.met:
             keep = "keeps" if self.kept == 1 else "keep"
-            within = f" within {self._allowed_in_words(system)}" if self.allowed else ""
+            tolerance = f" within {self._allowed_in_words(system)}" if self.allowed else ""
             missing = sum(bool(self._excessive_misses(row)) for row in range(len(self)))
             lose = "others lose clearly less but miss" if missing > 1 else "another one loses clearly less but misses"
-            more = f"; {lose} little" if missing else ""
-            return f"{self.kept} of {near} {keep} every requirement{within}{more}"
-        none = f"none of {near}"
+            supplement = f"; {lose} little" if missing else ""
+            return f"{self.kept} of {near} {keep} every requirement{tolerance}{supplement}"
+        subject = f"none of {near}"
         if not len(self):
-            return f"{none} has a value for every requirement; give smaller steps"
-        beyond = [self.problem.quantity(name).title for name in self._excessive_misses(0)]
-        more = "a greater miss" if set(self._excessive_misses(0)) & set(self.allowed) else "a miss"
-        return f"{none} meets every requirement; these are the nearest; allow {more} of {' and '.join(beyond)}"
+            return f"{subject} has a value for every requirement; give smaller steps"
+        titles = [self.problem.quantity(name).title for name in self._excessive_misses(0)]
+        supplement = "a greater miss" if set(self._excessive_misses(0)) & set(self.allowed) else "a miss"
+        return f"{subject} meets every requirement; these are the nearest; allow {supplement} of {' and '.join(titles)}"
 
     @cached_property
     def violations(self) -> Array:
@@ -126,37 +126,37 @@ class Rounded:
 
         What is allowed counts as a miss too.
         """
-        found = []
+        misses = []
         for place in np.argsort(-self.violations[row], kind="stable").tolist():
             if self.violations[row, place] <= FEASIBLE:
                 break
             constraint, value = self.constraints[place], self.held[row, place]
-            of = self.problem.quantity(constraint.quantity)
+            quantity = self.problem.quantity(constraint.quantity)
             slack = slack_of(constraint, self.held[row : row + 1, place])[0]
-            found.append(
+            misses.append(
                 Miss(
                     quantity=constraint.quantity,
-                    title=of.title,
-                    kind=of.kind.plain,
-                    amount=float(-slack * of.unit.factor),
-                    unit=of.unit.symbol,
+                    title=quantity.title,
+                    kind=quantity.kind.plain,
+                    amount=float(-slack * quantity.unit.factor),
+                    unit=quantity.unit.symbol,
                     side="below" if constraint.lower is not None and value < constraint.lower else "above",
-                    allowed=drop_conversion_rounding(self.allowed.get(constraint.quantity, 0.0) * of.unit.factor),
+                    allowed=drop_conversion_rounding(self.allowed.get(constraint.quantity, 0.0) * quantity.unit.factor),
                 )
             )
-        return found
+        return misses
 
     def missed(self, row: int) -> list[str]:
         """Return the quantities whose requirement a design misses, the worst first."""
         return [miss.quantity for miss in self.misses(row)]
 
     def _allowed_in_words(self, system: System) -> str:
-        """Return what may be missed: "0.1 mm of stroke"."""
+        """Return the allowed misses as text: "0.1 mm of stroke"."""
         texts = []
         for name, value in self.allowed.items():
-            of = self.problem.quantity(name)
-            unit, factor = shown_in(of.unit.symbol, system)
-            texts.append(f"{value * of.unit.factor * factor:.4g} {unit}".rstrip() + f" of {of.title}")
+            quantity = self.problem.quantity(name)
+            unit, factor = shown_in(quantity.unit.symbol, system)
+            texts.append(f"{value * quantity.unit.factor * factor:.4g} {unit}".rstrip() + f" of {quantity.title}")
         return " and ".join(texts)
 
     def _excessive_misses(self, row: int) -> list[str]:
@@ -172,26 +172,28 @@ class Rounded:
     @cached_property
     def columns(self) -> dict[str, Array]:
         """The columns of the table of designs, see `designs`."""
-        found: dict[str, Array] = {}
+        table: dict[str, Array] = {}
         for place, (name, (column, factor)) in enumerate(self.names.items()):
-            shown = self.dimensions[:, place] * factor
-            found[column] = (
-                np.array([drop_conversion_rounding(value) for value in shown.tolist()]) if name in self.steps else shown
+            values = self.dimensions[:, place] * factor
+            table[column] = (
+                np.array([drop_conversion_rounding(value) for value in values.tolist()])
+                if name in self.steps
+                else values
             )
-        for place, wanted in enumerate(self.problem.objectives):
-            of = self.problem.quantity(wanted.quantity)
+        for place, objective in enumerate(self.problem.objectives):
+            quantity = self.problem.quantity(objective.quantity)
             now, before = self.values[:, place], self.before[place]
             with np.errstate(invalid="ignore", divide="ignore"):
                 change = np.where(now == before, 0.0, now - before)
                 percent = np.where(change == 0.0, 0.0, 100.0 * change / abs(before))
-            found[of.field] = now * of.unit.factor
-            found[f"change_{of.field}"] = change * of.unit.factor
-            found[f"change_{of.stem}_percent"] = percent
-        found["loss_percent"] = 100.0 * self.losses.max(axis=1) if len(self) else np.zeros(0)
+            table[quantity.field] = now * quantity.unit.factor
+            table[f"change_{quantity.field}"] = change * quantity.unit.factor
+            table[f"change_{quantity.stem}_percent"] = percent
+        table["loss_percent"] = 100.0 * self.losses.max(axis=1) if len(self) else np.zeros(0)
         for place, constraint in enumerate(self.constraints):
-            of = self.problem.quantity(constraint.quantity)
-            found[slack_field(of)] = slack_of(constraint, self.held[:, place]) * of.unit.factor + 0.0
-        return found
+            quantity = self.problem.quantity(constraint.quantity)
+            table[slack_field(quantity)] = slack_of(constraint, self.held[:, place]) * quantity.unit.factor + 0.0
+        return table
 
     @cached_property
     def designs(self) -> pd.DataFrame:

@@ -68,10 +68,12 @@ def rounding(
     ranges = part.ranges
     steps = _steps(to, part)
     moved = {name: step for name, step in steps.items() if not ranges[name].fixed}
-    told = [*notes, *_stays(given, ranges, steps)]
-    own = {item.name: item.rule for item in part.discrete if item.name in moved}
-    moved = {name: step for name, step in moved.items() if name not in own}
-    told += [f"{name} has discrete values in the job, {rule}, and stays as it is" for name, rule in own.items()]
+    all_notes = [*notes, *_stays(given, ranges, steps)]
+    discrete_rules = {item.name: item.rule for item in part.discrete if item.name in moved}
+    moved = {name: step for name, step in moved.items() if name not in discrete_rules}
+    all_notes += [
+        f"{name} has discrete values in the job, {rule}, and stays as it is" for name, rule in discrete_rules.items()
+    ]
     if not moved:
         raise InputError(
             f"a step may only be given for a number that varies over a range; got {', '.join(steps)}, fixed or with "
@@ -93,69 +95,72 @@ def rounding(
         reach=search.reach,
         judged=search.judged,
         kept=search.kept,
-        notes=tuple(told),
+        notes=tuple(all_notes),
     )
 
 
-def ranges_or_sizes(values: Array, of: Array, sizes: Sequence[float]) -> Array:
+def ranges_or_sizes(values: Array, reference: Array, sizes: Sequence[float]) -> Array:
     """Return the ranges (m,) of objectives over a front (n, m); of a constant one the size.
 
-    of: (m,), the objectives of a design, whose size it then is. sizes: (m,), the targets, where they are greater.
+    reference: (m,), the objectives of a design, whose size then counts. sizes: (m,), the targets, if greater.
     """
     span = spread(values, size=sizes)
-    own = np.maximum(np.where(np.isfinite(of), np.abs(of), 0.0), sizes)
-    return np.where(span > 0.0, span, np.where(own > 0.0, own, 1.0))
+    sizes_of_reference = np.maximum(np.where(np.isfinite(reference), np.abs(reference), 0.0), sizes)
+    return np.where(span > 0.0, span, np.where(sizes_of_reference > 0.0, sizes_of_reference, 1.0))
 
 
 def doubtful_misses(part: Problem, allow: Mapping[str, float | str]) -> list[str]:
     """Return both readings of allowed misses without a unit that are a great part of what is required."""
-    given, found = {name: value for name, value in _require_names(allow).items() if not isinstance(value, str)}, []
+    plain_misses, doubts = (
+        {name: value for name, value in _require_names(allow).items() if not isinstance(value, str)},
+        [],
+    )
     bounds = {item.quantity: max(abs(bound) for _, bound in item.sides) for item in constraints_of(part)}
-    for name, value in _allowed(part, given).items():
-        of = part.quantity(name)
-        if of.unit.symbol != of.kind.unit and value > _LARGE * bounds[name]:
-            found.append(both_readings(name, value, of.kind.unit, of.unit.symbol, of.unit.factor))
-    return found
+    for name, value in _allowed(part, plain_misses).items():
+        quantity = part.quantity(name)
+        if quantity.unit.symbol != quantity.kind.unit and value > _LARGE * bounds[name]:
+            doubts.append(both_readings(name, value, quantity.kind.unit, quantity.unit.symbol, quantity.unit.factor))
+    return doubts
 
 
-def _allowed(part: Problem, given: Mapping[str, float | str]) -> dict[str, float]:
+def _allowed(part: Problem, misses: Mapping[str, float | str]) -> dict[str, float]:
     """Return how far requirements may be missed, SI, by quantity. A slow stroke that is required is not one of them."""
     constraints = {item.quantity: item for item in constraints_of(replace(part, slow_stroke=None))}
-    known = {name: part.quantity(name) for name in constraints}
-    names = {alias: name for name, of in known.items() for alias in (of.field, of.stem, name)}
-    found: dict[str, float] = {}
-    for name, value in _require_names(given).items():
+    quantities = {name: part.quantity(name) for name in constraints}
+    names = {alias: name for name, quantity in quantities.items() for alias in (quantity.field, quantity.stem, name)}
+    allowed: dict[str, float] = {}
+    for name, value in _require_names(misses).items():
         if name not in names:
             raise InputError(
                 f"only requirements of this job may be missed: {', '.join(constraints) or 'it has none'}; got "
                 f"{quote(name)}; name one of them"
             )
-        if names[name] in found:
+        if names[name] in allowed:
             raise InputError(f"a requirement may have only one allowed miss; got two for {names[name]}; leave out one")
         try:
-            found[names[name]] = _miss(value, known[names[name]], constraints[names[name]])
+            allowed[names[name]] = _miss(value, quantities[names[name]], constraints[names[name]])
         except InputError as error:
             raise InputError(f"the allowed miss of {name} {error}") from None
-    return found
+    return allowed
 
 
-def _require_names(given: Mapping[str, float | str]) -> Mapping[str, float | str]:
+def _require_names(misses: Mapping[str, float | str]) -> Mapping[str, float | str]:
     """Return allowed misses. Raises `InputError` where they do not come by quantity."""
-    if not isinstance(given, Mapping):
+    if not isinstance(misses, Mapping):
         raise InputError(
-            f'allowed misses must be a dict by quantity; got {given!r}; write it like {{"stroke": "0.1 mm"}}'
+            f'allowed misses must be a dict by quantity; got {misses!r}; write it like {{"stroke": "0.1 mm"}}'
         )
-    return given
+    return misses
 
 
-def _miss(value: float | str, of: Quantity, constraint: Constraint) -> float:
+def _miss(value: float | str, quantity: Quantity, constraint: Constraint) -> float:
     """Return how far a requirement may be missed, SI. Raises `InputError`, with the amount that a percentage is."""
     percent = _PERCENT.fullmatch(value) if isinstance(value, str) else None
-    if percent is not None and of.kind.unit:
-        bound = max(abs(bound) for _, bound in constraint.sides) * of.unit.factor
-        amount = f"{0.01 * float(percent[1]) * bound:.4g} {of.unit.symbol}"
-        raise InputError(f"must be {of.kind.name}, not a percentage; got {quote(value)}; write {quote(amount)}")
-    kind = SMALL_LENGTH if of.kind is LENGTH else of.kind
+    if percent is not None and quantity.kind.unit:
+        bound = max(abs(bound) for _, bound in constraint.sides) * quantity.unit.factor
+        amount = f"{0.01 * float(percent[1]) * bound:.4g} {quantity.unit.symbol}"
+        raise InputError(f"must be {quantity.kind.name}, not a percentage; got {quote(value)}; write {quote(amount)}")
+    kind = SMALL_LENGTH if quantity.kind is LENGTH else quantity.kind
     return to_si(value, kind, sign="positive", plain=not isinstance(value, str))
 
 
@@ -172,24 +177,24 @@ def _steps(to: float | Mapping[str, float], part: Problem) -> dict[str, float]:
             raise InputError(f"the step of {name} must be above zero and finite; got {step!r}")
         size = max(abs(ranges[name].lower), abs(ranges[name].upper))
         if step < _SMALLEST * size:
-            given, least, most = (shown_number(part, name, value) for value in (step, _SMALLEST * size, size))
+            shown_step, least, greatest = (shown_number(part, name, value) for value in (step, _SMALLEST * size, size))
             raise InputError(
-                f"the step of {name} must be at least {least}, {_SMALLEST:g} of {most}, the greatest in its range; got "
-                f"{given}; give a greater one"
+                f"the step of {name} must be at least {least}, {_SMALLEST:g} of {greatest}, the greatest in its range; "
+                f"got {shown_step}; give a greater one"
             )
     return {name: float(steps[name]) for name in ranges if name in steps}
 
 
 def _stays(given: Array, ranges: Mapping[str, Range], steps: Mapping[str, float]) -> list[str]:
     """Return in words what stays as it is though it is no multiple of a step."""
-    told = []
+    notes = []
     for value, (name, ends) in zip(given.tolist(), ranges.items(), strict=True):
         if name not in steps:
-            told.append(f"{name} has no step and stays as it is")
+            notes.append(f"{name} has no step and stays as it is")
         elif ends.fixed:
             place = value / steps[name]
             if abs(place - round(place)) > FEASIBLE * max(1.0, abs(place)):
-                told.append(
+                notes.append(
                     f"{name} is fixed in this job and stays as it is, although it is not a multiple of the step"
                 )
-    return told
+    return notes

@@ -1,4 +1,4 @@
-"""Search among the combinations of round numbers around a design, step by step, so that it reports and can be ended."""
+"""Search among combinations of round numbers around a design, with progress reports, and cancellable."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Stage:
 
 T = TypeVar("T")
 Steps = Generator[Stage, None, T]
-"""A search that yields where it is and returns what it finds; closing it ends it."""
+"""A search that yields its progress and returns its result; closing it ends it."""
 
 
 def shown_number(part: Problem, name: str, value: float) -> str:
@@ -97,20 +97,20 @@ class RoundingSearch:
                 "judging combinations", designs[rows], self._violation_function(self.slow)
             )
             misses[rows] = np.maximum(misses[rows], judged)
-            kept = rows[misses[rows] <= FEASIBLE]
-            values = yield from self._in_blocks("ranking combinations", designs[kept], self.values)
-            had = ~np.isnan(values).any(axis=1)
-            if had.any():
+            feasible_rows = rows[misses[rows] <= FEASIBLE]
+            values = yield from self._in_blocks("ranking combinations", designs[feasible_rows], self.values)
+            has_values = ~np.isnan(values).any(axis=1)
+            if has_values.any():
                 break
-            misses[kept] = np.inf  # without a value of an objective
-        self.judged, self.kept = len(designs), int(had.sum())
-        if not had.any():
+            misses[feasible_rows] = np.inf  # without a value of an objective
+        self.judged, self.kept = len(designs), int(has_values.sum())
+        if not has_values.any():
             return (yield from self._nearest(designs, misses, rows, count))
-        best = self._ranked(designs[kept[had]], values[had])[:count]
+        best = self._ranked(designs[feasible_rows[has_values]], values[has_values])[:count]
         loss = float(self.losses(self.values(best[:1])).max())
         if len(best) == count or loss <= _WORTH:
             return best
-        misses[kept] = np.inf
+        misses[feasible_rows] = np.inf
         near = misses <= _LITTLE
         place = np.flatnonzero(np.isin(np.flatnonzero(near), rows))
         missing = yield from self._nearest(designs[near], misses[near], place, count - len(best), _CLEARLY * loss)
@@ -134,19 +134,19 @@ class RoundingSearch:
         return self.part.evaluate(designs, [constraint.quantity for constraint in constraints])
 
     def _violation_function(self, constraints: Sequence[Constraint]) -> Callable[[Array], Array]:
-        """Return what gives the greatest violations of some constraints, of quick or of slow ones."""
+        """Return a function from designs to their greatest violation of some constraints."""
         return partial(greatest_violation, self.part, constraints=constraints, allowed=self.allowed)
 
     def _in_blocks(
-        self, stage: str, designs: Array, of: Callable[[Array], Array], size: int = _SLOW_BLOCK
+        self, stage: str, designs: Array, function: Callable[[Array], Array], size: int = _SLOW_BLOCK
     ) -> Steps[Array]:
-        """Return what a function gives of designs, block by block."""
-        found = []
+        """Return the values of a function of designs, computed block by block."""
+        blocks = []
         for begin in range(0, max(1, len(designs)), size):
             if len(designs):
                 yield Stage(stage, begin, len(designs))
-            found.append(of(designs[begin : begin + size]))
-        return np.concatenate(found)
+            blocks.append(function(designs[begin : begin + size]))
+        return np.concatenate(blocks)
 
     def _ladders(self, reach: int) -> list[list[float]]:
         """Return for each number of a design the values that it may take."""
@@ -159,21 +159,21 @@ class RoundingSearch:
     def _multiples(self, name: str, value: float, reach: int) -> list[float]:
         step, lower, upper = self.steps[name], self.ranges[name].lower, self.ranges[name].upper
         place = value / step
-        on = abs(place - round(place)) <= FEASIBLE * max(1.0, abs(place))
-        low, high = (round(place), round(place)) if on else (math.floor(place), math.ceil(place))
-        room = FEASIBLE * max(abs(lower), abs(upper))
+        is_multiple = abs(place - round(place)) <= FEASIBLE * max(1.0, abs(place))
+        low, high = (round(place), round(place)) if is_multiple else (math.floor(place), math.ceil(place))
+        slack = FEASIBLE * max(abs(lower), abs(upper))
         exact, side = Decimal(repr(step)), self.part.slow_side() if name == "offset" else None
         # A multiple as it is written: the step's decimals times a whole number, rounded once.
         every = [float(exact * k) for k in range(low - reach + 1, high + reach)]
-        found = [x for x in every if lower - room <= x <= upper + room and (side is None or side * x > 0.0)]
-        if not found and reach == 1:
+        multiples = [x for x in every if lower - slack <= x <= upper + slack and (side is None or side * x > 0.0)]
+        if not multiples and reach == 1:
             raise InputError(
                 f"the step of {name} must have a multiple within its range, {shown_number(self.part, name, lower)} to "
                 f"{shown_number(self.part, name, upper)}"
-                f"{'' if side is None else ', on the side that slow_stroke asks for'}; got "
+                f"{'' if side is None else ', is_multiple the side that slow_stroke asks for'}; got "
                 f"{shown_number(self.part, name, step)}; give a smaller one, or none, so that it stays"
             )
-        return found
+        return multiples
 
     def _reaches(self) -> list[int]:
         """Return the widths of the windows, each wider; fewer than usual where there are very many numbers."""
@@ -209,54 +209,58 @@ class RoundingSearch:
         free = nondominated(all_minimised(self.part, values)[order])
         return np.asarray(designs[order[free]])
 
-    def _nearest(self, designs: Array, misses: Array, exact: Whole, count: int, most: float = math.inf) -> Steps[Array]:
-        """Return the nearest designs, see `rounding.rounding`; only those that lose no more than `most`.
+    def _nearest(
+        self, designs: Array, misses: Array, exact: Whole, count: int, max_loss: float = math.inf
+    ) -> Steps[Array]:
+        """Return the nearest designs, see `rounding.rounding`; only those that lose no more than `max_loss`.
 
         misses: (n,), exact in the rows `exact`; elsewhere what closed forms give, which is never more. So designs are
         judged in that order, and one is placed once all that may miss less or as much are judged.
         """
-        known = np.zeros(len(designs), dtype=bool)
-        known[exact] = True
+        is_exact = np.zeros(len(designs), dtype=bool)
+        is_exact[exact] = True
         least = yield from self._in_blocks("screening combinations", designs, self._least_losses, _BLOCK)
-        losses, found = np.full(len(designs), np.nan), np.zeros(0, dtype=np.int64)
+        losses, ranked = np.full(len(designs), np.nan), np.zeros(0, dtype=np.int64)
         ahead, judged = np.argsort(misses, kind="stable"), np.zeros(0, dtype=np.int64)
-        ahead = ahead[least[ahead] <= most]
-        while len(ahead) and not ((len(found) or math.isfinite(most)) and len(judged) >= _NEAREST):
+        ahead = ahead[least[ahead] <= max_loss]
+        while len(ahead) and not ((len(ranked) or math.isfinite(max_loss)) and len(judged) >= _NEAREST):
             yield Stage("searching for the nearest", len(judged), max(_NEAREST, len(judged)))
             rows, ahead = ahead[:_SLOW_BLOCK], ahead[_SLOW_BLOCK:]
             judged = np.append(judged, rows)
-            rows = rows[~known[rows]]
+            rows = rows[~is_exact[rows]]
             misses[rows] = np.maximum(misses[rows], self._violation_function(self.slow)(designs[rows]))
             bar = np.round(misses[ahead[0]], _TIE) if len(ahead) else np.inf
             placed = judged[np.isfinite(misses[judged]) & (np.round(misses[judged], _TIE) < bar)]
             fresh = placed[np.isnan(losses[placed])]
             losses[fresh] = self.losses(self.values(designs[fresh])).max(axis=1)
-            placed = placed[(losses[placed] <= most) & (misses[placed] <= (_LITTLE if math.isfinite(most) else np.inf))]
-            found = self._staircase(designs, placed, misses[placed], losses[placed])[:count]
-            if len(found) == count or (len(found) and losses[found[-1]] <= 0.0):
+            placed = placed[
+                (losses[placed] <= max_loss) & (misses[placed] <= (_LITTLE if math.isfinite(max_loss) else np.inf))
+            ]
+            ranked = self._staircase(designs, placed, misses[placed], losses[placed])[:count]
+            if len(ranked) == count or (len(ranked) and losses[ranked[-1]] <= 0.0):
                 break
-            if len(found):
-                ahead = ahead[least[ahead] <= _CLEARLY * losses[found[-1]]]
-        return np.asarray(designs[found])
+            if len(ranked):
+                ahead = ahead[least[ahead] <= _CLEARLY * losses[ranked[-1]]]
+        return np.asarray(designs[ranked])
 
     def _least_losses(self, designs: Array) -> Array:
         """Return the greatest loss (n,) of the objectives that closed forms give."""
         losses = np.full(len(designs), -np.inf)
-        for place, wanted in enumerate(self.part.objectives):
-            if not costly(self.part.quantity(wanted.quantity)):
-                now = minimised(wanted, self.part.evaluate(designs, [wanted.quantity])[:, 0])
+        for place, objective in enumerate(self.part.objectives):
+            if not costly(self.part.quantity(objective.quantity)):
+                now = minimised(objective, self.part.evaluate(designs, [objective.quantity])[:, 0])
                 losses = np.fmax(losses, (now - self.before[place]) / self.span[place])
         return losses
 
     def _staircase(self, designs: Array, rows: Whole, misses: Array, losses: Array) -> Whole:
         """Return of rows the one that misses least, then those that miss more but lose clearly less."""
         order = np.lexsort((self._steps_away(designs[rows]), np.round(losses, _TIE), np.round(misses, _TIE)))
-        found: list[int] = []
+        ranked: list[int] = []
         least = np.inf
         for row, loss in zip(rows[order].tolist(), losses[order].tolist(), strict=True):
-            if not found or loss <= _CLEARLY * least:
-                found.append(row)
+            if not ranked or loss <= _CLEARLY * least:
+                ranked.append(row)
                 least = loss
             if least <= 0.0:
                 break  # nothing is lost: there is no reason to miss more
-        return np.array(found, dtype=np.int64)
+        return np.array(ranked, dtype=np.int64)

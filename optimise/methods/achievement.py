@@ -35,19 +35,21 @@ class Achievement:
         values = (goals.values - self.ideal[owner]) / self.span[owner]
         slopes = goals.gradients / self.span[owner][:, None]
         labels = goals.labels + _APART * owner
-        used, capped = form.weights[owner] > 0.0, np.isfinite(form.ceilings[owner])
-        weights, own = form.weights[owner[used]], owner[used]
+        is_weighted, capped = form.weights[owner] > 0.0, np.isfinite(form.ceilings[owner])
+        weights, weighted_owner = form.weights[owner[is_weighted]], owner[is_weighted]
         aims = Rows(
-            np.concatenate([weights * (values[:, used] - form.reference[own]), form.rho * values], axis=1),
-            np.concatenate([weights[:, None] * slopes[:, used], form.rho * slopes], axis=1),
-            np.concatenate([labels[:, used], labels], axis=1),
-            np.concatenate([np.zeros_like(own), 1 + owner]),
+            np.concatenate(
+                [weights * (values[:, is_weighted] - form.reference[weighted_owner]), form.rho * values], axis=1
+            ),
+            np.concatenate([weights[:, None] * slopes[:, is_weighted], form.rho * slopes], axis=1),
+            np.concatenate([labels[:, is_weighted], labels], axis=1),
+            np.concatenate([np.zeros_like(weighted_owner), 1 + owner]),
         )
-        under, first = owner[capped], 1 + int(limits.owner.max(initial=-1))
-        held = Rows(
-            np.concatenate([limits.values, values[:, capped] - form.ceilings[under]], axis=1),
+        capped_owner, first = owner[capped], 1 + int(limits.owner.max(initial=-1))
+        constraints = Rows(
+            np.concatenate([limits.values, values[:, capped] - form.ceilings[capped_owner]], axis=1),
             np.concatenate([limits.gradients, slopes[:, capped]], axis=1),
             np.concatenate([limits.labels, labels[:, capped]], axis=1),
-            np.concatenate([limits.owner, first + under]),
+            np.concatenate([limits.owner, first + capped_owner]),
         )
-        return aims, held
+        return aims, constraints

@@ -48,8 +48,8 @@ class _ExactEvaluation:
         values, violation = self.evaluator.step("points", (u,), lambda: self._evaluate(u))
         self.known = {
             point.tobytes(): value
-            for point, value, met in zip(u, values.tolist(), violation <= FEASIBLE, strict=True)
-            if met and np.isfinite(value)
+            for point, value, feasible in zip(u, values.tolist(), violation <= FEASIBLE, strict=True)
+            if feasible and np.isfinite(value)
         }
         best = min(self.known, key=self.known.__getitem__, default=b"")
         if best and self.known[best] < self.best:
@@ -103,7 +103,7 @@ def _evolve(
     run.rounds = len(run.round_reports) + 1 + generations // _TOLD
     exact = _ExactEvaluation(index, evaluator, improvements)
 
-    def each(intermediate_result: Any) -> bool:
+    def report_generation(intermediate_result: Any) -> bool:
         nonlocal count
         count += 1
         if count % _TOLD:
@@ -113,7 +113,7 @@ def _evolve(
         return False
 
     minimised: Any = evolve  # its stubs know no function of many points
-    found = minimised(
+    optimum = minimised(
         lambda x: exact.objective(x.T),
         [(0.0, 1.0)] * k,
         constraints=NonlinearConstraint(
@@ -129,9 +129,9 @@ def _evolve(
         polish=False,
         updating="deferred",
         vectorized=True,
-        callback=each,
+        callback=report_generation,
     )
-    archive.screen(index, evaluator, np.clip(found.x, 0.0, 1.0)[None])
+    archive.screen(index, evaluator, np.clip(optimum.x, 0.0, 1.0)[None])
 
 
 def shgo(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
@@ -160,7 +160,7 @@ def _descend(
     exact = _ExactEvaluation(index, evaluator, improvements)
     points = max(16, min(_SAMPLED, budget(problem) // (4 * len(evaluators))))
     searched: Any = homology
-    found = searched(
+    optima = searched(
         lambda u: float(exact.objective(u[None])[0]),
         [(0.0, 1.0)] * evaluator.dimension,
         constraints={"type": "ineq", "fun": lambda u: -exact.violation(u[None])},
@@ -170,7 +170,7 @@ def _descend(
         minimizer_kwargs={"method": "SLSQP", "options": {"maxiter": _ROUGH}},
         options={"minimize_every_iter": False},
     )
-    basins = np.clip(np.atleast_2d(getattr(found, "xl", np.zeros((0, evaluator.dimension)))), 0.0, 1.0)
+    basins = np.clip(np.atleast_2d(getattr(optima, "xl", np.zeros((0, evaluator.dimension)))), 0.0, 1.0)
     basins = basins[evaluator.valid(basins)][:_BASINS] if len(basins) else basins
     if not len(basins):
         return

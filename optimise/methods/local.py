@@ -51,12 +51,12 @@ def samples(problem: Problem, evaluators: list[Evaluator]) -> Candidates:
             u = first_samples(count, evaluator.dimension, problem.settings.seed, _STREAM + 10 * attempt + index)
             _, values, violation = evaluator.screen(u, band=band)
             good = (violation <= band + FEASIBLE) & evaluator.valid(u)
-            met = violation[good] <= FEASIBLE
-            parts.append(Candidates(np.full(len(met), index), u[good], values[good], met))
-        found = parts[0].join(*parts[1:])
-        if len(found) >= _ENOUGH:
+            feasible = violation[good] <= FEASIBLE
+            parts.append(Candidates(np.full(len(feasible), index), u[good], values[good], feasible))
+        sampled = parts[0].join(*parts[1:])
+        if len(sampled) >= _ENOUGH:
             break
-    return found
+    return sampled
 
 
 def search_from_starts(
@@ -91,17 +91,17 @@ def is_budget_spent(problem: Problem, evaluators: list[Evaluator]) -> bool:
 def archive_optimum(solve: Local, programme: Programme, u: Array, archive: Archive, index: int) -> Array | None:
     """Take the optimum near u (k,), a recorded step, into an archive; return its objectives (m,), SI, None without."""
     form, scaling, u = programme.form, (programme.ideal, programme.span), u[: programme.k]
-    given = (u, form.weights, form.reference, form.ceilings, np.array([form.rho]), *scaling)
+    inputs = (u, form.weights, form.reference, form.ceilings, np.array([form.rho]), *scaling)
 
     def compute() -> tuple[Array, ...]:
         optimum = solve(programme, u)
         return () if optimum is None else (optimum, programme.objectives(optimum))
 
-    found = programme.evaluator.step("descent", given, compute)
-    if not found:
+    optimum_and_values = programme.evaluator.step("descent", inputs, compute)
+    if not optimum_and_values:
         return None
-    values = np.asarray(found[1] * programme.span + programme.ideal)
-    archive.add_points(index, found[0][None], values[None])
+    values = np.asarray(optimum_and_values[1] * programme.span + programme.ideal)
+    archive.add_points(index, optimum_and_values[0][None], values[None])
     archive.feasible += 1
     return values
 
@@ -115,11 +115,11 @@ def by_slsqp(programme: Programme, u: Array) -> Array | None:
     """
     best = None
     for _ in range(_AGAIN):
-        found = _feasible_point(programme, _slsqp(programme, u))
-        if found is None:
+        optimum = _feasible_point(programme, _slsqp(programme, u))
+        if optimum is None:
             break
-        moved = np.abs(found - u).max(initial=0.0)
-        best = u = found
+        moved = np.abs(optimum - u).max(initial=0.0)
+        best = u = optimum
         if moved <= _STAYS:
             break
     return best
@@ -135,7 +135,7 @@ def _slsqp(programme: Programme, u: Array) -> Array:
     begin = programme.begin(u)
     if len(programme.equalities(begin)):
         constraints.append({"type": "eq", "fun": programme.equalities, "jac": programme.equal_slopes})
-    found = minimised(
+    solution = minimised(
         lambda z: programme.cost @ z,
         begin,
         jac=lambda z: programme.cost,
@@ -144,7 +144,7 @@ def _slsqp(programme: Programme, u: Array) -> Array:
         constraints=constraints,
         options={"ftol": _EXACT, "maxiter": _STEPS},
     )
-    return np.asarray(found.x)
+    return np.asarray(solution.x)
 
 
 def by_trust_constr(programme: Programme, u: Array) -> Array | None:
@@ -155,9 +155,9 @@ def by_trust_constr(programme: Programme, u: Array) -> Array | None:
     nearer to the limits. It keeps within the inequalities, unless u lies on one. Equalities are not for it.
     """
     for attempt in range(_ATTEMPTS):
-        found, settled = _barrier(programme, u, _MARGIN * _NEARER**attempt)
-        best = _feasible_point(programme, found)
-        if best is None or settled:
+        end, converged = _barrier(programme, u, _MARGIN * _NEARER**attempt)
+        best = _feasible_point(programme, end)
+        if best is None or converged:
             break
         u = best
     return best
@@ -171,23 +171,23 @@ def _barrier(programme: Programme, u: Array, margin: float) -> tuple[Array, bool
     begin = programme.begin(np.clip(u, _INSIDE, 1.0 - _INSIDE))
     begin[programme.k :] += margin
     begin[-1] += margin * programme.form.weights.max()
-    inside = bool((programme.inequalities(begin) < 0.0).all() and (begin < programme.upper).all())
-    limits = [NonlinearConstraint(programme.inequalities, -np.inf, 0.0, programme.slopes, BFGS(), inside)]
-    none = np.zeros((len(begin), len(begin)))
+    starts_inside = bool((programme.inequalities(begin) < 0.0).all() and (begin < programme.upper).all())
+    limits = [NonlinearConstraint(programme.inequalities, -np.inf, 0.0, programme.slopes, BFGS(), starts_inside)]
+    no_curvature = np.zeros((len(begin), len(begin)))
     with warnings.catch_warnings():
         # On the way rows may be dependent and slopes constant, which scipy copes with.
         warnings.simplefilter("ignore", UserWarning)
-        found = minimised(
+        solution = minimised(
             lambda z: programme.cost @ z,
             begin,
             jac=lambda z: programme.cost,
-            hess=lambda z: none,
+            hess=lambda z: no_curvature,
             method="trust-constr",
-            bounds=Bounds(programme.lower, programme.upper, keep_feasible=inside),
+            bounds=Bounds(programme.lower, programme.upper, keep_feasible=starts_inside),
             constraints=limits,
             options={"gtol": 0.0, "xtol": 1e-10, "barrier_tol": 1e-10, "maxiter": _BARRIER_STEPS},
         )
-    return np.asarray(found.x), found.status == 2
+    return np.asarray(solution.x), solution.status == 2
 
 
 def _feasible_point(programme: Programme, z: Array) -> Array | None:

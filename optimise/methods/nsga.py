@@ -66,10 +66,10 @@ def divisions(population: int, objectives: int) -> int:
 
     p divisions give (p + m - 1 over m - 1) directions (Das and Dennis, 1998).
     """
-    found = 1
-    while objectives > 1 and math.comb(found + objectives, objectives - 1) <= population:
-        found += 1
-    return found
+    parts = 1
+    while objectives > 1 and math.comb(parts + objectives, objectives - 1) <= population:
+        parts += 1
+    return parts
 
 
 def _genetic(problem: Problem, evaluators: list[Evaluator], run: Run, sampler: Any, **options: Any) -> Archive:
@@ -89,8 +89,8 @@ def _genetic(problem: Problem, evaluators: list[Evaluator], run: Run, sampler: A
             # To the sampler all of them are one generation: it selects from both parts alike.
             study.add_trials(completed_trials(axes, history[pool], {genetic._get_generation_key(): 0}))
         branch, u = ask_points(study, axes, size, run.checkpoints.poll)
-        kept = [trial.number for trial in genetic.get_parent_population(study, 1)] if past else []
-        return Brood(branch, u, pool[kept])
+        survivors = [trial.number for trial in genetic.get_parent_population(study, 1)] if past else []
+        return Brood(branch, u, pool[survivors])
 
     with silence_optuna():
         crossover, mutation = SBXCrossover(), PolynomialMutation()

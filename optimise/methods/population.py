@@ -79,14 +79,14 @@ def evolve(problem: Problem, evaluators: list[Evaluator], run: Run, breed: Breed
     """
     allowed = budget(problem)
     run.rounds = max(1, allowed // size)
-    archive, known = Archive.empty(len(problem.objectives)), _Evaluations()
+    archive, evaluations = Archive.empty(len(problem.objectives)), _Evaluations()
     past: list[Generation] = []
     count = 0
     while True:
         brood = _breed_recorded(evaluators[0], breed, past)
         if count + len(brood) > allowed and past:
             break
-        past.append(_evaluate_brood(evaluators, brood, archive, known))
+        past.append(_evaluate_brood(evaluators, brood, archive, evaluations))
         count += len(brood)
         run.report_round("evolving", evaluators, archive)
     return archive
@@ -105,23 +105,25 @@ _Evaluations = dict[tuple[int, bytes], tuple[Array, float]]
 """Objectives and violation of every point that was evaluated, by branch and coordinates: none is evaluated twice."""
 
 
-def _evaluate_brood(evaluators: list[Evaluator], brood: Brood, archive: Archive, known: _Evaluations) -> Generation:
+def _evaluate_brood(
+    evaluators: list[Evaluator], brood: Brood, archive: Archive, evaluations: _Evaluations
+) -> Generation:
     """Return the generation of a brood, the archive has what is feasible; a branch's new points are one batch."""
     points = zip(brood.branch.tolist(), brood.u + 0.0, strict=True)  # no negative zeros
     keys = [(index, point[: evaluators[index].dimension].tobytes()) for index, point in points]
-    fresh = {key: row for row, key in enumerate(keys) if key not in known}
+    fresh = {key: row for row, key in enumerate(keys) if key not in evaluations}
     for index, evaluator in enumerate(evaluators):
-        own = [(key, row) for key, row in fresh.items() if key[0] == index]
-        if own:
-            u = brood.u[[row for _, row in own], : evaluator.dimension]
+        fresh_points = [(key, row) for key, row in fresh.items() if key[0] == index]
+        if fresh_points:
+            u = brood.u[[row for _, row in fresh_points], : evaluator.dimension]
             values, violation = screen_points(evaluator, u, BAND if evaluator.loose else 0.0)
-            known.update({key: (values[i], violation[i]) for i, (key, _) in enumerate(own)})
+            evaluations.update({key: (values[i], violation[i]) for i, (key, _) in enumerate(fresh_points)})
             good = violation <= FEASIBLE
-            met = np.full(int(good.sum()), not evaluator.loose)
-            archive.feasible += int(met.sum())
+            feasible = np.full(int(good.sum()), not evaluator.loose)
+            archive.feasible += int(feasible.sum())
             if good.any():
-                archive.add_points(index, u[good], values[good], met)
-    values, violation = (np.array([known[key][part] for key in keys]) for part in (0, 1))
+                archive.add_points(index, u[good], values[good], feasible)
+    values, violation = (np.array([evaluations[key][part] for key in keys]) for part in (0, 1))
     return Generation(brood.branch, brood.u, values, violation, parents=brood.parents)
 
 

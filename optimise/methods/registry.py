@@ -69,7 +69,7 @@ class Method:
 def methods() -> dict[str, Method]:
     """Return all methods by name: family by family, see `FAMILIES`."""
     package = import_module(__package__)
-    modules = sorted(found.name for found in pkgutil.walk_packages(package.__path__, f"{__package__}."))
+    modules = sorted(module.name for module in pkgutil.walk_packages(package.__path__, f"{__package__}."))
     declared = [value for name in modules for value in vars(import_module(name)).values() if isinstance(value, Method)]
     declared = sorted(dict.fromkeys(declared), key=lambda method: FAMILIES.index(method.family))
     by_name = {method.name: method for method in declared}
@@ -80,34 +80,34 @@ def methods() -> dict[str, Method]:
 
 def method_of(problem: Problem) -> Method:
     """Return the method that a problem asks for. Raises `InputError` for an unknown name."""
-    name, known = problem.settings.method, methods()
-    if name not in known:
-        raise InputError(f"the method must be one of {', '.join(known)}; got {name!r}; choose one of these")
-    return known[name]
+    name, by_name = problem.settings.method, methods()
+    if name not in by_name:
+        raise InputError(f"the method must be one of {', '.join(by_name)}; got {name!r}; choose one of these")
+    return by_name[name]
 
 
 def budget(problem: Problem) -> int:
     """Return how many designs the problem's method may evaluate. Raises `InputError` if it takes no budget."""
-    own = method_of(problem).budget
-    if own is None:
+    default = method_of(problem).budget
+    if default is None:
         raise InputError(f"the method {problem.settings.method} has no budget of evaluations; name another method")
-    return problem.settings.evaluations or own
+    return problem.settings.evaluations or default
 
 
 def require_fit(problem: Problem) -> None:
     """Raise `InputError` if the method cannot take its number of objectives, or takes no budget but has one."""
     method, count = method_of(problem), len(problem.objectives)
-    asked = problem.settings.evaluations
-    if asked is not None and method.budget is None:
+    evaluations = problem.settings.evaluations
+    if evaluations is not None and method.budget is None:
         raise InputError(
-            f"the method {method.name} has no budget of evaluations; got {asked}; leave it out, or name a method"
+            f"the method {method.name} has no budget of evaluations; got {evaluations}; leave it out, or name a method"
         )
     if method.takes(count):
         return
-    fitting = ", ".join(name for name, other in methods().items() if other.takes(count))
-    wanted = ", ".join(objective.quantity for objective in problem.objectives)
+    fitting = ", ".join(name for name, candidate in methods().items() if candidate.takes(count))
+    objectives = ", ".join(objective.quantity for objective in problem.objectives)
     takes = "one objective" if method.objectives == "one" else "several objectives"
-    raise InputError(f"the method {method.name} needs {takes}; got {count} ({wanted}); use one of {fitting}")
+    raise InputError(f"the method {method.name} needs {takes}; got {count} ({objectives}); use one of {fitting}")
 
 
 def require_eliminated(problem: Problem, evaluators: list[Evaluator]) -> None:
@@ -124,21 +124,21 @@ def require_eliminated(problem: Problem, evaluators: list[Evaluator]) -> None:
                 )
 
 
-def require_gradients(problem: Problem, what: str | None = None) -> None:
+def require_gradients(problem: Problem, caller: str | None = None) -> None:
     """Raise `InputError` if the problem's method needs a gradient that a quantity does not have.
 
-    what: needs gradients in place of the method, as the subject of a sentence.
+    caller: needs gradients in place of the method, as the subject of a sentence.
     """
     lacking = problem.without_gradient()
     if not lacking:
         return
     method = method_of(problem)
-    if what is not None or method.gradients:
+    if caller is not None or method.gradients:
         count = len(problem.objectives)
-        fitting = [name for name, other in methods().items() if not other.gradients and other.takes(count)]
-        instead = "" if what else f"use one of {', '.join(fitting)}, or "
+        fitting = [name for name, candidate in methods().items() if not candidate.gradients and candidate.takes(count)]
+        instead = "" if caller else f"use one of {', '.join(fitting)}, or "
         raise InputError(
-            f"{what or f'the method {method.name}'} needs the gradient of every quantity; got {', '.join(lacking)} "
+            f"{caller or f'the method {method.name}'} needs the gradient of every quantity; got {', '.join(lacking)} "
             f'with gradient = "none"; {instead}set gradient = "finite differences"'
         )
     for constraint in problem.every_constraint:

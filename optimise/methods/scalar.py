@@ -48,10 +48,10 @@ class Form:
 
     def value(self, scaled: Array) -> Array:
         """Return the form's value (n,) at objectives (n, m), scaled; infinite above a ceiling."""
-        used = self.weights > 0.0
-        reached = (self.weights[used] * (scaled[:, used] - self.reference[used])).max(axis=1)
-        inside = (scaled <= self.ceilings).all(axis=1)
-        return np.where(inside, reached + self.rho * scaled.sum(axis=1), np.inf)
+        is_weighted = self.weights > 0.0
+        reached = (self.weights[is_weighted] * (scaled[:, is_weighted] - self.reference[is_weighted])).max(axis=1)
+        is_allowed = (scaled <= self.ceilings).all(axis=1)
+        return np.where(is_allowed, reached + self.rho * scaled.sum(axis=1), np.inf)
 
 
 class Programme:
@@ -68,11 +68,11 @@ class Programme:
         self.cost = np.concatenate([np.zeros(self.k), np.full(self.m, form.rho), [1.0]])
         self.lower = np.concatenate([np.zeros(self.k), np.full(self.m + 1, -np.inf)])
         self.upper = np.concatenate([np.ones(self.k), form.ceilings, [np.inf]])
-        used = np.flatnonzero(form.weights > 0.0)
-        self._fixed = np.zeros((len(used), self.k + self.m + 1))
-        self._fixed[np.arange(len(used)), self.k + used] = form.weights[used]
+        weighted = np.flatnonzero(form.weights > 0.0)
+        self._fixed = np.zeros((len(weighted), self.k + self.m + 1))
+        self._fixed[np.arange(len(weighted)), self.k + weighted] = form.weights[weighted]
         self._fixed[:, -1] = -1.0
-        self._bound = form.weights[used] * form.reference[used]
+        self._bound = form.weights[weighted] * form.reference[weighted]
         self._u: Array | None = None
         self._goals: Rows
         self._limits: Rows
@@ -86,8 +86,8 @@ class Programme:
         self._u = None
         self._go(u)
         s = np.minimum(greatest(self._goals, self.m), self.form.ceilings)
-        used = self.form.weights > 0.0
-        t = (self.form.weights[used] * (s[used] - self.form.reference[used])).max()
+        is_weighted = self.form.weights > 0.0
+        t = (self.form.weights[is_weighted] * (s[is_weighted] - self.form.reference[is_weighted])).max()
         return np.concatenate([u, s, [t]])
 
     def objectives(self, u: Array) -> Array:
@@ -133,20 +133,20 @@ class Programme:
 
     def _equality_rows(self) -> Whole:
         """Return the rows that must vanish; for a piece that this design lacks, the row of the highest."""
-        own, instead = self._equal.T
-        return np.asarray(np.where(np.isfinite(self._limits.values[own]), own, instead))
+        highest, instead = self._equal.T
+        return np.asarray(np.where(np.isfinite(self._limits.values[highest]), highest, instead))
 
     def _go(self, u: Array) -> None:
         if self._u is not None and np.array_equal(u, self._u):
             return
         first = self._u is None
         self._u = np.array(u)
-        inside = np.clip(self._u, 0.0, 1.0)[None]  # solvers step out of the box by rounding
-        self._valid = bool(self.evaluator.valid(inside)[0])
+        clipped = np.clip(self._u, 0.0, 1.0)[None]  # solvers step out of the box by rounding
+        self._valid = bool(self.evaluator.valid(clipped)[0])
         if not self._valid:
             assert not first  # solvers begin at valid points
             return
-        goals, limits = (alone(rows, 0) for rows in self.evaluator.exact(inside))
+        goals, limits = (alone(rows, 0) for rows in self.evaluator.exact(clipped))
         goals = Rows(
             (goals.values - self.ideal[goals.owner]) / self.span[goals.owner],
             goals.gradients / self.span[goals.owner][:, None],
@@ -169,7 +169,7 @@ def _equal_rows(evaluator: Evaluator, limits: Rows) -> Whole:
     Every piece has a row on one side, the highest alone one on the other side; both say the same of it, and a solver
     given both has dependent constraints, at which it ends early. The rows of the other pieces stay inequalities.
     """
-    found = []
+    pairs = []
     for owner, constraint in enumerate(evaluator.constraints):
         if constraint.equality:
             rows = np.flatnonzero(limits.owner == owner)
@@ -177,40 +177,40 @@ def _equal_rows(evaluator: Evaluator, limits: Rows) -> Whole:
             pieces, single = (rows[:-1], rows[-1])
             if limits.values[pieces].max() != -limits.values[single]:
                 pieces, single = rows[1:], rows[0]
-            found.append((pieces[np.argmax(limits.values[pieces])], single))
-    return np.array(found, dtype=np.int64).reshape(-1, 2)
+            pairs.append((pieces[np.argmax(limits.values[pieces])], single))
+    return np.array(pairs, dtype=np.int64).reshape(-1, 2)
 
 
 def _swappable_columns(evaluator: Evaluator, goals: Rows, limits: Rows) -> tuple[list[Whole], ...]:
     """Return the columns of goals and limits that are peaks of one curve and may swap; lower bounds may not."""
-    found: tuple[list[Whole], ...] = ([], [])
+    groups_by_kind: tuple[list[Whole], ...] = ([], [])
     last = [objective.target is not None for objective in evaluator.problem.objectives]
     bounds = [constraint.lower is not None for constraint in evaluator.constraints]
-    for rows, apart, groups in ((goals, last, found[0]), (limits, bounds, found[1])):
-        for owner, less in enumerate(apart):
+    for rows, has_lower_row, groups in ((goals, last, groups_by_kind[0]), (limits, bounds, groups_by_kind[1])):
+        for owner, lower_row in enumerate(has_lower_row):
             columns = np.flatnonzero(rows.owner == owner)
-            columns = columns[: len(columns) - less]
+            columns = columns[: len(columns) - lower_row]
             if len(columns) > 1:
                 groups.append(columns)
-    return found
+    return groups_by_kind
 
 
 def _align_pieces(rows: Rows, before: Rows, groups: list[Whole]) -> Rows:
     """Return the rows in the former places of the same pieces; peaks come by height and swap in ties."""
     order = np.arange(len(rows.owner))
     for columns in groups:
-        apart = np.abs(rows.labels[columns][:, None] - before.labels[columns])
-        apart = np.minimum(apart, np.abs(apart - 2.0 * np.pi))
-        gone = ~(np.isfinite(rows.values[columns])[:, None] & np.isfinite(before.values[columns]))
-        order[columns] = columns[_match_labels(np.where(gone | ~np.isfinite(apart), np.pi, apart))]
+        distances = np.abs(rows.labels[columns][:, None] - before.labels[columns])
+        distances = np.minimum(distances, np.abs(distances - 2.0 * np.pi))
+        is_absent = ~(np.isfinite(rows.values[columns])[:, None] & np.isfinite(before.values[columns]))
+        order[columns] = columns[_match_labels(np.where(is_absent | ~np.isfinite(distances), np.pi, distances))]
     return Rows(rows.values[order], rows.gradients[order], rows.labels[order], rows.owner)
 
 
-def _match_labels(apart: Array) -> Whole:
+def _match_labels(distances: Array) -> Whole:
     """Return for each place the row that goes there."""
     from scipy.optimize import linear_sum_assignment
 
-    if (np.diag(apart) < _CLOSE).all():
-        return np.arange(len(apart))
-    rows, places = linear_sum_assignment(apart)
+    if (np.diag(distances) < _CLOSE).all():
+        return np.arange(len(distances))
+    rows, places = linear_sum_assignment(distances)
     return np.asarray(rows[np.argsort(places)])

@@ -74,11 +74,11 @@ def chebyshev(front: _Front) -> Aims:
     Math. Program. 26(3), 1983.
     """
     m = len(front.payoff)
-    none = np.full(m, np.inf)
+    no_ceilings = np.full(m, np.inf)
 
     def form_towards(direction: Array) -> Form:
         direction = np.maximum(direction, _SLIVER)
-        return Form(direction.min() / direction, np.full(m, -_UTOPIAN), none, SUM)
+        return Form(direction.min() / direction, np.full(m, -_UTOPIAN), no_ceilings, SUM)
 
     return [form_towards(direction) for direction in simplex(m, _aims_per_round(front.problem))], form_towards
 
@@ -99,10 +99,10 @@ def nbi(front: _Front) -> Aims:
     shares = simplex(m, _aims_per_round(front.problem))
     if m > 2:
         shares = 1.0 / m + (shares - 1.0 / m) * _WIDER
-    none = np.full(m, np.inf)
+    no_ceilings = np.full(m, np.inf)
 
     def through(point: Array) -> Form:
-        return Form(normal.min() / normal, point, none, SUM)
+        return Form(normal.min() / normal, point, no_ceilings, SUM)
 
     return [through(share @ payoff) for share in shares], through
 
@@ -158,14 +158,14 @@ class _Front:
         """
         from scipy.spatial import distance_matrix
 
-        found = self.scaled(self.archive.values)
-        missing = int(_MORE * self.problem.settings.designs) - len(found)
+        optima = self.scaled(self.archive.values)
+        missing = int(_MORE * self.problem.settings.designs) - len(optima)
         if missing <= 0:
-            return found[:0]
+            return optima[:0]
         sampled = self.scaled(self.samples.values)
         sampled = sampled[nondominated(sampled)]
-        aims = np.concatenate([sampled[:: 1 + len(sampled) // _POOL], _middles(found)])
-        away = distance_matrix(aims, np.concatenate([found, self.aimed])).min(axis=1)
+        aims = np.concatenate([sampled[:: 1 + len(sampled) // _POOL], _middles(optima)])
+        away = distance_matrix(aims, np.concatenate([optima, self.aimed])).min(axis=1)
         picked: list[int] = []
         while len(picked) < min(missing, len(aims)):
             picked.append(int(np.argmax(away)))
@@ -175,17 +175,17 @@ class _Front:
 
     def _starts(self, form: Form) -> list[tuple[int, Array]]:
         """Return the best point of every branch that is not plainly worse than that of another."""
-        known = self.archive.join(self.samples)
-        scaled = self.scaled(known.values)
+        points = self.archive.join(self.samples)
+        scaled = self.scaled(points.values)
         excess = np.maximum(scaled - form.ceilings, 0.0).max(axis=1)
-        worth = replace(form, ceilings=np.full(len(form.weights), np.inf)).value(scaled) + 10.0 * excess
-        found: list[tuple[float, int, Array]] = []
-        for index in np.unique(known.branch).tolist():
-            own = np.flatnonzero(known.branch == index)
-            row = own[np.argmin(worth[own])]
-            found.append((float(worth[row]), index, known.u[row]))
-        least = min(value for value, _, _ in found)
-        return [(index, u) for value, index, u in found if value <= least + _WORSE]
+        merits = replace(form, ceilings=np.full(len(form.weights), np.inf)).value(scaled) + 10.0 * excess
+        starts: list[tuple[float, int, Array]] = []
+        for index in np.unique(points.branch).tolist():
+            on_branch = np.flatnonzero(points.branch == index)
+            row = on_branch[np.argmin(merits[on_branch])]
+            starts.append((float(merits[row]), index, points.u[row]))
+        least = min(value for value, _, _ in starts)
+        return [(index, u) for value, index, u in starts if value <= least + _WORSE]
 
 
 def simplex(objectives: int, least: int) -> Array:
@@ -215,9 +215,11 @@ def _middles(points: Array) -> Array:
 
     first, second = np.triu_indices(len(points), 1)
     middles = 0.5 * (points[first] + points[second])
-    within = distance_matrix(middles, points) < 0.5 * np.linalg.norm(points[first] - points[second], axis=1)[:, None]
-    within[np.arange(len(first)), first] = within[np.arange(len(first)), second] = False
-    return np.asarray(middles[~within.any(axis=1)])
+    is_crowded = (
+        distance_matrix(middles, points) < 0.5 * np.linalg.norm(points[first] - points[second], axis=1)[:, None]
+    )
+    is_crowded[np.arange(len(first)), first] = is_crowded[np.arange(len(first)), second] = False
+    return np.asarray(middles[~is_crowded.any(axis=1)])
 
 
 def _aims_per_round(problem: Problem) -> int:

@@ -46,10 +46,10 @@ def search_space(evaluators: list[Evaluator]) -> Space:
     from optuna.distributions import CategoricalDistribution, FloatDistribution
 
     dimension = max(evaluator.dimension for evaluator in evaluators)
-    found: Space = {f"u{column:03d}": FloatDistribution(0.0, 1.0) for column in range(dimension)}
+    parameters: Space = {f"u{column:03d}": FloatDistribution(0.0, 1.0) for column in range(dimension)}
     if len(evaluators) > 1:
-        found[_BRANCH] = CategoricalDistribution(list(range(len(evaluators))))
-    return found
+        parameters[_BRANCH] = CategoricalDistribution(list(range(len(evaluators))))
+    return parameters
 
 
 def new_study(problem: Problem, sampler: BaseSampler) -> Study:

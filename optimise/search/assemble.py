@@ -1,4 +1,4 @@
-"""From polished designs to a front: the best of them, with all that is to be known of each."""
+"""From polished designs to a front: the best of them, each with all its quantities."""
 
 from __future__ import annotations
 
@@ -27,20 +27,20 @@ from .pieces import ACTIVE
 from .search import Run
 
 SELECTING, FINISHING = "selecting designs", "finishing designs"
-"""Stages after the rounds: the best designs are chosen, then all that is to be known of each is computed."""
+"""Stages after the rounds: selecting the best designs, then computing all their quantities."""
 _AT_ONCE = 100  # designs analysed between two questions whether to end
 _GLIMPSE = 40  # designs of a round that count in the history of a search that was told to end: all would take seconds
 
 
 def assemble(
-    problem: Problem, evaluators: list[Evaluator], finished: FrontCandidates, run: Run, rows: Whole | None = None
+    problem: Problem, evaluators: list[Evaluator], candidates: FrontCandidates, run: Run, rows: Whole | None = None
 ) -> ParetoFront:
     """Return the front of the best of finished designs, at least one.
 
     rows: those to deliver, of a search that was told to end.
     """
     status: Status = "done" if rows is None else "cancelled"
-    best = finished[_rows_to_deliver(problem, finished, run.stage_reporter(SELECTING)) if rows is None else rows]
+    best = candidates[_rows_to_deliver(problem, candidates, run.stage_reporter(SELECTING)) if rows is None else rows]
     best = best[np.lexsort(best.values.T[::-1])]
     values, dimensions = best.values, best.dimensions(evaluators)
     dimensions[:, 2] = without_rounding(dimensions[:, 1], dimensions[:, 2])
@@ -88,27 +88,29 @@ def _on_unseen_kink(problem: Problem, variants: Whole, dimensions: Array) -> Mas
     Of a formula with kinks of both kinds, such as a difference of peaks, slopes tell those of one kind with the active
     piece of the other: where two of these tie, nothing is proven.
     """
-    found = np.zeros(len(dimensions), np.bool_)
-    asked = {item.quantity: item.sense == "maximise" for item in problem.objectives}
-    formulas = [of for of in problem.own if isinstance(of, FormulaQuantity) and of.name in asked]
+    is_torn = np.zeros(len(dimensions), np.bool_)
+    is_maximised = {item.quantity: item.sense == "maximise" for item in problem.objectives}
+    formulas = [
+        formula for formula in problem.own if isinstance(formula, FormulaQuantity) and formula.name in is_maximised
+    ]
     for variant in distinct(variants).tolist() if formulas else []:
         rows = np.flatnonzero(variants == variant)
-        for of in formulas:
-            pieces = of.pieces(problem.part(variant).mechanism, dimensions[rows])
+        for formula in formulas:
+            pieces = formula.pieces(problem.part(variant).mechanism, dimensions[rows])
             if pieces.opposite is not None:
-                held = pieces if asked[of.name] else pieces.opposite
-                apart = np.abs(held.values - held.values[:, :1])
-                ties = (apart <= ACTIVE * np.abs(held.values[:, 0]).max()).sum(axis=1) > 1
-                found[rows] |= ties
-    return found
+                binding = pieces if is_maximised[formula.name] else pieces.opposite
+                distances = np.abs(binding.values - binding.values[:, :1])
+                ties = (distances <= ACTIVE * np.abs(binding.values[:, 0]).max()).sum(axis=1) > 1
+                is_torn[rows] |= ties
+    return is_torn
 
 
-def _rows_to_deliver(problem: Problem, finished: FrontCandidates, report: ReportProgress) -> Whole:
-    rows = finished.best(report)
+def _rows_to_deliver(problem: Problem, candidates: FrontCandidates, report: ReportProgress) -> Whole:
+    rows = candidates.best(report)
     if len(problem.objectives) == 1:
         return rows
-    best = tuple(dict.fromkeys(np.argmin(finished.values[rows], axis=0).tolist()))
-    return rows[choose(finished.values[rows], problem.settings.designs, always=best, report=report)]
+    best = tuple(dict.fromkeys(np.argmin(candidates.values[rows], axis=0).tolist()))
+    return rows[choose(candidates.values[rows], problem.settings.designs, always=best, report=report)]
 
 
 def columns_of(
@@ -121,28 +123,28 @@ def columns_of(
     from ...objectives.tables import analysis, swinging
 
     parts: list[Columns] = []
-    order, done = [], 0
+    order, count = [], 0
     alike: dict[tuple[object, ...], list[int]] = {}  # variants of one machine and its rules are analysed together
     for variant in distinct(variants).tolist():
         part = problem.part(variant)
         alike.setdefault((part.mechanism, part.constraints, part.own), []).append(variant)
     chosen = _choice_columns(problem, variants, dimensions)
     for same in alike.values():
-        own = np.flatnonzero(np.isin(variants, same))
+        rows_of_machine = np.flatnonzero(np.isin(variants, same))
         part = problem.part(same[0])
-        for rows in np.split(own, range(_AT_ONCE, len(own), _AT_ONCE)):
-            report(done, len(dimensions))
+        for rows in np.split(rows_of_machine, range(_AT_ONCE, len(rows_of_machine), _AT_ONCE)):
+            report(count, len(dimensions))
             judged = analysis.columns_of if problem.motion is None else swinging.columns_of
             columns = judged(part.mechanism, dimensions[rows], custom=part.own)
-            report(done, len(dimensions))
+            report(count, len(dimensions))
             before = 3 + len(part.mechanism.varying)
             of_size = dict(itertools.islice(columns.items(), before))
-            others = dict(itertools.islice(columns.items(), before, None))
+            rest = dict(itertools.islice(columns.items(), before, None))
             of_choice: Columns = {name: column[rows] for name, column in chosen.items()}
-            fields = [of.field for of in part.own if isinstance(of, Amount)]
-            of_choice |= {name: others.pop(name) for name in fields}
-            parts.append(of_size | of_choice | others | _slack_columns(part, dimensions[rows]))
-            done += len(rows)
+            fields = [amount.field for amount in part.own if isinstance(amount, Amount)]
+            of_choice |= {name: rest.pop(name) for name in fields}
+            parts.append(of_size | of_choice | rest | _slack_columns(part, dimensions[rows]))
+            count += len(rows)
             order.append(rows)
     if len(parts) == 1:
         return parts[0]
@@ -156,16 +158,16 @@ def columns_of(
 
 
 def _choice_columns(problem: Problem, variants: Whole, dimensions: Array) -> Columns:
-    """Return what was chosen for designs, its texts, and the least options that serve too with what is kept of them."""
-    own = [problem.variants[variant] for variant in variants] if problem.variants else []
+    """Return the columns of choices: labels, notes, and the least sufficient options with their notes."""
+    chosen = [problem.variants[variant] for variant in variants] if problem.variants else []
     columns: Columns = {
-        choice_field(name): np.array([variant.labels[place] for variant in own])
+        choice_field(name): np.array([variant.labels[place] for variant in chosen])
         for place, name in enumerate(problem.choices)
     }
     columns |= least_options(problem, variants, dimensions)
     for name in problem.choices:
         for head in problem.heads(name):
-            columns[note_field(name, head)] = np.array([variant.note(name, head) for variant in own])
+            columns[note_field(name, head)] = np.array([variant.note(name, head) for variant in chosen])
     return columns
 
 

@@ -40,9 +40,9 @@ class Table:
     def __getitem__(self, rows: NDArray[Any] | slice) -> Self:
         return replace(self, **{name: getattr(self, name)[rows] for name in self._columns()})
 
-    def join(self, *others: Table) -> Self:
+    def join(self, *tables: Table) -> Self:
         """Return these rows and those of others below them, see `stacked`."""
-        parts = (self, *others)
+        parts = (self, *tables)
         return replace(self, **{name: stacked(*(getattr(part, name) for part in parts)) for name in self._columns()})
 
     def become(self, other: Self) -> None:
@@ -59,9 +59,9 @@ def stacked(*parts: NDArray[Any]) -> NDArray[Any]:
 
 
 def _pad_columns(part: NDArray[Any], width: int) -> NDArray[Any]:
-    found = np.zeros((len(part), width), part.dtype)
-    found[:, : part.shape[1]] = part
-    return found
+    padded = np.zeros((len(part), width), part.dtype)
+    padded[:, : part.shape[1]] = part
+    return padded
 
 
 def ragged(parts: Iterable[object]) -> NDArray[np.object_]:
@@ -111,11 +111,11 @@ class Candidates(Table):
 
     def dimensions(self, evaluators: list[Evaluator]) -> Array:
         """Return the designs (n, 3 + v), SI."""
-        found = np.zeros((len(self), max(len(evaluator.branch.names) for evaluator in evaluators)))
+        designs = np.zeros((len(self), max(len(evaluator.branch.names) for evaluator in evaluators)))
         for index in distinct(self.branch).tolist():
-            own, branch = self.branch == index, evaluators[index].branch
-            found[own, : len(branch.names)] = branch.dimensions(self.u[own][:, : len(branch.free)])
-        return found
+            on_branch, branch = self.branch == index, evaluators[index].branch
+            designs[on_branch, : len(branch.names)] = branch.dimensions(self.u[on_branch][:, : len(branch.free)])
+        return designs
 
 
 @dataclass
@@ -157,8 +157,8 @@ class FrontCandidates(Candidates):
         """Add the polished designs of a branch that are feasible and have all objectives."""
         part = part[(part.violation <= FEASIBLE) & np.isfinite(part.values).all(axis=1)]
         branch, is_feasible = np.full(len(part), index), np.ones(len(part), np.bool_)
-        found = (branch, part.u, part.values * self.span, is_feasible, part.residual, part.goals, part.active)
-        self.become(self.join(FrontCandidates(*found, span=self.span)))
+        columns = (branch, part.u, part.values * self.span, is_feasible, part.residual, part.goals, part.active)
+        self.become(self.join(FrontCandidates(*columns, span=self.span)))
 
     @property
     def free(self) -> Mask:
@@ -181,34 +181,34 @@ class FrontCandidates(Candidates):
             np.maximum(share * range_, size) for share in (EQUAL, SAME, COVERED if several else SAME)
         )
         doubtful = self.residual > STATIONARY
-        worth = ~doubtful
+        deserves = ~doubtful
         proven = np.ascontiguousarray(values[~doubtful].T)
         least = proven.min(axis=1, initial=np.inf) - same  # what is best in an objective is an end, proven or not
         for row in np.flatnonzero(doubtful).tolist():
             report(0, len(values))
-            worth[row] = (values[row] < least).any() or not _as_good(proven, values[row], covered).any()
-        rows = np.flatnonzero(worth)
+            deserves[row] = (values[row] < least).any() or not _as_good(proven, values[row], covered).any()
+        rows = np.flatnonzero(deserves)
         rows = rows[nondominated(values[rows])]
-        kept: list[int] = []
+        chosen: list[int] = []
         theirs = np.empty((len(self.span), len(rows)))
         # What is proven first, then what is best in an objective.
         scaled = values[rows] / self.span
         leads = np.isin(np.arange(len(rows)), np.argmin(scaled, axis=0) if len(rows) else [])
         order = np.lexsort([scaled.sum(axis=1), ~leads, doubtful[rows]])
-        for done, row in enumerate(rows[order].tolist()):
-            report(done, len(rows))
-            if not _as_good(theirs[:, : len(kept)], values[row], same if free[row] else equal).any():
-                theirs[:, len(kept)] = values[row]
-                kept.append(row)
+        for position, row in enumerate(rows[order].tolist()):
+            report(position, len(rows))
+            if not _as_good(theirs[:, : len(chosen)], values[row], same if free[row] else equal).any():
+                theirs[:, len(chosen)] = values[row]
+                chosen.append(row)
         # Nobody kept is as good as one before it; one after it may be, where that one is best by rounding alone.
-        theirs, alone = theirs[:, : len(kept)], []
-        for row in kept:
+        theirs, alone = theirs[:, : len(chosen)], []
+        for row in chosen:
             report(len(rows), len(rows))
             if _as_good(theirs, values[row], equal).sum() == 1:
                 alone.append(row)
         return np.array(sorted(alone), dtype=np.int64)
 
 
-def _as_good(values: Array, row: Array, within: Array) -> Mask:
+def _as_good(values: Array, row: Array, tolerance: Array) -> Mask:
     """Return which designs are nowhere worse than one (m,) by more than these differences; values: (m, n), of them."""
-    return np.asarray((values - row[:, None] <= within[:, None]).all(axis=0))
+    return np.asarray((values - row[:, None] <= tolerance[:, None]).all(axis=0))

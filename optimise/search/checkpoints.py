@@ -32,7 +32,7 @@ Arrays = TypeVar("Arrays", bound=tuple[Numbers, ...])
 
 
 class Cancelled(Exception):
-    """The search is to end with what it has; see `Checkpoints.poll`."""
+    """Raised to end a search with its front so far; see `Checkpoints.poll`."""
 
 
 @dataclass(frozen=True)
@@ -129,28 +129,28 @@ class Checkpoints:
         self._cancelled = self._keep = self._next = None
 
     def step(
-        self, kind: str, given: Sequence[Numbers], compute: Callable[[], Arrays], counts: EvaluationCounter
+        self, kind: str, inputs: Sequence[Numbers], compute: Callable[[], Arrays], counts: EvaluationCounter
     ) -> Arrays:
         """Return the result of a step: that of the earlier run, else computed now.
 
-        kind, given: what tells it from other steps, all that it depends on besides the problem. counts: takes the
+        kind, inputs: what tells it from other steps, all that it depends on besides the problem. counts: takes the
         evaluations. Raises `ForeignRecords` if the earlier run did something else here.
         """
         if self._next is None and self._keep is None:
             return compute()
-        key = _step_key(kind, given)
+        key = _step_key(kind, inputs)
         if self._next is not None:
             past, self._next = self._next, next(self._past, None)
             if past.key != key:
                 raise ForeignRecords(_OTHERWISE.format(kind))
             counts.evaluations += past.evaluations
-            return cast(Arrays, past.found)
+            return cast(Arrays, past.arrays)
         before = counts.evaluations
-        found = compute()
-        self._pending.append(_encode_step(_Step(key, counts.evaluations - before, found)))
+        arrays = compute()
+        self._pending.append(_encode_step(_Step(key, counts.evaluations - before, arrays)))
         if time.perf_counter() - self._when >= PAUSE:
             self._flush()
-        return found
+        return arrays
 
     def end_round(self) -> bool:
         """Keep the steps of a round that has ended; return whether the earlier run had not told it."""
@@ -166,7 +166,7 @@ class Checkpoints:
             self.repeated += 1
 
     def _flush(self, *, ends: bool = False) -> None:
-        """Keep the steps that are not kept yet; none are left at the end of a round whose last step took long."""
+        """Pass on the pending steps as a record. ends: also without any, at the end of a round."""
         if self._keep is not None and (self._pending or ends) and self._identity is not None:
             words, self._pending = np.concatenate([np.zeros(0, np.int64), *self._pending]), []
             self._number += 1
@@ -178,12 +178,12 @@ class Checkpoints:
 class _Step:
     key: tuple[int, int]
     evaluations: int
-    found: tuple[Numbers, ...]
+    arrays: tuple[Numbers, ...]
 
 
-def _step_key(kind: str, given: Sequence[Numbers]) -> tuple[int, int]:
+def _step_key(kind: str, inputs: Sequence[Numbers]) -> tuple[int, int]:
     digest = hashlib.blake2b(kind.encode(), digest_size=16)
-    for array in given:
+    for array in inputs:
         digest.update(str(array.shape).encode())
         digest.update(np.ascontiguousarray(array).view(np.uint8).data if array.size else b"")
     first, second = np.frombuffer(digest.digest(), np.int64).tolist()
@@ -191,8 +191,8 @@ def _step_key(kind: str, given: Sequence[Numbers]) -> tuple[int, int]:
 
 
 def _encode_step(step: _Step) -> Words:
-    parts = [np.array([*step.key, step.evaluations, len(step.found)], dtype=np.int64)]
-    for array in step.found:
+    parts = [np.array([*step.key, step.evaluations, len(step.arrays)], dtype=np.int64)]
+    for array in step.arrays:
         integers = array.dtype == np.int64
         parts.append(np.array([integers, array.ndim, *array.shape], dtype=np.int64))
         parts.append(np.ascontiguousarray(array).reshape(-1).view(np.int64))
@@ -206,16 +206,16 @@ def _decode_steps(past: Iterable[Record]) -> Iterator[_Step]:
             while at < len(words):
                 first, second, evaluations, count = words[at : at + 4].tolist()
                 at += 4
-                found = []
+                arrays = []
                 for _ in range(count):
                     integers, dimensions = words[at : at + 2].tolist()
                     shape = words[at + 2 : at + 2 + dimensions].tolist()
                     at += 2 + dimensions
                     size = int(np.prod(shape, dtype=np.int64))
                     array = words[at : at + size].reshape(shape)
-                    found.append(array.copy() if integers else array.view(np.float64).copy())
+                    arrays.append(array.copy() if integers else array.view(np.float64).copy())
                     at += size
-                yield _Step((first, second), evaluations, tuple(found))
+                yield _Step((first, second), evaluations, tuple(arrays))
         except ValueError as error:
             raise ForeignRecords(
                 f"the records of a run must be complete; got a damaged one ({error}); {_ANEW}"

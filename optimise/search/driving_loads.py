@@ -1,4 +1,4 @@
-"""Warning of loads that drive a machine that is not an engine: signs are turned round easily, and nothing else tells.
+"""Warning about loads that drive a machine that is not an engine: a sign is easily reversed.
 
 The net work that the loads on slider and crank do on the machine over a cycle, W = integral of F dx + M d theta, is
 negative if the machine is driven, and zero for springs, weights and tables over position. It is positive for engines
@@ -44,8 +44,13 @@ def driven_by_loads(problem: Problem) -> list[str]:
 def front_driven_by_loads(front: ParetoFront) -> list[str]:
     """Return the warning of loads that do positive net work on designs of a front, or none."""
     variants = front.variants or (0,) * len(front)
-    rows = [[row for row, own in enumerate(variants) if own == variant] for variant in sorted({*variants})]
-    return _warning(((front.part(own[0]), front.dimensions[own]) for own in rows), "design")
+    rows = [
+        [row for row, rows_of_variant in enumerate(variants) if rows_of_variant == variant]
+        for variant in sorted({*variants})
+    ]
+    return _warning(
+        ((front.part(rows_of_variant[0]), front.dimensions[rows_of_variant]) for rows_of_variant in rows), "design"
+    )
 
 
 def net_work(problem: Problem, designs: Array, loads: Collection[int] | None = None) -> Array:
@@ -61,24 +66,24 @@ def net_work(problem: Problem, designs: Array, loads: Collection[int] | None = N
         return work_of_loads(machine, problem.motion, designs)
     if not load_works_over_a_turn(machine):
         return np.zeros(len(designs))
-    found = average_torque(with_loads_alone(machine), designs)
-    mean = np.where(np.abs(found.mean) > _ROUNDING * found.rms_over_angle, found.mean, 0.0)
+    torque = average_torque(with_loads_alone(machine), designs)
+    mean = np.where(np.abs(torque.mean) > _ROUNDING * torque.rms_over_angle, torque.mean, 0.0)
     return -2.0 * math.pi * cycle_turns(machine) * machine.direction * mean
 
 
 def _with_counted_loads(mechanism: Mechanism, counted: Collection[int]) -> Mechanism:
     """Return the machine with nothing in the place of the loads that do not count."""
-    others = set(range(len(mechanism.loads))).difference(counted)
-    if not others:
+    ignored = set(range(len(mechanism.loads))).difference(counted)
+    if not ignored:
         return mechanism
 
-    def without(item: Varying) -> Varying:
-        sets = tuple(each for each in item.sets if not any(each[0].startswith(f"loads.{k}.") for k in others))
+    def remove_ignored(item: Varying) -> Varying:
+        sets = tuple(setting for setting in item.sets if not any(setting[0].startswith(f"loads.{k}.") for k in ignored))
         return replace(item, sets=sets, idle=not sets)
 
     nothing = StrokeForce(outward=0.0, inward=0.0)
-    loads = tuple(nothing if k in others else load for k, load in enumerate(mechanism.loads))
-    return replace(mechanism, loads=loads, varying=tuple(map(without, mechanism.varying)))
+    loads = tuple(nothing if k in ignored else load for k, load in enumerate(mechanism.loads))
+    return replace(mechanism, loads=loads, varying=tuple(map(remove_ignored, mechanism.varying)))
 
 
 def _may_be_driven(problem: Problem) -> bool:
@@ -96,7 +101,7 @@ def _may_be_driven(problem: Problem) -> bool:
 def _warning(parts: Iterable[tuple[Problem, Array]], design: str) -> list[str]:
     """Return the warning of designs, each with the problem of their choices. design: noun for one of them."""
     works: list[float] = []
-    what, named, count = "loads", "", 0
+    subject, named, count = "loads", "", 0
     for part, designs in parts:
         work = net_work(part, designs) if _may_be_driven(part) else np.zeros(len(designs))
         drives = work > 0.0
@@ -104,14 +109,14 @@ def _warning(parts: Iterable[tuple[Problem, Array]], design: str) -> list[str]:
         works += work[drives].tolist()
         if not named and drives.any():
             named = _name_driving_loads(part, designs[drives][:1])
-            what += " that are not declared as driving" if any(load.drives for load in part.mechanism.loads) else ""
+            subject += " that are not declared as driving" if any(load.drives for load in part.mechanism.loads) else ""
     if not works:
         return []
-    where = f"in every {design}" if len(works) == count else f"in some {design}s"
+    extent = f"in every {design}" if len(works) == count else f"in some {design}s"
     ends = " to ".join(dict.fromkeys(f"{end:.4g}" for end in (min(works), max(works))))
     required = "" if part.motion is not None else f", or require a {DELIVERED_WORK.short} of at least 0 J"
     return [
-        f"{where} {what} do more work on the machine than they absorb, by {ends} J per cycle: {named}; if the load "
+        f"{extent} {subject} do more work on the machine than they absorb, by {ends} J per cycle: {named}; if the load "
         "should resist, reverse its sign or define it as a force that opposes a stroke; if it should drive, define "
         f"it as one that helps a stroke{required}"
     ]
@@ -119,9 +124,9 @@ def _warning(parts: Iterable[tuple[Problem, Array]], design: str) -> list[str]:
 
 def _name_driving_loads(part: Problem, design: Array) -> str:
     """Return the loads that do positive net work on a design, numbered as in the job."""
-    found = [
+    names = [
         f"load #{k + 1} ({text})"
         for k, (load, text) in enumerate(zip(part.mechanism.loads, part.mechanism.load_texts, strict=True))
         if not load.drives and net_work(part, design, [k])[0] > 0.0
     ]
-    return " and ".join(found[:_NAMED])
+    return " and ".join(names[:_NAMED])

@@ -40,17 +40,17 @@ ZERO = 1e-300
 class ClosedRule(Rule):
     """A rule of `_FORMULAS`."""
 
-    def formula(self, *known: Any) -> Any:
+    def formula(self, *sources: Any) -> Any:
         """Return the target for the sources."""
-        return _FORMULAS[self.origin, self.target][1](*self.values, *known)
+        return _FORMULAS[self.origin, self.target][1](*self.values, *sources)
 
 
 class LinearRule(Rule):
     """One of the rules that linear equalities give together. wanted: numbers of `linear_rules.solution`."""
 
-    def formula(self, *known: Any) -> Any:
+    def formula(self, *sources: Any) -> Any:
         """Return the target for the sources."""
-        return target_of(*self.values, *known)
+        return target_of(*self.values, *sources)
 
 
 @dataclass(frozen=True)
@@ -81,23 +81,23 @@ class EliminationBranch:
         Columns: crank, rod, offset, m, and the numbers that vary besides them, SI. Complex points give complex designs.
         """
         u = np.atleast_2d(u)
-        known: dict[str, Any] = {
+        unknowns: dict[str, Any] = {
             name: np.full(len(u), bounds.lower, dtype=u.dtype) for name, bounds in self.bounds.items() if bounds.fixed
         }
         for column, name in enumerate(self.free):
-            known[name] = self.lower[column] * (1.0 - u[:, column]) + self.upper[column] * u[:, column]  # exact ends
+            unknowns[name] = self.lower[column] * (1.0 - u[:, column]) + self.upper[column] * u[:, column]  # exact ends
         if self.steps:
             with np.errstate(all="ignore"):
                 as_many = 0.0 * u.sum(axis=1)
                 for step in self.steps:
-                    known[step.target] = step.formula(*(known[name] for name in step.sources)) + as_many
-        offset = self.sign * known["offset"]
+                    unknowns[step.target] = step.formula(*(unknowns[name] for name in step.sources)) + as_many
+        offset = self.sign * unknowns["offset"]
         if self.sign < 0.0:  # keeps its side of the kink of |offset| at zero, whose derivative depends on the sign
             offset = np.where(offset == 0.0, offset - ZERO, offset)
         designs = np.empty((len(u), len(self.names)), dtype=u.dtype)
-        designs[:, 0], designs[:, 1], designs[:, 2] = known["crank"], known["rod"], offset
+        designs[:, 0], designs[:, 1], designs[:, 2] = unknowns["crank"], unknowns["rod"], offset
         for column, name in enumerate(self.names[3:], 3):
-            designs[:, column] = known[name]
+            designs[:, column] = unknowns[name]
         return designs
 
     def coordinates(self, designs: Array) -> Array:
@@ -128,14 +128,14 @@ def elimination_branches(problem: Problem, *, eliminate: bool = True) -> tuple[E
     """
     parts = problem.parts()
     require_slow_side(problem, parts)
-    found = (
+    branches = (
         replace(branch, steps=steps)
         for variant, part in enumerate(parts)
         for sign, offset in signs(part)
         for branch in [_eliminate(part, sign, offset, eliminate=eliminate, variant=variant)]
         for steps in itertools.product(*(step.solutions for step in branch.steps))
     )
-    return tuple(sorted(found, key=lambda branch: not branch.free))
+    return tuple(sorted(branches, key=lambda branch: not branch.free))
 
 
 def require_slow_side(problem: Problem, parts: tuple[Problem, ...]) -> None:
@@ -145,13 +145,13 @@ def require_slow_side(problem: Problem, parts: tuple[Problem, ...]) -> None:
     part = parts[0]
     side = part.slow_side()
     assert side is not None
-    turning, other = ("counter-clockwise", "clockwise")[:: 1 if part.mechanism.direction > 0.0 else -1]
-    where = "above" if side > 0.0 else "below"
+    turning, opposite = ("counter-clockwise", "clockwise")[:: 1 if part.mechanism.direction > 0.0 else -1]
+    position = "above" if side > 0.0 else "below"
     raise InfeasibleError(
         f"constraints.slow_stroke: with a crank that turns {turning}, on the {part.mechanism.branch} branch, the "
-        f"{part.slow_stroke} stroke is slow if the offset is {where} 0; got an offset from "
-        f"{1e3 * problem.offset.lower:.6g} to {1e3 * problem.offset.upper:.6g} mm; let the offset go {where} 0"
-        + ("" if part.offset.lower == part.offset.upper == 0.0 else f", or let the crank turn {other}")
+        f"{part.slow_stroke} stroke is slow if the offset is {position} 0; got an offset from "
+        f"{1e3 * problem.offset.lower:.6g} to {1e3 * problem.offset.upper:.6g} mm; let the offset go {position} 0"
+        + ("" if part.offset.lower == part.offset.upper == 0.0 else f", or let the crank turn {opposite}")
     )
 
 
@@ -169,33 +169,33 @@ def signs(problem: Problem) -> list[tuple[float, Range]]:
 
 def _eliminate(problem: Problem, sign: float, offset: Range, *, eliminate: bool, variant: int) -> EliminationBranch:
     bounds = problem.ranges | {"offset": offset}
-    wanted, meant = _requested_values(problem)
+    required, restated = _requested_values(problem)
     equations: dict[str, Linear] = {}
     if eliminate:
-        equations = linear_equations({problem.quantity(name): value for name, value in wanted.items()}, sign)
-    others = {name: value for name, value in wanted.items() if name not in equations and eliminate}
+        equations = linear_equations({problem.quantity(name): value for name, value in required.items()}, sign)
+    unsolved = {name: value for name, value in required.items() if name not in equations and eliminate}
     rules = [
-        *_closed_rules(others, steady=problem.mechanism.speed_profile is None),
-        *swing_rules(problem, others, sign),
+        *_closed_rules(unsolved, steady=problem.mechanism.speed_profile is None),
+        *swing_rules(problem, unsolved, sign),
     ]
     fixed = tuple(name for name in DIMENSIONS if bounds[name].fixed)
     # Rod and offset first: a crank from the stroke is the best-conditioned direction of that relation.
     loose = [name for name in ("rod", "offset", "crank") if name not in fixed]
     solved = [block for block in blocks(equations, loose) if block.targets] or [NOTHING]
-    more = [*bounds][len(DIMENSIONS) :]
+    extra = [*bounds][len(DIMENSIONS) :]
     best: tuple[tuple[int, int, bool, int], tuple[str, ...], tuple[Rule, ...], set[str]] | None = None
     for size in range(len(loose) + 1):
         for free in itertools.combinations(loose, size):
             for block in solved:
-                for steps in _rule_orders({*free, *fixed, *more}, [*rules, *_linear_rules(block)]):
-                    used = _fulfilled_requirements(steps, block)
+                for steps in _rule_orders({*free, *fixed, *extra}, [*rules, *_linear_rules(block)]):
+                    fulfilled = _fulfilled_requirements(steps, block)
                     roots = math.prod(len(step.solutions) for step in steps)
-                    score = (len(wanted) - len(used), size, not used.issuperset(block.origins), roots)
+                    score = (len(required) - len(fulfilled), size, not fulfilled.issuperset(block.origins), roots)
                     if best is None or score < best[0]:
-                        best = (score, free, steps, used)
+                        best = (score, free, steps, fulfilled)
     assert best is not None  # all unknowns free always works
-    _, free, steps, used = best
-    free = (*free, *(name for name in more if not bounds[name].fixed))
+    _, free, steps, fulfilled = best
+    free = (*free, *(name for name in extra if not bounds[name].fixed))
     return EliminationBranch(
         sign=sign,
         free=free,
@@ -203,8 +203,8 @@ def _eliminate(problem: Problem, sign: float, offset: Range, *, eliminate: bool,
         upper=np.array([bounds[name].upper for name in free]),
         bounds=bounds,
         steps=steps,
-        eliminated=tuple(name for name, known in meant.items() if known in used),
-        remaining=tuple(c for c in problem.constraints if meant.get(c.quantity) not in used),
+        eliminated=tuple(name for name, quantity in restated.items() if quantity in fulfilled),
+        remaining=tuple(c for c in problem.constraints if restated.get(c.quantity) not in fulfilled),
         names=tuple(bounds),
         variant=variant,
     )
@@ -215,31 +215,39 @@ def _requested_values(problem: Problem) -> tuple[dict[str, float], dict[str, str
 
     A formula that restates a known quantity requires that quantity, unless another value of it is required too.
     """
-    asked = {c.quantity: float(c.lower) for c in problem.constraints if c.equality and c.lower is not None}
-    wanted: dict[str, float] = {}
-    meant: dict[str, str] = {}
+    equalities = {c.quantity: float(c.lower) for c in problem.constraints if c.equality and c.lower is not None}
+    required: dict[str, float] = {}
+    restated: dict[str, str] = {}
     for constraint in problem.constraints:
-        if constraint.quantity in asked:
-            known = restate(problem, constraint)
-            value = asked[constraint.quantity] if known.lower is None else float(known.lower)
-            same = {**asked, **wanted}.get(known.quantity, value) == value
-            name, value = (known.quantity, value) if same else (constraint.quantity, asked[constraint.quantity])
-            wanted[name], meant[constraint.quantity] = value, name
-    return wanted, meant
+        if constraint.quantity in equalities:
+            restated_constraint = restate(problem, constraint)
+            value = (
+                equalities[constraint.quantity]
+                if restated_constraint.lower is None
+                else float(restated_constraint.lower)
+            )
+            same = {**equalities, **required}.get(restated_constraint.quantity, value) == value
+            name, value = (
+                (restated_constraint.quantity, value)
+                if same
+                else (constraint.quantity, equalities[constraint.quantity])
+            )
+            required[name], restated[constraint.quantity] = value, name
+    return required, restated
 
 
-def _rule_orders(known: set[str], rules: list[Rule], steps: tuple[Rule, ...] = ()) -> Iterator[tuple[Rule, ...]]:
+def _rule_orders(computed: set[str], rules: list[Rule], steps: tuple[Rule, ...] = ()) -> Iterator[tuple[Rule, ...]]:
     """Yield every order of rules that gives the unknowns which are not known yet.
 
     Each requirement is one equation: a rule is spent once. A combination of two requirements may be followed by one of
     them alone, which completes the pair.
     """
-    if known.issuperset(DIMENSIONS):
+    if computed.issuperset(DIMENSIONS):
         yield steps
     spent = {step.origin for step in steps}
     for rule in rules:
-        if rule.origin not in spent and rule.target not in known and set(rule.sources) <= known:
-            yield from _rule_orders(known | {rule.target}, rules, (*steps, rule))
+        if rule.origin not in spent and rule.target not in computed and set(rule.sources) <= computed:
+            yield from _rule_orders(computed | {rule.target}, rules, (*steps, rule))
 
 
 def _linear_rules(block: Block) -> Iterator[LinearRule]:
@@ -264,15 +272,15 @@ def _fulfilled_requirements(steps: tuple[Rule, ...], block: Block) -> set[str]:
     return single
 
 
-def _closed_rules(wanted: dict[str, float], *, steady: bool) -> list[Rule]:
+def _closed_rules(required: dict[str, float], *, steady: bool) -> list[Rule]:
     """Return every rule for the required values. steady: whether the time ratio is that of the crank angles."""
     rules: list[Rule] = []
     for (origin, target), (sources, _) in _FORMULAS.items():
         names = origin.split("+")
-        if all(name in wanted for name in names) and (steady or TIME_RATIO.name not in names):
-            rules.append(ClosedRule(origin, target, sources, tuple(wanted[name] for name in names)))
+        if all(name in required for name in names) and (steady or TIME_RATIO.name not in names):
+            rules.append(ClosedRule(origin, target, sources, tuple(required[name] for name in names)))
     # At a ratio of one the dead centres are opposite for any rod.
-    level = {pair for name, pair in _PAIRS.items() if name in wanted and _excess(wanted[name])[1] == 1.0}
+    level = {pair for name, pair in _PAIRS.items() if name in required and _excess(required[name])[1] == 1.0}
     return [rule for rule in rules if rule.origin not in level or rule.target != "rod"]
 
 
@@ -301,7 +309,7 @@ def _offset_of_ratio(ratio: float, r: Any, l: Any) -> Any:
     return geometry.offset_from_excess_angle(r, l, *_excess(ratio))
 
 
-_PAIRS = {of.name: f"{STROKE.name}+{of.name}" for of in (TIME_RATIO, CRANK_ANGLE_RATIO)}
+_PAIRS = {ratio.name: f"{STROKE.name}+{ratio.name}" for ratio in (TIME_RATIO, CRANK_ANGLE_RATIO)}
 _FORMULAS: dict[tuple[str, str], tuple[tuple[str, ...], Callable[..., Any]]] = {
     (ROD_TO_OFFSET.name, "rod"): (("offset",), lambda k, a: k * a),
     (ROD_TO_OFFSET.name, "offset"): (("rod",), lambda k, l: l / k),

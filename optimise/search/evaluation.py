@@ -71,21 +71,21 @@ class Evaluator:
 
     def quantity(self, name: str) -> Quantity:
         """Return the quantity of a name; the problem is asked once for each."""
-        found = self._quantities.get(name)
-        if found is None:
-            found = self._quantities[name] = self.problem.quantity(name)
-        return found
+        quantity = self._quantities.get(name)
+        if quantity is None:
+            quantity = self._quantities[name] = self.problem.quantity(name)
+        return quantity
 
     def _off_excluded_end(self, constraint: Constraint) -> Constraint:
-        """Return a constraint with a lower bound on an excluded end of the domain moved off it; at 0 deg it locks."""
+        """Return a constraint whose lower bound is moved off an excluded end of the domain; at 0 deg it locks."""
         domain = self.quantity(constraint.quantity).domain
         if domain is None or domain.idle or not domain.open or constraint.lower != domain.lower:
             return constraint
         return replace(constraint, lower=domain.lower + _CLEARANCE)
 
-    def step(self, kind: str, given: Sequence[Numbers], compute: Callable[[], Arrays]) -> Arrays:
+    def step(self, kind: str, inputs: Sequence[Numbers], compute: Callable[[], Arrays]) -> Arrays:
         """Return the result of a recorded step, see `Checkpoints.step`."""
-        return self.checkpoints.step(kind, given, compute, self)
+        return self.checkpoints.step(kind, inputs, compute, self)
 
     # ---- quick: for sorting thousands of designs ------------------------------------------------------------------
 
@@ -97,9 +97,11 @@ class Evaluator:
         (see `model.signals.screening`).
         """
         dimensions = self.branch.dimensions(u)
-        rows, found, violation = self.step("screening", (u, np.array([band])), lambda: self._screened(dimensions, band))
+        rows, values, violation = self.step(
+            "screening", (u, np.array([band])), lambda: self._screened(dimensions, band)
+        )
         objectives = np.full((len(u), len(self.problem.objectives)), np.nan)
-        objectives[rows] = found
+        objectives[rows] = values
         return dimensions, objectives, violation
 
     def _screened(self, dimensions: Array, band: float) -> tuple[Whole, Array, Array]:
@@ -112,22 +114,26 @@ class Evaluator:
             constraints = [c for c in self.constraints if costly(self.quantity(c.quantity)) == slow]
             rows = np.flatnonzero(violation <= band + FEASIBLE if slow else np.isfinite(violation))
             if constraints and len(rows):
-                found = self._quick([constraint.quantity for constraint in constraints], dimensions[rows])
-                for constraint, values in zip(constraints, found, strict=True):
+                values_by_quantity = self._quick([constraint.quantity for constraint in constraints], dimensions[rows])
+                for constraint, values in zip(constraints, values_by_quantity, strict=True):
                     violation[rows] = np.maximum(violation[rows], violated_by(constraint, values))
         rows = np.flatnonzero(violation <= band + FEASIBLE)
         objectives = np.zeros((len(rows), len(self.problem.objectives)))
         if len(rows):
-            found = self._quick([objective.quantity for objective in self.problem.objectives], dimensions[rows])
-            for column, (objective, values) in enumerate(zip(self.problem.objectives, found, strict=True)):
+            values_by_quantity = self._quick(
+                [objective.quantity for objective in self.problem.objectives], dimensions[rows]
+            )
+            for column, (objective, values) in enumerate(zip(self.problem.objectives, values_by_quantity, strict=True)):
                 objectives[:, column] = minimised(objective, values)
-        had = np.isfinite(objectives).all(axis=1)
-        violation[rows[~had]] = np.inf
-        return rows[had], objectives[had], violation
+        has_objectives = np.isfinite(objectives).all(axis=1)
+        violation[rows[~has_objectives]] = np.inf
+        return rows[has_objectives], objectives[has_objectives], violation
 
     def _quick(self, names: list[str], dimensions: Array) -> list[Array]:
         parts: list[list[Array]] = self.chunked(screen_quantities, tuple(names), dimensions)
-        return [np.concatenate(each) for each in zip(*parts, strict=True)] if len(parts) > 1 else parts[0]
+        return (
+            [np.concatenate(chunk_values) for chunk_values in zip(*parts, strict=True)] if len(parts) > 1 else parts[0]
+        )
 
     def _geometry_violation(self, dimensions: Array) -> Array:
         """Greatest relative violation of the computed dimensions' ranges; inf where the linkage does not move as asked.
@@ -176,41 +182,48 @@ class Evaluator:
         jacobian = self.branch.jacobian(u)
         self.evaluations += len(u)
         objectives = self.problem.objectives if goals else ()
-        wanted = [objective.quantity for objective in objectives]
-        names = tuple(dict.fromkeys([*wanted, *(constraint.quantity for constraint in self.constraints)]))
-        found = join_batches(self.chunked(evaluate_pieces, names, dimensions))
-        pieces = {name: _to_unit_box(own, jacobian) for name, own in zip(names, found, strict=True)}
+        objective_names = [objective.quantity for objective in objectives]
+        names = tuple(dict.fromkeys([*objective_names, *(constraint.quantity for constraint in self.constraints)]))
+        evaluated = join_batches(self.chunked(evaluate_pieces, names, dimensions))
+        pieces = {
+            name: _to_unit_box(quantity_pieces, jacobian)
+            for name, quantity_pieces in zip(names, evaluated, strict=True)
+        }
         parts: list[tuple[int, Pieces]] = []
         for index, objective in enumerate(objectives):
             parts += [(index, part) for part in _objective_rows(objective, pieces[objective.quantity])]
         aims = replace(_stack(parts, len(u), self.dimension), constant=self.constant)
         parts = []
         for index, constraint in enumerate(self.constraints):
-            own = pieces[constraint.quantity]
-            parts += [(index, _excess_pieces(_binding_pieces(own, side[0]), *side)) for side in sides(constraint)]
+            quantity_pieces = pieces[constraint.quantity]
+            parts += [
+                (index, _excess_pieces(_binding_pieces(quantity_pieces, side[0]), *side)) for side in sides(constraint)
+            ]
         for index, name in enumerate(self.computed, len(self.constraints)):
             column = DIMENSIONS.index(name)
             sign = self.branch.sign if name == "offset" else 1.0
             value = sign * dimensions[:, column : column + 1]
-            own = Pieces(value, sign * jacobian[:, column : column + 1, :], np.zeros_like(value))
-            parts += [(index, _excess_pieces(own, *side)) for side in _range_sides(self.branch.bounds[name])]
+            quantity_pieces = Pieces(value, sign * jacobian[:, column : column + 1, :], np.zeros_like(value))
+            parts += [
+                (index, _excess_pieces(quantity_pieces, *side)) for side in _range_sides(self.branch.bounds[name])
+            ]
         return aims, _stack(parts, len(u), self.dimension)
 
 
-def _to_unit_box(found: Pieces, jacobian: Array) -> Pieces:
+def _to_unit_box(pieces: Pieces, jacobian: Array) -> Pieces:
     """Return the pieces of designs with gradients by the unit-box coordinates; jacobian: (n, 3 + v, k), of these."""
-    other = None if found.opposite is None else _to_unit_box(found.opposite, jacobian)
-    heights, sizes = np.abs(found.values), np.abs(found.gradients)
+    opposite = None if pieces.opposite is None else _to_unit_box(pieces.opposite, jacobian)
+    heights, sizes = np.abs(pieces.values), np.abs(pieces.gradients)
     # Most are bounded. The products of a copy in another order would round otherwise.
-    if heights.max(initial=0.0) < _HUGE and sizes.max(initial=0.0) < _HUGE and found.gradients.flags.c_contiguous:
-        slopes = np.einsum("npd,ndk->npk", found.gradients, jacobian)
-        return Pieces(found.values, slopes, found.labels, found.least, other)
+    if heights.max(initial=0.0) < _HUGE and sizes.max(initial=0.0) < _HUGE and pieces.gradients.flags.c_contiguous:
+        slopes = np.einsum("npd,ndk->npk", pieces.gradients, jacobian)
+        return Pieces(pieces.values, slopes, pieces.labels, pieces.least, opposite)
     # Rod to offset grows without bound: no numbers that overflow in a product, no slope where infinite.
     bounded = (heights < _HUGE) & (sizes < _HUGE).all(axis=2)
     # What is not a number stays none, whatever its sign: `_stack` makes it no optimum and a violation.
-    values = np.where(bounded | np.isnan(found.values), found.values, np.copysign(np.inf, found.values))
-    slopes = np.einsum("npd,ndk->npk", np.where(bounded[:, :, None], found.gradients, 0.0), jacobian)
-    return Pieces(values, slopes, found.labels, found.least, other)
+    values = np.where(bounded | np.isnan(pieces.values), pieces.values, np.copysign(np.inf, pieces.values))
+    slopes = np.einsum("npd,ndk->npk", np.where(bounded[:, :, None], pieces.gradients, 0.0), jacobian)
+    return Pieces(values, slopes, pieces.labels, pieces.least, opposite)
 
 
 def _range_sides(bounds: Range) -> list[Side]:
@@ -225,9 +238,9 @@ def _objective_rows(objective: Objective, pieces: Pieces) -> list[Pieces]:
     top = _binding_pieces(pieces, -1.0)
     if objective.target is None:
         # What is infinite is no optimum but out of reach; of the least of pieces infinite ones are absent.
-        there = np.isfinite(top.values)
-        absent = top.least & (top.values == np.inf) & there.any(axis=1, keepdims=True)
-        return [Pieces(np.where(there | absent, -top.values, np.inf), -top.gradients, top.labels)]
+        is_finite = np.isfinite(top.values)
+        absent = top.least & (top.values == np.inf) & is_finite.any(axis=1, keepdims=True)
+        return [Pieces(np.where(is_finite | absent, -top.values, np.inf), -top.gradients, top.labels)]
     return [_excess_pieces(low, 1.0, objective.target), _excess_pieces(top, -1.0, objective.target)]
 
 
@@ -248,8 +261,8 @@ def _binding_pieces(pieces: Pieces, side: float) -> Pieces:
     if pieces.least == (side < 0.0) or pieces.values.shape[1] == 1:
         return pieces
     first = (np.argmin if pieces.least else np.argmax)(pieces.values, axis=1)
-    rows, one = np.arange(len(first))[:, None], first[:, None]
-    return Pieces(pieces.values[rows, one], pieces.gradients[rows, one], pieces.labels[rows, one])
+    rows, column = np.arange(len(first))[:, None], first[:, None]
+    return Pieces(pieces.values[rows, column], pieces.gradients[rows, column], pieces.labels[rows, column])
 
 
 def _stack(parts: list[tuple[int, Pieces]], n: int, k: int) -> Rows:

@@ -28,13 +28,15 @@ class Growth:
     that told last, objectives as minimised.
     """
 
-    def __init__(self, targets: Array, *, box: tuple[Array, Array] | None = None, most: int | None = None) -> None:
-        """Begin without designs. most: how many tell; as many as take a moment if None."""
+    def __init__(
+        self, targets: Array, *, box: tuple[Array, Array] | None = None, max_designs: int | None = None
+    ) -> None:
+        """Begin without designs. max_designs: how many tell; as many as take a moment if None."""
         self.front: Array = np.zeros((0, len(targets)))
         self._targets = targets
         self._box = box
         self._within = box is not None
-        self._most = most or _MOST.get(len(targets), _OF_MANY)
+        self._most = max_designs or _MOST.get(len(targets), _OF_MANY)
         self._volume = 0.0
 
     def add(self, values: Array) -> float:
@@ -47,7 +49,7 @@ class Growth:
             ideal, span = scaling(values)
             self._box = ideal, np.maximum(span, np.maximum(_ROOM * np.abs(ideal), _OF_TARGET * np.abs(self._targets)))
         self.front = self._thin_out(values)
-        self._volume = max(self._volume, hypervolume(self.front, *self._box, within=self._within))
+        self._volume = max(self._volume, hypervolume(self.front, *self._box, clip_at_ideal=self._within))
         return self._volume
 
     def _thin_out(self, values: Array) -> Array:

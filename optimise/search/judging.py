@@ -34,23 +34,23 @@ def screen_quantities(problem: Judged, names: tuple[str, ...], dimensions: Array
     leaves = leaves_of(quantities)
     peaks = [quantity for quantity in leaves if isinstance(quantity, CyclePeak)]
     screened = dict(zip((peak.name for peak in peaks), screen_peaks(peaks, problem.mechanism, dimensions), strict=True))
-    found = {
+    values_by_leaf = {
         quantity.name: Values(_estimate_robust(quantity, problem.mechanism, dimensions), None)
         if isinstance(quantity, RobustQuantity)
         else screened.get(quantity.name) or quantity.evaluate(problem.mechanism, dimensions)
         for quantity in leaves
     }
-    return [item.values for item in with_formulas(quantities, found, problem.mechanism, dimensions)]
+    return [item.values for item in with_formulas(quantities, values_by_leaf, problem.mechanism, dimensions)]
 
 
 def _estimate_robust(quantity: RobustQuantity, mechanism: Mechanism, dimensions: Array) -> Array:
     """Return the first-order estimate of a robust quantity: one evaluation a design in place of a dozen."""
     inner = quantity.inner
     if isinstance(inner, CyclePeak):
-        found = screen_peaks([inner], mechanism, dimensions, gradients=True)[0]
+        values = screen_peaks([inner], mechanism, dimensions, gradients=True)[0]
     else:
-        found = inner.evaluate(mechanism, dimensions, gradients=True)
-    return quantity.estimate(mechanism, dimensions, found)
+        values = inner.evaluate(mechanism, dimensions, gradients=True)
+    return quantity.estimate(mechanism, dimensions, values)
 
 
 def evaluate_pieces(problem: Judged, names: tuple[str, ...], dimensions: Array) -> list[Pieces]:
@@ -60,24 +60,26 @@ def evaluate_pieces(problem: Judged, names: tuple[str, ...], dimensions: Array) 
 
 def join_batches(parts: list[list[Pieces]]) -> list[Pieces]:
     """Return the pieces of consecutive designs as those of all, what some have fewer of filled up with absent ones."""
-    return [_join_pieces(each) for each in zip(*parts, strict=True)] if len(parts) > 1 else parts[0]
+    return [_join_pieces(batch) for batch in zip(*parts, strict=True)] if len(parts) > 1 else parts[0]
 
 
 def _join_pieces(parts: Sequence[Pieces]) -> Pieces:
-    most, least = max(part.values.shape[1] for part in parts), parts[0].least
+    widest, least = max(part.values.shape[1] for part in parts), parts[0].least
 
     def rows(columns: list[Array], absent: float = 0.0) -> Array:
-        room = [[(0, 0), (0, most - each.shape[1]), *[(0, 0)] * (each.ndim - 2)] for each in columns]
-        filled = [np.pad(each, more, constant_values=absent) for each, more in zip(columns, room, strict=True)]
+        padding = [[(0, 0), (0, widest - column.shape[1]), *[(0, 0)] * (column.ndim - 2)] for column in columns]
+        filled = [
+            np.pad(column, widths, constant_values=absent) for column, widths in zip(columns, padding, strict=True)
+        ]
         return np.concatenate(filled)
 
-    others = [_opposite_pieces(part) for part in parts] if any(part.opposite for part in parts) else []
+    opposite = [_opposite_pieces(part) for part in parts] if any(part.opposite for part in parts) else []
     return Pieces(
         rows([part.values for part in parts], np.inf if least else -np.inf),
         rows([part.gradients for part in parts]),
         rows([part.labels for part in parts]),
         least,
-        _join_pieces(others) if others else None,
+        _join_pieces(opposite) if opposite else None,
     )
 
 

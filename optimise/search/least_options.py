@@ -24,38 +24,47 @@ def least_options(problem: Problem, variants: Whole, dimensions: Array) -> Colum
     columns: Columns = {}
     for place in problem.catalogues:
         name = problem.choices[place]
-        found: list[Variant | None] = [None] * len(dimensions)
+        least_variants: list[Variant | None] = [None] * len(dimensions)
         for variant in distinct(variants).tolist():
             labels = problem.variants[variant].labels
             rows = np.flatnonzero(variants == variant)
             serving, left = _Serving(problem, dimensions[rows]), np.ones(len(rows), np.bool_)
-            for option in sorted(_single_swaps(problem, labels, place), key=lambda of: of.ranks[place]):
+            for option in sorted(
+                _single_swaps(problem, labels, place), key=lambda variant_found: variant_found.ranks[place]
+            ):
                 served = left if option.labels == labels else left & serving(option)
                 for row in rows[served].tolist():
-                    found[row] = option
+                    least_variants[row] = option
                 left = left & ~served
                 if not left.any():
                     break
-        columns[least_field(name)] = np.array([of.labels[place] if of else "" for of in found])
+        columns[least_field(name)] = np.array(
+            [variant_found.labels[place] if variant_found else "" for variant_found in least_variants]
+        )
         for amount in problem.amounts(name):
-            values = [dict(of.amounts).get(amount.name, np.nan) if of else np.nan for of in found]
+            values = [
+                dict(variant_found.amounts).get(amount.name, np.nan) if variant_found else np.nan
+                for variant_found in least_variants
+            ]
             columns[least_amount_field(name, amount)] = amount.unit.factor * np.array(values)
         for head in problem.heads(name):
-            columns[note_field(f"least {name}", head)] = np.array([of.note(name, head) if of else "" for of in found])
+            columns[note_field(f"least {name}", head)] = np.array(
+                [variant_found.note(name, head) if variant_found else "" for variant_found in least_variants]
+            )
     return columns
 
 
 def _single_swaps(problem: Problem, labels: tuple[str, ...], place: int) -> list[Variant]:
     """Return the combinations that differ from one in a single choice at most."""
 
-    def rest(of: tuple[str, ...]) -> tuple[str, ...]:
-        return of[:place] + of[place + 1 :]
+    def without_place(all_labels: tuple[str, ...]) -> tuple[str, ...]:
+        return all_labels[:place] + all_labels[place + 1 :]
 
-    return [variant for variant in problem.catalogue if rest(variant.labels) == rest(labels)]
+    return [variant for variant in problem.catalogue if without_place(variant.labels) == without_place(labels)]
 
 
 class _Serving:
-    """Which designs meet all requirements with another option. What options have in common is computed once."""
+    """Designs that meet all requirements with another option; quantities that options share are computed once."""
 
     def __init__(self, problem: Problem, dimensions: Array) -> None:
         self.problem, self.dimensions = problem, dimensions
@@ -70,15 +79,15 @@ class _Serving:
         except InputError:  # of limits that leave nothing
             return ~served
         for column, ends in enumerate((option.crank, option.rod, option.offset)):
-            room = _SAME * max(abs(ends.lower), abs(ends.upper))
-            served &= (designs[:, column] >= ends.lower - room) & (designs[:, column] <= ends.upper + room)
+            tolerance = _SAME * max(abs(ends.lower), abs(ends.upper))
+            served &= (designs[:, column] >= ends.lower - tolerance) & (designs[:, column] <= ends.upper + tolerance)
         side = part.slow_side()
         if side is not None:
             served &= side * designs[:, 2] > 0.0
         for constraint in constraints_of(part):
-            of = part.quantity(constraint.quantity)
-            key = id(option.mechanism), id(of)
+            quantity = part.quantity(constraint.quantity)
+            key = id(option.mechanism), id(quantity)
             if key not in self._known:
-                self._known[key] = of, of.evaluate(part.mechanism, designs).values
+                self._known[key] = quantity, quantity.evaluate(part.mechanism, designs).values
             served &= violated_by(constraint, self._known[key][1]) <= FEASIBLE
         return served

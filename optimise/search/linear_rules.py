@@ -31,36 +31,36 @@ class Block:
 NOTHING = Block(())
 
 
-def linear_equations(wanted: Mapping[Quantity, float], sign: float) -> dict[str, Linear]:
+def linear_equations(required: Mapping[Quantity, float], sign: float) -> dict[str, Linear]:
     """Return the equalities that are linear in crank, rod, |offset| and varying numbers, as sums that are zero.
 
-    wanted: quantities with their values. sign: of the offset. None where no formula is among them: proportions by
+    required: quantities with their values. sign: of the offset. None where no formula is among them: proportions by
     themselves have rules of their own.
     """
-    found: dict[str, Linear] = {}
-    for of, value in wanted.items():
-        equation = equation_of(of, value) if isinstance(of, FormulaQuantity) else None
+    equations: dict[str, Linear] = {}
+    for quantity, value in required.items():
+        equation = equation_of(quantity, value) if isinstance(quantity, FormulaQuantity) else None
         if equation is not None:
-            found[of.name] = with_offset_size(equation, sign)
-    if not found:
+            equations[quantity.name] = with_offset_size(equation, sign)
+    if not equations:
         return {}
-    for of, value in wanted.items():
-        more = _linear_proportion(of, value)
-        if more is not None:
-            found[of.name] = more
-    return found
+    for quantity, value in required.items():
+        proportion = _linear_proportion(quantity, value)
+        if proportion is not None:
+            equations[quantity.name] = proportion
+    return equations
 
 
 def with_offset_size(row: Linear, sign: float) -> Linear:
     """Return an equality in |offset|, which the sign of the offset allows."""
     size = Linear((("offset", Fraction(1)),), Fraction(0))
-    found = Linear((), row.constant)
+    rewritten = Linear((), row.constant)
     for name, factor in row.factors:
         if name == "offset":
-            found = found.plus(size, Fraction(int(sign)) * factor)
+            rewritten = rewritten.plus(size, Fraction(int(sign)) * factor)
         else:
-            found = found.plus(size if name == SIZE else unknown(name), factor)
-    return found
+            rewritten = rewritten.plus(size if name == SIZE else unknown(name), factor)
+    return rewritten
 
 
 def blocks(equations: Mapping[str, Linear], loose: Sequence[str]) -> Iterator[Block]:
@@ -71,12 +71,12 @@ def blocks(equations: Mapping[str, Linear], loose: Sequence[str]) -> Iterator[Bl
     origins, rows, reduced = list[str](), list[Linear](), list[Linear]()
     for name, row in equations.items():
         left = row
-        for own in reduced:
-            left = _eliminate_name(left, own, next(n for n in own.names if n in loose))
+        for reduced_row in reduced:
+            left = _eliminate_name(left, reduced_row, next(n for n in reduced_row.names if n in loose))
         if any(n in loose for n in left.names):
-            reduced = [_eliminate_name(own, left, next(n for n in left.names if n in loose)) for own in reduced] + [
-                left
-            ]
+            reduced = [
+                _eliminate_name(reduced_row, left, next(n for n in left.names if n in loose)) for reduced_row in reduced
+            ] + [left]
             rows.append(row)
         elif left.factors or left.constant:
             continue  # of what is not loose, or a contradiction
@@ -108,32 +108,32 @@ def target_of(*numbers: Any) -> Any:
     return (total + constant if constant or not factors else total) / divisor
 
 
-def _linear_proportion(of: Quantity, value: float) -> Linear | None:
+def _linear_proportion(quantity: Quantity, value: float) -> Linear | None:
     """Return a rule of proportion as a linear equality; None for what is none."""
     rod, crank, offset = unknown("rod"), unknown("crank"), unknown("offset")
-    if of.name == ROD_TO_OFFSET.name:
+    if quantity.name == ROD_TO_OFFSET.name:
         return rod.plus(offset, -Fraction(value))
-    if of.name == ROD_TO_CRANK.name:
+    if quantity.name == ROD_TO_CRANK.name:
         return rod.plus(crank, -Fraction(value))
-    if of.name == TRANSMISSION_ANGLE.name:
+    if quantity.name == TRANSMISSION_ANGLE.name:
         return crank.plus(offset).plus(rod, -Fraction(math.cos(value)))
     return None
 
 
-def _eliminate_name(row: Linear, other: Linear, name: str) -> Linear:
+def _eliminate_name(row: Linear, pivot: Linear, name: str) -> Linear:
     """Return an equality less as much of another one as rids it of a name."""
-    own = dict(row.factors).get(name)
-    return row if own is None else row.plus(other, -own / dict(other.factors)[name])
+    factor = dict(row.factors).get(name)
+    return row if factor is None else row.plus(pivot, -factor / dict(pivot.factors)[name])
 
 
 def _solve_for(rows: Sequence[Linear], targets: Sequence[str]) -> tuple[Linear, ...] | None:
     """Return the equalities with one target in each; None where they do not determine these."""
-    left, found = list(rows), list[Linear]()
+    left, solved = list(rows), list[Linear]()
     for target in targets:
         place = next((n for n, row in enumerate(left) if target in row.names), None)
         if place is None:
             return None
-        own = left.pop(place)
-        left = [_eliminate_name(row, own, target) for row in left]
-        found = [_eliminate_name(row, own, target) for row in found] + [own]
-    return tuple(found)
+        pivot = left.pop(place)
+        left = [_eliminate_name(row, pivot, target) for row in left]
+        solved = [_eliminate_name(row, pivot, target) for row in solved] + [pivot]
+    return tuple(solved)

@@ -37,13 +37,13 @@ def expected_warnings(problem: Problem, *, certain: bool = False) -> list[str]:
         linkage = Linkage(designs[:, 0], designs[:, 1], designs[:, 2], part.mechanism.branch)
         slow = np.atleast_1d(slow_stroke(part.mechanism, linkage))
         loaded = loaded_stroke(part.mechanism, designs)
-        found = _has_fast_load(slow, loaded)
-        fast, turning = fast + int(found.sum()), turning + int((_is_one_stroke(slow) & _is_one_stroke(loaded)).sum())
-        sides += [str(stroke) for stroke in loaded[found]]
+        is_fast = _has_fast_load(slow, loaded)
+        fast, turning = fast + int(is_fast.sum()), turning + int((_is_one_stroke(slow) & _is_one_stroke(loaded)).sum())
+        sides += [str(stroke) for stroke in loaded[is_fast]]
     if not fast or (certain and fast < turning):
         return _offset_warnings(problem)
-    where = "in every sampled design" if fast == turning else "in some sampled designs"
-    return [*_offset_warnings(problem), _fast_stroke_warning(problem, where, sides)]
+    extent = "in every sampled design" if fast == turning else "in some sampled designs"
+    return [*_offset_warnings(problem), _fast_stroke_warning(problem, extent, sides)]
 
 
 def front_warnings(front: ParetoFront) -> list[str]:
@@ -54,14 +54,14 @@ def front_warnings(front: ParetoFront) -> list[str]:
     if front.problem.motion is not None:
         return []
     slow, loaded = (front.columns[name] for name in ("slow_stroke", "loaded_stroke"))
-    found = free & _has_fast_load(slow, loaded)
-    if not found.any():
+    is_fast = free & _has_fast_load(slow, loaded)
+    if not is_fast.any():
         return _offset_warnings(front.problem)
-    count = int(found.sum())
-    where = f"in {count} of {len(front)} designs" if len(front) > 1 else "in this design"
+    count = int(is_fast.sum())
+    extent = f"in {count} of {len(front)} designs" if len(front) > 1 else "in this design"
     return [
         *_offset_warnings(front.problem),
-        _fast_stroke_warning(front.problem, where, [str(stroke) for stroke in loaded[found]]),
+        _fast_stroke_warning(front.problem, extent, [str(stroke) for stroke in loaded[is_fast]]),
     ]
 
 
@@ -73,13 +73,13 @@ def _offset_warnings(problem: Problem) -> list[str]:
             continue
         low, high = (0.0, upper) if side > 0.0 else (lower, 0.0)
         if high - low < 0.5 * (upper - lower):
-            turning, other = "counter-clockwise", "clockwise"
+            turning, opposite = "counter-clockwise", "clockwise"
             if part.mechanism.direction < 0.0:
-                turning, other = other, turning
+                turning, opposite = opposite, turning
             return [
                 f'slow_stroke = "{part.slow_stroke}" leaves only offsets from {1e3 * low:.6g} to {1e3 * high:.6g} mm '
                 f"of the range from {1e3 * lower:.6g} to {1e3 * upper:.6g} mm, because the crank turns {turning}; if "
-                f"you mean the others, let it turn {other}"
+                f"you mean the others, let it turn {opposite}"
             ]
     return []
 
@@ -92,13 +92,13 @@ def _is_one_stroke(strokes: NDArray[np.str_]) -> Mask:
     return np.isin(strokes, ("outward", "inward"))
 
 
-def _fast_stroke_warning(problem: Problem, where: str, loaded: list[str]) -> str:
+def _fast_stroke_warning(problem: Problem, extent: str, loaded: list[str]) -> str:
     stroke: SlowStroke = "outward" if 2 * loaded.count("outward") >= len(loaded) else "inward"
     has = any(signs(replace(part, slow_stroke=stroke)) for part in problem.parts())
     turn = "" if has else ", with the opposite sign of the offset or direction of rotation"
-    other = "inward" if stroke == "outward" else "outward"
+    opposite = "inward" if stroke == "outward" else "outward"
     return (
-        f"{where} the loaded stroke (the {stroke} one, against the load) is the faster one; for a slow loaded stroke "
+        f"{extent} the loaded stroke (the {stroke} one, against the load) is the faster one; for a slow loaded stroke "
         f'require slow_stroke = "{stroke}" among the constraints{turn}; if it should be fast, require '
-        f'slow_stroke = "{other}"'
+        f'slow_stroke = "{opposite}"'
     )

@@ -44,9 +44,9 @@ def drop_mirrored_branches(problem: Problem, branches: tuple[EliminationBranch, 
     for group in groups.values():
         pairs = [
             pair
-            for one in group
-            for other in group
-            if (pair := _wider_and_narrower(one, other)) and one.sign < other.sign
+            for first in group
+            for second in group
+            if (pair := _wider_and_narrower(first, second)) and first.sign < second.sign
         ]
         if pairs and not _tells_signs_apart(parts[pairs[0][0].variant], [branch for branch, _ in pairs]):
             twins |= {id(twin) for _, twin in pairs}
@@ -93,16 +93,16 @@ def _tells_signs_apart(part: Problem, branches: list[EliminationBranch]) -> bool
     )
 
 
-def _may_differ(of: Quantity) -> bool:
+def _may_differ(quantity: Quantity) -> bool:
     """Whether a quantity may tell offsets e and -e apart where random designs do not.
 
     All of a job's own may but formulas, unless these have the offset's sign in them.
     """
-    if of.constant:
+    if quantity.constant:
         return False
-    if isinstance(of, FormulaQuantity):
-        return of.has_signed_offset or any(map(_may_differ, of.parts))
-    return QUANTITIES.get(of.name) != of
+    if isinstance(quantity, FormulaQuantity):
+        return quantity.has_signed_offset or any(map(_may_differ, quantity.parts))
+    return QUANTITIES.get(quantity.name) != quantity
 
 
 def _random_designs(part: Problem, branch: EliminationBranch) -> Array:

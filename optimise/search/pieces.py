@@ -33,11 +33,11 @@ class Rows:
         """Return no rows of n designs in k unknowns."""
         return cls(np.zeros((n, 0)), np.zeros((n, 0, k)), np.zeros((n, 0)), np.zeros(0, np.int64))
 
-    def overwrite(self, row: int, other: Rows, source: int) -> None:
-        """Overwrite a design's rows with those of a design of `other`."""
-        self.values[row] = other.values[source]
-        self.gradients[row] = other.gradients[source]
-        self.labels[row] = other.labels[source]
+    def overwrite(self, row: int, replacement: Rows, source: int) -> None:
+        """Overwrite a design's rows with those of a design of `replacement`."""
+        self.values[row] = replacement.values[source]
+        self.gradients[row] = replacement.gradients[source]
+        self.labels[row] = replacement.labels[source]
 
 
 def greatest(rows: Rows, count: int) -> Array:
@@ -50,59 +50,61 @@ def alone(rows: Rows, row: int | slice) -> Rows:
     return Rows(rows.values[row], rows.gradients[row], rows.labels[row], rows.owner)
 
 
-def box(u: Array, *, within: float = ACTIVE) -> Array:
+def box(u: Array, *, tolerance: float = ACTIVE) -> Array:
     """Return the gradients of the box's active bounds."""
     edge = np.eye(len(u))
-    return np.concatenate([-edge[u < within], edge[u > 1.0 - within]])
+    return np.concatenate([-edge[u < tolerance], edge[u > 1.0 - tolerance]])
 
 
-def active_pieces(goals: Rows, chosen: tuple[int, ...], *, within: float = ACTIVE) -> Whole:
+def active_pieces(goals: Rows, chosen: tuple[int, ...], *, tolerance: float = ACTIVE) -> Whole:
     """Return the pieces that tie for the greatest of each chosen objective."""
     pieces = []
     for owner in chosen:
         columns = np.flatnonzero(goals.owner == owner)
         values = goals.values[columns]
-        pieces.append(columns[values >= values.max() - within])
+        pieces.append(columns[values >= values.max() - tolerance])
     return np.concatenate(pieces)
 
 
-def partners(here: Rows, there: Rows, of: Whole) -> tuple[Whole, Mask]:
+def partners(rows: Rows, others: Rows, columns: Whole) -> tuple[Whole, Mask]:
     """Return for rows (p,) of one design the same rows of others (..., p), and whether these have them.
 
     Matched by labels, since peaks may swap their order. Rows of one owner with equal labels (lower and upper bound)
     keep their place.
     """
-    same = (here.owner[of, None] == here.owner) & np.isfinite(there.values)[..., None, :]
-    apart = np.abs(there.labels[..., None, :] - here.labels[of, None])
-    apart = np.minimum(apart, np.abs(apart - 2.0 * np.pi))
-    near = same & (apart < _SAME)
-    count = len(there.owner)
-    steps = np.abs(np.arange(count) - of[:, None])
-    rank = np.where(near, np.rint(1e3 * np.where(near, apart, 0.0)) * (count + 1.0) + steps, np.inf)
+    same = (rows.owner[columns, None] == rows.owner) & np.isfinite(others.values)[..., None, :]
+    distances = np.abs(others.labels[..., None, :] - rows.labels[columns, None])
+    distances = np.minimum(distances, np.abs(distances - 2.0 * np.pi))
+    near = same & (distances < _SAME)
+    count = len(others.owner)
+    steps = np.abs(np.arange(count) - columns[:, None])
+    rank = np.where(near, np.rint(1e3 * np.where(near, distances, 0.0)) * (count + 1.0) + steps, np.inf)
     return rank.argmin(axis=-1), near.any(axis=-1)
 
 
-def difference(here: Rows, there: Rows, weight: Array) -> Array:
+def difference(rows: Rows, others: Rows, weight: Array) -> Array:
     """Return the weighted change of gradients (n, k) from one design to n others."""
-    n = len(there.values)
-    total, of = np.zeros((n, here.gradients.shape[1])), np.flatnonzero(weight > 0.0)
-    if not len(of):
+    n = len(others.values)
+    total, columns = np.zeros((n, rows.gradients.shape[1])), np.flatnonzero(weight > 0.0)
+    if not len(columns):
         return total
-    twins, had = partners(here, there, of)
-    changes = weight[of, None] * (there.gradients[np.arange(n)[:, None], twins] - here.gradients[of])
-    if not had.all():
-        changes = np.where(had[..., None], changes, 0.0)
-    for place in range(len(of)):  # in order, as sums of pairs round otherwise
+    twins, is_matched = partners(rows, others, columns)
+    changes = weight[columns, None] * (others.gradients[np.arange(n)[:, None], twins] - rows.gradients[columns])
+    if not is_matched.all():
+        changes = np.where(is_matched[..., None], changes, 0.0)
+    for place in range(len(columns)):  # in order, as sums of pairs round otherwise
         total = total + changes[:, place]
     return total
 
 
-def bent(here: Rows, there: Rows, step: Array) -> Array:
+def bent(rows: Rows, end_rows: Rows, step: Array) -> Array:
     """Return the values of rows whose linearisation meets their values at the end of a step."""
-    values = here.values.copy()
-    of = np.flatnonzero(np.isfinite(values))
-    if len(of):
-        for index, twin, had in zip(of.tolist(), *(found.tolist() for found in partners(here, there, of)), strict=True):
-            if had:
-                values[index] = there.values[twin] - here.gradients[index] @ step
+    values = rows.values.copy()
+    columns = np.flatnonzero(np.isfinite(values))
+    if len(columns):
+        for index, twin, is_matched in zip(
+            columns.tolist(), *(array.tolist() for array in partners(rows, end_rows, columns)), strict=True
+        ):
+            if is_matched:
+                values[index] = end_rows.values[twin] - rows.gradients[index] @ step
     return values

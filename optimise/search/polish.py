@@ -134,9 +134,9 @@ class _Batch:
         steps = [self._programme(row, self.chosen).move for row in rows.tolist()]
         self._search(rows, np.array(steps), self.chosen, correct=True)
         self.open &= self.stalls < 2
-        inside = rows[self._feasible()[rows]]
-        self.safe[inside] = self.u[inside]
-        self.held[inside] = greatest(self.goals, len(self.scale))[inside]
+        feasible = rows[self._feasible()[rows]]
+        self.safe[feasible] = self.u[feasible]
+        self.held[feasible] = greatest(self.goals, len(self.scale))[feasible]
         return True
 
     def result(self) -> Polished:
@@ -152,12 +152,12 @@ class _Batch:
         moved = tuple(owner for owner in range(m) if owner not in self.goals.constant)
         chosen = tuple(owner for owner in self.chosen if owner in moved) or self.chosen
         for row in range(n):
-            here, edge = alone(self.goals, row), alone(self.limits, row)
-            columns = active_pieces(here, moved)
-            pieces.append((here.owner[columns].astype(np.float64), here.gradients[columns]))
+            design_goals, edge = alone(self.goals, row), alone(self.limits, row)
+            columns = active_pieces(design_goals, moved)
+            pieces.append((design_goals.owner[columns].astype(np.float64), design_goals.gradients[columns]))
             active.append(np.concatenate([edge.gradients[edge.values > -ACTIVE], box(self.u[row])]))
-            wanted = active_pieces(here, chosen)
-            residual[row], _, _ = multipliers(here.gradients[wanted], active[-1])
+            chosen_pieces = active_pieces(design_goals, chosen)
+            residual[row], _, _ = multipliers(design_goals.gradients[chosen_pieces], active[-1])
         violation = self.limits.values.max(axis=1, initial=0.0)
         return Polished(self.u, greatest(self.goals, m), violation, residual, ragged(pieces), ragged(active))
 
@@ -177,8 +177,8 @@ class _Batch:
     def _residual(self, row: int) -> float:
         """Return the residual of Benson's problem; what is not quite active does not count, so that it becomes so."""
         goals, limits = alone(self.goals, row), alone(self.limits, row)
-        pieces = active_pieces(goals, self.chosen, within=_TIGHT)
-        edges = np.concatenate([limits.gradients[limits.values > -_TIGHT], box(self.u[row], within=_TIGHT)])
+        pieces = active_pieces(goals, self.chosen, tolerance=_TIGHT)
+        edges = np.concatenate([limits.gradients[limits.values > -_TIGHT], box(self.u[row], tolerance=_TIGHT)])
         return strict_multipliers(goals.gradients[pieces], goals.owner[pieces], edges, exactly=not self.hold)[0]
 
     def _programme(self, row: int, chosen: tuple[int, ...]) -> Step:
@@ -218,8 +218,10 @@ class _Batch:
         moved = still + (np.eye(k)[:, None, :] * steps).reshape(k * n, k)
         goals, limits = self._evaluate(np.where(self.evaluator.valid(moved)[:, None], moved, still))
         for i, (row, draft) in enumerate(zip(rows.tolist(), drafts, strict=True)):
-            here, edge, at = alone(self.goals, row), alone(self.limits, row), slice(i, None, n)
-            change = difference(here, alone(goals, at), np.minimum(draft.goals, self.loss[row, here.owner]))
+            design_goals, edge, at = alone(self.goals, row), alone(self.limits, row), slice(i, None, n)
+            change = difference(
+                design_goals, alone(goals, at), np.minimum(draft.goals, self.loss[row, design_goals.owner])
+            )
             change = change + difference(edge, alone(limits, at), np.minimum(draft.limits, _HEAVIEST))
             hessians[i] = change / steps[i, :, None]
         hessians = 0.5 * (hessians + hessians.transpose(0, 2, 1))
@@ -231,7 +233,7 @@ class _Batch:
         The merit is the sum of the objectives, plus penalised losses and greatest violation.
         """
         m, columns = len(self.scale), list(chosen)
-        before, held = greatest(self.goals, m)[:, columns], self.held[:, columns]
+        before, limits_to_hold = greatest(self.goals, m)[:, columns], self.held[:, columns]
         violation = _clear_rounding(self.limits.values.max(axis=1, initial=0.0))
         self.moved[rows] = False
         pending = np.arange(len(rows))
@@ -245,7 +247,7 @@ class _Batch:
             goals, limits = self._evaluate(trial)
             after = greatest(goals, m)[:, columns]
             with np.errstate(invalid="ignore"):  # infinite before and after (rod / offset at 0): no merit, not accepted
-                loss = _clear_rounding(after - held[at]) - _clear_rounding(before[at] - held[at])
+                loss = _clear_rounding(after - limits_to_hold[at]) - _clear_rounding(before[at] - limits_to_hold[at])
                 worse = _clear_rounding(limits.values.max(axis=1, initial=0.0)) - violation[at]
                 penalty = self.loss[at][:, columns] * loss if self.hold else 0.0
                 merit = (after - before[at] + penalty).sum(axis=1) + self.weight[at] * worse
@@ -276,8 +278,8 @@ class _Batch:
     def _corrected(self, row: int, step: Array, goals: Rows, limits: Rows, chosen: tuple[int, ...]) -> Array:
         """Return the step that also holds what the first one bends out of; rows are those at its end."""
         goals, limits = [
-            replace(here, values=bent(here, there, step))
-            for here, there in ((alone(self.goals, row), goals), (alone(self.limits, row), limits))
+            replace(present, values=bent(present, trial_rows, step))
+            for present, trial_rows in ((alone(self.goals, row), goals), (alone(self.limits, row), limits))
         ]
         return self._solve(row, goals, limits, chosen).move
 
@@ -290,13 +292,13 @@ def convex(hessian: Array, normals: Array) -> Array:
     lengths = row_lengths(normals)
     if values[0] < _CURVATURE and lengths.any():
         _, sizes, directions = np.linalg.svd(normals[lengths > 0.0] / lengths[lengths > 0.0, None])
-        across = directions[: len(sizes)][sizes > _APART]
+        held_directions = directions[: len(sizes)][sizes > _APART]
         flat = values < _CURVATURE
         # Directions that nothing held depends on stay as flat as they are: weight would only stiffen the others.
-        dull = int((np.abs(across @ vectors[:, flat]).max(axis=0, initial=0.0) <= _APART).sum())
+        dull = int((np.abs(held_directions @ vectors[:, flat]).max(axis=0, initial=0.0) <= _APART).sum())
         if dull < flat.sum():
             for weight in (1.0, 10.0, 100.0):
-                curved = hessian + weight * np.abs(values).max() * across.T @ across
+                curved = hessian + weight * np.abs(values).max() * held_directions.T @ held_directions
                 if np.linalg.eigvalsh(curved)[dull] >= _CURVATURE:
                     break
             values, vectors = np.linalg.eigh(curved)

@@ -50,7 +50,7 @@ class Step:
 
 
 class Aim(NamedTuple):
-    """What a step improves and what it keeps.
+    """Objectives that a step improves, and those that it holds.
 
     chosen: objectives to improve. tops: (m,), F of every objective. loss: (m,), K of every objective. hold: whether the
     loss of each objective is penalised, besides the sum.
@@ -89,37 +89,37 @@ def solve_step(
     holding = count if hold else 0
     counts = [*map(len, pieces), holding, holding, len(near), 1, k, k]
     ends = [0, *accumulate(counts)]
-    *goal_rows, losing, gaining, limiting, violating, above, below = map(slice, ends[:-1], ends[1:])
+    *goal_rows, losing, gaining, limiting, violating, upper_bounds, lower_bounds = map(slice, ends[:-1], ends[1:])
     size = k + count + holding + 1
     rows, bounds = np.zeros((ends[-1], size)), np.zeros(ends[-1])  # a z <= b for z = (d, t, v, w)
-    one, edge = _identity(holding), _identity(k)
+    loss_identity, edge = _identity(holding), _identity(k)
     for place, (owner, columns, part) in enumerate(zip(chosen, pieces, goal_rows, strict=True)):
         bounds[part] = tops[owner] - goals.values[columns]
         rows[part, :k] = goals.gradients[columns]
         rows[part, k + place] = -1.0
     bounds[losing] = ROUNDING
-    rows[losing, k : k + holding] = one
-    rows[losing, k + count : -1] = rows[gaining, k + count : -1] = -one
+    rows[losing, k : k + holding] = loss_identity
+    rows[losing, k + count : -1] = rows[gaining, k + count : -1] = -loss_identity
     bounds[limiting] = -limits.values[near]
     rows[limiting, :k] = limits.gradients[near]
     rows[limiting, -1] = rows[violating, -1] = -1.0
-    bounds[above], bounds[below] = high, -low
-    rows[above, :k], rows[below, :k] = edge, -edge
+    bounds[upper_bounds], bounds[lower_bounds] = high, -low
+    rows[upper_bounds, :k], rows[lower_bounds, :k] = edge, -edge
     weights = np.empty(count + holding + 1)
     weights[:count], weights[count:-1], weights[-1] = 1.0, loss[list(chosen)] if hold else (), violation
     move, dual = _least_distance(rows, bounds, root, weights)
-    held = dual > 0.0
+    is_binding = dual > 0.0
     goal_weight, limit_weight = np.zeros(len(goals.owner)), np.zeros(len(limits.owner))
     limit_weight[near] = dual[limiting]
     normals = [
-        limits.gradients[near[held[limiting]]],
-        edge[held[above] & (high < radius)],
-        edge[held[below] & (low > -radius)],
+        limits.gradients[near[is_binding[limiting]]],
+        edge[is_binding[upper_bounds] & (high < radius)],
+        edge[is_binding[lower_bounds] & (low > -radius)],
     ]
-    losers = held[losing].tolist() if hold else [False] * count
+    losers = is_binding[losing].tolist() if hold else [False] * count
     for loses, columns, part in zip(losers, pieces, goal_rows, strict=True):
         goal_weight[columns] = dual[part]
-        tied = goals.gradients[columns[held[part]]]
+        tied = goals.gradients[columns[is_binding[part]]]
         normals.append(tied[1:] - tied[:1])
         if loses:
             normals.append(tied[:1])
@@ -158,8 +158,8 @@ def _least_distance(rows: Array, bounds: Array, root: Array, weights: Array) -> 
     rest = matrix @ dual - target
     if rest[-1] == 0.0:
         return np.zeros(k), np.zeros(len(rows))
-    x, held = -rest[:-1] / rest[-1], dual > 0.0
+    x, is_binding = -rest[:-1] / rest[-1], dual > 0.0
     # Between pieces that oppose each other large multipliers cancel: what holds the step places it more exactly.
-    holding = g[held]
-    x = x + np.linalg.lstsq(holding, h[held] - holding @ x, rcond=1e-12)[0]
+    holding = g[is_binding]
+    x = x + np.linalg.lstsq(holding, h[is_binding] - holding @ x, rcond=1e-12)[0]
     return (scale @ x)[:k], dual / lengths / -rest[-1]

@@ -25,17 +25,17 @@ def polished(
     scale: Array,
     *,
     chosen: tuple[int, ...] | None = None,
-    shown: Evaluates | None = None,
+    viewed_evaluator: Evaluates | None = None,
     best_in: Whole | None = None,
 ) -> Polished:
-    """Return the result of `polish`. shown: the evaluator in another light, which it is to see instead."""
-    given: tuple[Numbers, ...] = (start, scale, np.array([-1] if chosen is None else chosen, dtype=np.int64))
-    given = given if best_in is None else (*given, best_in)
+    """Return the result of `polish`. viewed_evaluator: the evaluator in another light, which it is to see instead."""
+    inputs: tuple[Numbers, ...] = (start, scale, np.array([-1] if chosen is None else chosen, dtype=np.int64))
+    inputs = inputs if best_in is None else (*inputs, best_in)
 
     def compute() -> Polished:
-        return polish(shown or evaluator, start, scale, chosen=chosen, best_in=best_in)
+        return polish(viewed_evaluator or evaluator, start, scale, chosen=chosen, best_in=best_in)
 
-    return _recorded_polish(evaluator, "polish", given, compute)
+    return _recorded_polish(evaluator, "polish", inputs, compute)
 
 
 def projected(evaluator: Evaluator, start: Array, scale: Array) -> Polished:
@@ -61,45 +61,45 @@ def polish(
     if not isinstance(evaluator, Evaluator) or isinstance(evaluator.engine, Serial):
         return polish_here(evaluator, start, scale, chosen=chosen, iterations=iterations, best_in=best_in)
     before = evaluator.evaluations
-    asked = (tuple(scale.tolist()), chosen, iterations, best_in is not None)
+    options = (tuple(scale.tolist()), chosen, iterations, best_in is not None)
     rows = start if best_in is None else np.column_stack([start, best_in])
-    parts = evaluator.chunked(_polish_rows, asked, rows, kind="polish", together=True)
+    parts = evaluator.chunked(_polish_rows, options, rows, kind="polish", together=True)
     evaluator.evaluations = before + sum(count for _, count in parts)
-    (first, _), *others = parts
-    return first.join(*(part for part, _ in others))
+    (first, _), *rest = parts
+    return first.join(*(part for part, _ in rest))
 
 
-def _polish_rows(evaluator: Evaluator, asked: _Asked, start: Array) -> tuple[Polished, int]:
+def _polish_rows(evaluator: Evaluator, options: _Asked, start: Array) -> tuple[Polished, int]:
     """Return polished designs and how many were evaluated for them."""
-    before, (scale, chosen, iterations, ends) = evaluator.evaluations, asked
+    before, (scale, chosen, iterations, ends) = evaluator.evaluations, options
     best_in = start[:, -1].astype(np.int64) if ends else None
     start = start[:, :-1] if ends else start
-    found = polish_here(evaluator, start, np.array(scale), chosen=chosen, iterations=iterations, best_in=best_in)
-    return found, evaluator.evaluations - before
+    designs = polish_here(evaluator, start, np.array(scale), chosen=chosen, iterations=iterations, best_in=best_in)
+    return designs, evaluator.evaluations - before
 
 
 def _recorded_polish(
-    evaluator: Evaluator, kind: str, given: tuple[Numbers, ...], compute: Callable[[], Polished]
+    evaluator: Evaluator, kind: str, inputs: tuple[Numbers, ...], compute: Callable[[], Polished]
 ) -> Polished:
     """Return the result of a step; a record has ragged rows end to end, with their lengths."""
 
     def arrays() -> tuple[Array, Array, Array, Array, Lengths, Array, Array, Lengths, Array]:
-        found = compute()
-        k, owners = found.u.shape[1], [owner for owner, _ in found.goals]
+        result = compute()
+        k, owners = result.u.shape[1], [owner for owner, _ in result.goals]
         return (
-            found.u,
-            found.values,
-            found.violation,
-            found.residual,
+            result.u,
+            result.values,
+            result.violation,
+            result.residual,
             np.array([len(owner) for owner in owners], dtype=np.int64),
             np.concatenate([np.zeros(0), *owners]),
-            np.concatenate([np.zeros((0, k)), *(slopes for _, slopes in found.goals)]),
-            np.array([len(edges) for edges in found.active], dtype=np.int64),
-            np.concatenate([np.zeros((0, k)), *found.active]),
+            np.concatenate([np.zeros((0, k)), *(slopes for _, slopes in result.goals)]),
+            np.array([len(edges) for edges in result.active], dtype=np.int64),
+            np.concatenate([np.zeros((0, k)), *result.active]),
         )
 
-    u, values, violation, residual, pieces, owners, slopes, edges, active = evaluator.step(kind, given, arrays)
+    u, values, violation, residual, pieces, owners, slopes, edges, active = evaluator.step(kind, inputs, arrays)
     n, ends = len(pieces), np.cumsum(pieces)[:-1]
     goals = zip(np.split(owners, ends), np.split(slopes, ends), strict=True)
-    held = np.split(active, np.cumsum(edges)[:-1])
-    return Polished(u, values, violation, residual, ragged(goals if n else ()), ragged(held if n else ()))
+    active_rows = np.split(active, np.cumsum(edges)[:-1])
+    return Polished(u, values, violation, residual, ragged(goals if n else ()), ragged(active_rows if n else ()))

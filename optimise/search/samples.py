@@ -32,24 +32,26 @@ def samples(problem: Problem) -> Iterator[tuple[Problem, Array]]:
     They meet what is required of lengths, stroke and whatever else needs no cycle computed. Where no point does, those
     are taken that miss it least.
     """
-    found = elimination_branches(problem)[:_BRANCHES]
-    count = max(_SAMPLES, _TRIED // len(found))
-    for branch in found:
+    branches = elimination_branches(problem)[:_BRANCHES]
+    count = max(_SAMPLES, _TRIED // len(branches))
+    for branch in branches:
         part = problem.part(branch.variant)
         tried = [_try_points(part, branch, count)]
         if not _has_feasible(tried[0]):
             middle = replace(part, constraints=tuple(map(_middle_of_narrow_range, part.constraints)))
             tried += [
-                _try_points(middle, other, count) for other in elimination_branches(middle) if other.sign == branch.sign
+                _try_points(middle, middle_branch, count)
+                for middle_branch in elimination_branches(middle)
+                if middle_branch.sign == branch.sign
             ]
         designs, misses = next(filter(_has_feasible, tried), tried[0])
         order = np.argsort(np.maximum(misses, FEASIBLE), kind="stable")
-        met = np.count_nonzero(misses <= FEASIBLE) or _SAMPLES
-        yield part, _representatives(part, designs[order][:met])
+        count_feasible = np.count_nonzero(misses <= FEASIBLE) or _SAMPLES
+        yield part, _representatives(part, designs[order][:count_feasible])
 
 
 def _try_points(part: Problem, branch: EliminationBranch, count: int) -> tuple[Array, Array]:
-    """Return designs (n, 3 + k) of a branch that move as asked, and by how much (n,) they miss what is required."""
+    """Return designs (n, 3 + k) of a branch that make the required motion, and their violation (n,)."""
     evaluator = Evaluator(part, branch)
     points = first_samples(count, len(branch.free), 0, 0)
     points = points[evaluator.valid(points)]

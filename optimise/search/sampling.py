@@ -16,13 +16,13 @@ APART = 0.1
 """Distance in the unit box of starts that are to lead to different optima."""
 
 
-def distant_rows(worth: Array, points: Array, branch: Whole, count: int) -> Whole:
+def distant_rows(merits: Array, points: Array, branch: Whole, count: int) -> Whole:
     """Return rows of at most `count` points (n, k): the least finite worth (n,) first, each `APART` from those before.
 
     Points of different branches are apart.
     """
-    rows = np.argsort(worth, kind="stable")
-    rows = rows[np.isfinite(worth[rows])]
+    rows = np.argsort(merits, kind="stable")
+    rows = rows[np.isfinite(merits[rows])]
     chosen: list[int] = []
     while len(rows) and len(chosen) < count:
         best = int(rows[0])

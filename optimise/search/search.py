@@ -85,9 +85,9 @@ class Archive(Candidates):
             )
         )
 
-    def add(self, *others: Candidates) -> None:
+    def add(self, *tables: Candidates) -> None:
         """Add designs of any branches."""
-        together = self.join(*others)
+        together = self.join(*tables)
         rows = _rows_to_keep(together)
         as_they_are = len(rows) == len(together) and bool((np.diff(rows) > 0).all())
         self.become(together if as_they_are else together[rows])
@@ -102,8 +102,8 @@ def _rows_to_keep(candidates: Candidates) -> Whole:
     rows = _best_rows(candidates.values)
     if candidates.is_feasible.all():
         return rows
-    own = np.flatnonzero(candidates.is_feasible)
-    return np.concatenate([own[_best_rows(candidates.values[own])], rows[~candidates.is_feasible[rows]]])
+    feasible = np.flatnonzero(candidates.is_feasible)
+    return np.concatenate([feasible[_best_rows(candidates.values[feasible])], rows[~candidates.is_feasible[rows]]])
 
 
 def _best_rows(values: Array) -> Whole:
@@ -157,8 +157,10 @@ class Run:
         are not reported again, only that they are repeated.
         """
         self.archive = archive if len(archive) else self.archive
-        own = archive.values if archive.is_feasible.all() else archive.values[archive.is_feasible]
-        feasible = np.concatenate([own, self.candidates.values]) if len(self.candidates) else own
+        feasible_values = archive.values if archive.is_feasible.all() else archive.values[archive.is_feasible]
+        feasible = (
+            np.concatenate([feasible_values, self.candidates.values]) if len(self.candidates) else feasible_values
+        )
         entry = Progress(
             stage,
             self._earlier_rounds + len(self.round_reports) + 1,
@@ -208,13 +210,13 @@ class Run:
         self._last_report = time.monotonic()
 
     def history(
-        self, ideal: Array, span: Array, most: int | None = None, poll: Callable[[], None] = lambda: None
+        self, ideal: Array, span: Array, max_designs: int | None = None, poll: Callable[[], None] = lambda: None
     ) -> tuple[Progress, ...]:
         """Return the rounds with hypervolumes of one scaling, so that they compare; they do not fall either.
 
-        most: designs of each round that count; the others would add little. poll: called for each round.
+        max_designs: designs of each round that count; the others would add little. poll: called for each round.
         """
-        growth = Growth(self._targets, box=(ideal, span), most=most)
+        growth = Growth(self._targets, box=(ideal, span), max_designs=max_designs)
         rounds: list[Progress] = []
         for entry, front in zip(self.round_reports, self.fronts, strict=True):
             poll()
@@ -255,12 +257,12 @@ def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = Non
         archive.band = band
         # A small feasible region wants more points before it is given up.
         count = samples_per_branch(samples * 4**attempt, evaluators)
-        found = archive.screen_all(
+        hits = archive.screen_all(
             (index, evaluator, first_samples(count, evaluator.dimension, problem.settings.seed, index))
             for index, evaluator in enumerate(evaluators)
         )
-        if found >= min(ENOUGH, samples) or (
-            not attempt and not found and is_out_of_reach(problem, evaluators, bands[-1])
+        if hits >= min(ENOUGH, samples) or (
+            not attempt and not hits and is_out_of_reach(problem, evaluators, bands[-1])
         ):
             break
     run.report_round("sampling", evaluators, archive)
@@ -274,8 +276,8 @@ def zoom(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: R
     samples = problem.settings.samples or SAMPLES
     for step in range(len(WIDTHS)):
         random = generator(problem.settings.seed, 1000, step)
-        some = random.choice(len(archive), _CROWD, replace=False) if len(archive) > _CROWD else slice(None)
-        parents = archive[some]
+        rows = random.choice(len(archive), _CROWD, replace=False) if len(archive) > _CROWD else slice(None)
+        parents = archive[rows]
         archive.screen_all(
             (index, evaluator, _samples_around(parents, index, evaluator.dimension, samples, WIDTHS[step], random))
             for index, evaluator in enumerate(evaluators)
@@ -288,9 +290,9 @@ def _samples_around(
     parents: Candidates, index: int, dimension: int, samples: int, width: float, random: np.random.Generator
 ) -> Array:
     """Return points around the parents of a branch, in proportion to their number among all parents."""
-    own = parents.branch == index
-    count = max(1, int(samples * own.mean()))
-    return sample_near(parents.u[own][:, :dimension], parents.values[own], count, width, random)
+    on_branch = parents.branch == index
+    count = max(1, int(samples * on_branch.mean()))
+    return sample_near(parents.u[on_branch][:, :dimension], parents.values[on_branch], count, width, random)
 
 
 def is_out_of_reach(problem: Problem, evaluators: list[Evaluator], band: float) -> bool:
@@ -299,13 +301,13 @@ def is_out_of_reach(problem: Problem, evaluators: list[Evaluator], band: float) 
     Sixteen times as many samples in that band would cost more and say less, as their best are not local optima. False
     for robust quantities: samples estimate them at a fraction of the cost of a descent.
     """
-    robust = any(isinstance(own, RobustQuantity) for own in problem.own)
+    robust = any(isinstance(quantity, RobustQuantity) for quantity in problem.own)
     if robust or problem.without_gradient():
         return False
     k = len(evaluators)
     for index, evaluator in enumerate(evaluators):
         u = first_samples(FIRST // k, evaluator.dimension, problem.settings.seed, index)
-        found = least_violation(evaluator, u, ranked=max(_LEAST_RANKED, _RANKED // k), starts=max(2, _STARTS // k))
-        if (found.values <= band).any():
+        least = least_violation(evaluator, u, ranked=max(_LEAST_RANKED, _RANKED // k), starts=max(2, _STARTS // k))
+        if (least.values <= band).any():
             return False
     return True

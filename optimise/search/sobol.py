@@ -53,11 +53,11 @@ def _directions(dimension: int) -> NDArray[np.uint32]:
     """Return the direction numbers (k, bits)."""
     rows = []
     for inner, first in _FIRST[:dimension]:
-        found, degree = list(first), len(first)
+        numbers, degree = list(first), len(first)
         for j in range(degree, _BITS):
-            new = found[j - degree] ^ found[j - degree] << degree
+            new = numbers[j - degree] ^ numbers[j - degree] << degree
             for k in range(1, degree):
-                new ^= (inner >> degree - 1 - k & 1) * found[j - k] << k
-            found.append(new)
-        rows.append([number << _BITS - 1 - j for j, number in enumerate(found)])
+                new ^= (inner >> degree - 1 - k & 1) * numbers[j - k] << k
+            numbers.append(new)
+        rows.append([number << _BITS - 1 - j for j, number in enumerate(numbers)])
     return np.array(rows, dtype=np.uint32)

@@ -38,21 +38,21 @@ class SwingRule(Rule):
         return tuple(replace(self, root=root) for root in range(self.roots))
 
 
-def swing_rules(problem: Problem, wanted: Mapping[str, float], sign: float) -> Iterator[Rule]:
-    """Yield the rules of the equalities of a swing. wanted: their values. sign: of the offset."""
+def swing_rules(problem: Problem, required: Mapping[str, float], sign: float) -> Iterator[Rule]:
+    """Yield the rules of the equalities of a swing. required: their values. sign: of the offset."""
     motion = problem.motion
     if motion is None:
         return
     column = start_column(problem.mechanism)
     free = () if column is None else (problem.mechanism.varying[column - 3].name,)
-    given = (sign, motion.start, motion.end, float(motion.follows))
+    swing_values = (sign, motion.start, motion.end, float(motion.follows))
     travel, angle = ACTUATOR_TRAVEL.name, SWING_ANGLE.name
-    if motion.stated_for == "crank" and travel in wanted:
-        numbers = (wanted[travel], *given)
+    if motion.stated_for == "crank" and travel in required:
+        numbers = (required[travel], *swing_values)
         yield SwingRule(travel, "rod", ("crank", "offset", *free), numbers, _rod_of_travel, 2)
         yield SwingRule(travel, "offset", ("crank", "rod", *free), numbers, _offset_of_travel, 4)
-    if motion.stated_for == "slider" and angle in wanted:
-        numbers = (wanted[angle], *given)
+    if motion.stated_for == "slider" and angle in required:
+        numbers = (required[angle], *swing_values)
         yield SwingRule(angle, "crank", ("rod", "offset", *free), numbers, _crank_of_angle, 4)
         yield SwingRule(angle, "rod", ("crank", "offset", *free), numbers, _rod_of_angle, 4)
 
@@ -87,8 +87,8 @@ def _offset_of_travel(
     root: int, travel: float, sign: float, start: float, end: float, follows: float, r: Any, l: Any, *free: Any
 ) -> Any:
     x_0, y_0, x_1, y_1 = _pins(root, travel, _ends(start, end, follows, free), r)
-    apart = (x_1 - x_0) ** 2 + (y_1 - y_0) ** 2
-    away = _sides(root)[1] * np.sqrt(l * l / apart - 0.25)
+    square = (x_1 - x_0) ** 2 + (y_1 - y_0) ** 2
+    away = _sides(root)[1] * np.sqrt(l * l / square - 0.25)
     return sign * (0.5 * (y_0 + y_1) + away * (x_1 - x_0))
 
 
@@ -113,7 +113,7 @@ def _rod_of_angle(
     root: int, angle: float, sign: float, start: float, end: float, follows: float, r: Any, a: Any, *free: Any
 ) -> Any:
     x, y, u, v = _bisector(root, angle, _ends(start, end, follows, free), sign * a)
-    apart = u * u + v * v
-    along = (x * u + y * v) / apart
-    away = -along + _sides(root)[1] * np.sqrt(along * along + (r * r - x * x - y * y) / apart)
-    return np.sqrt(apart * (away * away + 0.25))
+    square = u * u + v * v
+    projection = (x * u + y * v) / square
+    away = -projection + _sides(root)[1] * np.sqrt(projection * projection + (r * r - x * x - y * y) / square)
+    return np.sqrt(square * (away * away + 0.25))

@@ -38,7 +38,7 @@ def least_violation(evaluator: Evaluator, u: Array, *, ranked: int, starts: int)
     u = u[evaluator.valid(u)]
     u = u[:: max(1, len(u) // ranked)]
     best = u[distant_rows(greatest_of_starts(evaluator, u, starts), u, _single_branch(u), starts)] if len(u) else u
-    return polished(evaluator, best, np.ones(1), shown=_Violations(evaluator))
+    return polished(evaluator, best, np.ones(1), viewed_evaluator=_Violations(evaluator))
 
 
 def greatest_of_starts(evaluator: Evaluator, u: Array, count: int) -> Array:
@@ -48,14 +48,14 @@ def greatest_of_starts(evaluator: Evaluator, u: Array, count: int) -> Array:
     """
 
     def greatest() -> tuple[Array]:
-        worth, bound = np.full(len(u), np.inf), evaluator.light_violation(u)
+        violations, bound = np.full(len(u), np.inf), evaluator.light_violation(u)
         order = np.argsort(bound, kind="stable")
         for rows in np.split(order, range(_AT_ONCE, len(u), _AT_ONCE)):
-            best = distant_rows(worth, u, _single_branch(u), count)
-            if len(best) == count and worth[best].max() < bound[rows[0]] - FEASIBLE:
+            best = distant_rows(violations, u, _single_branch(u), count)
+            if len(best) == count and violations[best].max() < bound[rows[0]] - FEASIBLE:
                 break
-            worth[rows] = evaluator.exact(u[rows], goals=False)[1].values.max(axis=1, initial=0.0)
-        return (worth,)
+            violations[rows] = evaluator.exact(u[rows], goals=False)[1].values.max(axis=1, initial=0.0)
+        return (violations,)
 
     return evaluator.step("violation", (u, np.array([count])), greatest)[0]
 

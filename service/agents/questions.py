@@ -138,12 +138,12 @@ def check(call: Call, *, job: JobInput, files: Files = {}) -> ToolAnswer:  # noq
     record: dict[str, Any] = {
         "valid": look.problem is not None,
         "wrong": [asdict(mistake) for mistake in look.wrong],
-        "said": look.said,
+        "said": look.sentences,
         "unchecked": look.unchecked,
     }
     if look.problem is None:
         lines = [": ".join(filter(None, (mistake.path, mistake.sentence))) for mistake in look.wrong]
-        return ToolAnswer(record, "\n".join(("this job cannot be solved:", *dict.fromkeys((*lines, *look.said)))))
+        return ToolAnswer(record, "\n".join(("this job cannot be solved:", *dict.fromkeys((*lines, *look.sentences)))))
     for quantity in look.problem.own:
         if isinstance(quantity, OwnQuantity):
             quantity.require_function()
@@ -151,7 +151,7 @@ def check(call: Call, *, job: JobInput, files: Files = {}) -> ToolAnswer:  # noq
     lists = [f"{name}: {'; '.join(record[name])}" for name in ("given", "variables", "rules", "objectives", "warnings")]
     heading = f"a valid job: {look.problem.name}"
     return ToolAnswer(
-        record, "\n".join((heading, *lists, freedom_in_words(look.problem), *look.said, *record["notes"]))
+        record, "\n".join((heading, *lists, freedom_in_words(look.problem), *look.sentences, *record["notes"]))
     )
 
 

@@ -166,7 +166,7 @@ class Feed:
                 if channel is None or channel.last != last:
                     continue  # it was left meanwhile, and perhaps followed anew
                 if number in news:
-                    channel.publish(news[number].events, ended=news[number].over)
+                    channel.publish(news[number].events, ended=news[number].is_over)
                 else:
                     channel.publish([], ended=True)
             await asyncio.sleep(POLL)

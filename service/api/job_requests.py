@@ -169,7 +169,7 @@ def limits_within(requested: RequestedLimits, allowed: Limits) -> Limits:
             raise InputError(
                 f"limits.{name}: must be at most {highest} here; got {requested_value}; ask for less, or leave it out"
             )
-    return limits.within(allowed)
+    return limits.stricter(allowed)
 
 
 def problem_of_tables(

@@ -231,7 +231,7 @@ def _allowed(look: Look) -> AllowedModel | None:
         hardest=possible.hardest[0] if possible.hardest else None,
         hardest_share=possible.hardest[1] if possible.hardest else None,
         unchecked=look.unchecked,
-        said=look.said,
+        said=look.sentences,
     )
 
 
@@ -263,8 +263,8 @@ def _swing(possible: PossibleSwing | None) -> SwingPreview | None:
     if possible is None:
         return None
     return SwingPreview(
-        from_deg=None if possible.shown is None else math.degrees(possible.shown.start),
-        to_deg=None if possible.shown is None else math.degrees(possible.shown.end),
+        from_deg=None if possible.shown_swing is None else math.degrees(possible.shown_swing.start),
+        to_deg=None if possible.shown_swing is None else math.degrees(possible.shown_swing.end),
         closing_share=possible.closing,
         travel_mm=_scaled_ends(1e3, possible.travel),
         feasible_share=possible.feasible,
@@ -277,7 +277,7 @@ def _swing(possible: PossibleSwing | None) -> SwingPreview | None:
 def _swing_example(possible: PossibleSwing, lengths: tuple[float, float, float]) -> SwingExample:
     from ..preview.swinging import positions
 
-    swing, design = possible.shown or possible.swing, np.array([lengths])
+    swing, design = possible.shown_swing or possible.swing, np.array([lengths])
     low, high = sorted((math.degrees(swing.start), math.degrees(swing.end)))
     # One point a degree; of a whole turn those of the swing, and one beyond each end with the place at that end.
     angles = range(math.floor(low), math.floor(high) + 2)

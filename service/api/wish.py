@@ -8,7 +8,7 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from ..designs.columns import all_columns
-from ..jobs.wish_history import told_wishes
+from ..jobs.wish_history import stated_wishes
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..questions.wish.analysis import answered
 from ..store.wishes import note_wish, wishes_of
@@ -99,7 +99,7 @@ def make_wish(stored_front: FrontDep, given: Any, store: StoreDep, units: UnitsP
         stored_front.wishes.wish(given.at, row=None if given.design is None else given.design - 1), given.at
     )
     record: dict[str, Any] = solved.record(units)
-    note_wish(store, stored_front.job.id, told_wishes(stored_front.front, solved.search_result.wishes), given.design)
+    note_wish(store, stored_front.job.id, stated_wishes(stored_front.front, solved.search_result.wishes), given.design)
     columns = column_models(all_columns(record["design"] or ()))
     return WishedModel(job=stored_front.job.id, columns=columns, **record)
 

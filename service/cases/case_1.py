@@ -40,7 +40,7 @@ def numbers() -> Numbers:
     )
     pin = polygons(linkage(), ANGLE).position[1]
     vertices = len(Polygons.POSITION) + len(Polygons.VELOCITY) + len(Polygons.ACCELERATION)
-    given = 9  # of each polygon the origin and the slider's line
+    given_coordinates = 9  # of each polygon the origin and the slider's line
     return Numbers(
         exact
         | {
@@ -48,7 +48,7 @@ def numbers() -> Numbers:
             "backsolved_speed": float(back.speed),
             "backsolved_acceleration": float(back.acceleration),
             "below_horizontal": -math.degrees(math.atan2(pin[1], pin[0])),
-            "given_coordinates": given,
-            "found_coordinates": 2 * vertices - given,
+            "given_coordinates": given_coordinates,
+            "found_coordinates": 2 * vertices - given_coordinates,
         }
     )

@@ -125,39 +125,39 @@ def formulas(t: float, e: float) -> dict[str, float]:
     k, c, w, m3 = CRANK, ROD, SPEED, masses()[1]
     sine, cosine = math.sin(t), math.cos(t)
     h = e + k * sine
-    under = c**2 - h**2
+    square_of_cosine = c**2 - h**2
 
     def equation_20(first: float, second: float) -> float:
-        one = w**2 * k * (k * math.cos(2.0 * t) - e * sine) / math.pow(under, first)
-        return -(w**2) * k * cosine - one - (w * k * cosine * h) ** 2 / math.pow(under, second)
+        term = w**2 * k * (k * math.cos(2.0 * t) - e * sine) / math.pow(square_of_cosine, first)
+        return -(w**2) * k * cosine - term - (w * k * cosine * h) ** 2 / math.pow(square_of_cosine, second)
 
     return {
-        "equation_10": 1e3 * ((k + c) - k * cosine + under**0.5),
-        "equation_13": w * k * sine + w * k * cosine * h / under**0.5,
+        "equation_10": 1e3 * ((k + c) - k * cosine + square_of_cosine**0.5),
+        "equation_13": w * k * sine + w * k * cosine * h / square_of_cosine**0.5,
         "equation_20": equation_20(1.5, 2.5),
         "equation_20_mended": equation_20(0.5, 1.5),
         "equation_22": math.degrees(math.asin(e / c + k / c * sine)),
-        "equation_27": w * k * cosine / under**0.5,
-        "equation_30": -(w**2) * k * sine / under**0.5 - (w * k * cosine) ** 2 * h / under**1.5,
+        "equation_27": w * k * cosine / square_of_cosine**0.5,
+        "equation_30": -(w**2) * k * sine / square_of_cosine**0.5 - (w * k * cosine) ** 2 * h / square_of_cosine**1.5,
         "equation_42b": m3
         * (
             w**2 * k * cosine
-            + w**2 * k * (k - 2.0 * k * sine**2 - sine) / under**0.5
-            - (w * k * cosine * h) ** 2 / under**1.5
+            + w**2 * k * (k - 2.0 * k * sine**2 - sine) / square_of_cosine**0.5
+            - (w * k * cosine * h) ** 2 / square_of_cosine**1.5
         ),
     }
 
 
 def _torques() -> dict[str, float]:
     """Return greatest torques, N m: exact ones and those of the paper's formula."""
-    found: dict[str, float] = {}
+    torques: dict[str, float] = {}
     machine = Mechanism(speed=SPEED, slider_mass=masses()[1])  # as the paper: all mass that moves, on the slider
     for offset in OFFSETS:
         name = f"{1e3 * offset:.0f}"
         designs = np.array([[CRANK, ROD, -offset]])
-        found[f"torque_{name}"] = float(find_peaks(machine, Signal.TORQUE, designs).values[0, 0])
-        found[f"formula_s_{name}"] = _greatest(partial(formula_torque, offset), 0.0, _TURN)
-        found[f"formula_20_{name}"] = _greatest(partial(formula_torque, offset, as_equation_20=True), 0.0, _TURN)
+        torques[f"torque_{name}"] = float(find_peaks(machine, Signal.TORQUE, designs).values[0, 0])
+        torques[f"formula_s_{name}"] = _greatest(partial(formula_torque, offset), 0.0, _TURN)
+        torques[f"formula_20_{name}"] = _greatest(partial(formula_torque, offset, as_equation_20=True), 0.0, _TURN)
     for offset in OFFSETS[1:]:
         inner, outer = (float(angle) for angle in linkage(offset).dead_centre_angles)
         strokes = {
@@ -165,8 +165,8 @@ def _torques() -> dict[str, float]:
             "return": (outer, outer + (inner - outer) % _TURN),
         }
         for stroke, ends in strokes.items():
-            found[f"{stroke}_torque_{1e3 * offset:.0f}"] = _greatest(partial(exact_torque, offset), *ends)
-    return found
+            torques[f"{stroke}_torque_{1e3 * offset:.0f}"] = _greatest(partial(exact_torque, offset), *ends)
+    return torques
 
 
 def _greatest(curve: Callable[[Array], Array], start: float, end: float) -> float:
@@ -176,10 +176,10 @@ def _greatest(curve: Callable[[Array], Array], start: float, end: float) -> floa
     angles = np.linspace(start, end, 2001)
     best = int(np.argmax(np.abs(curve(angles))))
     low, high = float(angles[max(best - 1, 0)]), float(angles[min(best + 1, len(angles) - 1)])
-    found = minimize_scalar(
+    minimum = minimize_scalar(
         lambda t: -float(np.abs(curve(np.array(t)))),
         bounds=(low, high),
         method="bounded",
         options={"xatol": 1e-11},
     )
-    return float(np.abs(curve(np.array(found.x))))
+    return float(np.abs(curve(np.array(minimum.x))))

@@ -33,9 +33,9 @@ def draw_cases(numbers: Sequence[int], folder: Path) -> Iterator[Path]:
 
 def polygon_figure() -> PanelFigure:
     """Return the polygons of case 1 (its Fig. 2)."""
-    found = both_branches(case_1.linkage(), case_1.ANGLE, speed=case_1.SPEED, acceleration=case_1.ACCELERATION)
+    polygons = both_branches(case_1.linkage(), case_1.ANGLE, speed=case_1.SPEED, acceleration=case_1.ACCELERATION)
     return polygon_panels(
-        found,
+        polygons,
         title="Case 1: position, velocity and acceleration polygons (Boyle and Liu, Fig. 2)",
         subtitle="crank 3, rod 8, offset 2 (no dimension); crank angle −30°, −15 rad/s, −10 rad/s²",
         units=("no dimension", "1/s", "1/s²"),
@@ -72,13 +72,13 @@ def sensitivity_figure() -> PanelFigure:
     designs = (("as designed", case_2.SIEVE), ("crank 150 mm", case_2.LONGER_CRANK), ("rod 320 mm", case_2.LONGER_ROD))
     designed, *changed = ((name, linkage.at(_TURN, speed=case_2.SPEED)) for name, linkage in designs)
     panels = tuple(
-        over_turns(title, *((name, factor * getattr(at, field)) for name, at in (designed, other)))
+        over_turns(title, *((name, factor * getattr(at, field)) for name, at in (designed, variant)))
         for title, field, factor in (
             ("slider position, mm", "slider_position", 1e3),
             ("slider velocity, m/s", "slider_velocity", 1.0),
             ("slider acceleration, m/s²", "slider_acceleration", 1.0),
         )
-        for other in changed
+        for variant in changed
     )
     return PanelFigure(
         "Case 2: one dimension changed at a time (ME748 report, Figs. 7 to 12)", _SIEVE, panels, columns=2
@@ -142,14 +142,14 @@ def position_error_figure() -> PanelFigure:
 def offset_figure() -> PanelFigure:
     """Return acceleration and inertia torque over two cycles for the three offsets (case 5, its Figs. 15 to 18)."""
     theta = np.linspace(0.0, 4.0 * math.pi, 2881)
-    exact, formula = (partial(of, crank_angle=theta) for of in (case_5.exact_torque, case_5.formula_torque))
+    exact, formula = (partial(torque, crank_angle=theta) for torque in (case_5.exact_torque, case_5.formula_torque))
     two_turns = partial(over_turns, theta=theta)
     centred = case_5.linkage(0.0)
     series = series_torque(centred, theta, speed=case_5.SPEED, reciprocating_mass=case_5.masses()[1])
 
     def acceleration(offset: float) -> Array:
-        found: Array = case_5.linkage(offset).at(theta, speed=case_5.SPEED).slider_acceleration
-        return found
+        acceleration_m_s2: Array = case_5.linkage(offset).at(theta, speed=case_5.SPEED).slider_acceleration
+        return acceleration_m_s2
 
     def over_offsets(title: str, curve: Callable[[float], Array]) -> Panel:
         return two_turns(title, *((f"e = {1e3 * offset:.0f} mm", curve(offset)) for offset in case_5.OFFSETS))

@@ -125,16 +125,16 @@ def _row(entry: Mapping[str, Any], numbers: Numbers) -> Row:
 def confirmed(entry: Mapping[str, Any], exact: float) -> bool:
     """Return whether a printed number is the exact one as far as it was printed.
 
-    within: how far off it may be; by default one unit of the last printed digit, since sources cut as well as round.
+    tolerance: how far off it may be; by default one unit of the last printed digit, since sources cut as well as round.
     decimals: printed digits behind the point where the source drops zeros at the end.
     """
     printed = str(entry["printed"])
     if printed.startswith("< "):
         return exact < number(printed)
     decimals = int(entry.get("decimals", len(printed.partition(".")[2])))
-    within = float(entry.get("within", 10.0**-decimals))
+    tolerance = float(entry.get("within", 10.0**-decimals))
     # Rounding of the difference itself must not decide.
-    return abs(exact - number(printed)) <= within * (1.0 + 1e-9) + 1e-9 * abs(exact)
+    return abs(exact - number(printed)) <= tolerance * (1.0 + 1e-9) + 1e-9 * abs(exact)
 
 
 def number(printed: str) -> float:

@@ -34,11 +34,11 @@ def show_case(screen: Console, case: Case, *, full: bool) -> None:
     reasons: list[str] = []
     folded = 0
     for _, group in groupby(case.rows, key=lambda row: row.key if full else row.column):
-        first, *more = cells = list(group)
+        first, *rest = cells = list(group)
         if first.why and first.why not in reasons:
             reasons.append(first.why)
         note = f" [{reasons.index(first.why) + 1}]" if first.why else ""
-        if more:
+        if rest:
             folded += len(cells)
             name = first.what.partition(" at ")[0]
             rows.add_row(name, f"{len(cells)} rows", "", first.unit, f"{_counted(cells)}{note}")

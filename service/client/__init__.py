@@ -21,7 +21,7 @@ from ...model.file_names import path_from_text
 from ..runs.result import Result, Row, read_row
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import result_from
-from .connection import Connection, Record, followed, given
+from .connection import Connection, Record, follow_events, without_none
 from .designs import Designs
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ class Client(Designs):
         key: str | None = None,
     ) -> Record:
         """Queue a copy of a job and return it. changes: to its tables, as a merge patch; None takes a key away."""
-        body = given(priority=priority, limits=None if limits is None else dict(limits))
+        body = without_none(priority=priority, limits=None if limits is None else dict(limits))
         body["changes"] = dict(changes or {})
         return self._connection.post(f"jobs/{number}/clone", body, key=key or uuid.uuid4().hex)
 
@@ -99,9 +99,9 @@ class Client(Designs):
 
         Each has what a list shows; `job` gives all of one, `front_points` some designs of several.
         """
-        query = {"state": list(states), "name": name, "limit": limit, **given(before=before)}
-        found: list[Record] = self._connection.ask("jobs", query)["jobs"]
-        return found
+        query = {"state": list(states), "name": name, "limit": limit, **without_none(before=before)}
+        listed: list[Record] = self._connection.ask("jobs", query)["jobs"]
+        return listed
 
     def job(self, number: int) -> Record:
         """Return where a job stands."""
@@ -113,8 +113,8 @@ class Client(Designs):
         At most 64 designs of each, in the first two objectives; in the order of their numbers, without jobs that are
         gone.
         """
-        found: list[Record] = self._connection.ask("front-points", {"job": list(numbers)})["fronts"]
-        return found
+        fronts: list[Record] = self._connection.ask("front-points", {"job": list(numbers)})["fronts"]
+        return fronts
 
     def tables(self, number: int) -> Record:
         """Return the tables of a job's file."""
@@ -137,19 +137,19 @@ class Client(Designs):
 
         after: only those after the event of this number. When the connection breaks, it goes on with the next event.
         """
-        return followed(self._connection, number, after)
+        return follow_events(self._connection, number, after)
 
     def wait(self, number: int, *, seconds: float | None = None) -> Record:
         """Wait until a job has ended, and return it. Raises `ServiceError` after so many seconds."""
         end = None if seconds is None else time.monotonic() + seconds
-        pause, most = _PAUSES
+        pause, longest = _PAUSES
         while (job := self.job(number))["state"] not in _ENDED:
             if end is not None and time.monotonic() + pause > end:
                 raise ServiceError(
                     f"job {number} must end within {seconds:g} s; it is {job['state']}; wait longer, or cancel it"
                 )
             time.sleep(pause)
-            pause = min(most, 1.5 * pause)
+            pause = min(longest, 1.5 * pause)
         return job
 
     def front(self, number: int) -> Result:
@@ -174,7 +174,7 @@ class Client(Designs):
         """
         import pandas as pd
 
-        query = {"where": list(where), "reverse": reverse, "limit": _PAGE, **given(sort=sort, columns=columns)}
+        query = {"where": list(where), "reverse": reverse, "limit": _PAGE, **without_none(sort=sort, columns=columns)}
         rows: list[Row] = []
         numbers: list[int] = []
         while True:
@@ -184,9 +184,9 @@ class Client(Designs):
             if not page["designs"] or len(rows) >= page["chosen"]:
                 break
         keys = [column["key"] for column in page["columns"]]
-        found = pd.DataFrame(rows, index=pd.Index(numbers, name="number"), columns=keys)
-        undefined = [key for key in keys if rows and found[key].isna().all()]
-        return found.astype(dict.fromkeys(undefined, "float64"))  # JSON has null for them, which is no number
+        table = pd.DataFrame(rows, index=pd.Index(numbers, name="number"), columns=keys)
+        undefined = [key for key in keys if rows and table[key].isna().all()]
+        return table.astype(dict.fromkeys(undefined, "float64"))  # JSON has null for them, which is no number
 
     def design(self, number: int, design: int) -> Row:
         """Return a design by its number in the front, counted from 1; the number comes first."""
@@ -206,7 +206,7 @@ class Client(Designs):
 
         topsis: weights, "peak_torque=2, transmission_angle=1". lexicographic: a ranking, "peak_torque: 5 %, crank".
         """
-        ways = given(knee=knee or None, topsis=topsis, lexicographic=lexicographic)
+        ways = without_none(knee=knee or None, topsis=topsis, lexicographic=lexicographic)
         return self._connection.ask(f"jobs/{number}/pick", {"where": list(where), **ways})
 
     def figures(self, number: int) -> list[str]:
@@ -249,8 +249,8 @@ class Client(Designs):
     ) -> Record:
         """Return all numbers of any design for a job. Lengths as "40 mm"; those that the job fixes may be left out."""
         body = {"job": tables_of(job), "crank": crank, "rod": rod, "offset": offset, "show": list(show)}
-        found: Record = self._connection.post("analyse", body)["analysis"]
-        return found
+        numbers: Record = self._connection.post("analyse", body)["analysis"]
+        return numbers
 
 
 def tables_of(job: JobSource) -> Record:

@@ -68,32 +68,32 @@ class Connection:
         tries = Tries(self)
         while True:
             try:
-                answer = self._http.request(method, path, **content)
+                response = self._http.request(method, path, **content)
             except httpx.TransportError as error:
                 if not (again or isinstance(error, _NEVER_SENT)):
                     raise self.unreachable(error) from error
                 tries.wait(error)
                 continue
-            if answer.status_code == _AWAY and again and tries.left:
+            if response.status_code == _AWAY and again and tries.has_patience:
                 tries.pause()
-            elif answer.status_code == 404 and method == "DELETE" and tries.made:
-                return answer  # an earlier try, whose answer was lost, has done it
-            elif answer.is_success:
-                return answer
+            elif response.status_code == 404 and method == "DELETE" and tries.made:
+                return response  # an earlier try, whose answer was lost, has done it
+            elif response.is_success:
+                return response
             else:
-                raise refusal(answer)
+                raise refusal(response)
 
     def post(self, path: str, body: Record | None = None, *, again: bool = True, key: str | None = None) -> Record:
         """Return the JSON that answers a body. key: of a submission."""
         headers = None if key is None else {"Idempotency-Key": key}
-        found: Record = self.request("POST", path, again=again, json=body, headers=headers).json()
-        return found
+        record: Record = self.request("POST", path, again=again, json=body, headers=headers).json()
+        return record
 
     def ask(self, path: str, query: Record | None = None, body: Record | None = None) -> Record:
         """Return the JSON at a path, or what answers a body there."""
         method = "GET" if body is None else "POST"
-        found: Record = self.request(method, path, again=True, params=query, json=body).json()
-        return found
+        record: Record = self.request(method, path, again=True, params=query, json=body).json()
+        return record
 
     def delete(self, path: str) -> None:
         """Delete what is at a path."""
@@ -102,11 +102,11 @@ class Connection:
     @contextmanager
     def stream(self, path: str, headers: Mapping[str, str]) -> Iterator[httpx.Response]:
         """Enter the answer to a GET before its content has come; raises httpx's errors, and as `refusal` says."""
-        with self._http.stream("GET", path, headers=dict(headers)) as answer:
-            if not answer.is_success:
-                answer.read()
-                raise refusal(answer)
-            yield answer
+        with self._http.stream("GET", path, headers=dict(headers)) as response:
+            if not response.is_success:
+                response.read()
+                raise refusal(response)
+            yield response
 
     def unreachable(self, error: Exception) -> ServiceError:
         """Return the error of a service that does not answer."""
@@ -125,7 +125,7 @@ class Tries:
         self._end = time.monotonic() + connection.patience
 
     @property
-    def left(self) -> bool:
+    def has_patience(self) -> bool:
         """Whether there is patience for another one."""
         return time.monotonic() < self._end
 
@@ -136,12 +136,12 @@ class Tries:
 
     def wait(self, error: Exception) -> None:
         """Wait before the next one after an error. Raises `ServiceError` if there is no patience left."""
-        if not self.left:
+        if not self.has_patience:
             raise error if isinstance(error, Away) else self._connection.unreachable(error) from error
         self.pause()
 
 
-def refusal(answer: httpx.Response) -> SlidercrankError:
+def refusal(response: httpx.Response) -> SlidercrankError:
     """Return the exception for a refusal of a service, with its sentence.
 
     `NotFound` for 404, `InputError` for an invalid request, `InfeasibleError` for a valid one that no design can
@@ -150,18 +150,18 @@ def refusal(answer: httpx.Response) -> SlidercrankError:
     """
     kind = None
     try:
-        document = answer.json()
+        document = response.json()
         detail, kind = str(document["detail"]), document.get("type")
     except (ValueError, KeyError, TypeError, AttributeError):
-        detail = f"the service answered {answer.status_code} {answer.reason_phrase}; see its log"
+        detail = f"the service answered {response.status_code} {response.reason_phrase}; see its log"
     if kind == _INFEASIBLE:
         return InfeasibleError(detail)
     kinds: dict[int, type[SlidercrankError]] = {404: NotFound, 409: RunError, _AWAY: Away}
     kinds |= dict.fromkeys((400, 413, 415, 422), InputError)
-    return kinds.get(answer.status_code, ServiceError)(detail)
+    return kinds.get(response.status_code, ServiceError)(detail)
 
 
-def followed(connection: Connection, number: int, after: int) -> Iterator[Event]:
+def follow_events(connection: Connection, number: int, after: int) -> Iterator[Event]:
     """Yield the events of a job after a given one as they happen, until the service has no more.
 
     Every connection says which event came last, so none is missed and none comes twice.
@@ -170,10 +170,10 @@ def followed(connection: Connection, number: int, after: int) -> Iterator[Event]
     while True:
         headers = {"Accept": "text/event-stream", "Last-Event-ID": str(after)}
         try:
-            with connection.stream(f"jobs/{number}/events", headers) as answer:
-                if answer.status_code == _ENDED:
+            with connection.stream(f"jobs/{number}/events", headers) as response:
+                if response.status_code == _ENDED:
                     return
-                for event in _events(answer.iter_lines()):
+                for event in _events(response.iter_lines()):
                     tries = Tries(connection)
                     if event is not None:
                         after = int(event["number"])
@@ -202,6 +202,6 @@ def _events(lines: Iterator[str]) -> Iterator[Event | None]:
             data = []
 
 
-def given(**options: Any) -> Record:
+def without_none(**options: Any) -> Record:
     """Return the options that are not None."""
     return {name: value for name, value in options.items() if value is not None}

@@ -11,7 +11,7 @@ from urllib.parse import quote
 from ...model.errors import InputError
 from ...objectives.kinds import System
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS, QUESTION_COMMANDS
-from .connection import Connection, Record, given
+from .connection import Connection, Record, without_none
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -27,7 +27,7 @@ class Designs:
 
     def analysis(self, number: int, design: int, *, show: Collection[str] = ()) -> Record:
         """Return all numbers of a design, and of each topic of `show` an object: what `analyse --json` prints."""
-        return self._asked(number, design, "analysis", {"show": list(show)})
+        return self._ask_design(number, design, "analysis", {"show": list(show)})
 
     def ask(self, number: int, design: int | None, question: str, /, **inputs: object) -> Record:
         """Return the answer to a question as `--json` prints it: a topic of `analyse --show`, or a command.
@@ -42,10 +42,10 @@ class Designs:
         if design is None:
             raise InputError(f"{question} needs a design; got none; give its number")
         if question in QUESTION_COMMANDS:
-            return self._asked(number, design, question, given(**inputs))
+            return self._ask_design(number, design, question, without_none(**inputs))
         path = f"jobs/{number}/designs/{design}/topics/{quote(question, safe='')}"
-        found: Record = self._connection.ask(path, given(**inputs))["numbers"]
-        return found
+        numbers: Record = self._connection.ask(path, without_none(**inputs))["numbers"]
+        return numbers
 
     def inverse(
         self,
@@ -77,13 +77,13 @@ class Designs:
 
     def wishes(self, number: int) -> list[Record]:
         """Return the wishes made of the front of a job, the latest first, with design and time."""
-        found: list[Record] = self._connection.ask(f"jobs/{number}/wishes")["made"]
-        return found
+        made: list[Record] = self._connection.ask(f"jobs/{number}/wishes")["made"]
+        return made
 
     def kept(self, number: int) -> list[Record]:
         """Return the kept designs of a job: name, note, star, decision and all numbers of each."""
-        found: list[Record] = self._connection.ask(f"jobs/{number}/kept")["designs"]
-        return found
+        bookmarks: list[Record] = self._connection.ask(f"jobs/{number}/kept")["designs"]
+        return bookmarks
 
     def keep(
         self,
@@ -102,8 +102,8 @@ class Designs:
     def change_kept(self, number: int, kept: int, **changes: Any) -> Record:
         """Change name, note, star, decided or reason of a kept design and return it."""
         path = f"jobs/{number}/kept/{kept}"
-        found: Record = self._connection.request("PATCH", path, again=True, json=changes).json()
-        return found
+        bookmark: Record = self._connection.request("PATCH", path, again=True, json=changes).json()
+        return bookmark
 
     def drop_kept(self, number: int, kept: int) -> None:
         """Delete a kept design."""
@@ -117,7 +117,7 @@ class Designs:
         from ..designs.measured_file import measured_text
 
         text = csv if isinstance(csv, str) and "\n" in csv else measured_text(Path(csv))
-        return self._asked(number, design, "measured", body={"csv": text})
+        return self._ask_design(number, design, "measured", body={"csv": text})
 
     def rounded(
         self,
@@ -142,22 +142,22 @@ class Designs:
         """Return slider motion, torque, transmission angle and joint forces of a design over a turn of the crank."""
         import pandas as pd
 
-        found = self._asked(number, design, "curves", {"angles": angles})
-        return pd.DataFrame(found).set_index("crank_angle_deg")
+        columns = self._ask_design(number, design, "curves", {"angles": angles})
+        return pd.DataFrame(columns).set_index("crank_angle_deg")
 
     def _ask_wider(
-        self, of: FrontOrJobQuestion, number: int, design: int | None, inputs: Record, units: System = "metric"
+        self, question: FrontOrJobQuestion, number: int, design: int | None, inputs: Record, units: System = "metric"
     ) -> Record:
         """Return the answer of a front, or of what it knows of one of its designs."""
-        asked = of.read(inputs, design) | (given(design=design) if of.row == "may" else {})
-        path = of.path.format(number=number, design=design)
-        found = self._connection.ask(path, *(({"units": units}, asked) if of.posted else (asked,)))
-        return found[of.key] if of.key else found
+        query = question.read(inputs, design) | (without_none(design=design) if question.row == "may" else {})
+        path = question.path.format(number=number, design=design)
+        record = self._connection.ask(path, *(({"units": units}, query) if question.posted else (query,)))
+        return record[question.key] if question.key else record
 
-    def _asked(
-        self, number: int, design: int, what: str, query: Record | None = None, body: Record | None = None
+    def _ask_design(
+        self, number: int, design: int, topic: str, query: Record | None = None, body: Record | None = None
     ) -> Record:
         """Return the answer to a question about a design, posted where it has a body."""
-        path = f"jobs/{number}/designs/{design}/{what}"
-        found: Record = self._connection.ask(path, query, body)[what]
-        return found
+        path = f"jobs/{number}/designs/{design}/{topic}"
+        record: Record = self._connection.ask(path, query, body)[topic]
+        return record

@@ -12,7 +12,7 @@ import typer
 from ...model.errors import InputError, StoreError
 from ...model.file_names import path_text
 from ...objectives.kinds import System
-from ..jobs.wish_history import keep_wish, told_wishes, wishes_of_run, words_of
+from ..jobs.wish_history import keep_wish, stated_wishes, wishes_of_run, words_of
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..render.terminal import print_blocks
 from ..runs.result import json_text
@@ -64,7 +64,7 @@ def wish(
         row = None if number is None else number - 1
         solved = QUESTION.ask(front, inputs, row=row, words=QUESTION.flags)
     with contextlib.suppress(StoreError):  # a store that cannot be written keeps nobody from the answer
-        keep_wish(folder, told_wishes(front, solved.search_result.wishes), number)
+        keep_wish(folder, stated_wishes(front, solved.search_result.wishes), number)
     if json:
         wishes = QUESTION.read(inputs, row, QUESTION.flags)["at"]
         print_output(json_text({"run": path_text(folder), "wishes": wishes} | solved.record(units)))

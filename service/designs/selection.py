@@ -214,7 +214,7 @@ def result_part(result: Result, rows: Sequence[int]) -> Result:
     return replace(
         result,
         designs=[result.designs[row] for row in rows],
-        exact=None if result.exact is None else result.exact.of(rows),
+        exact=None if result.exact is None else result.exact.select(rows),
         extremes={name: place[row] for name, row in result.extremes.items() if row in place},
         knee=knee,
         trade_offs=[] if knee is None else result.trade_offs,

@@ -93,7 +93,7 @@ def robustness_figure(front: ParetoFront) -> Figure | None:
         PlottedRun(f"robust front, within tolerances ({kind})", comparison.robust),
         PlottedRun(
             f"nominal front's designs within tolerances, {comparison.keeps} keep all requirements",
-            np.where(np.isfinite(comparison.within), comparison.within, np.nan),
+            np.where(np.isfinite(comparison.toleranced), comparison.toleranced, np.nan),
         ),
     ]
     notes = ["Cost of robustness, best design of each front:"]

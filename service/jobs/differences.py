@@ -14,8 +14,8 @@ def differences(jobs: Sequence[Mapping[str, Any]]) -> list[tuple[str, tuple[str 
     None where a job has nothing. Names and descriptions are left out.
     """
     flat = [dict(_leaves(job, "")) for job in jobs]
-    places = dict.fromkeys(place for one in flat for place in one)
-    rows = [(place, tuple(one.get(place) for one in flat)) for place in places]
+    places = dict.fromkeys(place for leaves in flat for place in leaves)
+    rows = [(place, tuple(leaves.get(place) for leaves in flat)) for place in places]
     return [(place, values) for place, values in rows if place not in _LEFT_OUT and len(set(values)) > 1]
 
 

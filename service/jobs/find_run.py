@@ -26,7 +26,7 @@ def find_run(text: str, place: Path) -> Path:
     """
     if (text == "latest" or not Path(text).exists()) and has_store(None, place):
         with open_store(None, place) as store:
-            job = _asked(store, text, place)
+            job = _stored_job(store, text, place)
             if job is not None:
                 return export_job(store, job, place)
     return find_folder(text, place)
@@ -47,7 +47,7 @@ def export_job(store: Store, job: Job, place: Path) -> Path:
     return path
 
 
-def _asked(store: Store, text: str, place: Path) -> Job | None:
+def _stored_job(store: Store, text: str, place: Path) -> Job | None:
     """Return the job that is meant, None if a folder is."""
     if text.isdecimal():
         try:
@@ -84,8 +84,8 @@ def find_folder(text: str, place: Path) -> Path:
     if len(matches) == 1:
         return place / matches[0]
     if matches:
-        some = ", ".join(matches[:4]) + (", ..." if len(matches) > 4 else "")
-        raise InputError(f"the start of a run's name must be unique; {text!r} matches {some}; give more of it")
+        examples = ", ".join(matches[:4]) + (", ..." if len(matches) > 4 else "")
+        raise InputError(f"the start of a run's name must be unique; {text!r} matches {examples}; give more of it")
     last = f"; the latest is {names[-1]}" if names else ""
     raise InputError(f"there is no run {path_text(text)!r}, neither as a folder nor in {place}{last}")
 

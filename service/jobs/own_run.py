@@ -27,15 +27,15 @@ def _is_patient(waited: float) -> bool:
     return waited < _PATIENCE
 
 
-def files_of(job: Path, beside: Sequence[Path]) -> list[Artefact]:
+def files_of(job: Path, attached: Sequence[Path]) -> list[Artefact]:
     """Return a job file and the files beside it that it names, as they are kept in the store."""
-    kept = {
+    files = {
         f"job{job.suffix.lower()}": job,
-        **{path_text(file.relative_to(job.parent).as_posix()): file for file in beside},
+        **{path_text(file.relative_to(job.parent).as_posix()): file for file in attached},
     }
     return [
         Artefact(name=name, media_type=_MEDIA.get(file.suffix.lower(), "text/plain"), content=file.read_bytes())
-        for name, file in kept.items()
+        for name, file in files.items()
     ]
 
 
@@ -58,20 +58,20 @@ def stopped_job(store: Store, text: str, place: Path) -> Job:
         job = store.job(int(text))
     else:
         folder = find_folder(text, place)
-        found = store.find(folder.name)
-        if found is None:
+        stored = store.find(folder.name)
+        if stored is None:
             raise InputError(
                 f"a run can only continue from its records in the store; {folder.name} is not in {store.name}; run "
                 "its job again"
             )
-        job = found
+        job = stored
     if not (job.state in RESUMABLE or _is_left(job)):
         raise _refused(job)
     return job
 
 
 def folder_of(store: Store, job: Job, place: Path) -> RunFolder:
-    """Return the folder of a job to be resumed, left as it is; a new one if it has none in this place."""
+    """Return the folder of a job to be resumed, unchanged, or a new one if there is none here."""
     path = place / job.run
     if path.is_dir():
         return RunFolder.again(path)
@@ -95,7 +95,7 @@ def take_up(store: Store, job: Job) -> Claim:
 
 
 def _is_left(job: Job) -> bool:
-    """Whether a job is running by the command line, whose process has ended if the folder of the run is free."""
+    """Whether the command line claims to run a job; its process has ended if the folder is free."""
     return job.state == "running" and (job.worker or "").startswith(_WORKER)
 
 
@@ -104,7 +104,7 @@ def _refused(job: Job) -> InputError:
 
 
 @contextlib.contextmanager
-def told(claim: Claim, *, again: str = "") -> Iterator[None]:
+def end_job_on_error(claim: Claim, *, again: str = "") -> Iterator[None]:
     """While entered, an error ends the job in the store too, so that it can be resumed at once.
 
     again: the command that goes on with the run; none where its store lasts no longer than the run.

@@ -57,7 +57,7 @@ def functions_of(tables: Mapping[str, Any]) -> dict[str, str]:
     from ...objectives.own.quantity import FUNCTION
     from ...objectives.units import quote
 
-    parts, found = tables.get("quantity", {}), {}
+    parts, functions = tables.get("quantity", {}), {}
     write = 'write it like { function = "mymodule:myfunction" }'
     if not isinstance(parts, Mapping):
         raise JobError(f"quantity: must be a table of tables, each with a function; got {quote(parts)}; leave it out")
@@ -68,18 +68,20 @@ def functions_of(tables: Mapping[str, Any]) -> dict[str, str]:
             continue  # runs nothing
         function = part.get("function")
         if not (isinstance(function, str) and FUNCTION.fullmatch(function)):
-            got = f"got {quote(function)}" if "function" in part else "it is missing"
-            raise JobError(f"quantity.{name[:60]}.function: must name a module and a function in it; {got}; {write}")
-        found[name] = function
-    return found
+            shown_value = f"got {quote(function)}" if "function" in part else "it is missing"
+            raise JobError(
+                f"quantity.{name[:60]}.function: must name a module and a function in it; {shown_value}; {write}"
+            )
+        functions[name] = function
+    return functions
 
 
 def _refused(name: str, function: str, allowed: Collection[str]) -> JobError:
     from ...objectives.units import quote
 
-    here = f"choose from {', '.join(sorted(allowed))}, have it allowed" if allowed else "have it allowed"
+    remedy = f"choose from {', '.join(sorted(allowed))}, have it allowed" if allowed else "have it allowed"
     return JobError(
-        f"quantity.{name[:60]}: only functions that the operator allows may run here; got {quote(function)}; {here} "
+        f"quantity.{name[:60]}: only functions that the operator allows may run here; got {quote(function)}; {remedy} "
         f"(serve, worker or mcp with --allow-quantity {function[:200]}), or solve the job with `slidercrank optimise`"
     )
 

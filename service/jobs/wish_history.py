@@ -1,4 +1,4 @@
-"""Wishes that were made of a run, wherever they were made: those of its job in the store of its place."""
+"""Wishes for the front of a run: those stored with its job."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ if TYPE_CHECKING:
     from ..store.wishes import MadeWish, Wished
 
 
-def told_wishes(front: ParetoFront, wishes: Sequence[Wish]) -> dict[str, tuple[str, float | None]]:
+def stated_wishes(front: ParetoFront, wishes: Sequence[Wish]) -> dict[str, tuple[str, float | None]]:
     """Return wishes by their objectives, free ones left out, with values in the metric units of these."""
-    told: dict[str, tuple[str, float | None]] = {}
+    stated: dict[str, tuple[str, float | None]] = {}
     for objective, wish in zip(front.objectives, wishes, strict=True):
         factor = front.problem.quantity(objective.quantity).unit.factor
         if wish.kind != "free":
-            told[objective.quantity] = (wish.kind, None if wish.value is None else wish.value * factor)
-    return told
+            stated[objective.quantity] = (wish.kind, None if wish.value is None else wish.value * factor)
+    return stated
 
 
-def words_of(front: ParetoFront, told: Wished) -> dict[str, str]:
-    """Return wishes of `told_wishes` as they are asked for: "110 N m", "improve", "may worsen to 40 deg"."""
+def words_of(front: ParetoFront, stated: Wished) -> dict[str, str]:
+    """Return wishes of `stated_wishes` as they are asked for: "110 N m", "improve", "may worsen to 40 deg"."""
     words = {}
-    for name, (kind, value) in told.items():
+    for name, (kind, value) in stated.items():
         unit = front.problem.quantity(name).unit.symbol
         number = "" if value is None else f"{value!r} {unit}".rstrip()
         words[name] = {"value": number, "limit": f"may worsen to {number}"}.get(kind, kind)
@@ -37,21 +37,21 @@ def words_of(front: ParetoFront, told: Wished) -> dict[str, str]:
 
 
 def wishes_of_run(folder: Path) -> list[MadeWish]:
-    """Return the wishes that were made of the run of a folder, the latest first; none of a run without a job."""
+    """Return the wishes for the run of a folder, latest first; none for a run without a job."""
     from ..store.wishes import wishes_of
 
-    with _job(folder) as found:
-        return wishes_of(*found) if found else []
+    with _job(folder) as store_and_job:
+        return wishes_of(*store_and_job) if store_and_job else []
 
 
-def keep_wish(folder: Path, given: Wished, design: int | None) -> bool:
+def keep_wish(folder: Path, wishes: Wished, design: int | None) -> bool:
     """Note a wish among those of the run of a folder; return whether it has a job that keeps it."""
     from ..store.wishes import note_wish
 
-    with _job(folder) as found:
-        if found:
-            note_wish(*found, given, design)
-        return found is not None
+    with _job(folder) as store_and_job:
+        if store_and_job:
+            note_wish(*store_and_job, wishes, design)
+        return store_and_job is not None
 
 
 @contextmanager

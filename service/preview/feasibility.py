@@ -84,25 +84,25 @@ def possible(problem: Problem) -> Possible:
     box = designs_of(free, _SAMPLES)
     turning = _turns(box)
     light, costly = _light(problem)
-    made = within(PATIENCE, lambda: screened(problem)) if costly else None
-    found, violation = screened(light) if made is None else made
+    screening = run_within(PATIENCE, lambda: screened(problem)) if costly else None
+    designs, violation = screened(light) if screening is None else screening
     feasible = violation <= FEASIBLE
-    if made is None:
+    if screening is None:
         hardest = _hardest(light, box[turning])
     else:
-        hardest = within(PATIENCE, lambda: _hardest(problem, box[turning][:_BATCH]))
+        hardest = run_within(PATIENCE, lambda: _hardest(problem, box[turning][:_BATCH]))
     return Possible(
         turning=float(turning.mean()),
-        stroke=_reach(light, "stroke"),
-        time_ratio=_reach(light, "time_ratio"),
-        transmission_angle=_reach(light, "transmission_angle"),
-        slow_strokes=_slow_strokes(light, found[feasible] if feasible.any() else box[turning]),
+        stroke=_possible_ends(light, "stroke"),
+        time_ratio=_possible_ends(light, "time_ratio"),
+        transmission_angle=_possible_ends(light, "transmission_angle"),
+        slow_strokes=_slow_strokes(light, designs[feasible] if feasible.any() else box[turning]),
         feasible=float(feasible.mean()) if len(feasible) else 0.0,
         sampled=len(feasible),
         hardest=hardest,
-        example=lengths_of(example_of(found, violation, box[turning])),
+        example=lengths_of(example_of(designs, violation, box[turning])),
         example_feasible=bool(feasible.any()),
-        unchecked=costly if made is None else (),
+        unchecked=costly if screening is None else (),
     )
 
 
@@ -121,24 +121,24 @@ def designs_of(problem: Problem, count: int) -> Array:
     """
     parts = []
     for index, branch in enumerate(elimination_branches(problem)):
-        parts.append(branch.dimensions(first_samples(count, len(branch.free), 1, index))[:, _kept(problem)])
+        parts.append(branch.dimensions(first_samples(count, len(branch.free), 1, index))[:, _shown_columns(problem)])
     return np.concatenate(parts)
 
 
-def _kept(problem: Problem) -> list[int]:
+def _shown_columns(problem: Problem) -> list[int]:
     """Return the columns of designs that are shown: the three lengths, and where a swing starts if they choose it."""
     column = start_column(problem.mechanism)
     return [0, 1, 2, *([] if column is None else [column])]
 
 
 def _slow_strokes(problem: Problem, designs: Array) -> tuple[str, ...]:
-    """Return which strokes are the slow ones of designs (n, 3) that turn fully; equal ones if there are no others."""
+    """Return the slow strokes that occur among fully rotating designs (n, 3); "equal" only if no others do."""
     if not len(designs):
         return ()
     machine = problem.mechanism
     crank, rod, offset = designs.T
-    found = {str(one) for one in slow_stroke(machine, Linkage(crank, rod, offset, machine.branch))}
-    return tuple(sorted(found - {"equal"} or found))
+    strokes = {str(stroke) for stroke in slow_stroke(machine, Linkage(crank, rod, offset, machine.branch))}
+    return tuple(sorted(strokes - {"equal"} or strokes))
 
 
 def _turns(designs: Array) -> NDArray[np.bool_]:
@@ -150,14 +150,14 @@ def _turns(designs: Array) -> NDArray[np.bool_]:
 def screened(problem: Problem) -> tuple[Array, Array]:
     """Return designs as `designs_of` and their greatest relative violation (n,), as many as a moment allows."""
     end = time.monotonic() + _MOMENT
-    kept = _kept(problem)
-    designs, violations = [np.zeros((0, len(kept)))], [np.zeros(0)]
+    columns = _shown_columns(problem)
+    designs, violations = [np.zeros((0, len(columns)))], [np.zeros(0)]
     for index, branch in enumerate(elimination_branches(problem)):
         evaluator = Evaluator(problem, branch)
         points = first_samples(_SAMPLES, evaluator.dimension, 1, index)
         for begin in range(0, len(points), _BATCH):
-            found, _, violation = evaluator.screen(points[begin : begin + _BATCH])
-            designs.append(found[:, kept])
+            screened_designs, _, violation = evaluator.screen(points[begin : begin + _BATCH])
+            designs.append(screened_designs[:, columns])
             violations.append(violation)
             if time.monotonic() > end:
                 break
@@ -165,15 +165,15 @@ def screened(problem: Problem) -> tuple[Array, Array]:
 
 
 @lru_cache(maxsize=48)  # most of what is typed between two looks leaves ranges and requirements as they are
-def _reach(problem: Problem, name: str) -> Ends | None:
+def _possible_ends(problem: Problem, name: str) -> Ends | None:
     """Return the ends of a closed form while the other requirements on the dimensions hold."""
-    others = tuple(c for c in constraints_of(problem) if is_closed(c.quantity) and c.quantity != name)
+    constraints = tuple(c for c in constraints_of(problem) if is_closed(c.quantity) and c.quantity != name)
     if name == "transmission_angle":
-        others = (*others, Constraint(quantity=name, lower=_FLATTEST))
-    alone = replace(problem, constraints=others)
+        constraints = (*constraints, Constraint(quantity=name, lower=_FLATTEST))
+    alone = replace(problem, constraints=constraints)
     ends = [_ends(alone, name, branch, index) for index, branch in enumerate(elimination_branches(alone))]
-    found = [pair for pair in ends if pair is not None]
-    return (min(low for low, _ in found), max(high for _, high in found)) if found else None
+    pairs = [pair for pair in ends if pair is not None]
+    return (min(low for low, _ in pairs), max(high for _, high in pairs)) if pairs else None
 
 
 def _ends(problem: Problem, name: str, branch: EliminationBranch, index: int) -> Ends | None:
@@ -183,22 +183,22 @@ def _ends(problem: Problem, name: str, branch: EliminationBranch, index: int) ->
     if not np.isfinite(values).any():
         return None
     random = generator(1, 100 + index)
-    found = []
+    ends = []
     for sign in (-1.0, 1.0):
-        best, worth = points, np.where(np.isfinite(values), sign * values, -np.inf)
+        best, merits = points, np.where(np.isfinite(values), sign * values, -np.inf)
         for width in _WIDTHS if len(branch.free) else ():
-            rows = np.argsort(-worth, kind="stable")[:_PARENTS]
-            rows = rows[np.isfinite(worth[rows])]
+            rows = np.argsort(-merits, kind="stable")[:_PARENTS]
+            rows = rows[np.isfinite(merits[rows])]
             children = np.repeat(best[rows], _CHILDREN, axis=0)
             step = width * random.standard_normal(children.shape)
             stays = random.random(children.shape) < _STAYS  # extremes lie on faces and edges, along which one moves
             children = np.clip(children + np.where(stays, 0.0, step), 0.0, 1.0)
-            more = _values(problem, name, branch.dimensions(children)[:, :3])
+            child_values = _values(problem, name, branch.dimensions(children)[:, :3])
             best = np.concatenate([best[rows], children])
-            worth = np.concatenate([worth[rows], np.where(np.isfinite(more), sign * more, -np.inf)])
-        start = best[np.argsort(-worth, kind="stable")[:_POLISHED]]
-        found.append(sign * max(float(worth.max()), _polished(problem, name, branch, sign, start)))
-    return found[0], found[1]
+            merits = np.concatenate([merits[rows], np.where(np.isfinite(child_values), sign * child_values, -np.inf)])
+        start = best[np.argsort(-merits, kind="stable")[:_POLISHED]]
+        ends.append(sign * max(float(merits.max()), _polished(problem, name, branch, sign, start)))
+    return ends[0], ends[1]
 
 
 def _polished(problem: Problem, name: str, branch: EliminationBranch, sign: float, start: Array) -> float:
@@ -206,14 +206,14 @@ def _polished(problem: Problem, name: str, branch: EliminationBranch, sign: floa
 
     Its own requirement apart, all others of the problem hold.
     """
-    wanted = Objective(quantity=name, sense="maximise" if sign > 0.0 else "minimise")
-    evaluator = Evaluator(replace(problem, objectives=(wanted,)), branch)
+    objective = Objective(quantity=name, sense="maximise" if sign > 0.0 else "minimise")
+    evaluator = Evaluator(replace(problem, objectives=(objective,)), branch)
     start = start[evaluator.valid(start)]
     if not branch.free or not len(start):
         return -np.inf
-    found = polish(evaluator, start, np.ones(1))
-    good = found.violation <= FEASIBLE
-    return float(-found.values[good, 0].min()) if good.any() else -np.inf
+    polished = polish(evaluator, start, np.ones(1))
+    good = polished.violation <= FEASIBLE
+    return float(-polished.values[good, 0].min()) if good.any() else -np.inf
 
 
 def _on_edges(problem: Problem, branch: EliminationBranch) -> Iterator[Array]:
@@ -224,10 +224,10 @@ def _on_edges(problem: Problem, branch: EliminationBranch) -> Iterator[Array]:
                 continue
             edge = replace(constraint, lower=end, upper=end)
             rest = (*problem.constraints[:place], edge, *problem.constraints[place + 1 :])
-            for other in elimination_branches(replace(problem, constraints=rest)):
-                designs = other.dimensions(first_samples(_ON_EDGE, len(other.free), 1, place))[:, :3]
-                designs = designs[_turns(designs) & _inside(problem, designs)]
-                if other.sign == branch.sign and len(designs):
+            for branch_on_edge in elimination_branches(replace(problem, constraints=rest)):
+                designs = branch_on_edge.dimensions(first_samples(_ON_EDGE, len(branch_on_edge.free), 1, place))[:, :3]
+                designs = designs[_turns(designs) & _is_within_ranges(problem, designs)]
+                if branch_on_edge.sign == branch.sign and len(designs):
                     columns = [np.abs(designs[:, DIMENSIONS.index(free)]) for free in branch.free]
                     points = (np.stack(columns, axis=1) - branch.lower) / (branch.upper - branch.lower)
                     yield np.clip(points, 0.0, 1.0)
@@ -236,15 +236,15 @@ def _on_edges(problem: Problem, branch: EliminationBranch) -> Iterator[Array]:
 def _values(problem: Problem, name: str, designs: Array) -> Array:
     """Return a closed form of designs (n, 3); NaN where one does not turn or breaks a dimensional requirement."""
     values = np.full(len(designs), np.nan)
-    rows = np.flatnonzero(_turns(designs) & _inside(problem, designs))
+    rows = np.flatnonzero(_turns(designs) & _is_within_ranges(problem, designs))
     for constraint in problem.constraints:
-        own = QUANTITIES[constraint.quantity].evaluate(problem.mechanism, designs[rows]).values
-        rows = rows[_meets(constraint, own)]
+        constrained = QUANTITIES[constraint.quantity].evaluate(problem.mechanism, designs[rows]).values
+        rows = rows[_meets(constraint, constrained)]
     values[rows] = QUANTITIES[name].evaluate(problem.mechanism, designs[rows]).values
     return values
 
 
-def _inside(problem: Problem, designs: Array) -> NDArray[np.bool_]:
+def _is_within_ranges(problem: Problem, designs: Array) -> NDArray[np.bool_]:
     """Whether dimensions that were computed from equalities lie in their ranges."""
     good = np.ones(len(designs), dtype=bool)
     for column, name in enumerate(DIMENSIONS):
@@ -276,13 +276,13 @@ def _hardest(problem: Problem, designs: Array) -> tuple[str, float] | None:
     return min(shares.items(), key=lambda item: item[1]) if shares else None
 
 
-def example_of(designs: Array, violation: Array, others: Array) -> Array | None:
+def example_of(designs: Array, violation: Array, fallback: Array) -> Array | None:
     """Return the design in the middle of those that meet everything, else the nearest to that, else of others."""
     if (feasible := violation <= FEASIBLE).any():
         return _middle_of(designs[feasible])
     if np.isfinite(violation).any():
         return _middle_of(designs[[int(np.nanargmin(violation))]])
-    return _middle_of(others) if len(others) else None
+    return _middle_of(fallback) if len(fallback) else None
 
 
 def lengths_of(design: Array | None) -> tuple[float, float, float] | None:
@@ -297,14 +297,14 @@ def _middle_of(designs: Array) -> Array:
     return np.asarray(designs[int(np.argmin(((scaled - np.median(scaled, axis=0)) ** 2).sum(axis=1)))])
 
 
-def within(seconds: float, work: Callable[[], T]) -> T | None:
+def run_within(seconds: float, work: Callable[[], T]) -> T | None:
     """Return the result of the work, or None if it takes longer, or while earlier work still goes on, aside."""
-    done: list[T] = []
+    results: list[T] = []
     failed: list[Exception] = []
 
     def run() -> None:
         try:
-            done.append(work())
+            results.append(work())
         except Exception as error:  # noqa: BLE001 - raised again where it is waited for
             failed.append(error)
         finally:
@@ -317,4 +317,4 @@ def within(seconds: float, work: Callable[[], T]) -> T | None:
     thread.join(seconds)
     if failed:
         raise failed[0]
-    return done[0] if done else None
+    return results[0] if results else None

@@ -25,19 +25,19 @@ _MOST_POINTS = 100
 """Points of tabulated loads; each is a breakpoint of every curve, and costs its share of every sampled design."""
 
 
-def geometry(tables: Mapping[str, Any], whole: Problem | None) -> Problem | None:
+def geometry(tables: Mapping[str, Any], full_problem: Problem | None) -> Problem | None:
     """Return the problem of crank, rod and offset that a job states; None while there is none.
 
     None while their ranges cannot be read, and of a swing.
 
-    whole: the problem of the whole job, if it is valid. Of several options the first one counts. Requirements that need
-    the machine are left out without it, those that only a search can afford always.
+    full_problem: that of the whole job, if it is valid; of several options the first counts. Requirements that need
+    the machine are left out without it, and those that only a search can afford always.
     """
     ranges, motion = ranges_of(tables.get("variables")), tables.get("motion")
     if ranges is None or (isinstance(motion, Mapping) and motion.get("kind") == "swing"):
         return None
-    machine = _turning(tables.get("mechanism")) if whole is None else whole.part(0).mechanism.nominal
-    with_machine = whole is not None and sum(len(load.knots()[0]) for load in machine.loads) <= _MOST_POINTS
+    machine = _turning(tables.get("mechanism")) if full_problem is None else full_problem.part(0).mechanism.nominal
+    with_machine = full_problem is not None and sum(len(load.knots()[0]) for load in machine.loads) <= _MOST_POINTS
     problem = Problem(
         name="preview",
         mechanism=machine,
@@ -46,8 +46,8 @@ def geometry(tables: Mapping[str, Any], whole: Problem | None) -> Problem | None
         offset=ranges["offset"],
         objectives=(Objective(quantity="stroke", sense="minimise"),),
     )
-    found = _constraints(tables.get("constraints"), with_machine=with_machine)
-    constraints = tuple(c for c in found if not problem.quantity(c.quantity).undefined_because([machine]))
+    readable = _constraints(tables.get("constraints"), with_machine=with_machine)
+    constraints = tuple(c for c in readable if not problem.quantity(c.quantity).undefined_because([machine]))
     if not with_machine:
         problem = replace(problem, mechanism=massless_machine(machine))
     return _with_slow_stroke(replace(problem, constraints=constraints), tables.get("constraints"))
@@ -55,22 +55,22 @@ def geometry(tables: Mapping[str, Any], whole: Problem | None) -> Problem | None
 
 def left_out(tables: Mapping[str, Any], problem: Problem) -> list[str]:
     """Return the requirements of a job that its geometry does not have, by their names."""
-    given = tables.get("constraints")
-    kept = {constraint.quantity for constraint in problem.constraints} | {"slow_stroke"}
-    return [str(name)[:60] for name in given if name not in kept][:40] if isinstance(given, Mapping) else []
+    stated = tables.get("constraints")
+    used = {constraint.quantity for constraint in problem.constraints} | {"slow_stroke"}
+    return [str(name)[:60] for name in stated if name not in used][:40] if isinstance(stated, Mapping) else []
 
 
 def _with_slow_stroke(problem: Problem, part: object) -> Problem:
     """Return the problem with the slow stroke that a job asks for, if its ranges have one."""
-    asked = part.get("slow_stroke") if isinstance(part, Mapping) else None
-    if asked not in ("outward", "inward"):
+    stroke = part.get("slow_stroke") if isinstance(part, Mapping) else None
+    if stroke not in ("outward", "inward"):
         return problem
     try:
-        found = replace(problem, slow_stroke=asked)
-        require_slow_side(found, (found,))
+        with_stroke = replace(problem, slow_stroke=stroke)
+        require_slow_side(with_stroke, (with_stroke,))
     except InputError:
         return problem
-    return found
+    return with_stroke
 
 
 def is_closed(name: str) -> bool:
@@ -80,11 +80,11 @@ def is_closed(name: str) -> bool:
 
 def _turning(part: object) -> Mechanism:
     """Return a machine that turns as a job says, if it does, and weighs nothing."""
-    given = part if isinstance(part, Mapping) else {}
-    branch: Branch = "crossed" if given.get("branch") == "crossed" else "open"
+    mechanism = part if isinstance(part, Mapping) else {}
+    branch: Branch = "crossed" if mechanism.get("branch") == "crossed" else "open"
     for keys in ((*SPEED_KEYS, "direction", "speed_profile"), (*SPEED_KEYS, "direction")):
         with suppress(InputError, ValidationError):
-            part = CrankSpeedPart.model_validate({key: given[key] for key in keys if key in given})
+            part = CrankSpeedPart.model_validate({key: mechanism[key] for key in keys if key in mechanism})
             profile = None if part.speed_profile is None else part.speed_profile.build()
             return Mechanism(speed=part.crank_speed(turns=1) or 1.0, branch=branch, speed_profile=profile)
     return Mechanism(speed=1.0, branch=branch)
@@ -94,14 +94,14 @@ def ranges_of(part: object) -> dict[str, Range] | None:
     """Return the ranges of the dimensions in a table of variables; None while one of them cannot be read."""
     if not isinstance(part, Mapping):
         return None
-    found = {}
+    ranges = {}
     for name in ("crank", "rod", "offset"):
         try:
-            given = RangeOf("any" if name == "offset" else "positive").read(part.get(name))
+            range_ = RangeOf("any" if name == "offset" else "positive").read(part.get(name))
         except InputError:
             return None
-        found[name] = ends_of(given)
-    return found
+        ranges[name] = ends_of(range_)
+    return ranges
 
 
 def _constraints(part: object, *, with_machine: bool) -> Iterator[Constraint]:

@@ -45,7 +45,7 @@ class Look:
     """Preview of a job. wrong: its mistakes, none if it can be solved. problem: of the whole job, if it is valid.
 
     stated, possible: what its dimensions state and allow; None while their ranges cannot be read. unchecked:
-    requirements that were not looked at. said: sentences on what cannot be had. formulas: of the job, in their order.
+    requirements that were not looked at. sentences: on what cannot be had. formulas: of the job, in their order.
     names: that formulas of this job alone may have. swing: what the ranges of a job of a swing allow.
     """
 
@@ -54,7 +54,7 @@ class Look:
     stated: Problem | None
     possible: Possible | None
     unchecked: list[str]
-    said: list[str]
+    sentences: list[str]
     formulas: list[StatedFormula] = field(default_factory=list)
     names: list[OwnName] = field(default_factory=list)
     swing: PossibleSwing | None = None
@@ -66,7 +66,7 @@ def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
         require_few(tables)
     except InputError as error:
         return Look(_places(error), None, None, None, [], [])
-    look = _looked(tables, read)
+    look = _findings(tables, read)
     formulas = stated_formulas(tables)
     wrong = look.wrong if look.problem is not None else _with_formulas(look.wrong, formulas)
     swing = possible_swing(tables, look.problem)
@@ -79,91 +79,105 @@ def _with_formulas(wrong: list[Wrong], formulas: list[StatedFormula]) -> list[Wr
     What is said of the formula itself comes instead of what is said of its place, unless it is a key of another table.
     """
     schema = schema_of(Job)
-    found = {
-        of.key: of.wrong for of in formulas if of.wrong is not None and not place_of(of.key.split(".")[-1], schema)
+    wrong_by_key = {
+        formula.key: formula.wrong
+        for formula in formulas
+        if formula.wrong is not None and not place_of(formula.key.split(".")[-1], schema)
     }
-    return [*(one for one in wrong if one.path not in found), *(Wrong(*item) for item in found.items())]
+    return [
+        *(mistake for mistake in wrong if mistake.path not in wrong_by_key),
+        *(Wrong(*item) for item in wrong_by_key.items()),
+    ]
 
 
-def _looked(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> Look:
+def _findings(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> Look:
     """Return the findings about a job, its formulas aside."""
     try:
         stated = geometry(tables, None)
     except InputError:
         stated = None
-    whole, wrong, rest = None, list[Wrong](), tables
-    both = [] if stated is None else [(of.name, beyond_both(stated, of)) for of in STROKE_RATIOS]
-    beyond = {name: said for name, said in both if said is not None}
-    if beyond:  # it is said once; the rest of the job is checked without it
-        wrong += [Wrong(f"constraints.{name}", said, infeasible=True) for name, said in beyond.items()]
+    full_problem, wrong, rest = None, list[Wrong](), tables
+    checked_ratios = [] if stated is None else [(ratio.name, beyond_both(stated, ratio)) for ratio in STROKE_RATIOS]
+    sentences_by_name = {name: sentence for name, sentence in checked_ratios if sentence is not None}
+    if sentences_by_name:  # it is said once; the rest of the job is checked without it
+        wrong += [
+            Wrong(f"constraints.{name}", sentence, infeasible=True) for name, sentence in sentences_by_name.items()
+        ]
         rest = {
             **tables,
-            "constraints": {name: at for name, at in tables["constraints"].items() if name not in beyond},
+            "constraints": {name: at for name, at in tables["constraints"].items() if name not in sentences_by_name},
         }
     try:
-        whole = read(rest)
-        if not beyond and stated is not None:
-            stated = geometry(tables, whole)
+        full_problem = read(rest)
+        if not sentences_by_name and stated is not None:
+            stated = geometry(tables, full_problem)
     except InputError as error:
         wrong += _places(error)
-    if beyond:
-        whole = None
+    if sentences_by_name:
+        full_problem = None
     if stated is None:
-        return Look(wrong, whole, None, None, [], [])
-    found = possible(stated)
-    held = () if whole is None else tuple(item.name for item in whole.mechanism.varying)
-    return Look(wrong, whole, stated, found, [*left_out(tables, stated), *found.unchecked], said(stated, found, held))
+        return Look(wrong, full_problem, None, None, [], [])
+    possible_values = possible(stated)
+    fixed_names = () if full_problem is None else tuple(item.name for item in full_problem.mechanism.varying)
+    return Look(
+        wrong,
+        full_problem,
+        stated,
+        possible_values,
+        [*left_out(tables, stated), *possible_values.unchecked],
+        reach_sentences(stated, possible_values, fixed_names),
+    )
 
 
 def _places(error: InputError) -> list[Wrong]:
     """Return the mistakes in the sentences of an error, each with its place in the job."""
-    found = []
+    mistakes = []
     for line in str(error).split("\n  "):
         if _COUNT.fullmatch(line):
             continue
         match = _PLACE.fullmatch(line)
-        known = match is not None and re.split(r"[. ]", match[1])[0] in Job.model_fields
-        path, sentence = (match[1], match[2]) if match and known else ("", line)
-        found.append(Wrong(path, sentence, infeasible=isinstance(error, InfeasibleError)))
-    return found
+        is_key = match is not None and re.split(r"[. ]", match[1])[0] in Job.model_fields
+        path, sentence = (match[1], match[2]) if match and is_key else ("", line)
+        mistakes.append(Wrong(path, sentence, infeasible=isinstance(error, InfeasibleError)))
+    return mistakes
 
 
-def said(problem: Problem, found: Possible, held: Sequence[str]) -> list[str]:
+def reach_sentences(problem: Problem, possible_values: Possible, fixed_names: Sequence[str]) -> list[str]:
     """Return a sentence for each requirement that is out of reach, and one if no sample meets everything.
 
-    held: names of the numbers that the search varies besides the lengths, which have one value in the samples.
+    fixed_names: names of the numbers that the search varies besides the lengths, which have one value in the samples.
     """
     sentences = []
-    asked = {constraint.quantity: constraint for constraint in problem.constraints}
+    constraints = {constraint.quantity: constraint for constraint in problem.constraints}
     for name in ("stroke", "time_ratio", "transmission_angle"):
-        ends: Ends | None = getattr(found, name)
-        if name in asked and ends is not None:
-            sentences += _beyond(problem, asked[name], ends)
-    if found.turning == 0.0:
+        ends: Ends | None = getattr(possible_values, name)
+        if name in constraints and ends is not None:
+            sentences += _nearest_possible(problem, constraints[name], ends)
+    if possible_values.turning == 0.0:
         sentences.append(
             "no crank within these ranges rotates fully: the rod must be longer than crank and offset together"
         )
-    elif found.sampled and found.feasible == 0.0 and not sentences:
+    elif possible_values.sampled and possible_values.feasible == 0.0 and not sentences:
         hardest = ""
-        if found.hardest is not None and found.hardest[1] < 1.0:
-            name, share = found.hardest
+        if possible_values.hardest is not None and possible_values.hardest[1] < 1.0:
+            name, share = possible_values.hardest
             percent = f"{100.0 * share:.0f} %" if share >= 0.01 or share == 0.0 else "less than 1 %"
             hardest = f"; on its own, {problem.quantity(name).title} is met by {percent} of those that rotate fully"
-        values = f" with the job's values of {', '.join(held)}" if held else ""
+        values = f" with the job's values of {', '.join(fixed_names)}" if fixed_names else ""
         sentences.append(
-            f"none of {counted(found.sampled, 'design')} tried{values} meets every requirement{hardest}; "
+            f"none of {counted(possible_values.sampled, 'design')} tried{values} meets every requirement{hardest}; "
             "the search looks more closely"
         )
     return sentences
 
 
-def _beyond(problem: Problem, constraint: Constraint, ends: Ends) -> list[str]:
+def _nearest_possible(problem: Problem, constraint: Constraint, ends: Ends) -> list[str]:
     """Return, in words, the nearest possible value for a requirement beyond the ends of the possible range."""
-    found = []
+    sentences = []
     for word, bound in constraint.sides:
         nearest = min(max(bound, ends[0]), ends[1])
-        beyond = {"min": bound > nearest, "max": bound < nearest, "equals": True}[word]
-        item = missed(problem, constraint, word, bound, nearest) if beyond else None
+        is_beyond = {"min": bound > nearest, "max": bound < nearest, "equals": True}[word]
+        item = missed(problem, constraint, word, bound, nearest) if is_beyond else None
         if item is not None:
-            found.append(replace(item, alone=bool(is_constant(ends))).sentence(kept=_REST))
-    return found
+            sentences.append(replace(item, alone=bool(is_constant(ends))).sentence(kept=_REST))
+    return sentences

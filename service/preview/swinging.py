@@ -22,7 +22,7 @@ from ...optimise.job.motion import MotionPart, with_margin
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Objective
 from ...optimise.problem.violation import FEASIBLE
-from .feasibility import PATIENCE, Ends, designs_of, example_of, lengths_of, screened, within
+from .feasibility import PATIENCE, Ends, designs_of, example_of, lengths_of, run_within, screened
 from .partial_job import ranges_of
 
 Array = NDArray[np.float64]
@@ -35,12 +35,12 @@ class PossibleSwing:
 
     travel (m): its ends, of designs that keep the margin and whatever else was checked, where some do; None where no
     design makes the swing. feasible: share of the `sampled` designs that meet every requirement that was checked.
-    example: crank, rod and offset, m; None if nothing makes the swing. shown: its swing, between crank angles.
+    example: crank, rod and offset, m; None if nothing makes the swing. shown_swing: its swing, between crank angles.
     unchecked: requirements that would have taken longer than a moment, or that wait for the rest of the job.
     """
 
     swing: Swing
-    shown: Swing | None
+    shown_swing: Swing | None
     branch: float
     closing: float
     travel: Ends | None
@@ -51,10 +51,10 @@ class PossibleSwing:
     unchecked: tuple[str, ...]
 
 
-def possible_swing(tables: Mapping[str, Any], whole: Problem | None) -> PossibleSwing | None:
+def possible_swing(tables: Mapping[str, Any], full_problem: Problem | None) -> PossibleSwing | None:
     """Return the values that the ranges of a job allow; None of a turn, and while something cannot be read.
 
-    whole: the problem of the whole job, if it is valid. Of several options the first one counts.
+    full_problem: the problem of the whole job, if it is valid. Of several options the first one counts.
     """
     try:
         part = MotionPart.model_validate(tables.get("motion", {}))
@@ -64,27 +64,31 @@ def possible_swing(tables: Mapping[str, Any], whole: Problem | None) -> Possible
         return None
     if swing is None or ranges is None:
         return None
-    given = tables.get("mechanism")
-    crossed = isinstance(given, Mapping) and given.get("branch") == "crossed"
+    mechanism = tables.get("mechanism")
+    crossed = isinstance(mechanism, Mapping) and mechanism.get("branch") == "crossed"
     cheap = ACTUATOR_TRAVEL if swing.stated_for == "crank" else SWING_ANGLE
-    wanted = (Objective(quantity=cheap.name, sense="minimise"),)
-    free = () if whole is None else tuple(item for item in whole.mechanism.varying if item.paths[0] in STARTS.values())
+    objectives = (Objective(quantity=cheap.name, sense="minimise"),)
+    free = (
+        ()
+        if full_problem is None
+        else tuple(item for item in full_problem.mechanism.varying if item.paths[0] in STARTS.values())
+    )
     light = Problem(
         name="preview",
         mechanism=Mechanism(speed=1.0, branch="crossed" if crossed else "open", start=part.start, varying=free),
         crank=ranges["crank"],
         rod=ranges["rod"],
         offset=ranges["offset"],
-        objectives=wanted,
+        objectives=objectives,
         constraints=margin,
         motion=swing,
         own=swing_quantities(swing),
     )
-    full = None if whole is None else replace(whole.part(0), objectives=wanted)
-    found = None if full is None else within(PATIENCE, lambda: screened(full))
+    full = None if full_problem is None else replace(full_problem.part(0), objectives=objectives)
+    screening = None if full is None else run_within(PATIENCE, lambda: screened(full))
     named = _names(tables)
-    unchecked = () if found is not None else tuple(name for name in named if name != SWING_TRANSMISSION_ANGLE.name)
-    designs, violation = screened(light) if found is None else found
+    unchecked = () if screening is not None else tuple(name for name in named if name != SWING_TRANSMISSION_ANGLE.name)
+    designs, violation = screened(light) if screening is None else screening
     return _possible(swing, light, designs, violation, unchecked)
 
 
@@ -94,19 +98,21 @@ def _possible(
     sign = -1.0 if light.mechanism.nominal.branch == "crossed" else 1.0
     box = designs_of(replace(light, constraints=()), _SAMPLES)
     turning = passes(light.mechanism, swing, box)
-    made = np.isfinite(violation)
+    closes = np.isfinite(violation)
     good = violation <= FEASIBLE
     example = example_of(designs, violation, box[turning])
-    kept = designs[good] if good.any() else designs[made] if made.any() else box[turning]
-    ends = ends_of(light.mechanism, swing, kept)
-    travel = np.abs(positions(ends.end, sign, kept) - positions(ends.start, sign, kept))
-    shown = None
+    basis = designs[good] if good.any() else designs[closes] if closes.any() else box[turning]
+    ends = ends_of(light.mechanism, swing, basis)
+    travel = np.abs(positions(ends.end, sign, basis) - positions(ends.start, sign, basis))
+    shown_swing = None
     if example is not None:
-        one = ends_of(light.mechanism, swing, example[None])
-        shown = replace(swing, start=float(one.start[0]), end=float(one.end[0]), stated_for="crank", follows=False)
+        example_ends = ends_of(light.mechanism, swing, example[None])
+        shown_swing = replace(
+            swing, start=float(example_ends.start[0]), end=float(example_ends.end[0]), stated_for="crank", follows=False
+        )
     return PossibleSwing(
         swing=swing,
-        shown=shown,
+        shown_swing=shown_swing,
         branch=sign,
         closing=float(turning.mean()),
         travel=(float(travel.min()), float(travel.max())) if len(travel) else None,
@@ -127,5 +133,5 @@ def positions(angle: float | Array, sign: float, designs: Array) -> Array:
 
 
 def _names(tables: Mapping[str, Any]) -> list[str]:
-    given = tables.get("constraints")
-    return [str(name)[:60] for name in given][:40] if isinstance(given, Mapping) else []
+    stated = tables.get("constraints")
+    return [str(name)[:60] for name in stated][:40] if isinstance(stated, Mapping) else []

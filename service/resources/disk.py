@@ -23,16 +23,16 @@ def is_full(error: BaseException) -> bool:
 
 def free(place: Path) -> int:
     """Return the free room, bytes, where a file or folder is or would be; very large if unknown."""
-    there = place.absolute()
-    while not there.exists() and there != there.parent:
-        there = there.parent
+    existing = place.absolute()
+    while not existing.exists() and existing != existing.parent:
+        existing = existing.parent
     try:
-        return shutil.disk_usage(there).free
+        return shutil.disk_usage(existing).free
     except OSError:
         return 1 << 62
 
 
-def room(place: Path) -> str:
+def free_space_text(place: Path) -> str:
     """Return how much room a place has, in words."""
     return f"{place} has {size_text(free(place))} free"
 
@@ -40,9 +40,9 @@ def room(place: Path) -> str:
 def full_places(error: OSError) -> str:
     """Return which places an error of a full disk is of: the one that it names, else those without room."""
     if isinstance(error.filename, str | os.PathLike):
-        return room(Path(error.filename))
+        return free_space_text(Path(error.filename))
     places = [place for place in _written() if free(place) < LEAST]
-    return ", ".join(map(room, places)) or "a disk is full"
+    return ", ".join(map(free_space_text, places)) or "a disk is full"
 
 
 def _written() -> list[Path]:

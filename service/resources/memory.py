@@ -30,27 +30,27 @@ class Memory:
         self._fresh = min(self._fresh or self._least, self._least)
 
     @property
-    def left(self) -> int:
+    def left_behind(self) -> int:
         """Memory that earlier jobs have left behind, in bytes."""
         return self._least - self._fresh
 
     def of_the_job(self) -> int:
         """Return the memory that the job takes now, in bytes, including that of a fresh process."""
-        taken = memory_taken()
-        self._least = min(self._least, taken)
-        return taken - self.left
+        total = memory_taken()
+        self._least = min(self._least, total)
+        return total - self.left_behind
 
 
 def memory_taken() -> int:
     """Return the memory of this process and its children, in bytes, as far as it is in main memory."""
     import psutil
 
-    own = psutil.Process()
-    taken = int(own.memory_info().rss)
-    for child in own.children(recursive=True):
+    process = psutil.Process()
+    total = int(process.memory_info().rss)
+    for child in process.children(recursive=True):
         with contextlib.suppress(psutil.Error):  # it has just ended
-            taken += int(child.memory_info().rss)
-    return taken
+            total += int(child.memory_info().rss)
+    return total
 
 
 def size_of(text: str, option: str) -> int:

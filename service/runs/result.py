@@ -64,7 +64,7 @@ class Exact:
         if not count == len(self.goals) == len(self.active) or len(self.variants) not in (0, count):
             raise ValueError(f"dimensions of {count} designs, slopes of {len(self.goals)}, {len(self.active)}")
 
-    def of(self, rows: Sequence[int]) -> Exact:
+    def select(self, rows: Sequence[int]) -> Exact:
         """Return those of some designs, in the order given."""
         return Exact(
             self.dimensions[list(rows)],
@@ -118,19 +118,24 @@ class Result:
         fields = {name: json_ready(value) for name, value in vars(self).items() if name not in left_out}
         if columns is not None:
             fields["designs"] = [{name: row[name] for name in columns} for row in fields["designs"]]
-        wanted = [wanted_record(wanted) for wanted in self.objectives]
-        return fields | {"objectives": wanted, "strokes_differ": self.strokes_differ}
+        objectives = [wanted_record(objectives) for objectives in self.objectives]
+        return fields | {"objectives": objectives, "strokes_differ": self.strokes_differ}
 
 
 def wanted_of(problem: Problem) -> list[Wanted]:
     """Return the objectives of a problem as shown."""
-    wanted = []
+    objectives = []
     for objective in problem.objectives:
-        of = problem.quantity(objective.quantity)
-        target = None if objective.target is None else objective.target * of.unit.factor
-        names = {"quantity": of.name, "column": of.field, "title": of.title, "unit": of.unit.symbol}
-        wanted.append(Wanted(**names, sense=objective.sense, target=target))
-    return wanted
+        quantity = problem.quantity(objective.quantity)
+        target = None if objective.target is None else objective.target * quantity.unit.factor
+        names = {
+            "quantity": quantity.name,
+            "column": quantity.field,
+            "title": quantity.title,
+            "unit": quantity.unit.symbol,
+        }
+        objectives.append(Wanted(**names, sense=objective.sense, target=target))
+    return objectives
 
 
 def result_of(front: ParetoFront, run: str) -> Result:
@@ -139,8 +144,8 @@ def result_of(front: ParetoFront, run: str) -> Result:
     from ...optimise.search.driving_loads import front_driven_by_loads
     from ...optimise.search.loaded_stroke import front_warnings
 
-    found = len(front) > 0
-    several = found and len(front.objectives) > 1
+    has_designs = len(front) > 0
+    several = has_designs and len(front.objectives) > 1
     return Result(
         run=run,
         name=front.problem.name,
@@ -152,8 +157,8 @@ def result_of(front: ParetoFront, run: str) -> Result:
         evaluations=int(front.evaluations),
         seconds=float(front.seconds),
         seed=int(front.seed),
-        extremes={name: int(row) for name, row in front.extremes().items()} if found else {},
-        knee=int(front.knee()) if found else None,
+        extremes={name: int(row) for name, row in front.extremes().items()} if has_designs else {},
+        knee=int(front.knee()) if has_designs else None,
         trade_offs=front.trade_offs(front.knee()) if several else [],
         warnings=(
             *front.problem.warnings,
@@ -169,8 +174,11 @@ def result_of(front: ParetoFront, run: str) -> Result:
 
 def _violated(front: ParetoFront) -> dict[str, list[float]]:
     """Return by how much designs go beyond allowable values, by the columns of these."""
-    known = ((front.problem.quantity(name), beyond) for name, beyond in front.violated.items())
-    return {of.field: [of.unit.factor * float(by) for by in beyond] for of, beyond in known}
+    excess_by_quantity = ((front.problem.quantity(name), excess) for name, excess in front.violated.items())
+    return {
+        quantity.field: [quantity.unit.factor * float(amount) for amount in excess]
+        for quantity, excess in excess_by_quantity
+    }
 
 
 def unsearched_result(error: InfeasibleError, run: str = "") -> Result:
@@ -197,19 +205,21 @@ def unsearched_result(error: InfeasibleError, run: str = "") -> Result:
 
 def discrete_record(front: ParetoFront) -> dict[str, Any] | None:
     """Return how designs of discrete values were found, and the best of each objective with continuous ones."""
-    answer = front.discrete
-    if answer is None:
+    summary = front.discrete
+    if summary is None:
         return None
     best: dict[str, float] = {}
-    for wanted, value in zip(front.objectives, answer.continuous, strict=False):
-        of = front.problem.quantity(wanted.quantity)
-        found = -value if wanted.sense == "maximise" else value
-        best[f"off_target_{of.field}" if wanted.sense == "target" else of.field] = found * of.unit.factor
+    for objective, value in zip(front.objectives, summary.continuous, strict=False):
+        quantity = front.problem.quantity(objective.quantity)
+        best_value = -value if objective.sense == "maximise" else value
+        best[f"off_target_{quantity.field}" if objective.sense == "target" else quantity.field] = (
+            best_value * quantity.unit.factor
+        )
     return {
-        "how": answer.how,
-        "combinations": answer.combinations,
-        "judged": answer.judged,
-        "values": dict(answer.rules),
+        "how": summary.how,
+        "combinations": summary.combinations,
+        "judged": summary.judged,
+        "values": dict(summary.rules),
         "continuous_best": best,
     }
 
@@ -227,9 +237,9 @@ def _cell(value: Any) -> Cell:
     return float(value)
 
 
-def wanted_record(wanted: Wanted) -> dict[str, Any]:
+def wanted_record(objective: Wanted) -> dict[str, Any]:
     """Return an objective as JSON has it."""
-    return {name: value for name, value in vars(wanted).items() if value is not None}
+    return {name: value for name, value in vars(objective).items() if value is not None}
 
 
 def json_ready(value: Any, *, gaps: bool = False) -> Any:

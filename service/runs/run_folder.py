@@ -28,7 +28,7 @@ from types import TracebackType
 
 from ...model.errors import InputError, MissingExtra, RunError
 from ...model.file_names import path_from_text, path_text
-from ..resources.disk import is_full, room
+from ..resources.disk import free_space_text, is_full
 from .result import Result, csv_text, json_text
 
 MARK = "UNFINISHED"
@@ -82,7 +82,7 @@ class RunFolder:
 
     @classmethod
     def again(cls, path: Path) -> RunFolder:
-        """Open the folder of a run that was interrupted or cancelled, to go on in it; until `go_on` it stays as it is.
+        """Open the folder of an interrupted or cancelled run to continue it; it stays unchanged until `go_on`.
 
         Raises `InputError` while another process is at work in it.
         """
@@ -121,12 +121,12 @@ class RunFolder:
     def keep_files(self, files: Mapping[str, bytes]) -> None:
         """Write files under their names, which may lead into folders but not out of this one."""
         for name, content in files.items():
-            kept = self.path / path_from_text(name)
-            if not kept.resolve().is_relative_to(self.path.resolve()):
+            target = self.path / path_from_text(name)
+            if not target.resolve().is_relative_to(self.path.resolve()):
                 raise RunError(f"the files of a run must be in its folder; got {name!r}; choose another name")
             with disk(self.path):
-                kept.parent.mkdir(parents=True, exist_ok=True)
-                _write(kept, content)
+                target.parent.mkdir(parents=True, exist_ok=True)
+                _write(target, content)
 
     def keep_result(self, result: Result, versions: dict[str, str]) -> None:
         """Write front.csv, front.json and versions.json."""
@@ -223,9 +223,9 @@ def _lock(folder: Path) -> int | None:
     return handle
 
 
-def _rename(hidden: Path, wanted: Path) -> Path:
+def _rename(hidden: Path, target: Path) -> Path:
     for number in range(1, 10_000):
-        path = wanted if number == 1 else wanted.with_name(f"{wanted.name}-{number}")
+        path = target if number == 1 else target.with_name(f"{target.name}-{number}")
         try:
             if not path.exists():  # the check is for Windows' sake; the rename itself refuses a folder with files
                 hidden.rename(path)
@@ -233,7 +233,7 @@ def _rename(hidden: Path, wanted: Path) -> Path:
         except OSError:
             if not path.exists():
                 raise
-    raise RunError(f"no free name for a run in {wanted.parent}; move old runs away")
+    raise RunError(f"no free name for a run in {target.parent}; move old runs away")
 
 
 def _bytes(content: str | bytes) -> bytes:
@@ -274,7 +274,9 @@ def disk(place: Path) -> Iterator[None]:
         yield
     except OSError as error:
         if is_full(error):
-            raise RunError(f"Disk full: {room(place)}; free some space, or choose another folder for runs") from error
+            raise RunError(
+                f"Disk full: {free_space_text(place)}; free some space, or choose another folder for runs"
+            ) from error
         reason = error.strerror or str(error)
         remedy = "create the folder" if isinstance(error, FileNotFoundError) else "free it or change its permissions"
         raise RunError(

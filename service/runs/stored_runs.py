@@ -45,13 +45,13 @@ def result_from(record: dict[str, Any], rows: list[Row], run: str, exact: Exact 
 
     Raises ValueError, KeyError or TypeError if they contradict each other, or something is missing.
     """
-    wanted = tuple(Wanted(**item) for item in record["objectives"])
+    objectives = tuple(Wanted(**item) for item in record["objectives"])
     result = Result(
         run=run,
         name=str(record["name"]),
         status=str(record["status"]),
         message=str(record["message"]),
-        objectives=wanted,
+        objectives=objectives,
         designs=rows,
         hypervolume=float(record["hypervolume"]),
         evaluations=int(record["evaluations"]),
@@ -61,7 +61,9 @@ def result_from(record: dict[str, Any], rows: list[Row], run: str, exact: Exact 
         knee=None if record["knee"] is None else int(record["knee"]),
         trade_offs=[str(sentence) for sentence in record["trade_offs"]],
         warnings=tuple(str(sentence) for sentence in record.get("warnings", ())),  # runs of earlier versions have none
-        violated={str(key): [float(by) for by in each] for key, each in record.get("violated", {}).items()},
+        violated={
+            str(key): [float(excess) for excess in amounts] for key, amounts in record.get("violated", {}).items()
+        },
         discrete=record.get("discrete"),
         exact=exact,
     )
@@ -70,7 +72,7 @@ def result_from(record: dict[str, Any], rows: list[Row], run: str, exact: Exact 
     marked = [*result.extremes.values(), *([] if result.knee is None else [result.knee])]
     if any(not 0 <= row < len(rows) for row in marked):
         raise ValueError("a marked design is not among the designs")
-    if rows and (missing := {item.column for item in wanted} - set(rows[0])):
+    if rows and (missing := {item.column for item in objectives} - set(rows[0])):
         raise ValueError(f"the designs have no column {missing.pop()}")
     return result
 

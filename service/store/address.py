@@ -31,7 +31,7 @@ def without_secrets(text: str) -> str:
 
 
 def _parsed(text: str) -> URL | None:
-    """Return an address that has "://"; None for one that cannot be read, or where the password ends is not certain."""
+    """Return a parsed address with "://"; None if it is unreadable or the end of its password is uncertain."""
     try:
         url = make_url(text)
     except (ArgumentError, ValueError):
@@ -50,8 +50,8 @@ def shown_url(url: URL) -> str:
 def secrets_of(url: URL) -> list[str]:
     """Return the secret parts of a database address, the longest first."""
     values = [value for name, value in url.query.items() if name not in _OPEN]
-    each = [url.password, *(one for value in values for one in ([value] if isinstance(value, str) else value))]
-    return sorted({str(one) for one in each if one}, key=len, reverse=True)
+    secrets = [url.password, *(secret for value in values for secret in ([value] if isinstance(value, str) else value))]
+    return sorted({str(secret) for secret in secrets if secret}, key=len, reverse=True)
 
 
 def url_of(address: str | PathLike[str]) -> URL:
@@ -93,8 +93,8 @@ def is_there(file: Path) -> bool:
             "another file, or permit it"
         ) from None
     if file.exists() and not file.is_file():
-        what = "a folder" if file.is_dir() else "no regular file"
-        raise StoreError(f"a store is a file; {path_text(file)} is {what}; name a file")
+        kind = "a folder" if file.is_dir() else "no regular file"
+        raise StoreError(f"a store is a file; {path_text(file)} is {kind}; name a file")
     log = Path(f"{file}-wal")
     if log.exists() and not size:
         raise StoreError(
@@ -106,10 +106,10 @@ def is_there(file: Path) -> bool:
 
 def has_content(file: Path) -> bool:
     """Whether the file of a store is there, to look into it. Raises `StoreError` if it is empty, or as `is_there`."""
-    there = is_there(file)
-    if there and not file.stat().st_size:
+    exists = is_there(file)
+    if exists and not file.stat().st_size:
         raise StoreError(
             f"a store to look into has tables; {path_text(file)} is an empty file; submit a job to it, or restore a "
             "backup if it had jobs, see docs/service.md"
         )
-    return there
+    return exists

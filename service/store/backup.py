@@ -32,14 +32,14 @@ def back_up(database: Database, target: Path) -> None:
     try:
         os.close(os.open(draft, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o600))  # it has all that the store has
         with (
-            contextlib.closing(sqlite3.connect(source, timeout=_PATIENCE)) as there,
+            contextlib.closing(sqlite3.connect(source, timeout=_PATIENCE)) as original,
             contextlib.closing(sqlite3.connect(draft)) as copy,
         ):
-            there.backup(copy)  # in one step, so that no writer makes it begin again
+            original.backup(copy)  # in one step, so that no writer makes it begin again
             copy.execute("PRAGMA journal_mode=DELETE")  # so that the copy is one file
-            found = copy.execute("PRAGMA integrity_check").fetchone()[0]
-        if found != "ok":
-            raise StoreError(f"a backup must be whole; that of {database.name} gave: {found}; run slidercrank doctor")
+            verdict = copy.execute("PRAGMA integrity_check").fetchone()[0]
+        if verdict != "ok":
+            raise StoreError(f"a backup must be whole; that of {database.name} gave: {verdict}; run slidercrank doctor")
         sync(draft)
         draft.rename(target)
         sync(target.parent)

@@ -1,4 +1,4 @@
-"""Designs that people keep of a front: named, noted, starred, one of them decided for."""
+"""Bookmarked designs of a front: named, annotated, starred, one of them chosen."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from ...model.errors import InputError, NotFound
 from .clock import now
 from .database import Database
 from .rows import the_job
-from .schema import kept
+from .schema import bookmarks
 from .serialisation import plain
 
 MOST_KEPT = 500
-"""Designs that may be kept of a job."""
+"""Most bookmarks of a job."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Bookmark:
-    """A kept design. number: among those of its job, from 1. at: when it was kept, s since 1970.
+    """A bookmarked design. number: among those of its job, from 1. at: time of bookmarking, s since 1970.
 
     design: of the front, by its number, that it is or began as; None for neither. variant: of the job's choices.
     dimensions: crank, rod, offset, m, and each varying number, SI. decided: whether it was chosen, at most one of a
@@ -42,11 +42,11 @@ class Bookmark:
 
 
 def bookmarks_of(store: Database, job: int) -> list[Bookmark]:
-    """Return the kept designs of a job, in the order in which they were kept. Raises `NotFound` without the job."""
+    """Return the bookmarks of a job, oldest first. Raises `NotFound` without the job."""
     with store.reading() as connection:
         the_job(connection, job)
-        rows = connection.execute(select(kept).where(kept.c.job == job).order_by(kept.c.number))
-        return [_kept(row) for row in rows]
+        rows = connection.execute(select(bookmarks).where(bookmarks.c.job == job).order_by(bookmarks.c.number))
+        return [_bookmark_from(row) for row in rows]
 
 
 def keep_design(
@@ -60,53 +60,55 @@ def keep_design(
     note: str = "",
     star: bool = False,
 ) -> Bookmark:
-    """Keep a design of a job and return it. Raises `NotFound` without the job, `InputError` for one too many.
+    """Bookmark a design of a job and return it. Raises `NotFound` without the job, `InputError` beyond the limit.
 
     name: "Kept 3" and so on if it is empty.
     """
     with store.writing() as connection:
         the_job(connection, job, lock=True)
-        count, last = connection.execute(select(func.count(), func.max(kept.c.number)).where(kept.c.job == job)).one()
+        count, last = connection.execute(
+            select(func.count(), func.max(bookmarks.c.number)).where(bookmarks.c.job == job)
+        ).one()
         if count >= MOST_KEPT:
             raise InputError(f"at most {MOST_KEPT} designs are kept of a job; job {job} has as many; delete some")
         number = (last or 0) + 1
         values = {"name": plain(name) or f"Kept {number}", "note": plain(note), "star": star, "design": design}
-        shown = {"variant": variant, "dimensions": json.dumps(dimensions), "decided": False, "reason": ""}
-        connection.execute(insert(kept).values(job=job, number=number, at=now(), **values, **shown))
-        return _the_kept(connection, job, number)
+        fixed = {"variant": variant, "dimensions": json.dumps(dimensions), "decided": False, "reason": ""}
+        connection.execute(insert(bookmarks).values(job=job, number=number, at=now(), **values, **fixed))
+        return _the_bookmark(connection, job, number)
 
 
 def change_kept(store: Database, job: int, number: int, **changes: Any) -> Bookmark:
-    """Change name, note, star, decided or reason of a kept design and return it; deciding takes it from the others."""
+    """Change name, note, star, decided or reason of a bookmark and return it; only one can be decided."""
     with store.writing() as connection:
         the_job(connection, job, lock=True)
-        _the_kept(connection, job, number)
+        _the_bookmark(connection, job, number)
         if changes.get("decided"):
-            connection.execute(update(kept).where(kept.c.job == job).values(decided=False))
-        told = {name: plain(value) if isinstance(value, str) else value for name, value in changes.items()}
-        if told:
-            connection.execute(update(kept).where(_own(job, number)).values(told))
-        return _the_kept(connection, job, number)
+            connection.execute(update(bookmarks).where(bookmarks.c.job == job).values(decided=False))
+        values = {name: plain(value) if isinstance(value, str) else value for name, value in changes.items()}
+        if values:
+            connection.execute(update(bookmarks).where(_is_bookmark(job, number)).values(values))
+        return _the_bookmark(connection, job, number)
 
 
 def drop_kept(store: Database, job: int, number: int) -> None:
-    """Delete a kept design. Raises `NotFound`."""
+    """Delete a bookmark. Raises `NotFound`."""
     with store.writing() as connection:
         the_job(connection, job, lock=True)
-        _the_kept(connection, job, number)
-        connection.execute(delete(kept).where(_own(job, number)))
+        _the_bookmark(connection, job, number)
+        connection.execute(delete(bookmarks).where(_is_bookmark(job, number)))
 
 
-def _own(job: int, number: int) -> Any:
-    return and_(kept.c.job == job, kept.c.number == number)
+def _is_bookmark(job: int, number: int) -> Any:
+    return and_(bookmarks.c.job == job, bookmarks.c.number == number)
 
 
-def _the_kept(connection: Connection, job: int, number: int) -> Bookmark:
-    row = connection.execute(select(kept).where(_own(job, number))).first()
+def _the_bookmark(connection: Connection, job: int, number: int) -> Bookmark:
+    row = connection.execute(select(bookmarks).where(_is_bookmark(job, number))).first()
     if row is None:
         raise NotFound(f"job {job} has no kept design {number}; see the kept designs of the job")
-    return _kept(row)
+    return _bookmark_from(row)
 
 
-def _kept(row: Any) -> Bookmark:
+def _bookmark_from(row: Any) -> Bookmark:
     return Bookmark(**{**row._mapping, "dimensions": tuple(json.loads(row.dimensions))})

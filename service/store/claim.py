@@ -1,4 +1,4 @@
-"""A job in the hands of a worker: everything that is written of it goes through its claim."""
+"""A job claimed by a worker: everything written about it goes through its claim."""
 
 from __future__ import annotations
 
@@ -49,8 +49,8 @@ class Claim:
     A write that finds no room on the disk waits for some, while other threads renew the lease: that takes less room.
     Where not even that is written, nobody else can claim the job either, and it stays this worker's until one does.
 
-    begun: whether its search has evaluated anything yet. astray: whether the lease ends at another time than it should,
-    by the clock of the database, which has jumped; it is to be renewed. patient: whether a write waits for room.
+    has_begun: whether its search has evaluated anything yet. astray: whether the lease ends at a wrong time because the
+    clock of the database has jumped; it must be renewed. patient: whether a write waits for room.
     waits: why a write waits, in words; empty if none does. waited: for how long writes have waited for room, s.
     """
 
@@ -59,7 +59,7 @@ class Claim:
         self.job = job
         self.lease = lease
         self.cancel_asked = job.cancel_asked
-        self.begun = False
+        self.has_begun = False
         self._database = database
         self._lock = threading.Condition()
         self._writes = 0
@@ -85,16 +85,16 @@ class Claim:
     def keep(self, record: Record) -> None:
         """Take in the next record; it is written with the next progress, or with the end."""
         with self._lock:
-            self.begun = True
+            self.has_begun = True
             self._kept.append(record)
 
-    def tell(self, progress: Progress, front: Mapping[str, Any] | None = None) -> None:
-        """Write where the search stands, together with the records kept since. To load or repeat is not to have begun.
+    def report(self, progress: Progress, front: Mapping[str, Any] | None = None) -> None:
+        """Write the progress of the search with the records since the last report. Loading is not a beginning.
 
         front: some designs of the front so far, as JSON has them. Only the latest is kept, with the job: events that
         each carried one would make a store of many runs grow.
         """
-        self.begun = self.begun or not progress.prepares
+        self.has_begun = self.has_begun or not progress.prepares
         data = json_ready(asdict(progress), gaps=True)
         standing = data if front is None else {**data, "front": json_ready(front, gaps=True)}
         self._write({"progress": text_of(standing)}, [("progress", data)])
@@ -123,15 +123,15 @@ class Claim:
         """Forget all records: the search begins anew. reason: for the events of the job."""
         with self._lock:
             self._kept = []
-            own = records.c.job == self.job.id
+            of_job = records.c.job == self.job.id
 
             def forget(connection: Connection) -> None:
-                connection.execute(delete(records).where(own))
+                connection.execute(delete(records).where(of_job))
 
             self._write({"records": 0}, [("message", {"text": plain(reason)})], forget)
             self._records = 0
 
-    def put(self, *files: Artefact) -> None:
+    def write_files(self, *files: Artefact) -> None:
         """Write files of the job, each in place of one of its name."""
         self._write({}, [], lambda connection: put_files(connection, self.job.id, files))
 
@@ -146,13 +146,13 @@ class Claim:
         content = None if result.exact is None else packed_exact(result.exact)
 
         left: dict[str, Any] = {} if result.status == "cancelled" else {"records": 0}
-        found = {"result": text_of(record), "summary": text_of(summary_of(result))}
+        texts = {"result": text_of(record), "summary": text_of(summary_of(result))}
 
         def rest(connection: Connection) -> None:
-            own = jobs.c.id == self.job.id
-            sums = checksum(connection.scalar(select(jobs.c.tables).where(own)), *found.values())
+            of_job = jobs.c.id == self.job.id
+            sums = checksum(connection.scalar(select(jobs.c.tables).where(of_job)), *texts.values())
             sums += checksum(*(str(row["cells"]) for row in rows), content)
-            connection.execute(update(jobs).where(own).values(checksum=sums))
+            connection.execute(update(jobs).where(of_job).values(checksum=sums))
             for table in (designs, exact):
                 connection.execute(delete(table).where(table.c.job == self.job.id))
             if rows:
@@ -163,7 +163,7 @@ class Claim:
             if result.status != "cancelled":  # a cancelled one can go on
                 connection.execute(delete(records).where(records.c.job == self.job.id))
 
-        self._end(result.status, result.message, {**found, **left}, rest)
+        self._end(result.status, result.message, {**texts, **left}, rest)
 
     def fail(self, reason: str, *, again: bool, delay: float = 0.0) -> None:
         """Give the job back after an error.
@@ -192,7 +192,7 @@ class Claim:
         self._leave("queued", reason, {"finished": None, "attempts": fewer, **due})
 
     def let_go(self) -> None:
-        """End the lease of a job that is left as it is, if no other worker has it: at once, whatever the clock says."""
+        """End the lease immediately, whatever the clock says, if no other worker has the job."""
         with self._database.writing() as connection:
             connection.execute(update(jobs).where(self._mine, jobs.c.state == "running").values(lease_until=0.0))
 
@@ -211,7 +211,7 @@ class Claim:
     def _write(
         self,
         changes: dict[str, Any],
-        told: Sequence[Told],
+        new_events: Sequence[Told],
         rest: Rest | None = None,
         *,
         keep: bool = True,
@@ -222,7 +222,9 @@ class Claim:
             try:
                 while True:
                     try:
-                        self._try({"reason": "", **changes} if full else changes, told, rest, keep=keep, tried=tried)
+                        self._try(
+                            {"reason": "", **changes} if full else changes, new_events, rest, keep=keep, tried=tried
+                        )
                         return
                     except Unavailable as error:
                         waited, no_room = time.monotonic() - began, isinstance(error, Full)
@@ -243,31 +245,33 @@ class Claim:
                     self.waited += time.monotonic() - began
 
     def _try(
-        self, changes: dict[str, Any], told: Sequence[Told], rest: Rest | None, *, keep: bool, tried: bool
+        self, changes: dict[str, Any], new_events: Sequence[Told], rest: Rest | None, *, keep: bool, tried: bool
     ) -> None:
         """Write it all in one transaction. tried: whether an earlier try may have taken effect already."""
-        kept, started = self._kept if keep else [], time.monotonic()
+        pending, started = self._kept if keep else [], time.monotonic()
         rows = [
             {"job": self.job.id, "number": number, "content": packed(record)}
-            for number, record in enumerate(kept, self._records)
+            for number, record in enumerate(pending, self._records)
         ]
         values: dict[str, Any] = {
             "writes": self._writes + 1,
-            "events": jobs.c.events + len(told),
+            "events": jobs.c.events + len(new_events),
             "lease_until": later(self.lease),
             "records": self._records + len(rows),
         }
         if rows:
             values["attempts"] = 0  # it goes forward: whatever ended earlier attempts does not hold it up
-        held = and_(self._mine, jobs.c.state == "running", jobs.c.writes == self._writes)
+        condition = and_(self._mine, jobs.c.state == "running", jobs.c.writes == self._writes)
         if self.age > self.lease and not self.waits:
-            held = and_(held, jobs.c.lease_until > now())
-        change = update(jobs).where(held).values({**values, **changes}).returning(jobs.c.events, jobs.c.cancel_asked)
+            condition = and_(condition, jobs.c.lease_until > now())
+        change = (
+            update(jobs).where(condition).values({**values, **changes}).returning(jobs.c.events, jobs.c.cancel_asked)
+        )
         with self._database.writing() as connection:
             row = connection.execute(change).first()
             if row is not None:
                 self.cancel_asked = self.cancel_asked or row.cancel_asked
-                add_events(connection, self.job.id, row.events, told)
+                add_events(connection, self.job.id, row.events, new_events)
                 if rows:
                     connection.execute(insert(records), rows)
                 connection.execute(update(workers).where(workers.c.id == self.job.worker).values(seen=now()))
@@ -278,7 +282,7 @@ class Claim:
         self._renewed, self.astray = started, False
         self._writes += 1
         self._records += len(rows)
-        self._kept = self._kept[len(kept) :]
+        self._kept = self._kept[len(pending) :]
         self._attempts = 0 if rows else self._attempts
 
     @property

@@ -34,16 +34,16 @@ class Jumps:
         self._ahead: float | None = None
         self._until = -math.inf
 
-    def settled(self, there: float, last_full: float = -math.inf) -> bool:
-        """Return whether the last jump that was seen is some time ago, and the last time without room on the disk.
+    def is_settled(self, database_time: float, last_full: float = -math.inf) -> bool:
+        """Return whether the last clock jump and the last full disk are both some time ago.
 
-        there: time of the database, s. last_full: of the monotonic clock, s.
+        database_time: time of the database, s. last_full: of the monotonic clock, s.
         """
-        here = self._monotonic()
-        if self._ahead is not None and abs(there - here - self._ahead) > JUMP:
-            self._until = here + SETTLING
-        self._ahead = there - here
-        return here >= max(self._until, last_full + SETTLING)
+        monotonic_time = self._monotonic()
+        if self._ahead is not None and abs(database_time - monotonic_time - self._ahead) > JUMP:
+            self._until = monotonic_time + SETTLING
+        self._ahead = database_time - monotonic_time
+        return monotonic_time >= max(self._until, last_full + SETTLING)
 
 
 class now(FunctionElement[float]):

@@ -23,7 +23,7 @@ from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from ...model.errors import StoreError
 from ...model.extras import NamingExtra
 from ...model.file_names import path_text
-from ..resources.disk import LEAST, free, room
+from ..resources.disk import LEAST, free, free_space_text
 from .address import HIDDEN, file_of, is_there, secrets_of, shown_url, url_of
 
 _PATIENCE = 30.0  # s to wait for other writers
@@ -86,7 +86,7 @@ class Database:
                 unchanging = {"mode": "ro", "immutable": "1", "uri": "true"}
                 url = url.set(database=self._file.absolute().as_uri()).update_query_dict(unchanging)
         self._folder = Path(url.database or ".").parent if self.sqlite else None
-        with self._told():
+        with self._translated_errors():
             self.engine = _sqlite(url) if self.sqlite else _postgresql(url)
         self._reader = self.engine.execution_options(reading=True, **({} if self.sqlite else _SNAPSHOT))
         if self.sqlite and not alone:
@@ -112,8 +112,8 @@ class Database:
 
     def _full(self, reason: str) -> Full:
         self.last_full = time.monotonic()
-        there = "" if self._folder is None else f"; {room(self._folder)}"
-        return Full(f"the store needs room on its disk; {self.name} gave: {reason}{there}; free some space")
+        free_space = "" if self._folder is None else f"; {free_space_text(self._folder)}"
+        return Full(f"the store needs room on its disk; {self.name} gave: {reason}{free_space}; free some space")
 
     def _is_full(self, error: Exception) -> bool:
         cause = error.orig if isinstance(error, DBAPIError) else error
@@ -137,7 +137,7 @@ class Database:
     def reading(self) -> Iterator[Connection]:
         """Enter a transaction that sees one state of the database and keeps no writer waiting."""
         self._require_file()
-        with self._told(), self._reader.begin() as connection:
+        with self._translated_errors(), self._reader.begin() as connection:
             yield connection
 
     @contextlib.contextmanager
@@ -149,7 +149,7 @@ class Database:
                 f"the store must be a database that can be written; {self.name} is read-only; only look into it, or "
                 f"{remedy_of_rights(self._file)}"
             )
-        with self._told(), self.engine.begin() as connection:
+        with self._translated_errors(), self.engine.begin() as connection:
             yield connection
 
     def _require_file(self) -> None:
@@ -168,7 +168,7 @@ class Database:
             )
 
     @contextlib.contextmanager
-    def _told(self) -> Iterator[None]:
+    def _translated_errors(self) -> Iterator[None]:
         try:
             yield
         except (ArgumentError, DBAPIError, PoolTimeoutError, sqlite3.Error) as error:
@@ -191,7 +191,7 @@ class Database:
         end = time.monotonic() + _PATIENCE
         while True:
             try:
-                with self._told(), self.engine.connect() as connection:
+                with self._translated_errors(), self.engine.connect() as connection:
                     raw: Any = connection.connection.dbapi_connection
                     mode = raw.execute("PRAGMA journal_mode=WAL").fetchone()[0]
                 break
@@ -209,10 +209,10 @@ class Database:
 def _identity(file: Path) -> tuple[int, int] | None:
     """Return device and inode of a file, which writing keeps; None if it is not there."""
     try:
-        found = file.stat()
+        status = file.stat()
     except OSError:
         return None
-    return found.st_dev, found.st_ino
+    return status.st_dev, status.st_ino
 
 
 def may_use(path: Path) -> bool:
@@ -221,7 +221,7 @@ def may_use(path: Path) -> bool:
 
 
 def remedy_of_rights(path: Path) -> str:
-    """Return what restores the rights that `may_use` misses: a command, or another place if the disk is read-only."""
+    """Return the remedy for missing permissions: a command, or another folder if the disk is read-only."""
     if os.name == "posix" and os.statvfs(path).f_flag & os.ST_RDONLY:
         place = path_text(path.parent)
         return f"copy it, with its -wal file if any, to another folder than {place}, whose disk is read-only"
@@ -246,16 +246,17 @@ def _sqlite(url: URL) -> Engine:
 
 def _postgresql(url: URL) -> Engine:
     options = " ".join(f"-c {name}={value}" for name, value in _POSTGRESQL.items())
-    given = url.query.get("options", "")
+    options_in_address = url.query.get("options", "")
+    in_address = options_in_address if isinstance(options_in_address, str) else " ".join(options_in_address)
     arguments = {
-        "options": f"{options} {given if isinstance(given, str) else ' '.join(given)}".strip(),
+        "options": f"{options} {in_address}".strip(),
         "connect_timeout": 10,
         "tcp_user_timeout": 20_000,  # ms until a machine that is gone counts as gone
         "application_name": "slidercrank",
     }
-    kept = {name: value for name, value in arguments.items() if name == "options" or name not in url.query}
+    used_arguments = {name: value for name, value in arguments.items() if name == "options" or name not in url.query}
     with NamingExtra("a store on PostgreSQL needs"):
-        engine = create_engine(url.difference_update_query(["options"]), connect_args=kept, **_POOL)
+        engine = create_engine(url.difference_update_query(["options"]), connect_args=used_arguments, **_POOL)
 
     @event.listens_for(engine, "checkin")
     def rest(_connection: Any, record: Any) -> None:

@@ -25,9 +25,9 @@ def damages(database: Database) -> list[str]:
     """
     try:
         with database.reading() as connection:
-            found = _of_sqlite(connection) if database.sqlite else _of_postgresql(connection)
+            damage = _of_sqlite(connection) if database.sqlite else _of_postgresql(connection)
             return (
-                found or _miscounts(connection) or _damaged_results(connection)
+                damage or _miscounts(connection) or _damaged_results(connection)
             )  # what is damaged need not be counted
     except Unavailable:
         raise
@@ -39,8 +39,8 @@ def clock_ahead(database: Database) -> float:
     """Return how far the clock of the database is ahead of the one of this machine, in s."""
     with database.reading() as connection:
         before = time.time()
-        there = connection.execute(select(now())).scalar_one()
-        return there - 0.5 * (before + time.time())
+        database_time = connection.execute(select(now())).scalar_one()
+        return database_time - 0.5 * (before + time.time())
 
 
 def server_version(database: Database) -> str:
@@ -52,9 +52,9 @@ def server_version(database: Database) -> str:
 
 
 def _of_sqlite(connection: Connection) -> list[str]:
-    found = list(connection.execute(text(f"PRAGMA integrity_check({_MOST})")).scalars())
-    if found != ["ok"]:
-        return found
+    damage = list(connection.execute(text(f"PRAGMA integrity_check({_MOST})")).scalars())
+    if damage != ["ok"]:
+        return damage
     rows = connection.execute(text("PRAGMA foreign_key_check")).all()
     return [f"{row[0]} has a row of a job that is not there" for row in rows[:_MOST]]
 
@@ -67,14 +67,14 @@ def _of_postgresql(connection: Connection) -> list[str]:
             "WHERE n.nspname = ANY (current_schemas(false)) AND NOT (i.indisvalid AND i.indisready)"
         )
     ).scalars()
-    found = [f"the index {name} is not valid; REINDEX it" for name in broken]
+    damage = [f"the index {name} is not valid; REINDEX it" for name in broken]
     failures = connection.scalar(
         text("SELECT checksum_failures FROM pg_stat_database WHERE datname = current_database()")
     )
     if failures:
-        found.append(f"{failures} pages failed their checksum; restore a backup")
+        damage.append(f"{failures} pages failed their checksum; restore a backup")
     off = [name for name in _SETTINGS if connection.scalar(text(f"SHOW {name}")) != "on"]
-    return [*found, *(f"{name} is off: a crash can lose what was committed; switch it on" for name in off)]
+    return [*damage, *(f"{name} is off: a crash can lose what was committed; switch it on" for name in off)]
 
 
 def _miscounts(connection: Connection) -> list[str]:
@@ -92,24 +92,24 @@ def _miscounts(connection: Connection) -> list[str]:
         count(records).label("has_records"),
         count(designs).label("has_designs"),
     ).order_by(jobs.c.id)
-    found = []
+    miscounts = []
     for row in connection.execute(query):
-        said = 0 if row.summary is None else json.loads(row.summary)["designs"]
-        for kind, expected, there in (
+        designs_in_summary = 0 if row.summary is None else json.loads(row.summary)["designs"]
+        for kind, expected, counted in (
             ("events", row.events, row.has_events),
             ("records", row.records, row.has_records),
-            ("designs", said, row.has_designs),
+            ("designs", designs_in_summary, row.has_designs),
         ):
-            if expected != there:
-                found.append(f"job {row.id} says that it has {expected} {kind}, {there} are there")
-    return found[:_MOST]
+            if expected != counted:
+                miscounts.append(f"job {row.id} says that it has {expected} {kind}, {counted} are there")
+    return miscounts[:_MOST]
 
 
 def _damaged_results(connection: Connection) -> list[str]:
     """Return the jobs that differ, with their results, from their checksums."""
     summed = (jobs.c.tables, jobs.c.result, jobs.c.summary)
     query = select(jobs.c.id, jobs.c.checksum, *summed).where(jobs.c.checksum.is_not(None)).order_by(jobs.c.id)
-    found = []
+    damage = []
     for job, sums, *parts in connection.execute(query):
         cells = select(designs.c.cells).where(designs.c.job == job).order_by(designs.c.number)
         content = connection.execute(select(exact.c.content).where(exact.c.job == job)).scalar_one_or_none()
@@ -117,5 +117,5 @@ def _damaged_results(connection: Connection) -> list[str]:
             require_sum(sums[:64], *parts)
             require_sum(sums[64:], *connection.execute(cells).scalars(), content)
         except ValueError as error:
-            found.append(f"the result of job {job} is damaged: {error}")
-    return found[:_MOST]
+            damage.append(f"the result of job {job} is damaged: {error}")
+    return damage[:_MOST]

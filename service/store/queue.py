@@ -61,7 +61,7 @@ def submitted_before(connection: Connection, key: str, tables: Mapping[str, Any]
         return None
     if json.loads(row.tables) != json.loads(text_of(tables)):
         raise InputError(f"a key stands for one job; {key!r} is that of job {row.id}, which differs; use another key")
-    return Job.of(row, more=("tables",))
+    return Job.from_row(row, left_out=("tables",))
 
 
 def require_room(connection: Connection, most_queued: int) -> None:
@@ -79,7 +79,7 @@ def add_job(
     *,
     name: str,
     run: str,
-    **more: Any,
+    **values: Any,
 ) -> int:
     """Insert a queued job and return its number. run: the name of its folder; another is made if that one is taken."""
     row = {
@@ -91,7 +91,7 @@ def add_job(
         "due": now(),
         "events": 1,
         **dict(zip(LIMITS, astuple(limits), strict=True)),
-        **more,
+        **values,
     }
     number = connection.execute(insert(jobs).values(row).returning(jobs.c.id)).scalar_one()
     put_files(connection, number, files)
@@ -116,14 +116,14 @@ def any_claimable(connection: Connection, jumps: Jumps, last_full: float) -> boo
 
     jumps: of the database's clock. last_full: when its disk had no room, s. None is claimed soon after either.
     """
-    settled = jumps.settled(connection.execute(select(now())).scalar_one(), last_full)
-    return settled and connection.execute(_CLAIMABLE).first() is not None
+    clock_settled = jumps.is_settled(connection.execute(select(now())).scalar_one(), last_full)
+    return clock_settled and connection.execute(_CLAIMABLE).first() is not None
 
 
 def running(connection: Connection) -> int:
     """Return how many jobs are in the hands of workers whose lease has not ended."""
-    held = and_(jobs.c.state == "running", not_(ENDED_LEASE))
-    return connection.scalar(select(func.count()).where(held)) or 0
+    in_hands = and_(jobs.c.state == "running", not_(ENDED_LEASE))
+    return connection.scalar(select(func.count()).where(in_hands)) or 0
 
 
 def claim_next(connection: Connection, worker: str, lease: float) -> Job | None:
@@ -133,23 +133,25 @@ def claim_next(connection: Connection, worker: str, lease: float) -> Job | None:
     aside: whatever stopped their workers would stop the next one too.
     """
     while True:
-        found = connection.execute(_CLAIMABLE.with_for_update(skip_locked=True)).first()
-        if found is None:
+        foremost = connection.execute(_CLAIMABLE.with_for_update(skip_locked=True)).first()
+        if foremost is None:
             return None
-        if found.state == "running" and found.attempts >= found.most_attempts:
-            _set_aside(connection, Job.of(found))
+        if foremost.state == "running" and foremost.attempts >= foremost.most_attempts:
+            _set_aside(connection, Job.from_row(foremost))
             continue
-        told = [state_event("running", f"claimed by {worker}")]
-        if found.state == "running":
-            told.insert(0, ("message", {"text": f"the lease of {found.worker} ended without a word"}))
+        new_events = [state_event("running", f"claimed by {worker}")]
+        if foremost.state == "running":
+            new_events.insert(0, ("message", {"text": f"the lease of {foremost.worker} ended without a word"}))
         row = connection.execute(
             update(jobs)
-            .where(jobs.c.id == found.id)
-            .values({"state": "running", "reason": "", **in_hand(worker, lease), "events": jobs.c.events + len(told)})
+            .where(jobs.c.id == foremost.id)
+            .values(
+                {"state": "running", "reason": "", **in_hand(worker, lease), "events": jobs.c.events + len(new_events)}
+            )
             .returning(*SHOWN)
         ).one()
-        add_events(connection, row.id, row.events, told)
-        return Job.of(row)
+        add_events(connection, row.id, row.events, new_events)
+        return Job.from_row(row)
 
 
 def _set_aside(connection: Connection, job: Job) -> None:
@@ -169,5 +171,7 @@ def put_files(connection: Connection, job: int, files: Sequence[Artefact]) -> No
 
 def _free(connection: Connection, run: str) -> str:
     start = jobs.c.run.startswith(run, autoescape=True)
-    taken = set(connection.execute(select(jobs.c.run).where(start)).scalars())
-    return next(name for name in (run, *(f"{run}-{i}" for i in range(2, len(taken) + 3))) if name not in taken)
+    used_names = set(connection.execute(select(jobs.c.run).where(start)).scalars())
+    return next(
+        name for name in (run, *(f"{run}-{i}" for i in range(2, len(used_names) + 3))) if name not in used_names
+    )

@@ -40,10 +40,12 @@ class Limits:
                     f"a limit on {name} must be a positive number of {unit}; got {value}; leave it out for no limit"
                 )
 
-    def within(self, ceiling: Limits) -> Limits:
+    def stricter(self, ceiling: Limits) -> Limits:
         """Return the stricter of each pair of limits."""
         pairs = zip(astuple(self), astuple(ceiling), strict=True)
-        seconds, evaluations, memory = (min((one for one in pair if one is not None), default=None) for pair in pairs)
+        seconds, evaluations, memory = (
+            min((limit for limit in pair if limit is not None), default=None) for pair in pairs
+        )
         return Limits(seconds=seconds, evaluations=evaluations, memory=memory)
 
 
@@ -71,7 +73,7 @@ class Job:
     its rules), cancelled, or failed: set aside, not tried again unless someone resumes it. reason: why it is in this
     state, in a sentence, or empty. attempts: since it last went forward by a record. due: it is not claimed before.
     worker, lease_until: of a running one. records: how many it can go on from. events: how many there are.
-    progress: fields of the latest `Progress`, or None; `front` with them where the search gave one, see `Claim.tell`.
+    progress: fields of the latest `Progress`, or None; `front` with them where the search gave one, see `Claim.report`.
     summary: what it found, see `serialisation.summary_of`, or None. origin: the number of the job that it is a changed
     copy of, or None.
     """
@@ -101,17 +103,17 @@ class Job:
     origin: int | None = None
 
     @classmethod
-    def of(cls, row: Found[*tuple[Any, ...]], *, more: Sequence[str] = ()) -> Job:
+    def from_row(cls, row: Found[*tuple[Any, ...]], *, left_out: Sequence[str] = ()) -> Job:
         """Return a job from a row of the columns `SHOWN`, and perhaps more, which are left out."""
         from pydantic_core import from_json  # in a quarter of the time of json's
 
-        found = dict(row._mapping)
-        for name in ("writes", *more):
-            del found[name]
+        values = dict(row._mapping)
+        for name in ("writes", *left_out):
+            del values[name]
         for name in ("progress", "summary"):
-            found[name] = None if found[name] is None else from_json(found[name])
-        seconds, evaluations, memory = (found.pop(name) for name in LIMITS)
-        return cls(**found, limits=Limits(seconds=seconds, evaluations=evaluations, memory=memory))
+            values[name] = None if values[name] is None else from_json(values[name])
+        seconds, evaluations, memory = (values.pop(name) for name in LIMITS)
+        return cls(**values, limits=Limits(seconds=seconds, evaluations=evaluations, memory=memory))
 
     def record(self) -> dict[str, Any]:
         """Return the job as JSON, the same everywhere: times in seconds since 1970, memory in bytes."""
@@ -145,7 +147,7 @@ class Event:
     data: dict[str, Any]
 
     @classmethod
-    def of(cls, row: Found[*tuple[Any, ...]]) -> Event:
+    def from_row(cls, row: Found[*tuple[Any, ...]]) -> Event:
         """Return an event from its row."""
         return cls(**{**row._mapping, "data": json.loads(row.data)})
 
@@ -163,7 +165,7 @@ class News:
     events: list[Event]
 
     @property
-    def over(self) -> bool:
+    def is_over(self) -> bool:
         """Whether the job has ended and these events are all of the rest."""
         return self.state in ENDED and (not self.events or self.events[-1].number == self.last)
 

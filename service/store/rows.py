@@ -28,7 +28,7 @@ def the_job(connection: Connection, number: int, *, lock: bool = False) -> Job:
     row = connection.execute(query.with_for_update() if lock else query).first() if 0 < number < 2**63 else None
     if row is None:
         raise NotFound(f"there is no job {number}; list the jobs")
-    return Job.of(row)
+    return Job.from_row(row)
 
 
 def become(connection: Connection, job: Job, state: State, reason: str, **changes: Any) -> Job:
@@ -81,9 +81,9 @@ def damaged(number: int, error: Exception) -> RunError:
     return RunError(f"the result of job {number} is damaged: {type(error).__name__}: {error}; submit the job again")
 
 
-def add_events(connection: Connection, job: int, last: int, told: Sequence[Told]) -> None:
+def add_events(connection: Connection, job: int, last: int, new_events: Sequence[Told]) -> None:
     """Add events, of which the last has the number `last`, to a job whose row was updated in this transaction."""
-    for number, (kind, data) in enumerate(told, last - len(told) + 1):
+    for number, (kind, data) in enumerate(new_events, last - len(new_events) + 1):
         row = {"job": job, "number": number, "at": now(), "kind": kind, "data": text_of(data)}
         connection.execute(insert(events).values(row))
 
@@ -98,16 +98,16 @@ def news_of(connection: Connection, after: Mapping[int, int], limit: int) -> dic
     numbers = list(after)
     news: dict[int, News] = {}
     for start in range(0, len(numbers), _TOGETHER):
-        asked = numbers[start : start + _TOGETHER]
-        for row in connection.execute(select(jobs.c.id, jobs.c.state, jobs.c.events).where(jobs.c.id.in_(asked))):
+        batch = numbers[start : start + _TOGETHER]
+        for row in connection.execute(select(jobs.c.id, jobs.c.state, jobs.c.events).where(jobs.c.id.in_(batch))):
             news[row.id] = News(state=row.state, last=row.events, events=[])
         fresh = [
             and_(events.c.job == job, events.c.number > after[job], events.c.number <= after[job] + limit)
-            for job in asked
+            for job in batch
             if job in news and news[job].last > after[job]
         ]
         if fresh:
             query = select(events).where(or_(*fresh)).order_by(events.c.job, events.c.number)
             for row in connection.execute(query):
-                news[row.job].events.append(Event.of(row))
+                news[row.job].events.append(Event.from_row(row))
     return news

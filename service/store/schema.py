@@ -114,7 +114,7 @@ artefacts = sa.Table(
     sa.Column("content", sa.LargeBinary, nullable=False),
 )
 
-kept = sa.Table(
+bookmarks = sa.Table(
     "kept",
     metadata,
     _of_a_job(),

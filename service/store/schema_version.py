@@ -76,11 +76,11 @@ def strangers(database: Database) -> str:
 def _strangers(connection: Connection, scripts: ScriptDirectory) -> str:
     version, names = _version(connection), set(inspect(connection).get_table_names())
     if version is not None:
-        found = set() if "jobs" in names or _knows(scripts, version) else names
+        strangers = set() if "jobs" in names or _knows(scripts, version) else names
     else:  # a database on a server may be shared, a file is not
-        found = names if connection.dialect.name == "sqlite" else names & set(metadata.tables)
-    listed = sorted(found)[:3]
-    return ", ".join(listed) + (" and more" if len(found) > 3 else "")
+        strangers = names if connection.dialect.name == "sqlite" else names & set(metadata.tables)
+    listed = sorted(strangers)[:3]
+    return ", ".join(listed) + (" and more" if len(strangers) > 3 else "")
 
 
 def _knows(scripts: ScriptDirectory, version: str | None) -> bool:

@@ -61,9 +61,9 @@ def packed_exact(exact: Exact) -> bytes:
     """Return exact designs as a file like `packed`: slopes one after the other, with the shapes of each design's."""
     import numpy as np
 
-    found = [(*pieces, edges) for pieces, edges in zip(exact.goals, exact.active, strict=True)]
-    shapes = [(len(owner), len(edges), slopes.shape[1]) for owner, slopes, edges in found]
-    numbers = [part.ravel() for parts in found for part in parts]
+    parts_by_design = [(*pieces, edges) for pieces, edges in zip(exact.goals, exact.active, strict=True)]
+    shapes = [(len(owner), len(edges), slopes.shape[1]) for owner, slopes, edges in parts_by_design]
+    numbers = [part.ravel() for parts in parts_by_design for part in parts]
     return _saved(
         dimensions=exact.dimensions,
         variants=np.array(exact.variants, dtype=np.int64),
@@ -147,11 +147,11 @@ def rows_of(columns: Sequence[str], texts: Sequence[str]) -> list[Row]:
     """
     from pydantic_core import from_json
 
-    whole = f"[{','.join(texts)}]"
-    rows = from_json(whole, allow_inf_nan=False, cache_strings="all")
+    array_text = f"[{','.join(texts)}]"
+    rows = from_json(array_text, allow_inf_nan=False, cache_strings="all")
     if len(rows) != len(texts):
         raise ValueError(f"{len(texts)} designs are {len(rows)}")
-    if "null" in whole or 'inf"' in whole:
+    if "null" in array_text or 'inf"' in array_text:
         rows = [map(_read, row) for row in rows]
     return [dict(zip(columns, row, strict=True)) for row in rows]
 
@@ -161,11 +161,11 @@ def summary_of(result: Result) -> dict[str, Any]:
 
     axes: the columns of the first two objectives, or of the only one; points: their values, of at most 64 designs.
     """
-    axes = [wanted.column for wanted in result.objectives[:2]]
+    axes = [objective.column for objective in result.objectives[:2]]
     best = {
-        wanted.column: result.designs[result.extremes[wanted.quantity]][wanted.column]
-        for wanted in result.objectives
-        if wanted.quantity in result.extremes
+        objective.column: result.designs[result.extremes[objective.quantity]][objective.column]
+        for objective in result.objectives
+        if objective.quantity in result.extremes
     }
     return {
         "designs": len(result.designs),

@@ -75,16 +75,16 @@ class Store(Workers):
 
         Raises `QueueFull`, and `InputError` if the key was used for another job.
         """
-        wanted: Queueing = {"priority": 0, "key": None, "most_attempts": MOST_ATTEMPTS, **queueing}
-        queue.require_bounds(**wanted)
-        key, more = wanted["key"], {**wanted, "origin": origin}
+        queueing_values: Queueing = {"priority": 0, "key": None, "most_attempts": MOST_ATTEMPTS, **queueing}
+        queue.require_bounds(**queueing_values)
+        key, values = queueing_values["key"], {**queueing_values, "origin": origin}
         with self.writing() as connection:
             queue.take_turns(connection)  # so that two submissions neither share a key nor overfill the queue
-            known = queue.submitted_before(connection, key, tables) if key else None
-            if known is None:
+            earlier = queue.submitted_before(connection, key, tables) if key else None
+            if earlier is None:
                 queue.require_room(connection, self.most_queued)
-                number = queue.add_job(connection, tables, files, limits, name=name, run=run_name(name), **more)
-        return self.job(number if known is None else known.id)
+                number = queue.add_job(connection, tables, files, limits, name=name, run=run_name(name), **values)
+        return self.job(number if earlier is None else earlier.id)
 
     def begin(
         self, tables: Mapping[str, Any], *, name: str, run: str, worker: str, lease: float, files: Sequence[Artefact]
@@ -93,7 +93,7 @@ class Store(Workers):
         with self.writing() as connection:
             queue.take_turns(connection)
             number = queue.add_job(connection, tables, files, NO_LIMITS, name=name, run=run, most_attempts=1)
-            return self._taken(connection, the_job(connection, number), worker, lease, f"begun by {worker}")
+            return self._claim(connection, the_job(connection, number), worker, lease, f"begun by {worker}")
 
     def go_on(self, number: int, *, worker: str, lease: float, alone: bool = False) -> Claim:
         """Claim a cancelled or failed job at once, to go on with it. alone: also a running one, whose worker is gone.
@@ -104,30 +104,30 @@ class Store(Workers):
             job = the_job(connection, number, lock=True)
             if not (alone and job.state == "running"):
                 require_resumable(job)
-            return self._taken(connection, job, worker, lease, f"taken up by {worker}")
+            return self._claim(connection, job, worker, lease, f"taken up by {worker}")
 
-    def _taken(self, connection: Connection, job: Job, worker: str, lease: float, reason: str) -> Claim:
+    def _claim(self, connection: Connection, job: Job, worker: str, lease: float, reason: str) -> Claim:
         again = {"attempts": 1, "cancel_asked": False, "finished": None}
-        held = become(connection, job, "running", reason, **{**queue.in_hand(worker, lease), **again})
-        return Claim(self, held, lease)
+        running_job = become(connection, job, "running", reason, **{**queue.in_hand(worker, lease), **again})
+        return Claim(self, running_job, lease)
 
     def job(self, number: int) -> Job:
-        """Return where a job stands; the reason of one that waits says whether for room on the disk or for a worker."""
+        """Return a job with its state; the reason of a waiting one says whether it lacks disk space or a worker."""
         with self.reading() as connection:
-            found = the_job(connection, number)
-        return self._waiting([found])[0]
+            stored = the_job(connection, number)
+        return self._waiting([stored])[0]
 
-    def _waiting(self, found: list[Job]) -> list[Job]:
+    def _waiting(self, listed: list[Job]) -> list[Job]:
         try:
             self.require_room()
         except StoreError as error:
             reason = f"waits: {error}"
-            return [replace(job, reason=reason) if job.state in ("queued", "running") else job for job in found]
-        if any(job.state == "queued" and not job.reason for job in found):
+            return [replace(job, reason=reason) if job.state in ("queued", "running") else job for job in listed]
+        if any(job.state == "queued" and not job.reason for job in listed):
             crew = [worker.busy for worker in self.workers() if worker.at_work]
             reason = "" if not all(crew) else f"every worker is busy ({len(crew)})" if crew else "no worker is running"
-            return [replace(job, reason=reason) if job.state == "queued" and not job.reason else job for job in found]
-        return found
+            return [replace(job, reason=reason) if job.state == "queued" and not job.reason else job for job in listed]
+        return listed
 
     def records(self, number: int) -> list[Record]:
         """Return the records of a job's evaluations so far, in order."""
@@ -138,7 +138,7 @@ class Store(Workers):
         """Return the job of a run folder's name, None if there is none."""
         with self.reading() as connection:
             row = connection.execute(select(*SHOWN).where(jobs.c.run == run)).first()
-        return None if row is None else Job.of(row)
+        return None if row is None else Job.from_row(row)
 
     def jobs(
         self,
@@ -164,14 +164,14 @@ class Store(Workers):
         if before is not None:
             query = query.where(jobs.c.id < before)
         with self.reading() as connection:
-            found = [Job.of(row) for row in connection.execute(query)]
-        return self._waiting(found)
+            listed = [Job.from_row(row) for row in connection.execute(query)]
+        return self._waiting(listed)
 
     def counts(self) -> dict[str, int]:
         """Return how many jobs are in each state that any is in."""
         with self.reading() as connection:
-            found = connection.execute(select(jobs.c.state, func.count()).group_by(jobs.c.state)).all()
-        return {row.state: int(row[1]) for row in found}
+            rows = connection.execute(select(jobs.c.state, func.count()).group_by(jobs.c.state)).all()
+        return {row.state: int(row[1]) for row in rows}
 
     def longest_wait(self) -> float:
         """Return the waiting time, s, of the oldest job that a worker may claim; 0 if none waits."""
@@ -183,8 +183,8 @@ class Store(Workers):
         """Return the tables of a job's file."""
         with self.reading() as connection:
             the_job(connection, number)
-            found = connection.execute(select(jobs.c.tables).where(jobs.c.id == number)).scalar_one()
-        tables: dict[str, Any] = json.loads(found)
+            text = connection.execute(select(jobs.c.tables).where(jobs.c.id == number)).scalar_one()
+        tables: dict[str, Any] = json.loads(text)
         return tables
 
     def events(self, number: int, *, after: int = 0, limit: int = 1000) -> list[Event]:
@@ -192,7 +192,7 @@ class Store(Workers):
         query = select(events).where(and_(events.c.job == number, events.c.number > after))
         with self.reading() as connection:
             the_job(connection, number)
-            return [Event.of(row) for row in connection.execute(query.order_by(events.c.number).limit(limit))]
+            return [Event.from_row(row) for row in connection.execute(query.order_by(events.c.number).limit(limit))]
 
     def news(self, after: Mapping[int, int], *, limit: int = 1000) -> dict[int, News]:
         """Return the news of jobs after a given event of each, at most `limit` events a job."""
@@ -218,13 +218,13 @@ class Store(Workers):
         with self.reading() as connection:
             stored, expected = the_record(connection, the_job(connection, number))
             cells = select(designs.c.cells).where(designs.c.job == number).order_by(designs.c.number)
-            found = connection.execute(cells).scalars().all()
+            cell_texts = connection.execute(cells).scalars().all()
             content = connection.execute(select(exact.c.content).where(exact.c.job == number)).scalar_one_or_none()
         try:
-            require_sum(expected, *found, content)
+            require_sum(expected, *cell_texts, content)
             columns = stored.pop("columns")
-            known = None if content is None else unpacked_exact(content)
-            return result_from(stored, rows_of(columns, found), str(stored["run"]), known)
+            exact_designs = None if content is None else unpacked_exact(content)
+            return result_from(stored, rows_of(columns, cell_texts), str(stored["run"]), exact_designs)
         except (ValueError, KeyError, TypeError) as error:
             raise damaged(number, error) from error
 
@@ -236,9 +236,9 @@ class Store(Workers):
 
     def artefact(self, number: int, name: str) -> Artefact:
         """Return a file of a job. Raises `NotFound` if it has none of that name."""
-        own = and_(artefacts.c.job == number, artefacts.c.name == name)
+        of_file = and_(artefacts.c.job == number, artefacts.c.name == name)
         with self.reading() as connection:
-            row = connection.execute(select(artefacts.c.media_type, artefacts.c.content).where(own)).first()
+            row = connection.execute(select(artefacts.c.media_type, artefacts.c.content).where(of_file)).first()
         if row is None:
             raise NotFound(f"job {number} has no file {name!r}; choose one of its files")
         return Artefact(name=name, media_type=row.media_type, content=bytes(row.content))

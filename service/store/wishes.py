@@ -45,17 +45,17 @@ def wishes_of(store: Database, job: int) -> list[MadeWish]:
         ]
 
 
-def note_wish(store: Database, job: int, given: Wished, design: int | None) -> None:
+def note_wish(store: Database, job: int, stated: Wished, design: int | None) -> None:
     """Note a wish on the front of a job as the latest, in place of the same one before."""
-    text = json.dumps({name: list(wish) for name, wish in sorted(given.items())})
+    text = json.dumps({name: list(wish) for name, wish in sorted(stated.items())})
     with store.writing() as connection:
         the_job(connection, job, lock=True)
-        own = wishes.c.job == job
-        last = connection.execute(select(func.max(wishes.c.number)).where(own)).scalar() or 0
+        of_job = wishes.c.job == job
+        last = connection.execute(select(func.max(wishes.c.number)).where(of_job)).scalar() or 0
         same = and_(wishes.c.wishes == text, wishes.c.design.is_(None) if design is None else wishes.c.design == design)
-        connection.execute(delete(wishes).where(own, same))
-        kept = select(wishes.c.number).where(own).order_by(wishes.c.number.desc()).limit(1).offset(MOST_WISHES - 2)
-        oldest = connection.execute(kept).scalar()
+        connection.execute(delete(wishes).where(of_job, same))
+        newest = select(wishes.c.number).where(of_job).order_by(wishes.c.number.desc()).limit(1).offset(MOST_WISHES - 2)
+        oldest = connection.execute(newest).scalar()
         if oldest is not None:
-            connection.execute(delete(wishes).where(own, wishes.c.number < oldest))
+            connection.execute(delete(wishes).where(of_job, wishes.c.number < oldest))
         connection.execute(insert(wishes).values(job=job, number=last + 1, wishes=text, design=design, at=now()))

@@ -1,4 +1,4 @@
-"""The workers of a store: who solves its jobs, and when each was heard of last."""
+"""The workers of a store and when each was last heard from."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ class Workers(Database):
     def greet(self, worker: str) -> None:
         """Note that a worker is there; forget those that have been silent for days."""
         with self.writing() as connection:
-            seen = update(workers).where(workers.c.id == worker).values(seen=now())
-            if not connection.execute(seen).rowcount:
+            sign_of_life = update(workers).where(workers.c.id == worker).values(seen=now())
+            if not connection.execute(sign_of_life).rowcount:
                 connection.execute(delete(workers).where(workers.c.seen < now() - _FORGOTTEN))
                 connection.execute(insert(workers).values(id=worker, started=now(), seen=now()))
 
@@ -30,13 +30,13 @@ class Workers(Database):
             connection.execute(delete(workers).where(workers.c.id == worker))
 
     def has_waiting(self) -> bool:
-        """Whether a job waits for a worker, also if none may be claimed now: not due, or soon after a clock was set."""
+        """Whether a job waits for a worker, even one that is not due or may not be claimed yet."""
         query = select(jobs.c.id).where(or_(jobs.c.state == "queued", LEFT)).limit(1)
         with self.reading() as connection:
             return connection.execute(query).first() is not None
 
     def workers_at_work(self) -> int:
-        """Return how many workers were heard of lately, busy or not."""
+        """Return the number of workers heard from recently, busy or not."""
         return sum(worker.at_work for worker in self.workers())
 
     def workers(self) -> list[Worker]:
@@ -45,7 +45,7 @@ class Workers(Database):
         One that was heard of in the future, by a clock set back since, counts as silent for as long.
         """
         silent = func.abs(now() - workers.c.seen).label("silent")
-        held = exists().where(jobs.c.worker == workers.c.id, jobs.c.state == "running", not_(ENDED_LEASE))
-        query = select(*workers.c, silent, held.label("busy")).order_by(silent)
+        has_job = exists().where(jobs.c.worker == workers.c.id, jobs.c.state == "running", not_(ENDED_LEASE))
+        query = select(*workers.c, silent, has_job.label("busy")).order_by(silent)
         with self.reading() as connection:
             return [Worker(**row._mapping) for row in connection.execute(query)]

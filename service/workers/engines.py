@@ -53,7 +53,7 @@ class EngineOptions:
             if file is not None and not file.is_file():
                 raise InputError(f"the files of an encrypted connection must exist; got {file}; correct the path")
         if self.scheduler is not None:
-            _made(self)  # refuses an address that cannot be one
+            _make_engine(self)  # refuses an address that cannot be one
             required("distributed", "a Dask cluster needs")
         return self
 
@@ -65,14 +65,14 @@ class EngineOptions:
 @contextlib.contextmanager
 def engine_of(options: EngineOptions) -> Iterator[Engine]:
     """Enter the engine that is asked for; it ends with the block. Nothing is started before it is needed."""
-    made = _made(options)
+    engine = _make_engine(options)
     try:
-        yield made
+        yield engine
     finally:
-        made.close()
+        engine.close()
 
 
-def _made(options: EngineOptions) -> Engine:
+def _make_engine(options: EngineOptions) -> Engine:
     if options.scheduler is not None:
         from ...optimise.engine.cluster import Cluster, Tls
 

@@ -70,7 +70,7 @@ class Budget:
 class Heartbeat:
     """While entered, a thread that keeps the lease of a claim and learns whether its job is to be cancelled.
 
-    budget: of the job. Beyond its memory, as `taken` measures it, the job is set aside as failed and the process ends
+    budget: of the job. Beyond its memory, as `memory` measures it, the job is set aside as failed and the process ends
     with the exit code `EXHAUSTED`: nothing else gives the memory back for sure. Where the search does not end within a
     minute of being over the rest, or of a cancellation, the job ends without it and the process with the exit code
     `DEAF`; only where there is a grace, too.
@@ -85,7 +85,7 @@ class Heartbeat:
     claim: Claim
     _: KW_ONLY
     budget: Budget = field(default_factory=lambda: Budget(NO_LIMITS))
-    taken: Memory = field(default_factory=Memory)
+    memory: Memory = field(default_factory=Memory)
     stop: Stop = lambda: False
     grace: float | None = None
     patience: float | None = None
@@ -125,24 +125,24 @@ class Heartbeat:
             except StoreError:
                 pass  # the writes of the search find out whether it stays so
 
-    def _waited(self, what: str) -> float:
+    def _waited(self, condition: str) -> float:
         """Return for how long, in s, something has been so: since this was first asked."""
         now = time.monotonic()
-        return now - self._since.setdefault(what, now)
+        return now - self._since.setdefault(condition, now)
 
     def _look_at_cancel(self) -> None:
-        if self.patience is None or not self.claim.cancel_asked or self.claim.begun or self._end.is_set():
+        if self.patience is None or not self.claim.cancel_asked or self.claim.has_begun or self._end.is_set():
             return
         if self._waited("cancelled") >= self.patience:
             self.claim.give_up()
             self.lost = "it was cancelled before its search began"
 
     def _look_at_memory(self) -> None:
-        most = self.budget.limits.memory
-        if most is None or (taken := self.taken.of_the_job()) <= most or self._end.is_set():
+        allowed = self.budget.limits.memory
+        if allowed is None or (used := self.memory.of_the_job()) <= allowed or self._end.is_set():
             return
         reason = (
-            f"it may use {size_text(most)} of memory; its worker used {size_text(taken)}; give it a higher "
+            f"it may use {size_text(allowed)} of memory; its worker used {size_text(used)}; give it a higher "
             "limit, or ask for less"
         )
         _log.error("set aside: %s", reason)
@@ -170,14 +170,14 @@ class Heartbeat:
         if self.grace is None or not self.stop():
             return
         waited = self._waited("worker stops")
-        begun = self.claim.begun or self.patience is None
-        grace = self.grace if begun else min(self.grace, self.patience or 0.0)
+        has_begun = self.claim.has_begun or self.patience is None
+        grace = self.grace if has_begun else min(self.grace, self.patience or 0.0)
         if waited < grace or self._end.is_set():
             return
-        where = "in the middle of a round" if begun else "before its search began"
-        _log.warning("handed back: its worker stopped %s", where)
+        moment = "in the middle of a round" if has_begun else "before its search began"
+        _log.warning("handed back: its worker stopped %s", moment)
         with contextlib.suppress(LeaseLost, StoreError):
-            self.claim.hand_back(f"its worker stopped {where}; another one continues")
+            self.claim.hand_back(f"its worker stopped {moment}; another one continues")
         leave(0)
 
 

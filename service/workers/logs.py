@@ -34,7 +34,7 @@ def set_up_logs(form: Format = "text", *, stream: TextIO | None = None) -> None:
 
 
 @contextlib.contextmanager
-def about(*, job: int | None = None, worker: str | None = None) -> Iterator[None]:
+def log_subject(*, job: int | None = None, worker: str | None = None) -> Iterator[None]:
     """While entered, what this thread logs is about a job, a worker, or both."""
     before = _SUBJECT.get()
     token = _SUBJECT.set((worker or before[0], job or before[1]))

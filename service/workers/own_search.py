@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.extras import is_installed
 from ...model.file_names import path_text
-from ..jobs.own_run import begin, folder_of, stopped_job, take_up, told
+from ..jobs.own_run import begin, end_job_on_error, folder_of, stopped_job, take_up
 from ..runs.result import Result, result_of
 from ..runs.run_folder import RunFolder
 from .heartbeat import Budget, Heartbeat
@@ -27,12 +27,12 @@ Opened = tuple[RunFolder, "Problem", "Claim"]
 
 
 def with_settings(
-    problem: Problem, tables: Mapping[str, Any], given: Mapping[str, Any]
+    problem: Problem, tables: Mapping[str, Any], changes: Mapping[str, Any]
 ) -> tuple[Problem, dict[str, Any]]:
     """Return a problem and the tables that state it with other settings: designs, seed."""
-    settings = replace(problem.settings, **given)
-    used = {"designs": settings.designs, "seed": settings.seed}
-    return replace(problem, settings=settings), {**tables, "optimiser": {**tables.get("optimiser", {}), **used}}
+    settings = replace(problem.settings, **changes)
+    stated = {"designs": settings.designs, "seed": settings.seed}
+    return replace(problem, settings=settings), {**tables, "optimiser": {**tables.get("optimiser", {}), **stated}}
 
 
 @contextlib.contextmanager
@@ -56,15 +56,15 @@ def resumed_run(
         problem = read(store.tables(job.id), folder.path)
         require_records(problem, store.records(job.id))
         claim = take_up(store, job)
-        with told(claim):
+        with end_job_on_error(claim):
             folder.go_on()
         yield folder, problem, claim
 
 
 @contextlib.contextmanager
 def kept_alive(claim: Claim, *, again: str) -> Iterator[None]:
-    """While entered, the claim is renewed, and an error ends its job; see `told`. again: how the run goes on."""
-    with told(claim, again=again), Heartbeat(claim):
+    """While entered, renew the claim; an error ends its job. again: the command that continues the run."""
+    with end_job_on_error(claim, again=again), Heartbeat(claim):
         yield
 
 
@@ -76,12 +76,12 @@ def search(
 
     run, problem, claim = opened
 
-    def tell(at: Progress) -> None:
-        claim.tell(at)
+    def report(at: Progress) -> None:
+        claim.report(at)
         show(at)
 
-    def tell_and_log(at: Progress) -> None:
-        tell(at)
+    def report_and_log(at: Progress) -> None:
+        report(at)
         run.log(
             f"{at.stage} {at.round}/{at.rounds}: {at.evaluations} evaluated, {at.feasible} feasible, "
             f"hypervolume {at.hypervolume:.6g}, {at.seconds:.2f} s"
@@ -89,8 +89,8 @@ def search(
 
     return solve(
         problem,
-        progress=tell_and_log,
-        stages=tell,
+        progress=report_and_log,
+        stages=report,
         cancelled=lambda: cancelled() or claim.cancel_asked,
         resume=tuple(claim.records()),
         keep=claim.keep,

@@ -39,7 +39,7 @@ class _Place:
     started: float = 0.0
     ended_soon: int = 0
     due: float = field(default_factory=time.monotonic)
-    done: bool = False
+    is_drained: bool = False
 
 
 class Supervisor:
@@ -77,7 +77,7 @@ class Supervisor:
 
     def finished(self) -> bool:
         """Whether all workers have drained the queue and ended."""
-        return all(place.done for place in self._places)
+        return all(place.is_drained for place in self._places)
 
     def _watch(self) -> None:
         try:
@@ -92,7 +92,7 @@ class Supervisor:
 
     def _look_after(self, place: _Place) -> None:
         if place.process is None:
-            if not place.done and time.monotonic() >= place.due:
+            if not place.is_drained and time.monotonic() >= place.due:
                 self._start(place)
             return
         code = place.process.poll()
@@ -118,17 +118,17 @@ class Supervisor:
 
     def _plan_next(self, place: _Place, code: int) -> None:
         if code == 0 and self.settings.drain:
-            place.done = True
+            place.is_drained = True
             _log.info("worker %d ended: no job waits", place.number)
             return
         soon = code not in (EXHAUSTED, DEAF, STALE) and time.monotonic() - place.started < _SOON
         self._plan(place, f"ended: {reason_of(code)}", soon=soon)
 
-    def _plan(self, place: _Place, what: str, *, soon: bool) -> None:
+    def _plan(self, place: _Place, event: str, *, soon: bool) -> None:
         place.ended_soon = place.ended_soon + 1 if soon else 0
         pause = min(_LONGEST, _FIRST * 2.0 ** (place.ended_soon - 1)) if soon else 0.0
         place.due = time.monotonic() + pause
-        _log.warning("worker %d %s; another one starts in %g s", place.number, what, pause)
+        _log.warning("worker %d %s; another one starts in %g s", place.number, event, pause)
 
     def _stop(self) -> None:
         running = [place.process for place in self._places if place.process is not None]

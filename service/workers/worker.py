@@ -23,7 +23,7 @@ from ..store import LEASE, NO_LIMITS, Artefact, Claim, Limits, Store
 from ..store.database import Full
 from .engines import EngineOptions, engine_of
 from .heartbeat import PULSE, Budget, Heartbeat, Stop
-from .logs import about
+from .logs import log_subject
 
 if TYPE_CHECKING:
     from ...model.arrays import Array
@@ -94,8 +94,8 @@ def work(
     memory = Memory()
     name = name or worker_name()
     stop = stop or (lambda: False)
-    taken, greeted, away = 0, -lease, False
-    with about(worker=name), engine_of(terms.engine) as engine:
+    count, greeted, away = 0, -lease, False
+    with log_subject(worker=name), engine_of(terms.engine) as engine:
         while not stop():
             try:
                 if time.monotonic() - greeted > lease / 3.0:
@@ -120,20 +120,20 @@ def work(
                         store.part(name)
                     raise Stale
                 solve_claimed(store, claim, stop, terms, engine, memory)
-                taken += 1
+                count += 1
             elif drain and not store.has_waiting():
                 break
             else:
                 time.sleep(PULSE)
         with contextlib.suppress(StoreError):  # where it cannot be reached, the worker is silent from now on
             store.part(name)
-    return taken
+    return count
 
 
 def _leaves_room(claim: Claim, memory: Memory, terms: Terms) -> bool:
     """Whether a job is handed back, for a fresh process: earlier jobs have left too much memory in this one."""
-    most = claim.job.limits.within(terms.limits).memory
-    if terms.grace is None or most is None or memory.left <= TOLERATED * most:
+    allowed = claim.job.limits.stricter(terms.limits).memory
+    if terms.grace is None or allowed is None or memory.left_behind <= TOLERATED * allowed:
         return False
     with contextlib.suppress(LeaseLost, StoreError):  # else its lease ends
         claim.hand_back("a new worker takes it: earlier jobs left too little memory in this one")
@@ -153,12 +153,13 @@ def solve_claimed(
     What the job evaluated under earlier claims is not evaluated again. When the lease is lost, or the database out of
     reach for as long as it lasts, nothing is written: whoever claims the job next goes on from what is there.
     """
-    budget = Budget(claim.job.limits.within(terms.limits), waited=lambda: claim.waited)
+    budget = Budget(claim.job.limits.stricter(terms.limits), waited=lambda: claim.waited)
     claim.patient = lambda _: not (claim.cancel_asked or stop())
-    with about(job=claim.job.id):
+    with log_subject(job=claim.job.id):
         _log.info("claimed")
-        taken = memory or Memory()
-        heartbeat = Heartbeat(claim, budget=budget, taken=taken, stop=stop, grace=terms.grace, patience=_PATIENCE)
+        heartbeat = Heartbeat(
+            claim, budget=budget, memory=memory or Memory(), stop=stop, grace=terms.grace, patience=_PATIENCE
+        )
         try:
             with heartbeat:
                 _end(claim, lambda: _solve(store, claim, budget, terms, engine, heartbeat, stop))
@@ -205,7 +206,7 @@ def _end(claim: Claim, solve: Callable[[], None]) -> None:
 
 def _stumble(claim: Claim, error: Exception) -> None:
     trace = "".join(traceback.format_exception(error)).encode(errors="replace")
-    claim.put(Artefact(name="error.txt", media_type="text/plain", content=trace))
+    claim.write_files(Artefact(name="error.txt", media_type="text/plain", content=trace))
     reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
     claim.fail(reason, again=True, delay=_DELAY * 2.0 ** (claim.job.attempts - 1))
     _log.warning("stopped by an error", exc_info=error)
@@ -226,15 +227,15 @@ def _solve(
     def show(front: Array) -> None:
         latest[:] = [front]
 
-    def tell(at: Progress) -> None:
-        claim.tell(at, front_so_far(problem, latest[0]) if latest else None)
+    def report(at: Progress) -> None:
+        claim.report(at, front_so_far(problem, latest[0]) if latest else None)
         budget.count(at.evaluations)
 
-    def over() -> bool:
+    def should_end() -> bool:
         return _ends(claim, heartbeat, stop) or budget.spent()
 
-    heard = partial(solve, problem, progress=tell, stages=tell, fronts=show)
-    search = partial(heard, cancelled=over, keep=claim.keep, engine=engine)
+    solve_and_report = partial(solve, problem, progress=report, stages=report, fronts=show)
+    search = partial(solve_and_report, cancelled=should_end, keep=claim.keep, engine=engine)
     with ending_own(problem, engine):
         try:
             front = search(resume=claim.records())
@@ -258,22 +259,22 @@ def front_so_far(problem: Problem, values: Array) -> dict[str, Any]:
 
     quantities = [problem.quantity(objective.quantity) for objective in problem.objectives]
     factors = [
-        of.unit.factor * (-1.0 if objective.sense == "maximise" else 1.0)
-        for of, objective in zip(quantities, problem.objectives, strict=True)
+        quantity.unit.factor * (-1.0 if objective.sense == "maximise" else 1.0)
+        for quantity, objective in zip(quantities, problem.objectives, strict=True)
     ]
     ordered = values[np.argsort(values[:, 0], kind="stable")]
     rows = np.linspace(0, len(ordered) - 1, min(len(ordered), MOST)).round().astype(int)
-    return {"columns": [of.field for of in quantities], "points": (ordered[rows] * factors).tolist()}
+    return {"columns": [quantity.field for quantity in quantities], "points": (ordered[rows] * factors).tolist()}
 
 
 def _load(claim: Claim, parts: int) -> None:
     """Report how much of a search is loaded, with the numbers and the front that the job had before."""
     from ...optimise.front.progress import LOADING, Progress
 
-    known = {name: value for name, value in (claim.job.progress or {}).items() if value is not None}
-    front = known.pop("front", None)
-    last = Progress(**{**asdict(Progress(LOADING, 0, 0, 0, 0, 0.0, 0.0)), **known})
-    claim.tell(replace(last, stage=LOADING, step=parts, steps=_PARTS), front)
+    earlier = {name: value for name, value in (claim.job.progress or {}).items() if value is not None}
+    front = earlier.pop("front", None)
+    last = Progress(**{**asdict(Progress(LOADING, 0, 0, 0, 0, 0.0, 0.0)), **earlier})
+    claim.report(replace(last, stage=LOADING, step=parts, steps=_PARTS), front)
 
 
 def versions_file(versions: Mapping[str, str]) -> Artefact:

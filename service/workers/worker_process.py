@@ -50,8 +50,8 @@ class WorkerSettings:
 
     def line(self) -> bytes:
         """Return the settings as the process reads them."""
-        given = TypeAdapter(WorkerSettings).dump_python(self)
-        return json.dumps(given, default=str).encode() + b"\n"  # writes bytes of a path that no encoding has
+        settings = TypeAdapter(WorkerSettings).dump_python(self)
+        return json.dumps(settings, default=str).encode() + b"\n"  # writes bytes of a path that no encoding has
 
     @classmethod
     def read(cls, line: bytes) -> WorkerSettings:

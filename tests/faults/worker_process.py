@@ -35,14 +35,14 @@ def main(address: str, name: str, lease: float, journal: Path, pause: float, clo
 
 
 def _note(journal: Journal, pause: float) -> None:
-    tell, write, writing = Claim.tell, Claim._write, Database.writing
+    report, write, writing = Claim.report, Claim._write, Database.writing
     chance = random.Random()
 
-    def slow_tell(claim: Claim, progress: Any, *front: Any) -> None:
+    def slow_report(claim: Claim, progress: Any, *front: Any) -> None:
         if not progress.steps:
             journal.note("evaluated", claim.job.id, claim.job.fence, progress.round)
         time.sleep(chance.uniform(0.0, pause))
-        tell(claim, progress, *front)
+        report(claim, progress, *front)
 
     def noted_write(claim: Claim, *given: Any, **options: Any) -> None:
         with claim._lock:
@@ -63,7 +63,7 @@ def _note(journal: Journal, pause: float) -> None:
             raise
 
     for owner, name, noted in (
-        (Claim, "tell", slow_tell),
+        (Claim, "report", slow_report),
         (Claim, "_write", noted_write),
         (Database, "writing", noted_writing),
     ):

@@ -161,7 +161,7 @@ def test_of_too_many_combinations_neighbours_of_the_continuous_front_are_judged(
 
 
 def test_designs_whose_neighbours_were_not_judged_are_not_called_stationary(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A search that ends early proves nothing of the designs at its edge, one that ends by itself all of them."""
+    """A search that ends early proves nothing about designs at its edge; a completed one proves all."""
     given = parse_job(job(optimiser={"designs": 20, "samples": 512}))
     monkeypatch.setattr(discrete, "MOST", 40)
     monkeypatch.setattr(discrete, "_WINDOW", 20)

@@ -16,7 +16,7 @@ from slidercrank.optimise.solve import solve
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [8, 57, 60, 76])
 def test_each_end_of_a_front_is_the_best_of_its_objective_alone(seed: int) -> None:
-    """Where an objective is at its best inside the ranges its slope vanishes: a weight held it to some 1e-3 alone."""
+    """An objective at its best inside the ranges has no slope: a weight alone held it only to some 1e-3."""
     found = ends(parse_job(random_job(seed)), seed)
     assert len(found) >= 3
     assert {end.objective: end.missed for end in found if end.missed > NEAR} == {}

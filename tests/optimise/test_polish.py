@@ -241,7 +241,7 @@ def test_a_direction_that_nothing_depends_on_stiffens_no_other() -> None:
 def test_a_design_that_is_best_in_an_objective_stays_so_where_its_slope_vanishes(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """From the least c x**2 nothing but its curvature holds it: a weight K lets it lose up to 1 / (4 K**2 c).
+    """At the minimum of c x**2 only curvature holds it: a weight K permits a loss of 1 / (4 K**2 c).
 
     Each step may besides lose what counts as rounding, which some processors come to use.
     """

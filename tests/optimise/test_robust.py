@@ -95,8 +95,8 @@ def test_robustness_costs_something_and_nominal_designs_do_not_keep_their_requir
     assert cost.cost(0, maximised=True) > 0.0
     assert cost.cost(1, maximised=False) > 0.0
     assert cost.keeps < len(cost.nominal)
-    assert (cost.within[:, 0] < cost.nominal[:, 0]).all()
-    assert (cost.within[:, 1] > cost.nominal[:, 1]).all()
+    assert (cost.toleranced[:, 0] < cost.nominal[:, 0]).all()
+    assert (cost.toleranced[:, 1] > cost.nominal[:, 1]).all()
 
 
 @pytest.mark.usefixtures("little")

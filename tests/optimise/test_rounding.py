@@ -134,7 +134,7 @@ def brute_force(
 
 
 def nearest(miss: np.ndarray, losses: np.ndarray) -> list[int]:
-    """Return the designs of least miss, each of which loses a quarter less than the one before, until none is lost."""
+    """Return the designs of least miss, each losing a quarter less than the one before, until nothing is lost."""
     found: list[int] = []
     least = np.inf
     while least > 0.0:
@@ -169,7 +169,7 @@ def test_near_designs_follow_the_one_whose_round_numbers_keep_an_exact_stroke_at
 
 
 def end_of(search: Steps[Rounded]) -> Rounded:
-    """Return what a search returns."""
+    """Return the final value of a generator."""
     while True:
         try:
             next(search)

@@ -44,7 +44,7 @@ def solve(
             return
         time.sleep(0.05)
         claim.keep(_record(number))
-        claim.tell(Progress("evolving", number + 1, ROUNDS, 4 * number, number, 0.5, 0.05 * number))
+        claim.report(Progress("evolving", number + 1, ROUNDS, 4 * number, number, 0.5, 0.05 * number))
         if claim.job.name == "greedy":
             taken = np.ones(300_000_000, dtype=np.uint8)
             time.sleep(float(taken.sum()))

@@ -16,9 +16,9 @@ from tests.service.store.contents import result
 def test_the_stricter_of_two_limits_holds() -> None:
     asked = Limits(seconds=10.0, evaluations=500, memory=None)
     ceiling = Limits(seconds=20.0, evaluations=100, memory=10**9)
-    assert asked.within(ceiling) == Limits(seconds=10.0, evaluations=100, memory=10**9)
-    assert ceiling.within(asked) == asked.within(ceiling)
-    assert NO_LIMITS.within(NO_LIMITS) == NO_LIMITS
+    assert asked.stricter(ceiling) == Limits(seconds=10.0, evaluations=100, memory=10**9)
+    assert ceiling.stricter(asked) == asked.stricter(ceiling)
+    assert NO_LIMITS.stricter(NO_LIMITS) == NO_LIMITS
 
 
 def test_a_search_without_limits_is_never_over() -> None:

@@ -16,7 +16,7 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.service.drawings.dxf import dxf_file
 from slidercrank.service.drawings.linkage_drawing import linkage_drawing
 from slidercrank.service.page.typeface import _subset_font
-from slidercrank.service.workers.logs import about, set_up_logs
+from slidercrank.service.workers.logs import log_subject, set_up_logs
 
 _log = logging.getLogger("slidercrank.service.workers.worker")
 
@@ -34,7 +34,7 @@ def stream() -> Iterator[io.StringIO]:
 
 def test_a_json_log_has_an_object_a_line_with_worker_and_job(stream: io.StringIO) -> None:
     set_up_logs("json", stream=stream)
-    with about(worker="one"), about(job=7):
+    with log_subject(worker="one"), log_subject(job=7):
         _log.info("claimed %s", "it")
     _log.warning("two\nlines")
     first, second = (json.loads(line) for line in stream.getvalue().splitlines())
@@ -54,8 +54,8 @@ def test_a_json_log_has_tracebacks_in_the_object(stream: io.StringIO) -> None:
 
 def test_a_text_log_names_worker_and_job_before_the_message(stream: io.StringIO) -> None:
     set_up_logs("text", stream=stream)
-    with about(worker="one"):
-        with about(job=7):
+    with log_subject(worker="one"):
+        with log_subject(job=7):
             _log.info("claimed")
         _log.info("waits")
     _log.info("ends")

@@ -222,7 +222,7 @@ def test_watching_ends_with_the_exit_code_of_the_job(
     command("submit", job)
     claim = store.claim("first")
     assert claim is not None
-    claim.tell(Progress("evolving", 2, 9, 1600, 12, 0.25, 1.0))
+    claim.report(Progress("evolving", 2, 9, 1600, 12, 0.25, 1.0))
     claim.finish(result(status, rows=[]))
     done = command("watch", "latest")
     assert done.exit_code == code
@@ -240,7 +240,7 @@ def test_long_stages_are_watched_now_and_then_and_listed(store: Store, job: Path
     claim = store.claim("first")
     assert claim is not None
     for step in (0, 700, 1400):
-        claim.tell(Progress("selecting designs", 9, 9, 1600, 12, 0.25, 1.0, step, 3000))
+        claim.report(Progress("selecting designs", 9, 9, 1600, 12, 0.25, 1.0, step, 3000))
     assert "selecting designs 1,400/3,000, 12 feasible" in command("jobs").stdout
     claim.finish(result("done", rows=[]))
     assert command("watch", "latest").stdout.count("selecting designs") == 1
@@ -256,7 +256,7 @@ def test_progress_of_an_early_store_without_steps_is_read(
     early = asdict(Progress("evolving", 2, 9, 1600, 12, 0.25, 1.0))
     del early["step"], early["steps"]
     monkeypatch.setattr("slidercrank.service.store.claim.asdict", lambda _: early)
-    claim.tell(Progress("evolving", 2, 9, 1600, 12, 0.25, 1.0))
+    claim.report(Progress("evolving", 2, 9, 1600, 12, 0.25, 1.0))
     assert "evolving 2/9, 12 feasible" in command("jobs").stdout
     listed = json.loads(command("jobs", "--json").stdout)[0]["progress"]
     assert (listed["step"], listed["steps"], listed["round"]) == (0, 0, 2)

@@ -303,12 +303,12 @@ def test_a_command_that_was_killed_can_be_resumed_at_once(job: Path, runs: Path,
         "import os, sys\n"
         "from slidercrank.service import cli\n"
         "from slidercrank.service.store import Claim\n"
-        "tell, told = Claim.tell, []\n"
+        "report, told = Claim.report, []\n"
         "def die(self, at):\n"
-        "    tell(self, at)\n"
+        "    report(self, at)\n"
         "    told.append(at)\n"
         "    if len(told) == 3: os.kill(os.getpid(), 9)\n"
-        "Claim.tell = die\n"
+        "Claim.report = die\n"
         "cli.main()\n"
     )
     arguments = ["optimise", str(job), "--no-figures", "--seed", "4", "--designs", "6"]

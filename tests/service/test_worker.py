@@ -130,7 +130,7 @@ def test_a_job_that_goes_on_tells_at_once_that_it_loads_beside_what_it_had(store
     first = store.claim("first")
     assert first is not None
     first.keep(search_record(0))
-    first.tell(at_round(1), {"columns": ["time_ratio"], "points": [[1.5]]})
+    first.report(at_round(1), {"columns": ["time_ratio"], "points": [[1.5]]})
     first.hand_back("")
     shown: list[Any] = []
 
@@ -267,7 +267,7 @@ def test_a_lease_is_renewed_while_a_round_takes_longer_than_it(store: Store) -> 
 
         until(renewed)
         assert not heartbeat.lost
-    claim.tell(progress(1))
+    claim.report(progress(1))
 
 
 def test_a_worker_that_wakes_after_its_lease_leaves_the_job_to_the_next(

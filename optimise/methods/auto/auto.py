@@ -64,29 +64,29 @@ def search_with(method: Method, problem: Problem, evaluators: list[Evaluator], r
 
 def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> ParetoFront | None:
     """Return the front from the settled designs and those of an archive; None if none could be made feasible."""
-    finished, free = _start_candidates(problem, archive, run), searched_evaluators(evaluators)
+    candidates, free = _start_candidates(problem, archive, run), searched_evaluators(evaluators)
     several = len(problem.objectives) > 1
     starts = []
     for group in archive.groups():
-        some = _rows_to_polish(problem, group, evaluators[0], run) if several else group.leading(0, _STARTS)
-        starts += group[some].by_branch(evaluators)
+        rows = _rows_to_polish(problem, group, evaluators[0], run) if several else group.leading(0, _STARTS)
+        starts += group[rows].by_branch(evaluators)
         if several:
-            for index, ends in _polish_extremes(evaluators, group, finished.span):
+            for index, ends in _polish_extremes(evaluators, group, candidates.span):
                 if ends is not None:
-                    finished.add(index, ends)
+                    candidates.add(index, ends)
                 run.report_round("polishing", free, archive)
     for attempt in range(ROUNDS):
         for index, u in starts:
             for begin in range(0, len(u), BATCH):
                 batch = u[begin : begin + BATCH]
-                finished.add(index, polished(evaluators[index], batch, finished.span))
+                candidates.add(index, polished(evaluators[index], batch, candidates.span))
                 run.report_round("polishing", free, archive)
-        if attempt == ROUNDS - 1 or not len(finished) or not free:
+        if attempt == ROUNDS - 1 or not len(candidates) or not free:
             break
-        starts = challengers(problem, free, archive, finished, attempt, run.stage_reporter(SELECTING))
+        starts = challengers(problem, free, archive, candidates, attempt, run.stage_reporter(SELECTING))
         if not starts:
             break
-    return assemble(problem, evaluators, finished, run) if len(finished) else None
+    return assemble(problem, evaluators, candidates, run) if len(candidates) else None
 
 
 def deliver_unpolished(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> ParetoFront | None:
@@ -94,12 +94,12 @@ def deliver_unpolished(problem: Problem, evaluators: list[Evaluator], archive: A
 
     None if no design could be moved there. Designs that meet the constraints already are not touched.
     """
-    finished = _start_candidates(problem, archive, run)
+    candidates = _start_candidates(problem, archive, run)
     several = len(problem.objectives) > 1
     for group in archive.groups():
-        some = _rows_to_polish(problem, group, evaluators[0], run) if several else slice(_STARTS)
-        add_projected(finished, group[some], evaluators)
-    return assemble(problem, evaluators, finished, run) if len(finished) else None
+        rows = _rows_to_polish(problem, group, evaluators[0], run) if several else slice(_STARTS)
+        add_projected(candidates, group[rows], evaluators)
+    return assemble(problem, evaluators, candidates, run) if len(candidates) else None
 
 
 def _start_candidates(problem: Problem, archive: Archive, run: Run) -> FrontCandidates:
@@ -111,11 +111,11 @@ def _start_candidates(problem: Problem, archive: Archive, run: Run) -> FrontCand
     return run.candidates
 
 
-def add_projected(finished: FrontCandidates, candidates: Candidates, evaluators: list[Evaluator]) -> None:
+def add_projected(candidates: FrontCandidates, chosen: Candidates, evaluators: list[Evaluator]) -> None:
     """Add candidates as they are, those that violate constraints moved onto them."""
-    for index, u in candidates.by_branch(evaluators):
+    for index, u in chosen.by_branch(evaluators):
         valid = u[evaluators[index].valid(u)]
-        finished.add(index, projected(evaluators[index], valid, finished.span))
+        candidates.add(index, projected(evaluators[index], valid, candidates.span))
 
 
 def _candidate_count(problem: Problem) -> int:
@@ -137,7 +137,7 @@ def _rows_to_polish(problem: Problem, group: Archive, evaluator: Evaluator, run:
 
 
 def _polish_extremes(evaluators: list[Evaluator], group: Archive, span: Array) -> Iterator[tuple[int, Polished | None]]:
-    """Yield the ends of the front by branch: designs best in one objective, and in the others as far as that allows.
+    """Yield the extreme designs of the front by branch: best in one objective, then in the others.
 
     Each begins from several designs that lead in the objective, and is improved in it alone, then in all with that one
     held firmly. Where even so it loses what shows, the best in the objective alone is an end too. Held less firmly, it
@@ -146,31 +146,33 @@ def _polish_extremes(evaluators: list[Evaluator], group: Archive, span: Array) -
     parts: dict[int, list[tuple[int, Polished]]] = {}
     for column in range(len(span)):
         for index, u in group[group.leading(column, _EXTREMES)].by_branch(evaluators):
-            found = polished(evaluators[index], u, span, chosen=(column,))
-            parts.setdefault(index, []).append((column, found[_distinct_points(found.u)]))
+            polished_batch = polished(evaluators[index], u, span, chosen=(column,))
+            parts.setdefault(index, []).append((column, polished_batch[_distinct_points(polished_batch.u)]))
             yield index, None
-    for index, each in parts.items():
-        first, *others = (found for _, found in each)
-        alone = first.join(*others)
-        best_in = np.concatenate([np.full(len(found), column) for column, found in each])
-        held = polished(evaluators[index], alone.u, span, best_in=best_in)
-        own = np.arange(len(alone)), best_in
-        lost = held.values[own] > alone.values[own] + SAME  # no difference: both are infinite without a least value
-        beside = polished(evaluators[index], alone.u, span)
-        yield index, held.join(alone[lost | (held.violation > FEASIBLE)], beside)
+    for index, batches in parts.items():
+        first, *rest = (polished_batch for _, polished_batch in batches)
+        alone = first.join(*rest)
+        best_in = np.concatenate([np.full(len(polished_batch), column) for column, polished_batch in batches])
+        firm = polished(evaluators[index], alone.u, span, best_in=best_in)
+        best_values = np.arange(len(alone)), best_in
+        lost = (
+            firm.values[best_values] > alone.values[best_values] + SAME
+        )  # no difference: both are infinite without a least value
+        unrestricted = polished(evaluators[index], alone.u, span)
+        yield index, firm.join(alone[lost | (firm.violation > FEASIBLE)], unrestricted)
 
 
 def _distinct_points(u: Array) -> Whole:
     """Return the rows of points (n, k) that differ from those before."""
-    apart = np.abs(u[:, None] - u).max(axis=2, initial=0.0) > _ONE
-    return np.flatnonzero((apart | np.triu(np.ones_like(apart))).all(axis=1))
+    is_apart = np.abs(u[:, None] - u).max(axis=2, initial=0.0) > _ONE
+    return np.flatnonzero((is_apart | np.triu(np.ones_like(is_apart))).all(axis=1))
 
 
 def challengers(
     problem: Problem,
     evaluators: list[Evaluator],
     archive: Archive,
-    finished: FrontCandidates,
+    candidates: FrontCandidates,
     attempt: int,
     report: ReportProgress,
 ) -> list[tuple[int, Array]]:
@@ -179,7 +181,7 @@ def challengers(
     First those that dominate a polished design. Then, where candidates are wanting, those that no polished design
     dominates, and points half-way between neighbours. report: called many times a second.
     """
-    best = finished[finished.best(report)]
+    best = candidates[candidates.best(report)]
     front = best.values / best.span
     _screen_fresh_points(problem, evaluators, archive, best, attempt)
     report(0, 1)
@@ -219,9 +221,9 @@ def _screen_fresh_points(
 
 def _compare_with_front(screened: Array, front: Array) -> tuple[Mask, Mask]:
     """Return which screened designs dominate one of the front, and which none of the front dominates."""
-    kept = np.zeros(len(front) + len(screened), dtype=bool)
-    kept[nondominated(np.concatenate([front, screened]))] = True
-    return dominating(screened, front, clearly=_CLEAR, slightly=_GAIN), kept[len(front) :]
+    undominated = np.zeros(len(front) + len(screened), dtype=bool)
+    undominated[nondominated(np.concatenate([front, screened]))] = True
+    return dominating(screened, front, clearly=_CLEAR, slightly=_GAIN), undominated[len(front) :]
 
 
 def _best_contributors(screened: Array, rows: Whole, front: Array, count: int, report: ReportProgress) -> Whole:
@@ -242,8 +244,8 @@ def _gap_middles(evaluators: list[Evaluator], best: FrontCandidates, count: int)
     if n < 2:
         return []
     _, nearest = neighbours(scaled, min(n, 1 + _NEIGHBOURS * m))
-    both = np.stack(np.broadcast_arrays(np.arange(n)[:, None], nearest), axis=-1).reshape(-1, 2)
-    pairs = distinct(np.sort(both), axis=0)
+    neighbour_pairs = np.stack(np.broadcast_arrays(np.arange(n)[:, None], nearest), axis=-1).reshape(-1, 2)
+    pairs = distinct(np.sort(neighbour_pairs), axis=0)
     pairs = pairs[pairs[:, 0] != pairs[:, 1]]
     pairs = pairs[best.branch[pairs[:, 0]] == best.branch[pairs[:, 1]]]
     gap = np.linalg.norm((best.values[pairs[:, 0]] - best.values[pairs[:, 1]]) / best.span, axis=1)

@@ -55,42 +55,42 @@ _SLOW = (
 
 
 def _front(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
-    finished, archive = run.candidates, run.archive
-    if len(archive) and not finished.free.any():
-        finished = finished.only_enumerated(span_of(problem, np.concatenate([archive.values, finished.values])))
-        _add_archive(problem, evaluators, archive, finished)
-    if not len(finished):
+    candidates, archive = run.candidates, run.archive
+    if len(archive) and not candidates.free.any():
+        candidates = candidates.only_enumerated(span_of(problem, np.concatenate([archive.values, candidates.values])))
+        _add_archive(problem, evaluators, archive, candidates)
+    if not len(candidates):
         return empty_front(problem, evaluators, run, "cancelled", "cancelled before any feasible design was found")
-    finished = finished[_spread(finished.values, _MOST)]
-    best = finished.best()
-    rows = best[_spread(finished.values[best], problem.settings.designs)]
-    return assemble(problem, evaluators, finished, run, _rows_in_time(problem, evaluators, finished, rows))
+    candidates = candidates[_spread(candidates.values, _MOST)]
+    best = candidates.best()
+    rows = best[_spread(candidates.values[best], problem.settings.designs)]
+    return assemble(problem, evaluators, candidates, run, _rows_in_time(problem, evaluators, candidates, rows))
 
 
-def _add_archive(problem: Problem, evaluators: list[Evaluator], archive: Archive, finished: FrontCandidates) -> None:
+def _add_archive(problem: Problem, evaluators: list[Evaluator], archive: Archive, candidates: FrontCandidates) -> None:
     """Add designs of an archive, moved onto the constraints."""
     # What needs no move comes first.
-    first, *others = (some[_spread(some.values, problem.settings.designs)] for some in archive.groups())
-    chosen = first.join(*others)
+    first, *rest = (group[_spread(group.values, problem.settings.designs)] for group in archive.groups())
+    chosen = first.join(*rest)
     end = time.perf_counter() + _PROJECTING
     # Each batch is spread over the whole front.
     batches = -(-len(chosen) // _BATCH)
     for begin in range(batches):
-        add_projected(finished, chosen[begin::batches], evaluators)
-        if len(finished) and time.perf_counter() > end:
+        add_projected(candidates, chosen[begin::batches], evaluators)
+        if len(candidates) and time.perf_counter() > end:
             break
 
 
-def _rows_in_time(problem: Problem, evaluators: list[Evaluator], finished: FrontCandidates, rows: Whole) -> Whole:
+def _rows_in_time(problem: Problem, evaluators: list[Evaluator], candidates: FrontCandidates, rows: Whole) -> Whole:
     """Return those rows whose quantities are had within a moment, all of them as a rule."""
     count = _TRIED if any(map(runs_own, problem.own)) else 1
-    each, end = 1e-9, time.perf_counter() + 0.5 * _ANALYSING
+    seconds_per_design, end = 1e-9, time.perf_counter() + 0.5 * _ANALYSING
     while count <= _TRIED and count < len(rows) and (begin := time.perf_counter()) < end:
-        some = finished[rows[:: -(-len(rows) // count)]]
-        variants = np.array([evaluators[index].branch.variant for index in some.branch], dtype=np.int64)
-        columns_of(problem, variants, some.dimensions(evaluators))
-        count, each = 2 * count, (time.perf_counter() - begin) / len(some)
-    return rows[_spread(finished.values[rows], max(1, int(_ANALYSING / each)))]
+        sample = candidates[rows[:: -(-len(rows) // count)]]
+        variants = np.array([evaluators[index].branch.variant for index in sample.branch], dtype=np.int64)
+        columns_of(problem, variants, sample.dimensions(evaluators))
+        count, seconds_per_design = 2 * count, (time.perf_counter() - begin) / len(sample)
+    return rows[_spread(candidates.values[rows], max(1, int(_ANALYSING / seconds_per_design)))]
 
 
 def _spread(values: Array, count: int) -> Whole:

@@ -97,8 +97,8 @@ def starts(problem: Problem, evaluators: list[Evaluator], archive: Archive) -> t
 
 def _highest_piece(evaluator: Evaluator, u: Array) -> float:
     """Return the greatest piece at a point; a recorded step."""
-    found = evaluator.step("top", (u,), lambda: (evaluator.exact(u[None])[0].values.max(axis=1),))
-    return float(found[0][0])
+    heights = evaluator.step("top", (u,), lambda: (evaluator.exact(u[None])[0].values.max(axis=1),))
+    return float(heights[0][0])
 
 
 def _scale(problem: Problem, values: Array) -> float:
@@ -111,13 +111,13 @@ def _scale(problem: Problem, values: Array) -> float:
 
 def _least_violating_points(evaluators: list[Evaluator]) -> list[tuple[int, Array]]:
     """Return branches and points that violate the constraints least, where no sample comes near to meeting them."""
-    found: list[tuple[float, int, Array]] = []
+    ranked: list[tuple[float, int, Array]] = []
     for index, evaluator in enumerate(evaluators):
         u = first_samples(_LAST, evaluator.dimension, evaluator.problem.settings.seed, 400 + index)
         violation = evaluator.screen(u)[2]
         rows = np.argsort(violation, kind="stable")[:STARTS]
-        found += [(float(violation[row]), index, u[row]) for row in rows[np.isfinite(violation[rows])].tolist()]
-    return [(index, u) for _, index, u in sorted(found, key=lambda item: item[0])[:STARTS]]
+        ranked += [(float(violation[row]), index, u[row]) for row in rows[np.isfinite(violation[rows])].tolist()]
+    return [(index, u) for _, index, u in sorted(ranked, key=lambda item: item[0])[:STARTS]]
 
 
 MINIMAX = Method(

@@ -70,8 +70,8 @@ class Descent:
                 break
             point.step, point.residual = step, residual_of(point, step)
             still = float(np.abs(step.move).max()) < _SHORTEST
-            done = point.residual <= CONVERGED and point.violation <= _MET
-            if done or radius < _SHORTEST or still or iteration == _ITERATIONS - 1:
+            converged = point.residual <= CONVERGED and point.violation <= _MET
+            if converged or radius < _SHORTEST or still or iteration == _ITERATIONS - 1:
                 break
             root = self._root(point, step)
             step, weight = self._programme(point, root, radius, weight)
@@ -143,13 +143,14 @@ class Descent:
         if trial is None:
             return None
         goals, limits = (
-            bent(here, there, step.move) for here, there in ((point.goals, trial.goals), (point.limits, trial.limits))
+            bent(present, after, step.move)
+            for present, after in ((point.goals, trial.goals), (point.limits, trial.limits))
         )
-        other = self._solve(point, goals, limits, root, radius, weight)
-        if other is None:
+        corrected = self._solve(point, goals, limits, root, radius, weight)
+        if corrected is None:
             return None
         # Judged by what the first step promised: the bent rows promise what they were made to.
-        return self._try(point, replace(step, move=other.move), root, weight)
+        return self._try(point, replace(step, move=corrected.move), root, weight)
 
     def _root(self, point: Point, step: Step) -> Array:
         """Return R with R'R the Lagrangian's Hessian, convexified along what holds the step."""
@@ -173,9 +174,9 @@ def residual_of(point: Point, step: Step) -> float:
         - step.lower_multipliers
         + step.upper_multipliers
     )
-    here, edge = np.isfinite(point.goals.values), np.isfinite(point.limits.values)
+    is_piece, edge = np.isfinite(point.goals.values), np.isfinite(point.limits.values)
     gap = (
-        step.goals[here] @ (point.top - point.goals.values[here])
+        step.goals[is_piece] @ (point.top - point.goals.values[is_piece])
         + step.limits[edge] @ np.abs(point.limits.values[edge])
         + step.lower_multipliers @ point.u
         + step.upper_multipliers @ (1.0 - point.u)
@@ -202,9 +203,9 @@ def _convex_root(hessian: Array, normals: Array) -> Array:
         return np.zeros_like(hessian)
     size = float(np.abs(hessian).max())
     lengths = np.linalg.norm(normals, axis=1)
-    across = normals[lengths > 0.0] / lengths[lengths > 0.0, None]
+    unit_normals = normals[lengths > 0.0] / lengths[lengths > 0.0, None]
     for weight in (0.0, 1.0, 10.0, 100.0):
-        values, vectors = np.linalg.eigh(hessian + weight * size * across.T @ across)
+        values, vectors = np.linalg.eigh(hessian + weight * size * unit_normals.T @ unit_normals)
         if values[0] >= 0.0:
             break
     return np.asarray(np.sqrt(np.clip(values, _CURVATURE, None))[:, None] * vectors.T)

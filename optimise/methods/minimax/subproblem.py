@@ -100,7 +100,7 @@ class Subproblem:
             return None
         duals = [np.maximum(np.atleast_1d(constraint.dual_value), 0.0) for constraint in self.held]
         limiting = duals[3] if len(duals) > 3 else np.zeros(0)
-        move, top, slack = (np.asarray(found.value, np.float64) for found in (self.move, self.top, self.slack))
+        move, top, slack = (np.asarray(variable.value, np.float64) for variable in (self.move, self.top, self.slack))
         step = Step(
             np.clip(move, low, high),
             float(top),
@@ -115,8 +115,8 @@ class Subproblem:
 
 def _neutralise_absent(values: Array, slopes: Array) -> tuple[Array, Array]:
     """Return rows with those that are absent, or too far below to count, made harmless."""
-    there = values > _ABSENT
-    return np.where(there, values, _ABSENT), np.where(there[:, None], slopes, 0.0)
+    is_present = values > _ABSENT
+    return np.where(is_present, values, _ABSENT), np.where(is_present[:, None], slopes, 0.0)
 
 
 def _refine_step(step: Step, goals: tuple[Array, Array], limits: tuple[Array, Array], low: Array, high: Array) -> Step:
@@ -126,14 +126,14 @@ def _refine_step(step: Step, goals: tuple[Array, Array], limits: tuple[Array, Ar
     """
     (pieces, slopes), (rows, normals) = goals, limits
     k = len(step.move)
-    own, edge = step.goals > _HELD, step.limits > _HELD
+    tied, edge = step.goals > _HELD, step.limits > _HELD
     slack = step.slack if step.slack > _NEAR else 0.0
     move = np.where(step.lower_multipliers > _HELD, low, np.where(step.upper_multipliers > _HELD, high, step.move))
     free = (step.lower_multipliers <= _HELD) & (step.upper_multipliers <= _HELD)
-    matrix = np.zeros((int(own.sum() + edge.sum()), k + 1))
-    matrix[:, :k] = np.concatenate([slopes[own], normals[edge]])
-    matrix[: own.sum(), k] = -1.0
-    left = np.concatenate([pieces[own] + slopes[own] @ move - step.top, rows[edge] + normals[edge] @ move - slack])
+    matrix = np.zeros((int(tied.sum() + edge.sum()), k + 1))
+    matrix[:, :k] = np.concatenate([slopes[tied], normals[edge]])
+    matrix[: tied.sum(), k] = -1.0
+    left = np.concatenate([pieces[tied] + slopes[tied] @ move - step.top, rows[edge] + normals[edge] @ move - slack])
     columns = np.append(free, True)
     change = np.zeros(k + 1)
     change[columns] = np.linalg.lstsq(matrix[:, columns], -left, rcond=1e-10)[0]

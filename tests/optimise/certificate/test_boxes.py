@@ -208,7 +208,7 @@ UNEVEN = Harmonics(cosines=(0.0, 0.2), sines=(0.1,))
 @pytest.mark.parametrize("machine", ["bars", "all loads", "two turns"])
 @pytest.mark.parametrize("width", [0.1, 0.004])
 def test_no_sample_of_several_cylinders_is_better_than_its_box(machine: str, width: float) -> None:
-    """Banks turn gravity, which each cylinder feels its own way; what does not add up is that of the worst one."""
+    """Each cylinder of a bank feels gravity in its own direction; the worst one bounds what does not add up."""
     several = replace(MACHINES[machine], arrangement=V)
     wishes = bounded(several)
     assert not any(isinstance(of := QUANTITIES[name], CyclePeak) and of.signal in SUMS for name in wishes)

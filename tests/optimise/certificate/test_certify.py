@@ -214,7 +214,7 @@ def test_excess_is_the_least_epsilon_that_covers() -> None:
     assert excess(points, designs) == pytest.approx(expected, abs=0.0)
     assert np.isposinf(excess(points, designs[:0])).all()
     first = np.full(500, 20)
-    part = excess(points, designs, known=excess(points, designs[:20]), first=first)
+    part = excess(points, designs, earlier_excess=excess(points, designs[:20]), first=first)
     assert part == pytest.approx(expected, abs=0.0)
 
 

@@ -114,7 +114,7 @@ def test_a_table_over_an_enclosed_position_holds_every_sample(width: float) -> N
 
 @pytest.mark.parametrize("datum", ["zero crank angle", "outer dead centre"])
 def test_the_torque_of_a_table_that_steps_at_its_seam_is_enclosed_for_every_design_of_a_box(datum: Any) -> None:
-    """At the angle of the box, a little before and after the seam, where the force jumps from -200 N to 500 N."""
+    """Just before, at and after the seam, where the force jumps from -200 N to 500 N."""
     table = AngleTable(angles=(0.4, 2.0, 0.4 + 2.0 * np.pi), forces=(500.0, -300.0, -200.0), datum=datum)
     machine = Mechanism(speed=20.0, slider_mass=0.5, loads=(table,))
     curve = Curve(machine, PEAK_TORQUE)
@@ -133,7 +133,7 @@ def test_the_torque_of_a_table_that_steps_at_its_seam_is_enclosed_for_every_desi
 
 
 def test_a_peak_on_a_step_is_bounded_the_better_the_smaller_the_box() -> None:
-    """A shear load of 1 kN that falls to nothing: its peak is at the step, whose crank angle moves with the design."""
+    """A shear load of 1 kN that drops to zero: its peak is at the step, whose crank angle varies with the design."""
     table = PositionTable(
         positions=(0.0, 0.02, 0.02), forces=(0.0, -1000.0, 0.0), datum="outer dead centre", during="outward stroke"
     )

@@ -107,7 +107,7 @@ def _lively(store: Store, found: Result) -> Iterator[None]:
             claim = store.claim("lively", lease=5.0)
             if claim is None:
                 continue
-            claim.tell(progress(1))
+            claim.report(progress(1))
             way = chance.choice(["done", "done", "done", "infeasible", "cancelled", "failed", "left"])
             if way == "failed":
                 claim.fail("made to fail", again=False)

@@ -254,7 +254,7 @@ def rounds(store: Store, count: int) -> int:
     claim = store.claim("worker")
     assert claim is not None
     for number in range(count):
-        claim.tell(progress(number + 1))
+        claim.report(progress(number + 1))
         time.sleep(0.03)
     claim.fail("enough", again=False)
     return store.job(claim.job.id).events
@@ -340,7 +340,7 @@ def test_events_outlast_a_restart_of_the_service(store: Store) -> None:
         assert claim is not None
         while len(seen) < 2:
             time.sleep(0.02)
-    claim.tell(progress(1))
+    claim.report(progress(1))
     with served(store, port=port):
         claim.fail("enough", again=False)
         thread.join(30.0)

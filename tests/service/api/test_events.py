@@ -60,7 +60,7 @@ def working(claim: Claim, rounds: int, pause: float = 0.0) -> threading.Thread:
 
     def work() -> None:
         for number in range(1, rounds + 1):
-            claim.tell(progress(number))
+            claim.report(progress(number))
             time.sleep(pause)
         claim.finish(result())
 
@@ -115,7 +115,7 @@ def test_a_stream_of_a_resumed_job_goes_on_past_its_earlier_ends(client: httpx.C
     claim = taken(store)
     with streaming(client, job.id) as whole, streaming(client, job.id, 2) as rest:
         assert [next(whole)["number"] for _ in range(7)] == list(range(1, 8))
-        claim.tell(progress(1))
+        claim.report(progress(1))
         assert next(whole)["kind"] == "progress"
         claim.finish(result())
         assert numbers(whole) == [9]

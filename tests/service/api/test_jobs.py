@@ -210,7 +210,7 @@ def test_a_job_goes_through_its_states(client: httpx.Client, store: Store) -> No
     assert client.post("/jobs/1/cancel").json() == cancelled.json()
     assert client.post("/jobs/1/resume").json()["state"] == "queued"
     claim = taken(store)
-    claim.tell(progress(1))
+    claim.report(progress(1))
     running = client.get("/jobs/1").json()
     assert running == store.job(1).record()
     assert running["progress"]["round"] == 1
@@ -296,7 +296,7 @@ def test_files_keep_their_bytes_and_type(client: httpx.Client, store: Store) -> 
 def test_a_running_job_shows_its_front_so_far_and_its_events_do_not(store: Store, client: httpx.Client) -> None:
     add(store)
     front = {"columns": ["time_ratio", "crank_mm"], "points": [[1.25, 40.0], [1.5, math.inf]]}
-    taken(store).tell(progress(1), front)
+    taken(store).report(progress(1), front)
     found = client.get("/jobs/1").json()["progress"]
     assert found["front"] == {"columns": ["time_ratio", "crank_mm"], "points": [[1.25, 40.0], [1.5, None]]}
     events = client.get("/jobs/1/events").json()["events"]

@@ -71,13 +71,13 @@ def test_rows_of_random_jobs_have_600_bytes_at_most_whatever_they_are_doing(clie
         extremes = {name: int(random.integers(100)) for name in names}
         add(store, "Machine " + "x" * int(random.integers(24)))
         claim = taken(store, worker="machine-28238-788875")
-        claim.tell(progress(9), front_so_far())
+        claim.report(progress(9), front_so_far())
         if random.random() < 0.8:
             state = str(random.choice(["done", "cancelled"]))
             claim.finish(replace(result(state, rows), objectives=wanted, extremes=extremes, evaluations=1_000_000))
             if state == "cancelled" and random.random() < 0.5:  # goes on, with what it has found
                 store.resume(claim.job.id)
-                taken(store, worker="machine-28238-788875").tell(progress(9), front_so_far())
+                taken(store, worker="machine-28238-788875").report(progress(9), front_so_far())
     assert min(store.counts()[state] for state in ("running", "done", "cancelled")) > 3
     assert sum(job.summary is not None for job in store.jobs(states=["running"])) > 3
     assert max(sizes(client)) <= ROW
@@ -86,7 +86,7 @@ def test_rows_of_random_jobs_have_600_bytes_at_most_whatever_they_are_doing(clie
 def test_a_row_is_part_of_the_job(client: httpx.Client, store: Store) -> None:
     add(store)
     claim = taken(store)
-    claim.tell(progress(3), front_so_far())
+    claim.report(progress(3), front_so_far())
 
     def row() -> dict[str, Any]:
         found: dict[str, Any] = client.get("/jobs").json()["jobs"][0]
@@ -112,7 +112,7 @@ def test_points_are_of_the_front_found_or_of_that_so_far(client: httpx.Client, s
     so_far = front_so_far(5)
     told = [point[:2] for point in so_far["points"]]
     for claim in (done, failed, running):
-        claim.tell(progress(2), so_far)
+        claim.report(progress(2), so_far)
     done.finish(result())
     failed.fail("its worker was killed", again=False)
     infeasible.finish(result("infeasible", rows=[]))
@@ -156,7 +156,7 @@ def test_a_browser_keeps_points_until_a_front_changes(client: httpx.Client, stor
     tag = client.get(path).headers["etag"]
     assert again(tag) == (304, tag)
     for number in (1, 2):
-        claim.tell(progress(number), front_so_far(4 * number))
+        claim.report(progress(number), front_so_far(4 * number))
         status, changed = again(tag)
         assert (status, again(changed)) == (200, (304, changed))
         assert changed != tag

@@ -62,7 +62,7 @@ def fill(store: Store, results: tuple[Result, Result], tables: dict[str, Any]) -
     wanted = [item.column for item in results[0].objectives]
     points: list[list[Any]] = [[row[column] for column in wanted] for row in results[0].designs]
     for number in range(1, 6):
-        claim.tell(progress(number), {"columns": wanted, "points": points[: 4 + 20 * number]})
+        claim.report(progress(number), {"columns": wanted, "points": points[: 4 + 20 * number]})
     store.submit({**tables, "name": "Sieve of the second line"}, name="Sieve of the second line")
     return [
         View("runs", "/", (".runs .run .thumbnail circle",)),

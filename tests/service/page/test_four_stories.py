@@ -148,10 +148,10 @@ def test_operating_a_service_that_starts_anew_while_a_run_is_watched_by_keyboard
             watch(page, address, wrong, ("Failed to load resource", "ERR_"))
             page.goto(f"{address}/#/")
             page.get_by_role("link", name=str(TABLES["name"]), exact=True).press("Enter")
-            claim.tell(progress(1), FRONT)
+            claim.report(progress(1), FRONT)
             expect(page.get_by_text("1 of 9")).to_be_visible(timeout=PATIENCE)
         expect(page.get_by_text("The connection to the service was lost.")).to_be_visible(timeout=PATIENCE)
-        claim.tell(progress(2), FRONT)
+        claim.report(progress(2), FRONT)
         with served(store, port=int(urlsplit(address).port or 0)):
             expect(page.get_by_text("2 of 9")).to_be_visible(timeout=PATIENCE)
             page.get_by_role("button", name="Pause run 1").press("Enter")

@@ -82,10 +82,10 @@ def test_the_list_changes_as_jobs_do(open_page: Open, store: Store) -> None:
     expect(item).to_contain_text("queued")
     claim = taken(store)
     columns, points = ["time_ratio", "crank_mm"], [[1.2, 30.0], [1.3, 40.0], [1.4, 60.0]]
-    claim.tell(progress(3), {"columns": columns, "points": points[:2]})
+    claim.report(progress(3), {"columns": columns, "points": points[:2]})
     expect(item).to_contain_text("round 3 of 9")
     expect(item.get_by_role("img", name="the front: 2 designs")).to_be_visible()
-    claim.tell(progress(4), {"columns": columns, "points": points})
+    claim.report(progress(4), {"columns": columns, "points": points})
     expect(item.get_by_role("img", name="the front: 3 designs")).to_be_visible()
     claim.finish(result())
     expect(item).to_contain_text("done")

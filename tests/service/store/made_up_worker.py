@@ -32,7 +32,7 @@ def solve(claim: Claim) -> None:
         time.sleep(_ROUND)
         records.append(search_record(number))
         claim.keep(records[-1])
-        claim.tell(progress(number + 1))
+        claim.report(progress(number + 1))
     claim.finish(result(rows=found(records)))
 
 

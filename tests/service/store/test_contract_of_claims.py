@@ -30,7 +30,7 @@ def test_a_job_whose_lease_has_ended_goes_on_from_its_records(store: Store, addr
     lost = taken(store)
     for number in (1, 2):
         lost.keep(search_record(number))
-        lost.tell(progress(number))
+        lost.report(progress(number))
     lost.keep(search_record(3))  # never written: its round was not told
     assert store.claim("second") is None
     end_lease(address, lost.job.id)
@@ -42,26 +42,26 @@ def test_a_job_whose_lease_has_ended_goes_on_from_its_records(store: Store, addr
     assert again.job.progress is not None
     assert again.job.progress["evaluations"] == 32
     again.keep(search_record(3))
-    again.tell(progress(3))
+    again.report(progress(3))
     assert same(again.records()[2], search_record(3))
 
 
 def test_repeating_earlier_rounds_is_told_and_is_not_to_have_begun(store: Store) -> None:
     add(store)
     claim = taken(store)
-    claim.tell(replace(progress(0), stage=REPEATING, step=4, steps=12))
-    assert not claim.begun, "so that a job that is cancelled meanwhile ends at once"
+    claim.report(replace(progress(0), stage=REPEATING, step=4, steps=12))
+    assert not claim.has_begun, "so that a job that is cancelled meanwhile ends at once"
     event = store.events(claim.job.id)[-1]
     assert (event.data["stage"], event.data["step"], event.data["steps"]) == (REPEATING, 4, 12)
-    claim.tell(progress(1))
-    assert claim.begun
+    claim.report(progress(1))
+    assert claim.has_begun
 
 
 WRITES: dict[str, Callable[[Claim], None]] = {
-    "tell": lambda claim: claim.tell(progress(2)),
+    "report": lambda claim: claim.report(progress(2)),
     "renew": lambda claim: claim.renew(),
     "say": lambda claim: claim.say("still here"),
-    "put": lambda claim: claim.put(Artefact(name="a", media_type="text/plain", content=b"stale")),
+    "write_files": lambda claim: claim.write_files(Artefact(name="a", media_type="text/plain", content=b"stale")),
     "finish": lambda claim: claim.finish(result()),
     "fail": lambda claim: claim.fail("stale", again=True),
     "hand_back": lambda claim: claim.hand_back("stale"),
@@ -76,7 +76,7 @@ def test_a_worker_that_wakes_after_its_lease_writes_nothing(
     add(store)
     paused = taken(store)
     paused.keep(search_record(1))
-    paused.tell(progress(1))
+    paused.report(progress(1))
     paused.keep(search_record(2))
     end_lease(address, paused.job.id)
     paused._renewed -= paused.lease + 1.0  # as its own clock tells it
@@ -91,7 +91,7 @@ def test_a_worker_that_wakes_after_its_lease_writes_nothing(
 def test_every_write_renews_the_lease(store: Store) -> None:
     job = add(store)
     claim = taken(store, lease=60.0)
-    for write in ("tell", "renew", "say", "put"):
+    for write in ("report", "renew", "say", "write_files"):
         claim.lease += 600.0
         before = store.job(job.id).lease_until
         WRITES[write](claim)
@@ -106,13 +106,13 @@ def test_progress_is_written_with_its_record_or_not_at_all(store: Store, address
     job = add(store)
     claim = taken(store)
     claim.keep(search_record(1))
-    claim.tell(progress(1))
+    claim.report(progress(1))
     before = everything(address)
     claim.keep(search_record(2))
     claim._records = 0  # the next record takes the number of the first, which the database refuses
     claim.lease = 0.0  # at once, not after many tries
     with pytest.raises(RunError, match="the store must be a database that can be"):
-        claim.tell(progress(2))
+        claim.report(progress(2))
     assert everything(address) == before
     assert [event.data["round"] for event in store.events(job.id) if event.kind == "progress"] == [1]
 
@@ -197,7 +197,7 @@ def test_a_job_that_goes_forward_is_not_set_aside(store: Store, address: str) ->
     for number in range(5):
         claim = taken(store)
         claim.keep(search_record(number))
-        claim.tell(progress(number))
+        claim.report(progress(number))
         end_lease(address, job.id)
     assert store.job(job.id).records == 5
 
@@ -222,22 +222,22 @@ def test_a_job_whose_worker_is_gone_is_cancelled_at_once_and_can_go_on(store: St
     job = add(store)
     gone = taken(store)
     gone.keep(search_record(1))
-    gone.tell(progress(1))
+    gone.report(progress(1))
     end_lease(address, job.id)
     cancelled = store.cancel(job.id)
     assert (cancelled.state, cancelled.worker, cancelled.records) == ("cancelled", None, 1)
     with pytest.raises(LeaseLost):
-        gone.tell(progress(2))
+        gone.report(progress(2))
     store.resume(job.id)
     assert same(taken(store, "second").records()[0], search_record(1))
 
 
-@pytest.mark.parametrize("hears", ["look", "renew", "tell"])
+@pytest.mark.parametrize("hears", ["look", "renew", "report"])
 def test_the_worker_of_a_cancelled_job_hears_of_it_and_the_job_can_go_on(hears: str, store: Store) -> None:
     job = add(store)
     claim = taken(store)
     claim.keep(search_record(1))
-    claim.tell(progress(1))
+    claim.report(progress(1))
     assert not claim.cancel_asked
     assert store.cancel(job.id).cancel_asked
     assert store.cancel(job.id).state == "running"
@@ -277,7 +277,7 @@ def test_a_file_replaces_the_one_of_its_name(store: Store) -> None:
     job = add(store)
     claim = taken(store)
     for content in (b"old", b"new"):
-        claim.put(Artefact(name="front.csv", media_type="text/csv", content=content))
+        claim.write_files(Artefact(name="front.csv", media_type="text/csv", content=content))
     assert store.artefact(job.id, "front.csv") == Artefact(name="front.csv", media_type="text/csv", content=b"new")
     with pytest.raises(InputError, match="job 1 has no file"):
         store.artefact(job.id, "back.csv")

@@ -29,7 +29,7 @@ def test_a_job_begun_by_its_submitter_is_running_in_its_hands(store: Store) -> N
     assert store.claim("other") is None
     assert store.artefact(job.id, "job.toml") == FILE
     claim.keep(search_record(1))
-    claim.tell(progress(1))
+    claim.report(progress(1))
     claim.finish(result())
     assert store.job(job.id).state == "done"
     assert [event.kind for event in store.events(job.id)] == ["state", "state", "progress", "state"]
@@ -72,13 +72,13 @@ def test_a_cancelled_job_can_be_taken_up_at_once(store: Store) -> None:
 def test_a_running_job_is_taken_from_its_worker_only_where_that_is_known_to_be_gone(store: Store) -> None:
     lost = begun(store)
     lost.keep(search_record(1))
-    lost.tell(progress(1))
+    lost.report(progress(1))
     with pytest.raises(InputError, match="job 1 is running"):
         store.go_on(lost.job.id, worker="second", lease=60.0)
     again = store.go_on(lost.job.id, worker="second", lease=60.0, alone=True)
     assert len(again.records()) == 1
     with pytest.raises(LeaseLost):
-        lost.tell(progress(2))
+        lost.report(progress(2))
 
 
 def test_no_more_jobs_are_claimed_than_may_run(store: Store) -> None:

@@ -14,11 +14,11 @@ def test_news_are_the_events_after_the_one_that_is_known(store: Store) -> None:
     one, other, third = (add(store).id for _ in range(3))
     claim = taken(store)
     for number in range(1, 6):
-        claim.tell(progress(number))
+        claim.report(progress(number))
     news = store.news({one: 3, other: 1, third: 0})
     assert [event.number for event in news[one].events] == [4, 5, 6, 7]
     assert news[one].events == store.events(one, after=3)
-    assert (news[one].state, news[one].last, news[one].over) == ("running", 7, False)
+    assert (news[one].state, news[one].last, news[one].is_over) == ("running", 7, False)
     assert (news[other].state, news[other].events) == ("queued", [])
     assert news[third].events == store.events(third)
 
@@ -27,16 +27,16 @@ def test_news_are_told_at_most_so_many_at_a_time_and_none_is_left_out(store: Sto
     job = add(store).id
     claim = taken(store)
     for number in range(1, 8):
-        claim.tell(progress(number))
+        claim.report(progress(number))
     claim.finish(result())
     found, over = [0], False
     while not over:
         news = store.news({job: found[-1]}, limit=4)[job]
         assert len(news.events) <= 4
         found += [event.number for event in news.events]
-        over = news.over
+        over = news.is_over
     assert found == list(range(11))
-    assert store.news({job: 10})[job].over
+    assert store.news({job: 10})[job].is_over
     assert not store.news({job: 10})[job].events
 
 

@@ -185,7 +185,7 @@ def test_a_write_that_fails_for_a_while_takes_effect_once(
     for number in (1, 2, 3):
         failing.left = 3 - after_commit
         claim.keep(search_record(number))
-        claim.tell(progress(number))
+        claim.report(progress(number))
     failing.left = 1
     claim.finish(result())
     assert failing.left == 0
@@ -203,7 +203,7 @@ def test_a_write_is_not_tried_beyond_the_lease(store: Store, address: str, monke
     claim.lease = 0.05
     before = everything(address)
     with pytest.raises(StoreError, match="the disk is full"):
-        claim.tell(progress(1))
+        claim.report(progress(1))
     assert everything(address) == before
     failing.left = 0
     end_lease(address, job.id)
@@ -211,7 +211,7 @@ def test_a_write_is_not_tried_beyond_the_lease(store: Store, address: str, monke
     failing.left = 1
     claim.lease = 60.0
     with pytest.raises(LeaseLost):  # also when the first try did not reach the database
-        claim.tell(progress(1))
+        claim.report(progress(1))
 
 
 def test_a_full_disk_loses_nothing_and_the_job_goes_on_when_there_is_room(tmp_path: Path) -> None:
@@ -224,12 +224,12 @@ def test_a_full_disk_loses_nothing_and_the_job_goes_on_when_there_is_room(tmp_pa
         large = Artefact(name="large", media_type="text/plain", content=b"x" * 10_000_000)
         claim.patient = lambda _: False
         with pytest.raises(StoreError, match=r"database or disk is full; .* free; free some space"):
-            claim.put(large)
+            claim.write_files(large)
         assert everything(str(tmp_path / "store.db")) == before
         with store.reading() as connection:
             assert connection.scalar(text("PRAGMA integrity_check")) == "ok"
         room(store, 100_000)
-        claim.put(large)
+        claim.write_files(large)
         assert store.artefact(job.id, "large") == large
 
 
@@ -306,7 +306,7 @@ def test_a_claim_outlives_a_crash_of_the_server(server: Cluster) -> None:
         assert claim is not None
         for number in (1, 2, 3):
             claim.keep(search_record(number))
-            claim.tell(progress(number))
+            claim.report(progress(number))
             if number < 3:
                 server.stop()
                 server.start()

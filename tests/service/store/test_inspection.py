@@ -36,11 +36,11 @@ def used(store: Store, address: str, monkeypatch: pytest.MonkeyPatch) -> str:
     for status in ("done", "cancelled", "infeasible"):
         claim = taken(store)
         claim.keep(search_record(0))
-        claim.tell(progress(1))
+        claim.report(progress(1))
         claim.finish(result(status, rows=[] if status == "infeasible" else None))
     claim = taken(store)
     claim.keep(search_record(0))
-    claim.tell(progress(1))
+    claim.report(progress(1))
     return address
 
 

@@ -49,7 +49,7 @@ def test_a_job_stays_with_its_worker_when_the_clock_is_set(store: Store, clock: 
             assert store.claim("second") is None
             time.sleep(0.2)
         claim.keep(search_record(1))
-        claim.tell(progress(1))
+        claim.report(progress(1))
     claim.finish(result())
     ended = store.job(job.id)
     assert (ended.state, ended.fence) == ("done", 1)
@@ -60,7 +60,7 @@ def test_a_write_between_a_jump_and_the_next_renewal_is_taken(store: Store, cloc
     add(store)
     claim = taken(store)
     clock.ahead = step
-    claim.tell(progress(1))
+    claim.report(progress(1))
     left = store.job(1).lease_until
     assert left is not None
     assert left == pytest.approx(time.time() + step + claim.lease, abs=5.0)
@@ -73,7 +73,7 @@ def test_the_job_of_a_dead_worker_goes_to_another_one_when_the_clock_was_set(
     job = add(store)
     store.greet("first")
     lost = taken(store, "first", lease=30.0)
-    lost.tell(progress(1))
+    lost.report(progress(1))
     clock.ahead = step
     with Store(address) as other:  # one that has not seen the jump
         again = other.claim("second")
@@ -182,7 +182,7 @@ def test_a_worker_that_is_gone_does_not_look_alive_when_the_clock_was_set(
 def test_jumps_are_told_from_delays_and_from_sleep() -> None:
     here = 100.0
     jumps = Jumps(lambda: here)
-    assert jumps.settled(5000.0)
+    assert jumps.is_settled(5000.0)
     for passed, there, settled in (
         (10.0, 5010.0, True),
         (0.5, 5010.5 + 0.9 * JUMP, True),  # a slow answer
@@ -193,4 +193,4 @@ def test_jumps_are_told_from_delays_and_from_sleep() -> None:
         (0.5, 8612.0 + SETTLING - 2.0 * JUMP, False),
     ):
         here += passed
-        assert jumps.settled(there) is settled, there
+        assert jumps.is_settled(there) is settled, there

@@ -1,4 +1,4 @@
-"""A full disk during a search: the job stays with its worker and continues once there is space."""
+"""A full disk during a round: the job stays with its worker and continues once there is space."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_a_round_without_room_keeps_its_lease_for_as_long_as_it_waits(store: Sto
         return written.done() or len(leases) > 4
 
     with ThreadPoolExecutor(1) as pool:
-        written = pool.submit(claim.tell, progress(1))
+        written = pool.submit(claim.report, progress(1))
         until(lambda: bool(claim.waits) or written.done())
         claim.lease = LEASE
         with Heartbeat(claim) as heartbeat:
@@ -58,7 +58,7 @@ def test_a_job_stays_with_its_worker_while_not_even_its_lease_can_be_renewed(sto
         end_lease(address, job.id)
         disk.fill(to_the_last_byte=True)
         with ThreadPoolExecutor(1) as pool:
-            written = pool.submit(claim.tell, progress(1))
+            written = pool.submit(claim.report, progress(1))
             until(lambda: bool(claim.waits) or written.done())
             claim._renewed -= 2.0 * claim.lease
             with Heartbeat(claim) as heartbeat:
@@ -93,7 +93,7 @@ def test_a_job_is_given_back_without_the_records_for_which_there_is_no_room(stor
     job = add(store)
     claim = taken(store, lease=LEASE)
     claim.keep(search_record(1))
-    claim.tell(progress(1))
+    claim.report(progress(1))
     claim.keep(large_record(2))
     disk.fill()
     claim.hand_back("its worker stopped; another one continues")
@@ -119,8 +119,8 @@ def test_nothing_is_claimed_on_a_disk_without_room_though_the_claim_would_fit(
 def test_claims_settle_after_a_full_disk_as_after_a_jump() -> None:
     here = 100.0
     jumps = Jumps(lambda: here)
-    assert not jumps.settled(5000.0, last_full=here - 0.9 * SETTLING)
-    assert jumps.settled(5000.0, last_full=here - SETTLING)
+    assert not jumps.is_settled(5000.0, last_full=here - 0.9 * SETTLING)
+    assert jumps.is_settled(5000.0, last_full=here - SETTLING)
 
 
 def test_time_without_room_does_not_count_as_time_of_the_search() -> None:

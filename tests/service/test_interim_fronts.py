@@ -41,13 +41,13 @@ def test_a_front_without_designs_has_no_points() -> None:
 
 def test_a_job_that_is_solved_shows_how_its_front_grows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shown: list[Any] = []
-    tell = Claim.tell
+    report = Claim.report
 
     def noted(claim: Claim, *given: Any) -> None:
-        tell(claim, *given)
+        report(claim, *given)
         shown.append(store.job(claim.job.id).progress)
 
-    monkeypatch.setattr(Claim, "tell", noted)
+    monkeypatch.setattr(Claim, "report", noted)
     with Store(tmp_path / "store.db") as store:
         number = submit(store, tomllib.loads(fronts.JOB)).id
         work(store, drain=True)
