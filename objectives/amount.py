@@ -29,7 +29,7 @@ class Amount(Quantity):
 
     @property
     def blank(self) -> str:
-        """That the catalogue does not have it."""
+        """Sentence for an option without this amount."""
         return "the catalogue has none for what is chosen"
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
@@ -46,7 +46,7 @@ def with_amounts(quantity: Quantity, values: dict[str, float]) -> Quantity:
 
 
 def kind_of_amount(unit: str) -> Kind:
-    """Return the kind of amounts in a unit: that of a known unit, else one of its own, such as of EUR."""
+    """Return the kind of amounts in a unit: that of a known unit, else a new kind."""
     try:
         return kind_in(unit, per_si(unit), kind_for(unit)) if unit else RATIO
     except InputError:

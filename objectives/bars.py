@@ -165,7 +165,7 @@ def pin_force(mechanism: Mechanism, designs: Array, pin: str, piece_count: int, 
 
 
 def eyes_of(link: str, pin: str) -> list[Eye]:
-    """Return the edges of a link's eye at a pin that count: the bore, and both edges where the torque bends it.
+    """Return the critical edges of a link's eye: the bore, and both edges where the torque bends it.
 
     That is the crank's pivot. What the friction of a pin bends its eye is left out.
     """
@@ -178,7 +178,7 @@ def eyes_of(link: str, pin: str) -> list[Eye]:
 def stress_divisor(
     mechanism: Mechanism, designs: Array, place: StressLocation, gradients: bool
 ) -> tuple[Array, Array | None]:
-    """Return the factor that the stress of a place still has (`places`): w - D of an eye, m, and 1 along a link."""
+    """Return the divisor of the stress at a place: w - D in an eye, m; 1 along a link."""
     if not isinstance(place, Eye):
         return constant(1.0, designs, gradients)
     return formula_of_numbers(

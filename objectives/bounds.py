@@ -1,4 +1,4 @@
-"""Reach of a quantity: bounds that hold for every design within ranges of crank, rod and |offset| that turns fully.
+"""Bounds of a quantity that hold for every design within ranges of crank, rod and |offset| that turns fully.
 
 With a = |offset|, stroke and time ratio rise with r and a and fall with l; the transmission angle does the reverse:
 
@@ -54,7 +54,7 @@ class KnownBounds:
 
 @dataclass(frozen=True, kw_only=True)
 class QuantityBounds:
-    """Bounds of a quantity within ranges, SI, and in words what the ranges must allow for more or less of it."""
+    """Bounds of a quantity within ranges, SI, and the changes of the ranges that raise or lower it, in words."""
 
     compute: Callable[[LengthRanges], tuple[float, float]]
     to_raise: str

@@ -1,4 +1,4 @@
-"""What a slider does near a dead centre: its speed where it meets its work, and the crank angle of its dwell."""
+"""Slider near a dead centre: its speed where it meets the workpiece, and the crank angle of its dwell."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class NearDeadCentre(GreatestFormula):
 
 
 def _triangle(number: Number, distance: float, outer: bool) -> tuple[Any, ...]:
-    """Return x, B^2, (l + r)^2 - B^2 and B^2 - (l - r)^2 of a slider pin at a distance from a dead centre.
+    """Return x, B^2, (l + r)^2 - B^2 and B^2 - (l - r)^2 near a dead centre.
 
     B: distance of slider pin and crank pivot. Written as products, of which none cancels towards the dead centre.
     """
@@ -65,7 +65,7 @@ def _travel(machine: Mechanism, number: Number, distance: Any) -> Any:
 
 
 def _angle_from_line(machine: Mechanism, number: Number, distance: Any) -> Any:
-    """Return the angle of the crank from the line of its pivot and the slider pin, rad: twice the half of it."""
+    """Return the angle between the crank and the line from crank pivot to slider pin, rad, by its half."""
     r, l = number(Raw.CRANK), number(Raw.ROD)
     outer = machine.slider.dead_centre == "outer"
     _, square, outer_product, inner_product = _triangle(number, distance, outer)
@@ -75,7 +75,7 @@ def _angle_from_line(machine: Mechanism, number: Number, distance: Any) -> Any:
 
 
 def before_dead_centre(machine: Mechanism, design: Array, distances: Array) -> tuple[Array, Array]:
-    """Return the crank angle to the dead centre, rad, and |x'|, m, at distances before it, m, in the stroke to it.
+    """Return the crank angle, rad, before a dead centre and |x'|, m, at distances from it, m.
 
     design: crank, rod, offset, m, whose stroke is longer. What is small with the distance is so to its last digits.
     """

@@ -38,7 +38,7 @@ _APART = 10.0  # labels of peaks are crank angles, below 2 pi
 
 @dataclass(frozen=True, kw_only=True)
 class Flow(Quantity):
-    """The volume that pumps and compressors take in and deliver over a turn, times the turns in a unit of time."""
+    """Volume that pumps and compressors deliver over a turn, times turns per time."""
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""

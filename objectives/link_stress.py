@@ -45,7 +45,7 @@ class LinkStress(OfBars):
     def told_parts(
         self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool
     ) -> Iterator[tuple[str, str, Part]]:
-        """Give link, pin ("" for what is along the link) and part, in the order of `parts`; an eye may have several."""
+        """Yield link, pin ("" along the link) and part, in the order of `parts`; an eye may have several."""
         strength = strength_of(mechanism)
         yield_strength = strength.material.yield_strength
         bars = self.bars(mechanism)
@@ -73,7 +73,9 @@ class LinkStress(OfBars):
 
 
 def eye_stresses(mechanism: Mechanism, design: Array) -> dict[str, dict[str, tuple[float, float]]]:
-    """Return greatest stress, Pa, and its crank angle, rad, in the eyes of each bar of a design (1, 3 + k), by pin.
+    """Return greatest stress, Pa, and its crank angle, rad, in the eyes of each bar, by pin.
+
+    design: (1, 3 + k).
 
     The angle is NaN where the stress is not finite.
     """
@@ -98,7 +100,7 @@ def _angle_of(mechanism: Mechanism, place: StressLocation, design: Array) -> flo
 
 
 def _places(mechanism: Mechanism) -> list[tuple[str, str, StressLocation]]:
-    """Return where the stress is that of a section: all along the bars, and in the eye of the pivot, which is bent."""
+    """Return the places with the stress of a whole section: along the bars, and in the eye of the pivot."""
     bars, pivot = STATIC_SAFETY.bars(mechanism), LINKS[CRANK].far
     places: list[tuple[str, str, StressLocation]] = [(name, "", WholeBar(LINKS[name].part)) for name in bars]
     return places + [(CRANK, pivot, eye) for eye in (eyes_of(CRANK, pivot) if CRANK in bars else [])]

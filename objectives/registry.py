@@ -37,9 +37,9 @@ def _of_product(name: str, changes: dict[str, Any]) -> Quantity:
 
 
 def _reduced(quantity: Quantity) -> tuple[Any, ...] | str:
-    """Return how a quantity is pickled: one of the product by its name and changes, since its formulas may be without.
+    """Return the pickled form of a quantity: a built-in one by its name and changes.
 
-    So may what its needs ask of a machine.
+    Its formulas and the conditions of its needs may have no pickled form.
     """
     fact = FACTS.get(quantity.name)
     if type(fact) is not type(quantity):

@@ -30,7 +30,9 @@ def evaluate_stroke_times(
     *,
     cylinder: int = 0,
 ) -> tuple[Array, Array | None]:
-    """Return a smooth function (n,) of the stroke times of designs (n, 3 + k), and its derivatives by complex steps."""
+    """Return a smooth function (n,) of stroke times, and its derivatives by complex steps.
+
+    designs: (n, 3 + k)."""
     designs = np.asarray(designs, dtype=np.float64)
     require_width(mechanism, designs)
     lengths = designs[:, :3].T
@@ -69,7 +71,7 @@ class StrokeTime(Quantity):
 
 @dataclass(frozen=True, kw_only=True)
 class StrokeTimeRatio(Quantity):
-    """Time of one stroke divided by that of the other; along a profile a slow stroke is a lower bound on it.
+    """Time of one stroke divided by the other; along a profile, a slow stroke sets a lower bound on it.
 
     For several cylinders along a profile it is the least value over the cylinders. outward: whether the outward stroke
     is the numerator.

@@ -172,7 +172,7 @@ def dimension_of_kind(kind: Kind) -> Dimension:
 
 
 def kind_with(dimension: Dimension, symbol: str = "") -> Kind:
-    """Return the kind of value of a dimension, one of `KINDS` or a new one in SI base units or those of amounts.
+    """Return the kind of value with a dimension: one of `KINDS`, or a new kind in base units.
 
     symbol: a unit, which tells kinds of one dimension apart, such as a torque and an energy.
     """
@@ -235,7 +235,7 @@ def to_si(value: object, kind: Kind, *, sign: Sign = "any", plain: bool = True) 
 
 
 def spread(value: object) -> tuple[str, str] | None:
-    """Return the ends of a range that is stated as its middle and half its width, "180 mm +- 0.5 mm".
+    """Return the ends of a range given by middle and half width, "180 mm +- 0.5 mm".
 
     Each is a text in the unit of the middle; a unit that is missing on one side is that of the other. None for what
     states no such range. Raises InputError for units of two kinds.
@@ -313,13 +313,15 @@ def squeezed(unit: str) -> str:
 
 
 def without_in(text: str) -> str:
-    """Return a unit without the "in" of "force in N" before it; no torque but those in lbf and ozf has an inch."""
+    """Return a unit without the "in" of "force in N".
+
+    The inch of lbf in and ozf in, the only torques with an inch, stays."""
     stated = _IN.match(text)
     return text if stated is None else text[stated.end() :]
 
 
 def symbol_in(text: str, kind: Kind) -> str | None:
-    """Return a unit of a kind, as the head of a column has it, in the spelling of jobs; None for what is none."""
+    """Return the unit in a heading, spelled as in jobs; None if it is not one of the kind."""
     shown_symbols = [unit.symbol for unit in (kind.metric, kind.inch) if unit is not None]
     listed = next((symbol for symbol in (*kind.typed, *shown_symbols) if squeezed(symbol) == squeezed(text)), None)
     try:

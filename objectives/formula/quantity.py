@@ -107,7 +107,7 @@ class FormulaQuantity(Quantity):
 
     @property
     def is_smooth(self) -> bool:
-        """Whether no design is at a kink: its parts are smooth, and it takes abs() only of an offset of known sign."""
+        """Whether it has no kinks: its parts are smooth, and abs() is only of an offset with known sign."""
 
         def has_kink(node: Node) -> bool:
             if not isinstance(node, Call):

@@ -19,7 +19,7 @@ def resolve_quantities(
     ranges: Mapping[str, Ends] | None = None,
     turning: bool = True,
 ) -> list[Quantity]:
-    """Return the quantities that names and formulas mean.
+    """Return the quantities of names and formulas.
 
     custom: quantities of a problem besides those that every one has. ranges: of the dimensions, for the refusal of what
     may divide by zero in them; without, such a formula has no value where it does. turning: whether the crank must
@@ -37,7 +37,7 @@ def resolve_quantities(
 
 
 def is_formula(name: object, mechanism: Mechanism, custom: Collection[Quantity] = ()) -> bool:
-    """Return whether a text is no name of a quantity, but of a dimension or a number that varies, or more."""
+    """Return whether a text is a formula, a dimension or a variable instead of the name of a quantity."""
     if not isinstance(name, str) or name in QUANTITIES or any(quantity.name == name for quantity in custom):
         return False
     return name in DIMENSIONS or any(item.name == name for item in mechanism.varying) or not name.isidentifier()

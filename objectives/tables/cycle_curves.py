@@ -146,7 +146,10 @@ def even_angles(count: int, limit: int = MOST) -> Array:
 
 
 def _jerk(mechanism: Mechanism, m: Motion, third: Array, theta: Array) -> Array:
-    """Slider jerk, m/s^3: x''' w^3 + 3 x'' w a + x' w da/d(theta), a the crank's acceleration; third: x''', m."""
+    """Return the slider jerk, m/s^3: x''' w^3 + 3 x'' w a + x' w da/d(theta).
+
+    a: acceleration of the crank. third: x''', m.
+    """
     if mechanism.speed_profile is None:
         return np.asarray(third * mechanism.speed**3 + 3.0 * m.x_2 * mechanism.speed * mechanism.acceleration)
     speed, acceleration = crank_speed(mechanism, theta)

@@ -88,7 +88,7 @@ def evaluated(
     own: Sequence[Quantity] = (),
     swing: Swing | None = None,
 ) -> Array | tuple[Array, Array]:
-    """Return what `evaluate` does, of designs (..., 3 + k) as an array."""
+    """Return the values of `evaluate` for designs (..., 3 + k) as an array."""
     if isinstance(quantities, str):
         raise InputError(f"quantities are a list of names; got {quantities!r}; write [{quantities!r}]")
     quantities = list(quantities)

@@ -38,7 +38,7 @@ _FORMULA = "a formula has a value where it is finite; got an infinite one; chang
 def missing_value_reason(
     quantity: Quantity, value: float, mechanism: Mechanism, linkage: Linkage, swing: Swing | None = None
 ) -> str:
-    """Return why a design has no value for a quantity that is defined for its machine; empty if it has one.
+    """Return the reason why a design has no value for a defined quantity; empty if it has one.
 
     value: of `Quantity.evaluate`, in any unit. mechanism: with its variables fixed. swing: in place of a full turn.
     """
@@ -92,7 +92,7 @@ def _undetermined(quantity: Quantity, mechanism: Mechanism, designs: Array) -> M
 
 
 def _own_reason(quantity: Quantity, value: float, mechanism: Mechanism, design: Array) -> str:
-    """Return why a design (1, 3) that runs has no finite value; empty for one that is infinite by its definition."""
+    """Return the reason why a running design (1, 3) has no finite value; empty if infinity is its value."""
     if np.isnan(value):
         return quantity.blank
     finite = all(np.isfinite(part.evaluate(mechanism, design).values[0]) for part in quantity.made_of)

@@ -23,7 +23,7 @@ def varying_column(varying: Varying) -> tuple[str, DisplayUnit]:
 
 
 def number_in_words(name: str) -> str:
-    """Return a number of a job in words by its name or key, without a unit: "slider mass", "crank pin diameter"."""
+    """Return the words for a number of a job from its name or key: "slider mass", "crank pin diameter"."""
     words = re.sub("[._]", " ", name.removeprefix("mechanism."))
     return re.sub("^sections pins (.+)", r"\1 diameter", words)
 

@@ -42,13 +42,13 @@ def best_of(
 
     checkpoints, engine: of the search that wants to know it. report: called with how far this one is.
     """
-    own = [
+    combined = [
         Evaluator(problem, branch, checkpoints, engine)
         for branch in drop_mirrored_branches(problem, elimination_branches(problem))
     ]
     run = Run(problem, 1, report, checkpoints or Checkpoints(), stages=report)
     light = replace(problem, settings=replace(problem.settings, samples=problem.settings.samples or _FEW))
-    front = search_with(replace(AUTO, search=partial(_sampled, problem)), light, own, run)
+    front = search_with(replace(AUTO, search=partial(_sampled, problem)), light, combined, run)
     if front is None:
         return None
     quantity = problem.quantity(problem.objectives[0].quantity)
@@ -57,7 +57,9 @@ def best_of(
 
 
 def _sampled(full: Problem, light: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the archive of few samples if enough of them are feasible, or none can be; else that of a whole search.
+    """Return the archive of a few samples if it suffices, else of a whole search.
+
+    It suffices with enough feasible designs, or if none can be feasible.
 
     Of one objective the best few of any samples lead down to its best value.
     """
@@ -86,8 +88,8 @@ def best_on_dimensions(problem: Problem) -> Best | None:
 
 def wanting(problem: Problem, name: str, sense: Sense, target: float | None = None) -> Problem:
     """Return the problem with one quantity as its only objective."""
-    wanted = Objective(quantity=name, sense=sense, target=target)
-    return replace(problem, objectives=(wanted,), settings=Settings(designs=1, seed=problem.settings.seed))
+    objective = Objective(quantity=name, sense=sense, target=target)
+    return replace(problem, objectives=(objective,), settings=Settings(designs=1, seed=problem.settings.seed))
 
 
 def on_dimensions(problem: Problem) -> Problem:
@@ -121,5 +123,5 @@ def rules_on_dimensions(problem: Problem) -> tuple[Constraint, ...]:
 
 def _weightless(part: Problem) -> Problem:
     machine = massless_machine(part.mechanism)
-    own = tuple(of for of in part.own if of.of_dimensions)
-    return replace(part, mechanism=machine, constraints=rules_on_dimensions(part), own=own, costs=None)
+    custom = tuple(quantity for quantity in part.own if quantity.of_dimensions)
+    return replace(part, mechanism=machine, constraints=rules_on_dimensions(part), own=custom, costs=None)

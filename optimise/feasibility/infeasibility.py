@@ -62,7 +62,9 @@ def diagnose(
         message = nearest or (_UNMOVED if problem.motion is None else unswung(problem))
         return Diagnosis(feasible, (), message)
     found = []
-    stroke = {of.name for of in STROKE_TIME_RATIOS.values()} - {item.quantity for item in problem.constraints}
+    stroke = {quantity.name for quantity in STROKE_TIME_RATIOS.values()} - {
+        item.quantity for item in problem.constraints
+    }
     for constraint in constraints_of(problem):
         if constraint.quantity in stroke:  # the slow stroke along a speed profile is reported below
             continue
@@ -79,9 +81,10 @@ def diagnose(
             settings=Settings(designs=1, seed=problem.settings.seed),
         )
         if best(loose) is not None:
-            other = "inward" if problem.slow_stroke == "outward" else "outward"
+            others_left = "inward" if problem.slow_stroke == "outward" else "outward"
             sentences.append(
-                f"slow stroke {problem.slow_stroke} is required; all other requirements can be met if the {other} "
+                f"slow stroke {problem.slow_stroke} is required; all other requirements can be met if the "
+                f"{others_left} "
                 "stroke is slow, or neither"
             )
     if sentences:

@@ -54,12 +54,14 @@ class Relaxation:
         """The reachable value as it is told, with its unit."""
         return f"{self.rounded_value} {self.unit}".rstrip()
 
-    def sentence(self, *, kept: str = "all else") -> str:
-        """Return the relaxation in words. kept: what the other requirements are called."""
-        reach = {"at least": "at most", "at most": "at least", "exactly": "at the nearest"}[self.relation]
-        asked = "is kept where a job sets none" if self.standing else "is asked"
+    def sentence(self, *, other_requirements: str = "all else") -> str:
+        """Return the relaxation in words. other_requirements: what the other requirements are called."""
+        limit_word = {"at least": "at most", "at most": "at least", "exactly": "at the nearest"}[self.relation]
+        requested_value = "is kept where a job sets none" if self.standing else "is asked"
         requirement = f"{self.title} {self.relation} {self._number_asked()}"
-        return f"{requirement} {asked}, {reach} {self.with_unit} is possible with {kept} met"
+        return (
+            f"{requirement} {requested_value}, {limit_word} {self.with_unit} is possible with {other_requirements} met"
+        )
 
     def instead(self) -> str:
         """Return the reachable requirement to ask for instead, in words."""
@@ -75,10 +77,12 @@ def missed(problem: Problem, constraint: Constraint, word: Word, bound: float, v
     off = {"min": bound - value, "max": value - bound, "equals": abs(value - bound)}[word]
     if off <= slack:
         return None
-    of = problem.quantity(constraint.quantity)
-    factor, symbol = of.unit.factor, of.unit.symbol
+    quantity = problem.quantity(constraint.quantity)
+    factor, symbol = quantity.unit.factor, quantity.unit.symbol
     standing = all(item.quantity != constraint.quantity for item in problem.constraints)
-    return Relaxation(of.name, RELATIONS[word], bound * factor, value * factor, symbol, of.title, standing=standing)
+    return Relaxation(
+        quantity.name, RELATIONS[word], bound * factor, value * factor, symbol, quantity.title, standing=standing
+    )
 
 
 def relaxations(
@@ -117,12 +121,12 @@ def _drop_side(problem: Problem, constraint: Constraint, word: Word) -> Problem:
     """
     lower = constraint.lower if word == "max" else None
     upper = constraint.upper if word == "min" else None
-    kept = tuple(item for item in problem.constraints if item.quantity != constraint.quantity)
+    constraints = tuple(item for item in problem.constraints if item.quantity != constraint.quantity)
     if lower is not None or upper is not None:
-        kept = (*kept, Constraint(quantity=constraint.quantity, lower=lower, upper=upper))
-    known = restate(problem, constraint)
-    left = restate(problem, kept[-1]) if lower is not None or upper is not None else None
-    floor = problem.quantity(known.quantity).floor
-    if floor is not None and known.lower is not None and (left is None or left.lower is None):
-        kept = merged((*kept, Constraint(quantity=known.quantity, lower=_LOWEST * known.lower)))
-    return replace(problem, constraints=kept)
+        constraints = (*constraints, Constraint(quantity=constraint.quantity, lower=lower, upper=upper))
+    names = restate(problem, constraint)
+    left = restate(problem, constraints[-1]) if lower is not None or upper is not None else None
+    floor = problem.quantity(names.quantity).floor
+    if floor is not None and names.lower is not None and (left is None or left.lower is None):
+        constraints = merged((*constraints, Constraint(quantity=names.quantity, lower=_LOWEST * names.lower)))
+    return replace(problem, constraints=constraints)

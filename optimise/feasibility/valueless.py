@@ -1,4 +1,4 @@
-"""Quantities that no design has a number of, in words: roots of less than zero, safety of bars that nothing presses."""
+"""Quantities without a number for any design, such as roots of negative values or safety of unloaded bars."""
 
 from __future__ import annotations
 
@@ -23,12 +23,17 @@ def valueless(part: Problem, designs: Array) -> str:
     """
     names = [*(item.quantity for item in part.objectives), *(item.quantity for item in constraints_of(part))]
     for name in dict.fromkeys(names):
-        of = part.quantity(name)
-        if np.isfinite(of.evaluate(part.mechanism, designs).values).any():
+        quantity = part.quantity(name)
+        if np.isfinite(quantity.evaluate(part.mechanism, designs).values).any():
             continue
-        remedy = "correct the formula, or change the ranges" if isinstance(of, FormulaQuantity) else "change the ranges"
-        why = f": {of.blank}" if of.blank else ""
-        return f"{of.title} has no value for any of {counted(len(designs), 'design')} within the ranges{why}; {remedy}"
+        remedy = (
+            "correct the formula, or change the ranges"
+            if isinstance(quantity, FormulaQuantity)
+            else "change the ranges"
+        )
+        why = f": {quantity.blank}" if quantity.blank else ""
+        count = counted(len(designs), "design")
+    return f"{quantity.title} has no value for any of {count} within the ranges{why}; {remedy}"
     return ""
 
 

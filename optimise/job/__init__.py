@@ -143,23 +143,23 @@ def parse_job(
     """
     require_plain(data)
     data, _ = with_options(data)
-    own = declared(data, allowed=allow_user_code)
-    job = job_with(own)
+    custom = declared(data, allowed=allow_user_code)
+    job = job_with(custom)
     doubts: list[PlainNumbers] = []
     try:
         stated, doubts = read_noting(job, data, values)
         stated = with_values(stated, values, "values") if values else stated
-        problem = problem_of(stated, folder=folder, installed=own.installed, require_feasible=require_feasible)
+        problem = problem_of(stated, folder=folder, installed=custom.installed, require_feasible=require_feasible)
         doubts += plain_bounds(problem, data)
         warned = tuple(dict.fromkeys(item.warning for item in doubts if item.warning))
         return replace(problem, warnings=warned) if warned else problem
     except ValidationError as error:
         doubts = plain_values(job, data)
-        found = [_with_doubts(one, doubts) for one in explain(error, schema_of(job), data)]
-        count = f"{len(found)} problems" if len(found) < LONGEST else "very many problems"
-        heading = [count] if len(found) > 1 else []
-        more = ["... and more"] if len(found) > MOST else []
-        raise JobError("\n  ".join([*heading, *found[:MOST], *more])) from None
+        sentences = [_with_doubts(sentence, doubts) for sentence in explain(error, schema_of(job), data)]
+        count = f"{len(sentences)} problems" if len(sentences) < LONGEST else "very many problems"
+        heading = [count] if len(sentences) > 1 else []
+        overflow = ["... and more"] if len(sentences) > MOST else []
+        raise JobError("\n  ".join([*heading, *sentences[:MOST], *overflow])) from None
     except InputError as error:  # a number that means another unit is a likely cause
         if isinstance(error, InfeasibleError) and isinstance(error.problem, Problem):
             doubts += plain_bounds(error.problem, data)
@@ -171,15 +171,15 @@ def parse_job(
 
 
 def _with_doubts(sentence: str, doubts: Iterable[PlainNumbers], *, everywhere: bool = False) -> str:
-    """Return a refusal with the warnings of plain numbers that may be its cause, after the key that it begins with.
+    """Return an error message with the warnings of plain numbers that may be its cause, after its key.
 
     everywhere: whether those at other keys may be too.
     """
     place = re.match(r"[a-z_][^:;=]*(?=: )", sentence)
     key = place[0] if place else ""
-    found = [item.warning for item in doubts if item.warning and (everywhere or not key or item.concerns(key))]
+    likely_causes = [item.warning for item in doubts if item.warning and (everywhere or not key or item.concerns(key))]
     rest = sentence[len(key) :].removeprefix(": ")
-    return (f"{key}: " if key else "") + "; ".join((*dict.fromkeys(found), rest))
+    return (f"{key}: " if key else "") + "; ".join((*dict.fromkeys(likely_causes), rest))
 
 
 def job_schema() -> dict[str, Any]:

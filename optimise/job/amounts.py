@@ -27,8 +27,8 @@ class _Read(Physical):
     """Marks an amount: a number with any unit, or a plain number."""
 
     def read(self, value: object) -> Any:
-        found = None if isinstance(value, bool) or not isinstance(value, str | int | float) else amount_of(value)
-        if found is None or not abs(found[0]) <= _MOST:
+        amount = None if isinstance(value, bool) or not isinstance(value, str | int | float) else amount_of(value)
+        if amount is None or not abs(amount[0]) <= _MOST:
             raise InputError(f'must be a number with its unit, such as "310 EUR", or a number; got {quote(value)}')
         return value
 
@@ -50,13 +50,13 @@ Amounts = Annotated[dict[str, Annotated[Any, _Read(RATIO)]], AfterValidator(_nam
 
 def kinds_of_amounts(options: Iterable[Mapping[str, Any]]) -> dict[str, Kind]:
     """Return the kinds of the amounts of options, by name. options: their amounts; what is wrong is left out."""
-    found: dict[str, Kind] = {}
+    kinds: dict[str, Kind] = {}
     for amounts in options:
         for name, value in amounts.items():
-            known = amount_of(value) if name not in found and isinstance(value, str | int | float) else None
-            if known is not None:
-                found[name] = kind_of_amount(known[1])
-    return found
+            amount = amount_of(value) if name not in kinds and isinstance(value, str | int | float) else None
+            if amount is not None:
+                kinds[name] = kind_of_amount(amount[1])
+    return kinds
 
 
 def amounts_in(tables: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
@@ -70,14 +70,14 @@ def amounts_in(tables: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
                 yield amounts
 
 
-def amounts_of(choices: Mapping[str, list[Mapping[str, Any]]], taken: Collection[str]) -> tuple[Amount, ...]:
+def amounts_of(choices: Mapping[str, list[Mapping[str, Any]]], custom_names: Collection[str]) -> tuple[Amount, ...]:
     """Return the amounts that the options of choices have, as quantities without values.
 
-    choices: by name, the amounts of their options. taken: names of the job's own quantities. Raises JobError for a name
-    that is taken, or that two choices have.
+    choices: amounts of the options of each choice, by name. custom_names: names of the job's custom quantities.
+    Raises JobError for a name that exists already or that two choices have.
     """
-    found: dict[str, Amount] = {}
-    owners: dict[str, str] = dict.fromkeys(taken, "the table [quantity]")
+    amounts: dict[str, Amount] = {}
+    owners: dict[str, str] = dict.fromkeys(custom_names, "the table [quantity]")
     for choice, options in choices.items():
         for name, kind in kinds_of_amounts(options).items():
             if name in owners:
@@ -86,15 +86,19 @@ def amounts_of(choices: Mapping[str, list[Mapping[str, Any]]], taken: Collection
                     "too; rename one; a formula can add the two"
                 )
             owners[name] = f"the choice {quote(choice)}"
-            found[name] = Amount(
+            amounts[name] = Amount(
                 name=name,
                 kind=kind,
                 sentence=f"{name.replace('_', ' ')} of what is chosen for {choice}, from its catalogue.".capitalize(),
                 source="this job",
                 choice=choice,
-                signed=any((amount_of(of[name]) or (0.0,))[0] < 0.0 for of in options if name in of),
+                signed=any(
+                    (amount_of(option_amounts[name]) or (0.0,))[0] < 0.0
+                    for option_amounts in options
+                    if name in option_amounts
+                ),
             )
-    return tuple(found.values())
+    return tuple(amounts.values())
 
 
 def excluded_in_words(name: str, value: object, word: str, bound: object) -> str:
@@ -102,9 +106,14 @@ def excluded_in_words(name: str, value: object, word: str, bound: object) -> str
     return f"{name.replace('_', ' ')} {value}, {_TOO[word].format(bound)}"
 
 
-def values_of(amounts: Mapping[str, Any], of: Mapping[str, Amount], where: str) -> tuple[tuple[str, float], ...]:
-    """Return the amounts of an option, SI. of: amounts of the job. where: the option, for messages. Raises JobError."""
+def values_of(
+    amounts: Mapping[str, Any], quantities: Mapping[str, Amount], option_name: str
+) -> tuple[tuple[str, float], ...]:
+    """Return the amounts of an option, SI. Raises JobError.
+
+    quantities: amounts of the job. option_name: of the option, for messages.
+    """
     try:
-        return tuple((name, to_si(value, of[name].kind)) for name, value in amounts.items())
+        return tuple((name, to_si(value, quantities[name].kind)) for name, value in amounts.items())
     except InputError as error:
-        raise JobError(f"{where}: amounts of one name must have one unit: {error}") from None
+        raise JobError(f"{option_name}: amounts of one name must have one unit: {error}") from None

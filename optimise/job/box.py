@@ -48,11 +48,11 @@ class Box:
         """Return the ranges of a problem, narrowed by nothing yet."""
         return cls(crank=problem.crank, rod=problem.rod, offset=_sizes(problem.offset))
 
-    def possible(self, of: Quantity) -> tuple[float, float]:
+    def possible(self, quantity: Quantity) -> tuple[float, float]:
         """Return bounds of a quantity that has a reach, SI; needs `turns`."""
-        assert of.bounds is not None
+        assert quantity.bounds is not None
         ends = ((ends.lower, ends.upper) for ends in (self.crank, self.rod, self.offset))
-        return of.bounds.compute(LengthRanges(*(end for pair in ends for end in pair)))
+        return quantity.bounds.compute(LengthRanges(*(end for pair in ends for end in pair)))
 
     @property
     def turns(self) -> bool:
@@ -109,58 +109,57 @@ def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> B
     return narrowed
 
 
-def _require_within(of: Quantity, constraint: Constraint, box: Box, problem: Problem) -> None:
+def _require_within(quantity: Quantity, constraint: Constraint, box: Box, problem: Problem) -> None:
     """Raise InfeasibleError unless the constraint overlaps what is possible."""
-    key, bounds = key_of(["constraints", of.name]), problem.reach_of(of)
+    key, bounds = key_of(["constraints", quantity.name]), problem.reach_of(quantity)
     if bounds is None:
         return
-    least, greatest = box.possible(of)
-    room = SLACK * max((abs(end) for end in (least, greatest) if math.isfinite(end)), default=0.0)
-    if constraint.lower is not None and constraint.lower > greatest + room:
+    least, greatest = box.possible(quantity)
+    rounding = SLACK * max((abs(end) for end in (least, greatest) if math.isfinite(end)), default=0.0)
+    if constraint.lower is not None and constraint.lower > greatest + rounding:
         allowed, instead = bounds.to_raise, "ask for less"
-    elif constraint.upper is not None and constraint.upper + room < least:
+    elif constraint.upper is not None and constraint.upper + rounding < least:
         allowed, instead = bounds.to_lower, "ask for more"
     else:
         return
-    told, active = _possible(problem, constraint)
+    sentence, active = _possible(problem, constraint)
     remedy = ", ".join([f"allow {allowed}", *([f"relax {' and '.join(active)}"] if active else []), f"or {instead}"])
-    same = equation_of(of, 0.0) if isinstance(of, FormulaQuantity) else None
+    same = equation_of(quantity, 0.0) if isinstance(quantity, FormulaQuantity) else None
     if same is not None and not same.names:
-        told, remedy = f"it is {_format_value(of, float(same.constant))} for every design", "leave it out"
-    raise InfeasibleError(f"{key}: {told}; got {_bounds(constraint, of)}; {remedy}")
+        sentence, remedy = f"it is {_format_value(quantity, float(same.constant))} for every design", "leave it out"
+    raise InfeasibleError(f"{key}: {sentence}; got {_bounds(constraint, quantity)}; {remedy}")
 
 
 def _possible(problem: Problem, constraint: Constraint) -> tuple[str, list[str]]:
-    """Return in words what is possible of a quantity that the ranges do not give as it is asked for, and active rules.
+    """Return the possible values of a quantity that cannot meet its constraint, in words, and active rules.
 
     With rod / offset, which narrows the ranges, and with all other rules on the dimensions if these allow anything.
     """
     ranges = "within the ranges of crank, rod and offset"
-    if not problem.variants and all(of.fixed for of in (problem.crank, problem.rod, problem.offset)):
-        found, _ = _nearest(problem, constraint, (constraint,))
+    if not problem.variants and all(ends.fixed for ends in (problem.crank, problem.rod, problem.offset)):
+        nearest, _ = _nearest(problem, constraint, (constraint,))
         crank, rod, offset = (f"{name} {1e3 * getattr(problem, name).lower:.6g} mm" for name in DIMENSIONS)
-        if found is not None:
-            return f"{crank}, {rod} and {offset}, all fixed, give {found.with_unit}", []
+        if nearest is not None:
+            return f"{crank}, {rod} and {offset}, all fixed, give {nearest.with_unit}", []
     narrowing = tuple(c for c in problem.constraints if c.quantity == ROD_TO_OFFSET.name and c is not constraint)
-    kept = _rules_on_dimensions(problem)
-    found, active = _nearest(problem, constraint, kept)
-    if found is None:  # the other rules contradict one another
-        kept = (constraint, *narrowing)
-        (found, _), active = _nearest(problem, constraint, kept), [*narrowing]
-    if found is None:
+    requirements = _rules_on_dimensions(problem)
+    nearest, active = _nearest(problem, constraint, requirements)
+    if nearest is None:  # the other rules contradict one another
+        requirements = (constraint, *narrowing)
+        (nearest, _), active = _nearest(problem, constraint, requirements), [*narrowing]
+    if nearest is None:
         return f"{ranges} it is impossible", []
     rules = [_in_words(problem, rule) for rule in active]
-    rules += [_OTHERS] if len(kept) > 1 + len({rule.quantity for rule in active}) else []
-    held = f" and with {' and '.join(rules)}," if rules else ""
-    side = "at most" if found.reachable < found.requested else "at least"
-    return f"{ranges}{held} {side} {found.with_unit} is possible", [rule.quantity for rule in active]
+    rules += [_OTHERS] if len(requirements) > 1 + len({rule.quantity for rule in active}) else []
+    conditions = f" and with {' and '.join(rules)}," if rules else ""
+    side = "at most" if nearest.reachable < nearest.requested else "at least"
+    return f"{ranges}{conditions} {side} {nearest.with_unit} is possible", [rule.quantity for rule in active]
 
 
 def _in_words(problem: Problem, rule: Constraint) -> str:
-    of = problem.quantity(rule.quantity)
-    return (
-        f"{rule.quantity} {' and '.join(f'{RELATIONS[word]} {_format_value(of, bound)}' for word, bound in rule.sides)}"
-    )
+    quantity = problem.quantity(rule.quantity)
+    bounds = (f"{RELATIONS[word]} {_format_value(quantity, bound)}" for word, bound in rule.sides)
+    return f"{rule.quantity} {' and '.join(bounds)}"
 
 
 def _rules_on_dimensions(problem: Problem) -> tuple[Constraint, ...]:
@@ -170,7 +169,7 @@ def _rules_on_dimensions(problem: Problem) -> tuple[Constraint, ...]:
 
 
 def _nearest(
-    problem: Problem, constraint: Constraint, kept: tuple[Constraint, ...]
+    problem: Problem, constraint: Constraint, requirements: tuple[Constraint, ...]
 ) -> tuple[Relaxation | None, list[Constraint]]:
     """Return the reachable value for one of the constraints that are kept, and which of the others are active there.
 
@@ -181,53 +180,57 @@ def _nearest(
 
     tried: list[Best] = []
 
-    def best(wanted: Problem) -> Best | None:
-        found = best_on_dimensions(wanted)
-        tried.extend([found] if found else [])
-        return found
+    def best(relaxed_problem: Problem) -> Best | None:
+        reachable = best_on_dimensions(relaxed_problem)
+        tried.extend([reachable] if reachable else [])
+        return reachable
 
-    found = relaxations(replace(problem, constraints=kept), constraint, best)
-    nearest = next((one for one in found if isinstance(one, Relaxation)), None)
+    reachable = relaxations(replace(problem, constraints=requirements), constraint, best)
+    nearest = next((item for item in reachable if isinstance(item, Relaxation)), None)
     if nearest is None or problem.variants:
         return nearest, []
-    others = [rule for rule in kept if rule.quantity != constraint.quantity]
-    return nearest, [side for rule in others for side in _active(problem, rule, tried[0].design)]
+    other_rules = [rule for rule in requirements if rule.quantity != constraint.quantity]
+    return nearest, [side for rule in other_rules for side in _active(problem, rule, tried[0].design)]
 
 
 def _active(problem: Problem, rule: Constraint, design: Array) -> list[Constraint]:
-    """Return the bounds of a rule on which a design, the best of a search, lies: each as a rule of its own."""
+    """Return the active bounds of a rule at the best design of a search, each as a separate rule."""
     value = float(problem.quantity(rule.quantity).evaluate(problem.mechanism, design[None]).values[0])
     if rule.equality:
         return [rule]
     single = [Constraint(quantity=rule.quantity, lower=rule.lower)] if rule.lower is not None else []
     single += [Constraint(quantity=rule.quantity, upper=rule.upper)] if rule.upper is not None else []
-    return [one for one in single if abs(value - one.sides[0][1]) <= _ACTIVE * (abs(one.sides[0][1]) or 1.0)]
+    return [bound for bound in single if abs(value - bound.sides[0][1]) <= _ACTIVE * (abs(bound.sides[0][1]) or 1.0)]
 
 
-def beyond_both(problem: Problem, of: Quantity, share: Range = _ANY) -> str | None:
+def beyond_both(problem: Problem, ratio_quantity: Quantity, share: Range = _ANY) -> str | None:
     """Return why no linkage can meet a ratio of `STROKE_RATIOS` and the transmission angle; None if one may.
 
     share: where offset / rod may lie.
     """
-    asked = {constraint.quantity: constraint for constraint in problem.constraints if problem.reach_of(of) is not None}
-    ratio, angle = asked.get(of.name), asked.get(TRANSMISSION_ANGLE.name)
+    constraints = {
+        constraint.quantity: constraint
+        for constraint in problem.constraints
+        if problem.reach_of(ratio_quantity) is not None
+    }
+    ratio, angle = constraints.get(ratio_quantity.name), constraints.get(TRANSMISSION_ANGLE.name)
     if ratio is None or angle is None or ratio.lower is None or angle.lower is None:
         return None
     if not 0.0 < angle.lower < 0.5 * math.pi or ratio.lower <= greatest_time_ratio(math.cos(angle.lower), share) * (
         1.0 + SLACK
     ):
         return None
-    held = f"with a least transmission angle of {_format_value(TRANSMISSION_ANGLE, angle.lower)}"
-    for kept in (_rules_on_dimensions(problem), (ratio, angle)):
-        ratios, angles = (_nearest(problem, item, kept)[0] for item in (ratio, angle))
-        held_too = f" and {_OTHERS}" if len(kept) > 2 else ""
-        other = angles and f"lower constraints.{angle.quantity} to {angles.with_unit} at most"
+    condition = f"with a least transmission angle of {_format_value(TRANSMISSION_ANGLE, angle.lower)}"
+    for requirements in (_rules_on_dimensions(problem), (ratio, angle)):
+        ratios, angles = (_nearest(problem, item, requirements)[0] for item in (ratio, angle))
+        held_too = f" and {_OTHERS}" if len(requirements) > 2 else ""
+        angle_remedy = angles and f"lower constraints.{angle.quantity} to {angles.with_unit} at most"
         if ratios is not None:
-            what = f"it is at most {ratios.with_unit}; got {_bounds(ratio)}; lower it to that"
-            return f"{held}{held_too} {what}{f', or {other}' if other else ''}"
-        if other:
-            return f"{held}{held_too} no linkage reaches it; got {_bounds(ratio)}; {other}"
-    return f"{held} no linkage reaches it; got {_bounds(ratio)}; lower both"
+            limit_text = f"it is at most {ratios.with_unit}; got {_bounds(ratio)}; lower it to that"
+            return f"{condition}{held_too} {limit_text}{f', or {angle_remedy}' if angle_remedy else ''}"
+        if angle_remedy:
+            return f"{condition}{held_too} no linkage reaches it; got {_bounds(ratio)}; {angle_remedy}"
+    return f"{condition} no linkage reaches it; got {_bounds(ratio)}; lower both"
 
 
 def greatest_time_ratio(cosine: float, share: Range) -> float:
@@ -242,26 +245,26 @@ def greatest_time_ratio(cosine: float, share: Range) -> float:
     for cell in range(_CELLS):
         p = top * (cell + 1) / _CELLS
         q = min(cosine - top * cell / _CELLS, share.upper)
-        reach = q / (1.0 - p) if p < 1.0 else 1.0
-        best = max(best, math.asin(min(reach, 1.0)) - math.asin(min(q / (1.0 + p), 1.0)))
+        sine = q / (1.0 - p) if p < 1.0 else 1.0
+        best = max(best, math.asin(min(sine, 1.0)) - math.asin(min(q / (1.0 + p), 1.0)))
     return ratio_of(best)
 
 
 def _sizes(offset: Range) -> Range:
     """Return the range of |offset|."""
     ends = sorted((abs(offset.lower), abs(offset.upper)))
-    across = offset.lower <= 0.0 <= offset.upper
-    return Range(lower=0.0 if across else ends[0], upper=ends[1])
+    spans_zero = offset.lower <= 0.0 <= offset.upper
+    return Range(lower=0.0 if spans_zero else ends[0], upper=ends[1])
 
 
-def _format_value(of: Quantity, value: float) -> str:
-    unit = of.unit
+def _format_value(quantity: Quantity, value: float) -> str:
+    unit = quantity.unit
     return f"{float(f'{value * unit.factor:.5g}'):.12g} {unit.symbol}".rstrip()  # 100000, not 1e+05
 
 
-def _bounds(constraint: Constraint, of: Quantity | None = None) -> str:
-    of = of or QUANTITIES[constraint.quantity]
-    return " and ".join(f"{word} {_format_value(of, bound)}" for word, bound in constraint.sides)
+def _bounds(constraint: Constraint, quantity: Quantity | None = None) -> str:
+    quantity = quantity or QUANTITIES[constraint.quantity]
+    return " and ".join(f"{word} {_format_value(quantity, bound)}" for word, bound in constraint.sides)
 
 
 def _extremes(box: Box) -> str:

@@ -85,9 +85,9 @@ def with_options(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Catalogu
 
     Raises JobError for tables that cannot be read.
     """
-    job, found = dict(data), list[Catalogue]()
-    own = data.get("quantity")
-    names = frozenset(own) if isinstance(own, Mapping) else frozenset[str]()
+    job, screened_catalogues = dict(data), list[Catalogue]()
+    quantity_tables = data.get("quantity")
+    names = frozenset(quantity_tables) if isinstance(quantity_tables, Mapping) else frozenset[str]()
     choices = data.get("choice")
     parts = list(choices) if isinstance(choices, list | tuple) else []
     for place, part in enumerate(parts):
@@ -97,62 +97,69 @@ def with_options(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Catalogu
         if "option" in part:
             raise JobError(f"{key}: must stand without options; got both; leave out one of the two")
         file = part.get("file")
-        where = f"{key_of(['choice', place, 'file'])}: {quote(file)}" if isinstance(file, str) else f"{key}: the table"
-        catalogue = read_catalogue(part["table"], where, names, data, str(part.get("name", "")))
+        source_name = (
+            f"{key_of(['choice', place, 'file'])}: {quote(file)}" if isinstance(file, str) else f"{key}: the table"
+        )
+        catalogue = read_catalogue(part["table"], source_name, names, data, str(part.get("name", "")))
         parts[place] = {**part, "option": catalogue.options}
-        found.append(catalogue)
-    return (job | {"choice": parts} if found else job), found
+        screened_catalogues.append(catalogue)
+    return (job | {"choice": parts} if screened_catalogues else job), screened_catalogues
 
 
 def read_catalogue(
     text: str,
-    where: str,
-    own: frozenset[str] = frozenset(),
+    file_name: str,
+    custom_names: frozenset[str] = frozenset(),
     tables: Mapping[str, Any] | None = None,
     name: str = "",
 ) -> Catalogue:
     """Return the catalogue of a text, screened.
 
-    where: what messages begin with. own: names of the job's own quantities. tables: of the job, which give the numbers
-    that columns set and say what is asked for; without them nothing but limits is. name: of the choice.
+    file_name: the beginning of messages. custom_names: names of the job's custom quantities. tables: of the job, with
+    the numbers that columns set, objectives and constraints; without them only limits count. name: of the choice.
     Raises JobError, naming row, column and remedy.
     """
     try:
-        return _catalogue(read_table(text, where), own, tables, name)
+        return _catalogue(read_table(text, file_name), custom_names, tables, name)
     except JobError:
         raise
     except InputError as error:
         raise JobError(str(error)) from None
 
 
-def _catalogue(table: TableFile, own: frozenset[str], tables: Mapping[str, Any] | None, name: str) -> Catalogue:
-    where = table.name
-    columns = columns_of(table.heads, where, own)
+def _catalogue(
+    table: TableFile, custom_names: frozenset[str], tables: Mapping[str, Any] | None, name: str
+) -> Catalogue:
+    file_name = table.name
+    columns = columns_of(table.heads, file_name, custom_names)
     if tables is not None:
-        _require_given(columns, where, tables)
+        _require_given(columns, file_name, tables)
     _require_names(table)
-    used = [column for column in map(partial(_with_cells, table), columns) if column is not None]
-    places = [column.place for column in used if column.kind is not None or not column.is_amount]
-    blank = [column.place for column in used if column.word is not None or column.is_amount]
+    filled_columns = [column for column in map(partial(_with_cells, table), columns) if column is not None]
+    places = [column.place for column in filled_columns if column.kind is not None or not column.is_amount]
+    blank = [column.place for column in filled_columns if column.word is not None or column.is_amount]
     digits = dict(zip(places, table.digits(places, missing=blank), strict=True))
-    given = (digits.get(place) or table.texts(place) for place in range(len(table.heads)))
-    cells = [list(row) for row in zip(*given, strict=True)]
-    found = screened(used, cells, tables or {}, where)
-    if len(found.searched) > MOST_OPTIONS:
+    cells_by_column = (digits.get(place) or table.texts(place) for place in range(len(table.heads)))
+    cells = [list(row) for row in zip(*cells_by_column, strict=True)]
+    screening = screened(filled_columns, cells, tables or {}, file_name)
+    if len(screening.searched) > MOST_OPTIONS:
         raise JobError(
-            f"{where} must have at most {MOST_OPTIONS} non-dominated rows; got {len(found.searched)} of {len(table)}; "
+            f"{file_name} must have at most {MOST_OPTIONS} non-dominated rows; got {len(screening.searched)} of "
+            f"{len(table)}; "
             "leave out rows that you would not buy, or columns that do not matter"
         )
     return Catalogue(
-        options=[_option(used, cells[row], searched=row in found.searched) for row in found.order],
+        options=[_option(filled_columns, cells[row], searched=row in screening.searched) for row in screening.order],
         rows=len(table),
-        understood=table.understood([0, *(column.place for column in used)]),
+        understood=table.understood([0, *(column.place for column in filled_columns)]),
         name=name,
-        lost={cells[row][0]: cells[by][0] for row, by in found.lost.items()},
-        excluded={cells[row][0]: why for row, why in found.excluded.items()},
-        compared=found.compared,
-        idle=tuple(column.header for column in used if column.is_amount and column.name not in found.requested),
-        added={column.header: column.header_text for column in used if column.added},
+        lost={cells[row][0]: cells[better][0] for row, better in screening.lost.items()},
+        excluded={cells[row][0]: why for row, why in screening.excluded.items()},
+        compared=screening.compared,
+        idle=tuple(
+            column.header for column in filled_columns if column.is_amount and column.name not in screening.requested
+        ),
+        added={column.header: column.header_text for column in filled_columns if column.added},
     )
 
 
@@ -194,7 +201,7 @@ def _with_cells(table: TableFile, column: Column) -> Column | None:
 
 
 def _require_given(columns: Sequence[Column], name: str, tables: Mapping[str, Any]) -> None:
-    """Refuse a column that sets a number which the job does not give, or seems to be meant to set one."""
+    """Refuse a column that sets, or seems to set, a number which the job does not give."""
     machine = tables.get("mechanism")
     for column in columns:
         if (
@@ -202,10 +209,10 @@ def _require_given(columns: Sequence[Column], name: str, tables: Mapping[str, An
             and isinstance(machine, Mapping)
             and isinstance(machine.get(column.name), str | int | float)
         ):
-            behind = f" ({column.unit})" if column.unit else ""
+            unit_text = f" ({column.unit})" if column.unit else ""
             raise JobError(
                 f"{name}, column {quote(column.header)}: it would be stored with designs but have no effect; did you "
-                f"mean mechanism.{column.name}{behind}? rename it, or let it begin with # to skip it"
+                f"mean mechanism.{column.name}{unit_text}? rename it, or let it begin with # to skip it"
             )
         if column.word is None and not column.is_amount and column.name not in DIMENSIONS:
             try:
@@ -215,17 +222,17 @@ def _require_given(columns: Sequence[Column], name: str, tables: Mapping[str, An
 
 
 def _option(columns: Sequence[Column], row: Sequence[str], *, searched: bool) -> dict[str, Any]:
-    found: dict[str, Any] = {"name": row[0]}
+    option: dict[str, Any] = {"name": row[0]}
     for column in columns:
         cell = row[column.place]
         if not cell:
             continue
         if column.word is not None:
-            found.setdefault("constraints", {}).setdefault(column.name, {})[column.word] = column.value(cell)
+            option.setdefault("constraints", {}).setdefault(column.name, {})[column.word] = column.value(cell)
         elif not column.is_amount:
-            found.setdefault("values", {})[column.name] = column.value(cell)
+            option.setdefault("values", {})[column.name] = column.value(cell)
         elif column.kind is not None:
-            found.setdefault("amounts", {})[column.name] = column.value(cell)
+            option.setdefault("amounts", {})[column.name] = column.value(cell)
         else:
-            found.setdefault("notes", {})[column.name] = cell
-    return found if searched else found | {"searched": False}
+            option.setdefault("notes", {})[column.name] = cell
+    return option if searched else option | {"searched": False}

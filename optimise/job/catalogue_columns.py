@@ -62,69 +62,75 @@ class Column:
     @property
     def monotone(self) -> bool:
         """Whether a looser limit only ever allows more designs."""
-        of = QUANTITIES.get(self.name)
-        return self.word == "min" or (self.word == "max" and (of is None or of.floor is None))
+        quantity = QUANTITIES.get(self.name)
+        return self.word == "min" or (self.word == "max" and (quantity is None or quantity.floor is None))
 
     @property
     def header_text(self) -> str:
-        """What it is read as, as a header."""
+        """Header that states how the column is read."""
         return f"{self.name} {self.word or ''} ({self.unit})".replace(" ()", "").replace("  ", " ")
 
 
-def columns_of(header: Sequence[str], name: str, own: frozenset[str]) -> list[Column]:
+def columns_of(header: Sequence[str], name: str, custom_names: frozenset[str]) -> list[Column]:
     """Return the columns that a first line names, those that begin with # left out.
 
-    A quantity without min, max or equals is limited on its bad side. What is neither a limit nor a number of the job is
-    kept with designs, under a name of small letters, digits and _. name: of the file, for messages. own: names of the
-    job's own quantities. Raises JobError, naming column and remedy.
+    A quantity without min, max or equals is limited on its bad side. Other columns that set no number of the job are
+    stored with designs, under names of small letters, digits and _. name: of the file. custom_names: of the job's
+    custom quantities. Raises JobError, naming column and remedy.
     """
     if header[0] != "name":
         remedy = "rename it" if header[0].casefold() == "name" else "rename or move it"
         raise JobError(f'{name}: the first column must be headed "name"; got {quote(header[0])}; {remedy}')
-    found: list[Column] = []
+    columns: list[Column] = []
     for place, text in enumerate(header[1:], 1):
         if text.startswith("#"):
             continue
-        where = f"{name}, column {quote(text)}"
-        column = _column(place, text, where, own)
-        same = next((of for of in found if (of.name, of.word) == (column.name, column.word)), None)
+        column_name = f"{name}, column {quote(text)}"
+        column = _column(place, text, column_name, custom_names)
+        same = next(
+            (earlier for earlier in columns if (earlier.name, earlier.word) == (column.name, column.word)), None
+        )
         if same is not None:
             raise JobError(
-                f"{where}: columns must differ; got it and {quote(same.header)}, which are both read as "
+                f"{column_name}: columns must differ; got it and {quote(same.header)}, which are both read as "
                 f"{column.header_text.partition(' (')[0].strip()}; leave out or rename one"
             )
-        found.append(column)
-    if not found:
+        columns.append(column)
+    if not columns:
         raise JobError(f"{name} must have a column beside the name; got none; add one")
-    return found
+    return columns
 
 
-def _column(place: int, text: str, where: str, own: frozenset[str]) -> Column:
+def _column(place: int, text: str, column_name: str, custom_names: frozenset[str]) -> Column:
     parts = _COLUMN.fullmatch(text)
     if parts is None:
-        raise JobError(f"{where}: {_RULE}; a column that begins with # is skipped")
+        raise JobError(f"{column_name}: {_RULE}; a column that begins with # is skipped")
     name, word, unit = parts["name"].strip(), parts["word"], (parts["unit"] or parts["other"] or "").strip()
     if word is not None:
         try:
-            name, kind = _limited(name if name in own else _quantities().get(identifier(name), name), own)
+            name, kind = _limited(
+                name if name in custom_names else _quantities().get(identifier(name), name), custom_names
+            )
         except InputError as error:
             key = identifier(name)
-            if not re.fullmatch(r"[\w -]+", name) or closest(key, (*_quantities(), *own)) is not None:
-                raise JobError(f"{where}: {error}") from None
+            if not re.fullmatch(r"[\w -]+", name) or closest(key, (*_quantities(), *custom_names)) is not None:
+                raise JobError(f"{column_name}: {error}") from None
             raise JobError(
-                f"{where}: a limit must be on a quantity; got {quote(name)}, which is not one; name the column "
+                f"{column_name}: a limit must be on a quantity; got {quote(name)}, which is not one; name the column "
                 f'"{name}{f" ({unit})" if unit else ""}" and bound {key} in [constraints]'
             ) from None
         if kind is not None:
-            _require_unit(unit, kind, where, text)
+            _require_unit(unit, kind, column_name, text)
         return Column(place, text, name, word, unit, kind)
     if _PATH.fullmatch(name):
         return Column(place, text, name, None, unit)
-    of = FACTS.get(_quantities().get(identifier(name), ""))
-    if of is not None and not _GIVEN & set(of.offered):
-        _require_unit(unit, of.kind, where, text)
-        return Column(place, text, of.name, "max" if of.better == "low" else "min", unit, of.kind, added=True)
-    _require_kept(text, name, unit, where, own)
+    quantity = FACTS.get(_quantities().get(identifier(name), ""))
+    if quantity is not None and not _GIVEN & set(quantity.offered):
+        _require_unit(unit, quantity.kind, column_name, text)
+        return Column(
+            place, text, quantity.name, "max" if quantity.better == "low" else "min", unit, quantity.kind, added=True
+        )
+    _require_kept(text, name, unit, column_name, custom_names)
     return Column(place, text, identifier(name), None, unit, kind_of_amount(unit), is_amount=True)
 
 
@@ -137,78 +143,85 @@ def identifier(text: str) -> str:
 @cache
 def _quantities() -> dict[str, str]:
     """Return the quantities by their names, and by their titles as such."""
-    return {identifier(of.title): name for name, of in FACTS.items()} | {name: name for name in FACTS}
+    return {identifier(quantity.title): name for name, quantity in FACTS.items()} | {name: name for name in FACTS}
 
 
-def _require_kept(text: str, name: str, unit: str, where: str, own: frozenset[str]) -> None:
-    """Refuse a column that seems to be meant as a limit or a number of the job, and one that has no name."""
-    behind = f" ({unit})" if unit else ""
+def _require_kept(text: str, name: str, unit: str, column_name: str, custom_names: frozenset[str]) -> None:
+    """Refuse a column without a name, and one that looks like a limit or a number of the job."""
+    unit_text = f" ({unit})" if unit else ""
     misplaced = _MISPLACED.fullmatch(name)
-    if misplaced is not None and _is_known(misplaced["after"] or misplaced["before"], own):
+    if misplaced is not None and _is_known(misplaced["after"] or misplaced["before"], custom_names):
         word = _LIMIT[(misplaced["first"] or misplaced["last"]).casefold()]
         limited = misplaced["after"] or misplaced["before"]
         raise JobError(
-            f"{where}: min, max or equals must follow the quantity, in lower case; write {limited} {word}{behind}"
+            f"{column_name}: min, max or equals must follow the quantity, in lower case; write {limited} "
+            f"{word}{unit_text}"
         )
-    known = _quantities().get(identifier(name), name)
-    if known in FACTS or known in own:
+    quantity_name = _quantities().get(identifier(name), name)
+    if quantity_name in FACTS or quantity_name in custom_names:
         raise JobError(
-            f"{where}: a quantity needs min, max or equals; got none; write {known} max{behind} for its limit"
+            f"{column_name}: a quantity needs min, max or equals; got none; write {quantity_name} max{unit_text} for "
+            "its limit"
         )
     own_path = name.removeprefix("variables.")
     if own_path != name and _PATH.fullmatch(own_path):
-        raise JobError(f"{where}: a number of the job must be named by its path; got {name}; write {own_path}{behind}")
+        raise JobError(
+            f"{column_name}: a number of the job must be named by its path; got {name}; write {own_path}{unit_text}"
+        )
     for formula in (name, text):  # text: the brackets at its end may be those of a function
-        if _is_known(formula, own):
-            limited, _ = _limited(formula, own)
-            raise JobError(f"{where}: a formula needs min, max or equals; got none; write {limited} max for its limit")
+        if _is_known(formula, custom_names):
+            limited, _ = _limited(formula, custom_names)
+            raise JobError(
+                f"{column_name}: a formula needs min, max or equals; got none; write {limited} max for its limit"
+            )
     key = identifier(name)
     if not key or not (name[0].isalpha() and key[0].isalpha()) or len(key) > LONGEST_NAME:
-        raise JobError(f"{where}: {_RULE}; got neither; rename it, or let it begin with # to skip it")
+        raise JobError(f"{column_name}: {_RULE}; got neither; rename it, or let it begin with # to skip it")
     peak = f"peak_{identifier(misplaced['after'] or '')}" if misplaced is not None else ""
     near = [peak] if peak in _quantities() else difflib.get_close_matches(key, _quantities(), n=1, cutoff=_NEAR)
     if near:
         raise JobError(
-            f"{where}: must be the name of a quantity, or a name unlike any; did you mean {_quantities()[near[0]]}? "
+            f"{column_name}: must be the name of a quantity, or a name unlike any; did you mean "
+            f"{_quantities()[near[0]]}? "
             "rename it, or let it begin with # to skip it"
         )
 
 
-def _is_known(text: str, own: frozenset[str]) -> bool:
+def _is_known(text: str, custom_names: frozenset[str]) -> bool:
     """Return whether a text is a quantity or a formula."""
     try:
-        return bool(_limited(text, own))
+        return bool(_limited(text, custom_names))
     except InputError:
         return False
 
 
-def _limited(text: str, own: frozenset[str]) -> tuple[str, Kind | None]:
-    """Return quantity or formula of a limit, as a job writes it, and its kind as far as it is known here.
+def _limited(text: str, custom_names: frozenset[str]) -> tuple[str, Kind | None]:
+    """Return quantity or formula of a limit, as a job writes it, and its kind if known here.
 
     That of the job's own quantities and of numbers that vary the job knows. Raises InputError.
     """
-    known = frozenset((*FACTS, *DIMENSIONS, *own))
-    units = Units(known)
+    known_names = frozenset((*FACTS, *DIMENSIONS, *custom_names))
+    units = Units(known_names)
     node = parse(text, units)
     names = names_in(node)
-    unknown = [name for name in names if name not in known and "." not in name]
+    unknown = [name for name in names if name not in known_names and "." not in name]
     installed = own_quantities() if unknown else {}
     for name in unknown:
         if name not in installed:
-            raise unknown_name(name, known, units, text)
+            raise unknown_name(name, known_names, units, text)
     if isinstance(node, Name) and node.name in FACTS:
         return node.name, FACTS[node.name].kind
-    kinds = dict.fromkeys(DIMENSIONS, LENGTH) | {name: of.kind for name, of in FACTS.items()}
-    if any(name not in kinds or name in own for name in names):
+    kinds = dict.fromkeys(DIMENSIONS, LENGTH) | {name: quantity.kind for name, quantity in FACTS.items()}
+    if any(name not in kinds or name in custom_names for name in names):
         return text_of(node), None
     return text_of(node), kind_of_formula(node, {name: kinds[name] for name in names})
 
 
-def _require_unit(unit: str, kind: Kind, where: str, head: str) -> None:
+def _require_unit(unit: str, kind: Kind, column_name: str, head: str) -> None:
     """Refuse a limit's unit that is none of its quantity. head: of the column, with the unit."""
     if kind.unit and not unit:
         raise JobError(
-            f"{where}: the heading has no unit; write, for example, {quote(f'{head} ({_unit(kind.example)})')}"
+            f"{column_name}: the heading has no unit; write, for example, {quote(f'{head} ({_unit(kind.example)})')}"
         )
     try:
         to_si(f"1 {unit}" if kind.unit else 1.0, kind)
@@ -216,7 +229,7 @@ def _require_unit(unit: str, kind: Kind, where: str, head: str) -> None:
             raise InputError("")
     except InputError:
         raise JobError(
-            f"{where}: must have a unit of {kind.name}; got {quote(unit)}; "
+            f"{column_name}: must have a unit of {kind.name}; got {quote(unit)}; "
             + (f"write it like ({_unit(kind.example)})" if kind.unit else "leave it out")
         ) from None
 

@@ -31,35 +31,37 @@ ORDER = ("price", "mass")
 
 @dataclass(frozen=True)
 class _Asked:
-    """What a job asks of an amount. way: 1 for little, -1 for much, 0 for a value. bound: of what is all the same."""
+    """Requirement of a job on an amount. way: 1 for low, -1 for high, 0 for a value. bound: beyond it all are equal."""
 
     way: int
     bound: float | None = None
 
 
 def _requests(tables: Mapping[str, Any], columns: Sequence[Column]) -> dict[str, _Asked]:
-    """Return what a job asks of the amounts of a catalogue that it names."""
-    objectives, constraints, own = (_table_of(tables, name) for name in ("objectives", "constraints", "quantity"))
+    """Return the requirements of a job on the amounts of a catalogue."""
+    objectives, constraints, quantity_tables = (
+        _table_of(tables, name) for name in ("objectives", "constraints", "quantity")
+    )
     plain = {column.name for column in columns if column.is_amount}
     words: set[str] = set()  # in formulas, through which they may count either way
     for key, value in (*objectives.items(), *constraints.items()):
         words |= set() if key in plain else set(words_of(key))
         words |= {word for bound in value.values() for word in words_of(bound)} if isinstance(value, Mapping) else set()
-    for part in own.values():
+    for part in quantity_tables.values():
         words |= set(words_of(part.get("formula"))) if isinstance(part, Mapping) else set()
-    found = {}
+    requests = {}
     for column in columns:
         if not column.is_amount or column.kind is None:
             continue
         wish, bounds = objectives.get(column.name), constraints.get(column.name)
         ways = {0} if column.name in words else set()
         ways |= set() if wish is None else {_WAYS.get(wish, 0) if isinstance(wish, str) else 0}
-        given = bounds if isinstance(bounds, Mapping) else {}
-        ways |= {_WAYS.get(word, 0) for word in given}
-        bound = None if wish is not None or len(given) != 1 else _si(next(iter(given.values())), column)
+        stated_bounds = bounds if isinstance(bounds, Mapping) else {}
+        ways |= {_WAYS.get(word, 0) for word in stated_bounds}
+        bound = None if wish is not None or len(stated_bounds) != 1 else _si(next(iter(stated_bounds.values())), column)
         if ways:
-            found[column.name] = _Asked(ways.pop(), bound) if len(ways) == 1 else _Asked(0)
-    return found
+            requests[column.name] = _Asked(ways.pop(), bound) if len(ways) == 1 else _Asked(0)
+    return requests
 
 
 _WAYS = {"minimise": 1, "minimize": 1, "max": 1, "maximise": -1, "maximize": -1, "min": -1}
@@ -73,8 +75,8 @@ def _si(value: Any, column: Column) -> float | None:
 
 
 def _table_of(tables: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    given = tables.get(name)
-    return given if isinstance(given, Mapping) else {}
+    table = tables.get(name)
+    return table if isinstance(table, Mapping) else {}
 
 
 @dataclass(frozen=True)
@@ -94,41 +96,43 @@ class Screened:
     requested: frozenset[str]
 
 
-def screened(columns: Sequence[Column], rows: Sequence[list[str]], tables: Mapping[str, Any], where: str) -> Screened:
+def screened(
+    columns: Sequence[Column], rows: Sequence[list[str]], tables: Mapping[str, Any], file_name: str
+) -> Screened:
     """Return which rows to search, and which may be the least that serves a design.
 
-    columns: with cells that are checked. rows: cells. tables: of the job, which say what is asked for. where: what
+    columns: with cells that are checked. rows: cells. tables: of the job, which say what is asked for. file_name: what
     messages begin with. Raises JobError if no row has all that is asked for.
     """
-    asked, constraints = _requests(tables, columns), _table_of(tables, "constraints")
+    requests, constraints = _requests(tables, columns), _table_of(tables, "constraints")
     fixed, costs = list[Array](), list[Array]()
     compared = list[str]()
-    blanks, beyond = dict[int, str](), dict[int, str]()
+    blanks, exclusions = dict[int, str](), dict[int, str]()
     for column in columns:
         blank = np.array([not row[column.place] for row in rows])
-        wanted = asked.get(column.name) if column.is_amount else None
-        if column.is_amount and wanted is None:
+        request = requests.get(column.name) if column.is_amount else None
+        if column.is_amount and request is None:
             continue
         factor = 1.0 if column.kind is None or not column.unit else to_si(f"1 {column.unit}", column.kind)
         values = factor * np.array([float(row[column.place] or 0.0) for row in rows])
-        compared += [] if column.word is None and wanted is None else [column.header_text.partition(" (")[0]]
-        if wanted is not None:
-            without = f"no {column.name.replace('_', ' ')}, which the job requires"
-            blanks |= dict.fromkeys(np.flatnonzero(blank).tolist(), without)
-            beyond |= _exclusions(constraints.get(column.name), column, values, rows)
-            floor = -math.inf if wanted.bound is None else wanted.way * wanted.bound
-            (costs if wanted.way else fixed).append(np.maximum(wanted.way * values, floor) if wanted.way else values)
+        compared += [] if column.word is None and request is None else [column.header_text.partition(" (")[0]]
+        if request is not None:
+            blank_reason = f"no {column.name.replace('_', ' ')}, which the job requires"
+            blanks |= dict.fromkeys(np.flatnonzero(blank).tolist(), blank_reason)
+            exclusions |= _exclusions(constraints.get(column.name), column, values, rows)
+            floor = -math.inf if request.bound is None else request.way * request.bound
+            (costs if request.way else fixed).append(np.maximum(request.way * values, floor) if request.way else values)
         elif column.word is not None and column.monotone:
             side = -1.0 if column.word == "max" else 1.0
             floor = _limit_cost(constraints.get(column.name), column, side)
             costs.append(np.maximum(np.where(blank, -math.inf, side * values), floor))
         else:
             fixed += [np.where(blank, 0.0, values), blank.astype(np.float64)]
-    excluded = blanks if len({**blanks, **beyond}) == len(rows) else {**beyond, **blanks}
+    excluded = blanks if len({**blanks, **exclusions}) == len(rows) else {**exclusions, **blanks}
     complete = np.array([row not in excluded for row in range(len(rows))], np.bool_)
     if not complete.any():
-        names = " and ".join(asked)
-        raise JobError(f"{where} must have a row with {names}, which the job requires; got none; fill the cells")
+        names = " and ".join(requests)
+        raise JobError(f"{file_name} must have a row with {names}, which the job requires; got none; fill the cells")
     order = _order(columns, rows)
     rank = np.empty(len(rows))
     rank[order] = np.arange(len(rows))
@@ -136,12 +140,12 @@ def screened(columns: Sequence[Column], rows: Sequence[list[str]], tables: Mappi
     least = np.column_stack([tight, rank])
     searched, named, lost = list[int](), list[int](), dict[int, int]()
     for group in range(int(groups.max()) + 1):
-        own = order[(groups == group)[order]]
-        whole = own[complete[own]]
-        best = whole[_unbeaten(tight[whole])]
+        group_rows = order[(groups == group)[order]]
+        complete_rows = group_rows[complete[group_rows]]
+        best = complete_rows[_unbeaten(tight[complete_rows])]
         searched += best.tolist()
-        named += whole[_unbeaten(least[whole])].tolist()
-        for row in np.setdiff1d(whole, best).tolist():
+        named += complete_rows[_unbeaten(least[complete_rows])].tolist()
+        for row in np.setdiff1d(complete_rows, best).tolist():
             lost[row] = int(best[(tight[best] <= tight[row]).all(axis=1)][0])
     return Screened(
         order=sorted({*searched, *named}, key=lambda row: rank[row]),
@@ -149,7 +153,7 @@ def screened(columns: Sequence[Column], rows: Sequence[list[str]], tables: Mappi
         lost=lost,
         excluded=dict(sorted(excluded.items())),
         compared=tuple(compared),
-        requested=frozenset(asked),
+        requested=frozenset(requests),
     )
 
 
@@ -158,18 +162,18 @@ def _exclusions(bounds: object, column: Column, values: Array, rows: Sequence[li
 
     values: of the amount, SI.
     """
-    found: dict[int, str] = {}
+    reasons: dict[int, str] = {}
     for word, bound in bounds.items() if isinstance(bounds, Mapping) else ():
         limit = _si(bound, column)
         if limit is None:
             continue
-        room = FEASIBLE * abs(limit)
-        outside = (values > limit + room) & (word != "min") | (values < limit - room) & (word != "max")
+        rounding = FEASIBLE * abs(limit)
+        outside = (values > limit + rounding) & (word != "min") | (values < limit - rounding) & (word != "max")
         for row in np.flatnonzero(outside).tolist():
             if rows[row][column.place]:
                 cell = f"{rows[row][column.place]} {column.unit}".rstrip()
-                found[row] = excluded_in_words(column.name, cell, word, bound)
-    return found
+                reasons[row] = excluded_in_words(column.name, cell, word, bound)
+    return reasons
 
 
 def _limit_cost(bounds: object, column: Column, side: float) -> float:
@@ -177,9 +181,9 @@ def _limit_cost(bounds: object, column: Column, side: float) -> float:
 
     side: 1 of a least value, -1 of a greatest one.
     """
-    given = bounds if isinstance(bounds, Mapping) else {}
-    found = [_si(given[word], column) for word in (column.word, "equals") if word in given]
-    return max((side * bound for bound in found if bound is not None), default=-math.inf)
+    stated_bounds = bounds if isinstance(bounds, Mapping) else {}
+    limits = [_si(stated_bounds[word], column) for word in (column.word, "equals") if word in stated_bounds]
+    return max((side * bound for bound in limits if bound is not None), default=-math.inf)
 
 
 def _order(columns: Sequence[Column], rows: Sequence[list[str]]) -> Whole:

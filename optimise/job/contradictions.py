@@ -80,9 +80,9 @@ def _require_one_density(problem: Problem) -> None:
 
 def _require_delivery(problem: Problem) -> None:
     """Refuse compressors whose clearance volume is so large that no stroke of the ranges delivers, in every variant."""
-    said = [_undelivered(part) for part in problem.parts()]
-    if said and all(said):
-        raise InfeasibleError(said[0])
+    reasons = [_undelivered(part) for part in problem.parts()]
+    if reasons and all(reasons):
+        raise InfeasibleError(reasons[0])
 
 
 def _undelivered(part: Problem) -> str:
@@ -91,8 +91,8 @@ def _undelivered(part: Problem) -> str:
     What is left in the clearance must not fill the swept volume once it has expanded to the suction pressure. A stroke
     is at most 2 sqrt(r l), that of e = l - r.
     """
-    asked = [item.upper for item in part.constraints if item.quantity == STROKE.name and item.upper is not None]
-    stroke = min([2.0 * math.sqrt(part.crank.upper * part.rod.upper), *asked])
+    stroke_limits = [item.upper for item in part.constraints if item.quantity == STROKE.name and item.upper is not None]
+    stroke = min([2.0 * math.sqrt(part.crank.upper * part.rod.upper), *stroke_limits])
     varies = {path for item in part.mechanism.varying for path in item.paths}
     for k, load in enumerate(part.mechanism.loads):
         if not isinstance(load, Compressor) or load.expansion_exponent == 0.0 or load.clearance_volume == 0.0:
@@ -101,10 +101,11 @@ def _undelivered(part: Problem) -> str:
             continue
         grown = (load.high / load.low) ** (1.0 / load.expansion_exponent) - 1.0
         swept = 0.25 * math.pi * (load.bore**2 - load.piston_rod**2) * stroke
-        most = swept * (1.0 / grown - load.clearance)
-        if load.clearance_volume >= most:
+        greatest_volume = swept * (1.0 / grown - load.clearance)
+        if load.clearance_volume >= greatest_volume:
             return (
-                f"load #{k + 1}.clearance_volume: must be below {1e6 * most:.4g} cm^3, otherwise a stroke of "
+                f"load #{k + 1}.clearance_volume: must be below {1e6 * greatest_volume:.4g} cm^3, otherwise a stroke "
+                "of "
                 f"{1e3 * stroke:.6g} mm, the longest in the job, delivers nothing at {load.high / load.low:.4g} times "
                 f"the suction pressure; got {1e6 * load.clearance_volume:.6g} cm^3; reduce it or the pressure ratio, "
                 "or allow longer strokes"
@@ -114,13 +115,13 @@ def _undelivered(part: Problem) -> str:
 
 def _require_reachable_restated(problem: Problem) -> None:
     """Raise `InfeasibleError` if formulas require values of known quantities out of reach in the ranges."""
-    known = {item.quantity: restate(problem, item) for item in problem.constraints}
-    other = [key_of(["constraints", name]) for name, item in known.items() if item.quantity != name]
-    if not other:
+    restated = {item.quantity: restate(problem, item) for item in problem.constraints}
+    keys = [key_of(["constraints", name]) for name, item in restated.items() if item.quantity != name]
+    if not keys:
         return
-    words = f"{' and '.join(other)} {'requires' if len(other) == 1 else 'require'} in other words"
+    words = f"{' and '.join(keys)} {'requires' if len(keys) == 1 else 'require'} in other words"
     try:
-        require_reachable(replace(problem, constraints=merged(known.values())))
+        require_reachable(replace(problem, constraints=merged(restated.values())))
     except InputError as error:
         raise InfeasibleError(f"{error}; this is what {words}") from None
 
@@ -146,32 +147,32 @@ def _bounds_and_targets(problem: Problem) -> Iterator[tuple[str, str, str, float
 
 def _require_possible(problem: Problem, key: str, name: str, word: str, value: float) -> None:
     """Refuse a value that a quantity has for no linkage at all."""
-    of = problem.quantity(name)
-    got = f"got {word} {value * of.unit.factor:.6g} {of.unit.symbol}".rstrip()
-    turning = problem.motion is None or isinstance(of, SwingQuantity)  # below one, proportions may swing
-    if turning and of.domain is not None and of.domain.refuses(value, least=word == "min"):
-        raise JobError(f"{key}: {of.domain.rule}; {got}; {of.domain.remedy}")
-    if not of.signed and value < 0.0:
-        raise JobError(f"{key}: {name} is never negative; {got}; give its size")
+    quantity = problem.quantity(name)
+    value_text = f"got {word} {value * quantity.unit.factor:.6g} {quantity.unit.symbol}".rstrip()
+    turning = problem.motion is None or isinstance(quantity, SwingQuantity)  # below one, proportions may swing
+    if turning and quantity.domain is not None and quantity.domain.refuses(value, least=word == "min"):
+        raise JobError(f"{key}: {quantity.domain.rule}; {value_text}; {quantity.domain.remedy}")
+    if not quantity.signed and value < 0.0:
+        raise JobError(f"{key}: {name} is never negative; {value_text}; give its size")
 
 
 def _require_free(problem: Problem, name: str) -> None:
     """Refuse an objective that is the same for every design."""
-    held = next(
+    equality = next(
         (c for c in problem.constraints if c.equality and name in (c.quantity, restate(problem, c).quantity)), None
     )
-    if held is not None:
+    if equality is not None:
         raise JobError(
             f"objectives.{name}: a quantity with a fixed value cannot also be an objective; got "
-            f"{key_of(['constraints', held.quantity])} with equals; leave out one of the two"
+            f"{key_of(['constraints', equality.quantity])} with equals; leave out one of the two"
         )
     centred = problem.offset.fixed and problem.offset.lower == 0.0
     if centred and problem.quantity(name).in_line is not None:
         # Along a speed profile a ratio of times is also the same for every design, though not 1.
-        found = {_in_line_value(part, name) for part in problem.parts()}
-        if len(found) > 1:
+        values = {_in_line_value(part, name) for part in problem.parts()}
+        if len(values) > 1:
             return
-        value = found.pop()
+        value = values.pop()
         raise JobError(
             f"objectives.{name}: without offset it is {value} for every design; got offset fixed "
             "at 0; give variables.offset a range or leave out the objective"
@@ -180,8 +181,8 @@ def _require_free(problem: Problem, name: str) -> None:
 
 def _in_line_value(part: Problem, name: str) -> str:
     """Return as text the value of a quantity that is the same for every design without offset."""
-    one = np.array([[1.0, 3.0, 0.0, *(item.lower for item in part.mechanism.varying)]])
-    value = float(part.quantity(name).evaluate(part.mechanism, one).values[0])
+    design = np.array([[1.0, 3.0, 0.0, *(item.lower for item in part.mechanism.varying)]])
+    value = float(part.quantity(name).evaluate(part.mechanism, design).values[0])
     return "infinite" if value == math.inf else f"{value:.6g}"
 
 
@@ -208,9 +209,9 @@ def require_slow_stroke(problem: Problem) -> None:
     try:
         require_reachable(narrowed)
     except InfeasibleError as error:
-        where = "above" if narrowed.offset.lower >= 0.0 else "below"
-        kept = f"or leave out constraints.slow_stroke, which keeps the offset {where} 0"
-        raise InfeasibleError(f"{error}, {kept}") from None
+        side = "above" if narrowed.offset.lower >= 0.0 else "below"
+        alternative = f"or leave out constraints.slow_stroke, which keeps the offset {side} 0"
+        raise InfeasibleError(f"{error}, {alternative}") from None
     greatest = Box.from_problem(narrowed).possible(TIME_RATIO)[1]
     floor = TIME_RATIO.floor or 1.0
     if greatest < floor and (ratio is None or ((ratio.lower or 0.0) <= 1.0 and ratio.upper is None)):

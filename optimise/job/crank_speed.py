@@ -1,4 +1,4 @@
-"""How fast the crank turns, as a job states it: by its speed, by the cycle time, or by strokes per minute."""
+"""Crank speed as a job states it: by speed, cycle time, or strokes per minute."""
 
 from __future__ import annotations
 
@@ -42,15 +42,15 @@ class _CrankSpeed(Within):
 
     def read(self, value: object) -> float:
         """Return the value in rad/s; raises InputError."""
-        found = super().read(value)
-        if found == 0.0:
+        speed = super().read(value)
+        if speed == 0.0:
             raise InputError(
                 "must not be 0, because its sign gives the direction of rotation; got 0; for a very slow machine give "
                 'a small speed, for example "0.1 rpm"'
             )
-        if abs(found) < 2.0 * math.pi / _SLOWEST * (1.0 - _ROUNDING):
+        if abs(speed) < 2.0 * math.pi / _SLOWEST * (1.0 - _ROUNDING):
             raise InputError(f"must be {self.rule}; got {quote(value)}; {self.hint}")
-        return found
+        return speed
 
 
 _SPEED = _CrankSpeed(
@@ -137,10 +137,11 @@ class CrankSpeedPart(Part):
         way = self.direction or "counter-clockwise"
         profile = None if self.speed_profile is None else self.speed_profile.build()
         if isinstance(profile, SpeedTable) and _direction(profile.mean) != way:
-            other = _direction(profile.mean)
+            table_direction = _direction(profile.mean)
             raise InputError(
                 "speeds of speed_profile must have the sign of the direction, positive counter-clockwise; got "
-                f'{_RPM * profile.speeds[0]:.6g} rpm, {other}, with direction = "{way}"; give direction = "{other}", '
+                f'{_RPM * profile.speeds[0]:.6g} rpm, {table_direction}, with direction = "{way}"; give direction = '
+                f'"{table_direction}", '
                 "or correct the signs"
             )
 

@@ -1,4 +1,4 @@
-"""Curves in files that a job names: values over the crank angle, a time or a slider position, found by their units.
+"""Curves in files of a job: values over crank angle, time or slider position, recognised by their units.
 
 A head has its unit in brackets or at its end: "force (N)", "force [N]", "force_N", "force in N". A column whose head
 begins with # is passed over. Rows may go down instead of up, begin at any angle, run over 360 deg to 0 deg, and repeat
@@ -32,7 +32,7 @@ MOST_KEPT = 1000
 
 
 class Head(NamedTuple):
-    """A column of a table: its place, its head, the kind of its values and their unit as jobs write it."""
+    """Column of a table: its position, heading, kind of values, and unit as jobs write it."""
 
     place: int
     text: str
@@ -63,37 +63,41 @@ class Curve:
 
     def texts(self) -> tuple[list[str], list[str]]:
         """Return places and values as a job has them."""
-        found = ((self.argument_head.unit, self.arguments), (self.value_head.unit, self.values))
-        places, values = ([f"{number!r} {unit}" for number in numbers.tolist()] for unit, numbers in found)
+        columns = ((self.argument_head.unit, self.arguments), (self.value_head.unit, self.values))
+        places, values = ([f"{number!r} {unit}" for number in numbers.tolist()] for unit, numbers in columns)
         return places, values
 
     def source(self, file: str) -> str:
-        """Return what was understood of a file, in words."""
+        """Return a summary of what was read from a file."""
         return f"{file}: {'; '.join(self.notes)}"
 
 
-def curve_in(table: TableFile, over: Sequence[Kind], of: Sequence[Kind]) -> Curve:
+def curve_in(table: TableFile, argument_kinds: Sequence[Kind], value_kinds: Sequence[Kind]) -> Curve:
     """Return the curve of a table's columns with units of some kinds. Raises `InputError` for none or several."""
-    kinds = (*over, *of)
+    kinds = (*argument_kinds, *value_kinds)
     heads = [head for place, text in enumerate(table.heads) if (head := _head(place, text, kinds)) is not None]
     if not heads and len(table.heads) == 2:
-        units = zip(table.heads, (over, of), strict=True)
+        units = zip(table.heads, (argument_kinds, value_kinds), strict=True)
         example = ",".join(f"{text} ({_likely(text, kinds).metric.symbol})" for text, kinds in units)
         raise InputError(
             f"{table.name}: the columns have no units; got {', '.join(map(quote, table.heads))}; write, for example, "
             f"{quote(example)}"
         )
-    angles = [head for head in heads if head.kind is ANGLE and ANGLE in over]
-    x = _only_head(table, [head for head in heads if head.kind in over and not (angles and head.kind is TIME)], over)
-    y = _only_head(table, [head for head in heads if head.kind in of and head is not x], of)
+    angles = [head for head in heads if head.kind is ANGLE and ANGLE in argument_kinds]
+    x = _only_head(
+        table,
+        [head for head in heads if head.kind in argument_kinds and not (angles and head.kind is TIME)],
+        argument_kinds,
+    )
+    y = _only_head(table, [head for head in heads if head.kind in value_kinds and head is not x], value_kinds)
     for head in (x, y):
         _require_kind(table, head, kinds)
-    at, values = table.numbers([x.place, y.place])
-    again = np.flatnonzero((np.diff(at) == 0.0) & (np.diff(values) == 0.0))
-    at, values = np.delete(at, again + 1), np.delete(values, again + 1)
-    if len(at) < 2:
-        raise InputError(f"{table.name} must have at least two points; got {len(at)}; add rows")
-    curve = Curve(table.name, x, y, at, values, (table.understood([x.place, y.place]),))
+    arguments, values = table.numbers([x.place, y.place])
+    again = np.flatnonzero((np.diff(arguments) == 0.0) & (np.diff(values) == 0.0))
+    arguments, values = np.delete(arguments, again + 1), np.delete(values, again + 1)
+    if len(arguments) < 2:
+        raise InputError(f"{table.name} must have at least two points; got {len(arguments)}; add rows")
+    curve = Curve(table.name, x, y, arguments, values, (table.understood([x.place, y.place]),))
     return _rising(curve, table) if x.kind is not TIME else curve
 
 
@@ -106,13 +110,15 @@ def _head(place: int, text: str, kinds: Sequence[Kind]) -> Head | None:
     """Return the meaning of a head by its unit; None without one of some kinds. Of several units the name decides."""
     if text.startswith("#"):
         return None
-    found = [(kind, unit) for one in _units(text) for kind in kinds if (unit := symbol_in(one, kind)) is not None]
-    named = [each for each in found if _names(text, each[0])]
-    return Head(place, text, *(named or found)[0]) if found else None
+    meanings = [
+        (kind, unit) for text_unit in _units(text) for kind in kinds if (unit := symbol_in(text_unit, kind)) is not None
+    ]
+    named = [meaning for meaning in meanings if _names(text, meaning[0])]
+    return Head(place, text, *(named or meanings)[0]) if meanings else None
 
 
 def _units(text: str) -> list[str]:
-    """Return what may be the unit of a head, the likeliest first: what stands in brackets, then words at its end."""
+    """Return possible units in a heading, the likeliest first: text in brackets, then words at its end."""
     words = re.split(r"[\s_,:]+|\s/\s", _BRACKETS.sub("", text).strip())
     endings = [" ".join(words[n:]) for n in range(1, len(words))]
     units = [*_BRACKETS.findall(text)[::-1], *sorted(endings, key=lambda ending: ending.startswith("in "))]
@@ -134,43 +140,44 @@ def _require_kind(table: TableFile, head: Head, kinds: Sequence[Kind]) -> None:
 
 
 def _remedy(heads: Sequence[str], kinds: Sequence[Kind]) -> str:
-    """Return what to do about heads without a unit of some kinds: correct one that is nearly one, or name it."""
+    """Return the remedy for headings without a unit: correct a misspelt one, or add one."""
     words = {squeezed(unit).casefold(): unit for kind in kinds for unit in (*kind.typed, kind.metric.symbol)}
     words |= {"grad": ANGLE.metric.symbol} if ANGLE in kinds else {}
     for unit in (unit for head in heads if not head.startswith("#") for unit in _units(head)):
-        if meant := words.get(squeezed(unit).casefold()):
-            return f"the unit {quote(unit)} is not known; write {meant}"
+        if unit_meant := words.get(squeezed(unit).casefold()):
+            return f"the unit {quote(unit)} is not known; write {unit_meant}"
     return "name the unit"
 
 
 def _only_head(table: TableFile, heads: list[Head], kinds: Sequence[Kind]) -> Head:
     """Return the only one of some columns, or of several of one kind the only one that names it."""
     named = [head for head in heads if _names(head.text, head.kind)]
-    found = named if len(named) == 1 and len({head.kind for head in heads}) == 1 else heads
-    if len(found) == 1:
-        return found[0]
+    candidates = named if len(named) == 1 and len({head.kind for head in heads}) == 1 else heads
+    if len(candidates) == 1:
+        return candidates[0]
     choice = " or ".join(f"{kind.name} ({kind.metric.symbol})" for kind in kinds)
-    what = f"{table.name} must have one column of {choice}"
-    if not found:
+    rule = f"{table.name} must have one column of {choice}"
+    if not candidates:
         raise InputError(
-            f"{what}, with its unit in brackets or at the end of its name; got "
+            f"{rule}, with its unit in brackets or at the end of its name; got "
             f"{', '.join(map(quote, table.heads[:6]))}; " + _remedy(table.heads, kinds)
         )
     raise InputError(
-        f"{what}; got {' and '.join(quote(head.text) for head in found[:3])}; let the names of the others begin with #"
+        f"{rule}; got {' and '.join(quote(head.text) for head in candidates[:3])}; let the names of the others begin "
+        "with #"
     )
 
 
 def _rising(curve: Curve, table: TableFile) -> Curve:
     """Return a curve whose places go up: turned round where they go down, over full turns where they begin again."""
-    at, values, said = curve.arguments, curve.values, curve.notes
+    at, values, notes = curve.arguments, curve.values, curve.notes
     steps = np.diff(at)
     if (steps < 0.0).sum() > (steps > 0.0).sum():
-        at, values, said = at[::-1], values[::-1], (*said, "sorted upwards")
+        at, values, notes = at[::-1], values[::-1], (*notes, "sorted upwards")
     if curve.argument_head.kind is ANGLE:
         wraps = np.concatenate([[0], np.cumsum(np.diff(at) < -0.5 * curve.turn)])
         if wraps[-1]:
-            at, said = at + curve.turn * wraps, (*said, "angles continue beyond one turn")
+            at, notes = at + curve.turn * wraps, (*notes, "angles continue beyond one turn")
     wrong = np.flatnonzero(np.diff(at) < 0.0)
     if len(wrong):
         n = int(wrong[0])
@@ -178,7 +185,7 @@ def _rising(curve: Curve, table: TableFile) -> Curve:
             f"{table.name}: {quote(curve.argument_head.text)} must increase; got {at[n + 1]:g} after {at[n]:g}; sort "
             "the rows, and keep only one stroke if the position moves back and forth"
         )
-    return replace(curve, arguments=at, values=values, notes=said)
+    return replace(curve, arguments=at, values=values, notes=notes)
 
 
 def over_angle(curve: Curve, speed: float) -> Curve:
@@ -191,10 +198,10 @@ def over_angle(curve: Curve, speed: float) -> Curve:
             f"{curve.name}: times must increase; got {curve.arguments[wrong[0] + 1]:g} later; sort the rows"
         )
     turns = curve.arguments / per_si(curve.argument_head.unit) * speed / (2.0 * math.pi)
-    said = (*curve.notes, f"times are crank angles at {speed * 30.0 / math.pi:.6g} rpm")
+    notes = (*curve.notes, f"times are crank angles at {speed * 30.0 / math.pi:.6g} rpm")
     order = slice(None, None, -1 if speed < 0.0 else 1)
     head = curve.argument_head._replace(kind=ANGLE, unit="deg")
-    return replace(curve, argument_head=head, arguments=360.0 * turns[order], values=curve.values[order], notes=said)
+    return replace(curve, argument_head=head, arguments=360.0 * turns[order], values=curve.values[order], notes=notes)
 
 
 def of_cycle(curve: Curve, turns: int | None) -> tuple[Curve, int]:
@@ -207,10 +214,10 @@ def of_cycle(curve: Curve, turns: int | None) -> tuple[Curve, int]:
         if len(curve.arguments) > 1
         else 0.0
     )
-    whole = round(curve.span)
-    if whole >= 1 and 0.0 < abs(curve.span - whole) <= near:
-        at = curve.arguments[0] + (curve.arguments - curve.arguments[0]) * (whole / curve.span)
-        at[-1] = curve.arguments[0] + whole * curve.turn
+    whole_turns = round(curve.span)
+    if whole_turns >= 1 and 0.0 < abs(curve.span - whole_turns) <= near:
+        at = curve.arguments[0] + (curve.arguments - curve.arguments[0]) * (whole_turns / curve.span)
+        at[-1] = curve.arguments[0] + whole_turns * curve.turn
         curve = replace(curve, arguments=at)
     if turns is None:
         turns = 1 if curve.span <= 1.0 else 2
@@ -223,9 +230,9 @@ def of_cycle(curve: Curve, turns: int | None) -> tuple[Curve, int]:
         if turns == 2:
             curve = replace(curve, notes=(*curve.notes, "two turns, a cycle of 720 deg"))
     if curve.span > turns:
-        kept = curve.arguments < curve.arguments[0] + (turns - near) * curve.turn
-        said = (*curve.notes, f"the first cycle of {curve.span / turns:.4g}")
-        curve = replace(curve, arguments=curve.arguments[kept], values=curve.values[kept], notes=said)
+        in_cycle = curve.arguments < curve.arguments[0] + (turns - near) * curve.turn
+        notes = (*curve.notes, f"the first cycle of {curve.span / turns:.4g}")
+        curve = replace(curve, arguments=curve.arguments[in_cycle], values=curve.values[in_cycle], notes=notes)
     return curve, turns
 
 
@@ -249,8 +256,8 @@ def opened(curve: Curve) -> Curve:
             f"{curve.name}: the last row is one turn after the first and must have the same value; got {first:g} and "
             f"{last:g} {curve.value_head.unit}; correct one of them, or leave out the last row"
         )
-    said = (*curve.notes, "the last row repeats the first and is ignored")
-    return replace(curve, arguments=curve.arguments[:-1], values=curve.values[:-1], notes=said)
+    notes = (*curve.notes, "the last row repeats the first and is ignored")
+    return replace(curve, arguments=curve.arguments[:-1], values=curve.values[:-1], notes=notes)
 
 
 def thinned(curve: Curve) -> Curve:
@@ -262,20 +269,22 @@ def thinned(curve: Curve) -> Curve:
     if len(curve.arguments) <= MOST_KEPT:
         return curve
     bound = SHARE * float(np.ptp(curve.values))
-    kept = np.zeros(len(curve.arguments), dtype=bool)
+    is_needed = np.zeros(len(curve.arguments), dtype=bool)
     ends = [0, *(np.flatnonzero(np.diff(curve.arguments) == 0.0) + 1).tolist(), len(curve.arguments)]
-    left = [(a, b - 1) for a, b in pairwise(ends)]
-    while left:
-        a, b = left.pop()
-        kept[[a, b]] = True
+    open_spans = [(a, b - 1) for a, b in pairwise(ends)]
+    while open_spans:
+        a, b = open_spans.pop()
+        is_needed[[a, b]] = True
         if b - a < 2:
             continue
         x, y = curve.arguments[a : b + 1], curve.values[a : b + 1]
         off = np.abs(y[0] + (y[-1] - y[0]) * ((x - x[0]) / (x[-1] - x[0])) - y)
         far = int(np.argmax(off[1:-1])) + 1
         if off[far] > bound:
-            left += [(a, a + far), (a + far, b)]
-    count = int(kept.sum())
+            open_spans += [(a, a + far), (a + far, b)]
+    count = int(is_needed.sum())
     share = f"{bound:.3g} {curve.value_head.unit}, {100.0 * SHARE:g} % of its range"
-    said = f"{count:,} points kept; no value changes by more than {share}"
-    return replace(curve, arguments=curve.arguments[kept], values=curve.values[kept], notes=(*curve.notes, said))
+    note = f"{count:,} points kept; no value changes by more than {share}"
+    return replace(
+        curve, arguments=curve.arguments[is_needed], values=curve.values[is_needed], notes=(*curve.notes, note)
+    )

@@ -187,32 +187,32 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
             kind = kind_for(unit if isinstance(unit, str) else "")
         except InputError:
             kind = kind_for("")
-        taken = name in FACTS or name == SLOW_STROKE
-        if not taken and name.isidentifier() and not name.startswith("_"):
+        is_taken = name in FACTS or name == SLOW_STROKE
+        if not is_taken and name.isidentifier() and not name.startswith("_"):
             tables[name] = _stated(name.replace("_", " "), kind)
     tables |= {
         name: _stated(name.replace("_", " "), kind)
         for name, kind in kinds_of_amounts(amounts_in(data)).items()
         if name not in FACTS and name != SLOW_STROKE and name.isidentifier() and not name.startswith("_")
     }
-    asked = [name for table in (data.get("objectives"), *_constraints(data)) for name in _names(table)]
-    asked += [word for name in names for word in words_of(parts[name]["formula"])]
-    known = {*FACTS, *tables, *names, *DIMENSIONS, SLOW_STROKE}
+    requested = [name for table in (data.get("objectives"), *_constraints(data)) for name in _names(table)]
+    requested += [word for name in names for word in words_of(parts[name]["formula"])]
+    known_names = {*FACTS, *tables, *names, *DIMENSIONS, SLOW_STROKE}
     # Formulas stand among the names; looking for packages takes longer than reading a job.
-    unknown = [name for name in dict.fromkeys(asked) if name not in known and name.isidentifier()]
+    unknown = [name for name in dict.fromkeys(requested) if name not in known_names and name.isidentifier()]
     packages = own_quantities() if unknown else {}
-    found = tuple(installed(name) for name in unknown if name in packages)
-    for quantity in found:
+    installed_quantities = tuple(installed(name) for name in unknown if name in packages)
+    for quantity in installed_quantities:
         tables[quantity.name] = _stated(quantity.title, kind_for(quantity.unit.symbol))
-    return Declared(tables, found, names)
+    return Declared(tables, installed_quantities, names)
 
 
 def _formulas(parts: object) -> tuple[str, ...]:
     """Return the names of those parts that are formulas and nothing else."""
-    given = parts.items() if isinstance(parts, Mapping) else ()
+    entries = parts.items() if isinstance(parts, Mapping) else ()
     return tuple(
         name
-        for name, part in given
+        for name, part in entries
         if isinstance(name, str) and isinstance(part, Mapping) and "formula" in part and "function" not in part
     )
 

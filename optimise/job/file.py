@@ -137,9 +137,10 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return table
 
 
-def _too_many(got: str) -> JobError:
+def _too_many(count_text: str) -> JobError:
     return JobError(
-        f"a job must have at most {MOST} values, lists and tables; got {got}; leave some out, such as points of long "
+        f"a job must have at most {MOST} values, lists and tables; got {count_text}; leave some out, such as points "
+        "of long "
         "tables"
     )
 

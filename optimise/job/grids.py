@@ -50,51 +50,51 @@ def swap(lower: object, upper: object) -> str:
     return f"give {plain[0]:g} its unit" if mixed else "swap the two"
 
 
-def says_values(given: object) -> bool:
+def says_values(value: object) -> bool:
     """Return whether a value of a job has a key of a table of values."""
-    return isinstance(given, Mapping) and not KEYS.isdisjoint(given)
+    return isinstance(value, Mapping) and not KEYS.isdisjoint(value)
 
 
-def read_grid(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid:
+def read_grid(table: Mapping[str, Any], read: Callable[[object], float]) -> Grid:
     """Return the values that a table says. read: gives a value in SI, by the rules of its key. Raises `InputError`."""
-    for key in given:
+    for key in table:
         if key not in KEYS:
             raise InputError(
                 f"discrete values may only have the keys {', '.join(sorted(KEYS))}; got {quote(key)}; correct or "
                 "remove it"
             )
-    words = [key for key in ("step", "series", "values") if key in given]
+    words = [key for key in ("step", "series", "values") if key in table]
     if len(words) != 1:
         raise InputError(
             f"must have one of step, series and values; got {' and '.join(words) or 'none'}; write it like "
             '{ min = "20 mm", max = "60 mm", step = "0.5 mm" }, or a range without steps like ["20 mm", "60 mm"]'
         )
     if words == ["values"]:
-        return _listed(given, read)
+        return _listed(table, read)
     for end in ("min", "max"):
-        if end not in given:
+        if end not in table:
             raise InputError(f"must have min and max with {words[0]}; {end} is missing; add it")
-    lower, upper = read(given["min"]), read(given["max"])
+    lower, upper = read(table["min"]), read(table["max"])
     if lower > upper:
         raise InputError(
-            f"must run from min to max; got {quote(given['min'])} to {quote(given['max'])}, an empty range; "
-            f"{swap(given['min'], given['max'])}"
+            f"must run from min to max; got {quote(table['min'])} to {quote(table['max'])}, an empty range; "
+            f"{swap(table['min'], table['max'])}"
         )
-    room = _ROOM * max(abs(lower), abs(upper))
-    found = _multiples if words == ["step"] else _preferred
-    values, rule = found(given, read, lower - room, upper + room)
+    rounding = _ROOM * max(abs(lower), abs(upper))
+    expand = _multiples if words == ["step"] else _preferred
+    values, rule = expand(table, read, lower - rounding, upper + rounding)
     if not values:
         raise InputError(
-            f"must have a value from {quote(given['min'])} to {quote(given['max'])}; {rule} has none; widen the "
+            f"must have a value from {quote(table['min'])} to {quote(table['max'])}; {rule} has none; widen the "
             "range, or choose other values"
         )
     return Grid(tuple(values), rule)
 
 
-def _listed(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid:
-    if len(given) > 1:
+def _listed(table: Mapping[str, Any], read: Callable[[object], float]) -> Grid:
+    if len(table) > 1:
         raise InputError("a list of values must not have min or max; got them; leave them out")
-    values = given["values"]
+    values = table["values"]
     if not isinstance(values, list | tuple) or len(values) < 2:
         raise InputError(
             f'values must be a list of two or more, like ["20 mm", "25 mm"]; got {quote(values)}; give a single value '
@@ -102,74 +102,74 @@ def _listed(given: Mapping[str, Any], read: Callable[[object], float]) -> Grid:
         )
     if len(values) > MOST:
         raise InputError(f"values must be at most {MOST}; got {len(values)}; leave out some")
-    found = sorted(read(value) for value in values)
-    for one, other in pairwise(found):
-        if one == other:
+    numbers = sorted(read(value) for value in values)
+    for lower, upper in pairwise(numbers):
+        if lower == upper:
             raise InputError(f"values must differ; got {quote(values)}; leave out the second")
-    return Grid(tuple(found), f"one of {len(found)} values")
+    return Grid(tuple(numbers), f"one of {len(numbers)} values")
 
 
 def _multiples(
-    given: Mapping[str, Any], read: Callable[[object], float], lower: float, upper: float
+    table: Mapping[str, Any], read: Callable[[object], float], lower: float, upper: float
 ) -> tuple[list[float], str]:
     try:
-        step = step_of(given["step"], read)
+        step = step_of(table["step"], read)
     except InputError as error:
         raise InputError(f"step {error}") from None
     if not step > 0.0:
-        raise InputError(f"step must be above zero; got {quote(given['step'])}; give its size")
+        raise InputError(f"step must be above zero; got {quote(table['step'])}; give its size")
     if (upper - lower) / step > MOST:
         raise InputError(
-            f"step must give at most {MOST} values; got {quote(given['step'])}, which gives "
+            f"step must give at most {MOST} values; got {quote(table['step'])}, which gives "
             f"{(upper - lower) / step:.4g}; use a larger step, or a range [lower, upper]"
         )
     exact = Decimal(repr(step))  # a multiple as it is written: the step's decimals times a whole number, rounded once
     every = (float(exact * k) for k in range(math.floor(lower / step), math.ceil(upper / step) + 1))
-    written = given["step"].strip() if isinstance(given["step"], str) else f"{given['step']:g}"
+    written = table["step"].strip() if isinstance(table["step"], str) else f"{table['step']:g}"
     return [value for value in every if lower <= value <= upper], f"multiples of {written}"
 
 
-def step_of(given: object, read: Callable[[object], float]) -> float:
+def step_of(value: object, read: Callable[[object], float]) -> float:
     """Return a step, SI. A fraction of a unit is one of its whole numbers: "1/32 in". Raises `InputError`."""
-    fraction = _FRACTION.fullmatch(given) if isinstance(given, str) else None
+    fraction = _FRACTION.fullmatch(value) if isinstance(value, str) else None
     if fraction is not None and int(fraction[2]):
         with contextlib.suppress(InputError):  # told below, with the text as it is
             return read(f"{fraction[1]} {fraction[3]}") / int(fraction[2])
-    return read(given)
+    return read(value)
 
 
 def _preferred(
-    given: Mapping[str, Any], read: Callable[[object], float], lower: float, upper: float
+    table: Mapping[str, Any], read: Callable[[object], float], lower: float, upper: float
 ) -> tuple[list[float], str]:
-    name = given["series"]
+    name = table["series"]
     if name not in SERIES:
         raise InputError(f"series must be one of {', '.join(SERIES)}; got {quote(name)}; choose one of these")
-    if not read(given["min"]) > 0.0:
+    if not read(table["min"]) > 0.0:
         raise InputError(
-            f"preferred numbers must be above zero; got min {quote(given['min'])}; raise it, or give the values as a "
+            f"preferred numbers must be above zero; got min {quote(table['min'])}; raise it, or give the values as a "
             "list"
         )
-    number, unit = _parts(given["min"])
+    number, unit = _parts(table["min"])
     # The unit in SI, without the rounding of the division.
-    factor = Decimal(f"{read(given['min']) / float(number):.15g}")
+    factor = Decimal(f"{read(table['min']) / float(number):.15g}")
     first, last = (math.floor(math.log10(end / float(factor))) for end in (lower, upper))
     every = (number.scaleb(k) * factor for k in range(first - 1, last + 2) for number in SERIES[name])
     values = [float(value) for value in every if lower <= float(value) <= upper]
     return values, f"{name} in {unit or 'SI'}"
 
 
-def _parts(given: object) -> tuple[Decimal, str]:
+def _parts(value: object) -> tuple[Decimal, str]:
     """Return number and unit of a value; a plain number has none."""
-    parts = _NUMBER.fullmatch(given) if isinstance(given, str) else None
-    return (Decimal(str(given)), "") if parts is None else (Decimal(parts[1]), parts[2])
+    parts = _NUMBER.fullmatch(value) if isinstance(value, str) else None
+    return (Decimal(str(value)), "") if parts is None else (Decimal(parts[1]), parts[2])
 
 
-def grid_schema(one: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return the JSON Schemas of the tables that say values. one: those of a value."""
-    value = {"anyOf": one}
+def grid_schema(entryschemas: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the JSON Schemas of the tables that say values. entryschemas: those of a value."""
+    value = {"anyOf": entryschemas}
     ends = {"min": value, "max": value}
     fraction = {"type": "string", "pattern": f"^{_FRACTION.pattern}$", "examples": ["1/32 in"]}
-    kinds: list[dict[str, Any]] = [{"step": {"anyOf": [*one, fraction]}}, {"series": {"enum": list(SERIES)}}]
+    kinds: list[dict[str, Any]] = [{"step": {"anyOf": [*entryschemas, fraction]}}, {"series": {"enum": list(SERIES)}}]
     tables = [ends | kind for kind in kinds] + [{"values": {"type": "array", "items": value, "minItems": 2}}]
     return [
         {"type": "object", "properties": table, "required": list(table), "additionalProperties": False}

@@ -45,7 +45,7 @@ class FrictionPart(Built[Friction]):
 
         Raises JobError where [sections] is missing then.
         """
-        found = self.build()
+        friction = self.build()
         for name in PinsPart.model_fields:
             part: PinPart | None = getattr(self, name)
             if part is None or part.radius is not None:
@@ -55,9 +55,9 @@ class FrictionPart(Built[Friction]):
                     f"friction.{name}.radius: is missing, but required without [sections], which has the pins; add for "
                     'example radius = "10 mm"'
                 )
-            own = replace(getattr(found, name), radius=0.5 * getattr(pins, name))
-            found = replace(found, **{name: own})
-        return found
+            pin = replace(getattr(friction, name), radius=0.5 * getattr(pins, name))
+            friction = replace(friction, **{name: pin})
+        return friction
 
 
 class ClearancePart(Checked[Clearance]):

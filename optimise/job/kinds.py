@@ -28,19 +28,19 @@ class Kinds:
             return value
         if not isinstance(value, Mapping):
             raise InputError(f"must be a table such as {self.choice}; got {quote(value)}")
-        found = [key for key in self.parts if key in value]
-        if not found:
+        keys_present = [key for key in self.parts if key in value]
+        if not keys_present:
             keys = ", ".join(quote(key).strip('"') for key in list(value)[:6]) or "no keys"
             near = [self.synonyms.get(key) or closest(key, self.parts) for key in value if isinstance(key, str)]
-            meant = next((f"; did you mean {key}?" for key in near if key), "")
-            raise InputError(f"must be one of {self.choice}; got {keys}{meant}")
-        if len(found) > 1:
-            raise InputError(f"must be of one kind; got {' and '.join(found)}; {self.remedy}")
+            hint = next((f"; did you mean {key}?" for key in near if key), "")
+            raise InputError(f"must be one of {self.choice}; got {keys}{hint}")
+        if len(keys_present) > 1:
+            raise InputError(f"must be of one kind; got {' and '.join(keys_present)}; {self.remedy}")
         return value
 
     def tag(self, value: object) -> str:
         """Return the tag of a table's kind, its key in brackets; empty for a table of no kind."""
         if isinstance(value, Part):
             return next(f"({key})" for key, kind in self.parts.items() if isinstance(value, kind))
-        known = value if isinstance(value, Mapping) else ()
-        return next((f"({key})" for key in self.parts if key in known), "")
+        keys = value if isinstance(value, Mapping) else ()
+        return next((f"({key})" for key in self.parts if key in keys), "")

@@ -40,7 +40,7 @@ class _Row:
 
 def require_compatible(problem: Problem) -> None:
     """Raise InfeasibleError, naming the requirements, if no point within the ranges meets all linear ones."""
-    seen: dict[tuple[object, ...], bool] = {}
+    is_possible: dict[tuple[object, ...], bool] = {}
     parts = problem.parts()
     for part in parts:
         sides = [(sign, *_programme(part, sign)) for sign, _ in signs(part)]
@@ -48,9 +48,9 @@ def require_compatible(problem: Problem) -> None:
             return
         for sign, rows, ends in sides:
             key = (sign, tuple(rows), tuple(ends.items()))
-            if key not in seen:
-                seen[key] = _possible(rows, ends, turning=problem.motion is None)
-            if seen[key]:
+            if key not in is_possible:
+                is_possible[key] = _possible(rows, ends, turning=problem.motion is None)
+            if is_possible[key]:
                 return
     raise InfeasibleError(_conflict_text(parts[0]))
 
@@ -60,64 +60,68 @@ def _conflict_text(part: Problem) -> str:
     sides = [_programme(part, sign) for sign, _ in signs(part)]
     names = list(dict.fromkeys(row.name for rows, _ in sides for row in rows))
     for name in list(names):
-        fewer = [other for other in names if other != name]
+        fewer = [rest for rest in names if rest != name]
         if fewer and not any(
             _possible([row for row in rows if row.name in fewer], ends, turning=part.motion is None)
             for rows, ends in sides
         ):
             names = fewer
     first = f"constraints.{key_of([names[0]])}"
-    asked = {item.quantity: item for item in part.constraints}
-    told = []
+    constraints = {item.quantity: item for item in part.constraints}
+    bounds = []
     for name in names:
-        face = part.quantity(name).unit
-        told += [f"{name} {word} {bound * face.factor:.6g} {face.symbol}".rstrip() for word, bound in asked[name].sides]
+        unit = part.quantity(name).unit
+        bounds += [
+            f"{name} {word} {bound * unit.factor:.6g} {unit.symbol}".rstrip() for word, bound in constraints[name].sides
+        ]
     side = part.slow_side()
-    kept = "" if side is None else f"; constraints.slow_stroke keeps the offset {'above' if side > 0.0 else 'below'} 0"
+    side_text = (
+        "" if side is None else f"; constraints.slow_stroke keeps the offset {'above' if side > 0.0 else 'below'} 0"
+    )
     ever = any(
         _possible([row for row in rows if row.name in names], ends | _ANY, turning=part.motion is None)
         for rows, ends in sides
     )
     if len(names) == 1:
         remedy = "widen the ranges" if ever else "no range can change that; leave it out"
-        return f"{first}: no crank, rod and offset within the ranges meet it; got {told[0]}; {remedy}{kept}"
+        return f"{first}: no crank, rod and offset within the ranges meet it; got {bounds[0]}; {remedy}{side_text}"
     remedy = "leave out one of them, or widen the ranges" if ever else "no range can change that; leave out one of them"
     return (
         f"{first}: together the requirements must leave some crank, rod and offset within the ranges; got "
-        f"{' and '.join(told)}, which exclude each other; {remedy}{kept}"
+        f"{' and '.join(bounds)}, which exclude each other; {remedy}{side_text}"
     )
 
 
 def _programme(part: Problem, sign: float) -> tuple[list[_Row], dict[str, tuple[float, float]]]:
     """Return the linear requirements on one sign of the offset, if a formula is among them, and the ranges."""
-    sizes = next(sizes for own, sizes in signs(part) if own == sign)
+    sizes = next(sizes for side, sizes in signs(part) if side == sign)
     ends = {
         "crank": (part.crank.lower, part.crank.upper),
         "rod": (part.rod.lower, part.rod.upper),
         "offset": (sizes.lower, sizes.upper),
     } | {item.name: (item.lower, item.upper) for item in part.mechanism.varying}
-    wanted = {
+    equalities = {
         part.quantity(item.quantity): float(item.lower)
         for item in part.constraints
         if item.equality and item.lower is not None
     }
-    rows = [_Row(name, row, True) for name, row in linear_equations(wanted, sign).items()]
+    rows = [_Row(name, row, True) for name, row in linear_equations(equalities, sign).items()]
     return [*rows, *_bounds(part, sign)], ends
 
 
 def _bounds(part: Problem, sign: float) -> Iterator[_Row]:
     """Yield least and greatest values of linear formulas; quotients would need the sign of their divisors."""
     for item in part.constraints:
-        of = part.quantity(item.quantity)
-        if item.equality or not isinstance(of, FormulaQuantity):
+        quantity = part.quantity(item.quantity)
+        if item.equality or not isinstance(quantity, FormulaQuantity):
             continue
-        if isinstance(of.expression, Call) and of.expression.function == "/":
+        if isinstance(quantity.expression, Call) and quantity.expression.function == "/":
             continue
         for word, bound in item.sides:
-            row = equation_of(of, bound)
+            row = equation_of(quantity, bound)
             if row is not None:
                 row = with_offset_size(row, sign)
-                yield _Row(of.name, row if word == "max" else row.times(Fraction(-1)), False)
+                yield _Row(quantity.name, row if word == "max" else row.times(Fraction(-1)), False)
 
 
 def _possible(rows: Sequence[_Row], ends: dict[str, tuple[float, float]], *, turning: bool) -> bool:
@@ -128,14 +132,14 @@ def _possible(rows: Sequence[_Row], ends: dict[str, tuple[float, float]], *, tur
     every = [*rows, _Row("", turned, False)] if turning else list(rows)
     table = np.array([[float(dict(row.sum.factors).get(name, 0)) for name in ends] for row in every])
     size = np.maximum(np.abs(table).max(axis=1), 1e-300)
-    table, right = table / size[:, None], -_UNIT * np.array([float(row.sum.constant) for row in every]) / size
+    table, right_sides = table / size[:, None], -_UNIT * np.array([float(row.sum.constant) for row in every]) / size
     exact = np.array([row.exact for row in every])
-    found = linprog(
+    solution = linprog(
         np.zeros(len(ends)),
         A_ub=table[~exact],
-        b_ub=right[~exact],
+        b_ub=right_sides[~exact],
         A_eq=table[exact],
-        b_eq=right[exact],
+        b_eq=right_sides[exact],
         bounds=[(_UNIT * low, _UNIT * high) for low, high in ends.values()],
     )
-    return bool(found.status != _NONE)
+    return bool(solution.status != _NONE)

@@ -1,4 +1,4 @@
-"""Loads whose points are in a file: a table of forces, torques or pressures, told by the units of its columns."""
+"""Loads with points in a file: a table of forces, torques or pressures, recognised by their units."""
 
 from __future__ import annotations
 
@@ -34,29 +34,40 @@ def with_loads(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
 
 def _filled(part: Any, place: int, files: Files, data: Mapping[str, Any]) -> Any:
     file = part.get("file") if isinstance(part, Mapping) else None
-    tables = {(_kind(at), _kind(of)): table for table, at, of in tables_of_points()}
+    tables = {(_kind(at), _kind(value_entry)): table for table, at, value_entry in tables_of_points()}
     if not isinstance(file, str):
         return part
     name = key_of(["load", place, "file"])
-    known = ["file", *dict.fromkeys(one.name for table in tables.values() for one in table.entries if not one.several)]
+    allowed_keys = [
+        "file",
+        *dict.fromkeys(one.name for table in tables.values() for one in table.entries if not one.several),
+    ]
     for key in part:
-        if key not in known:
+        if key not in allowed_keys:
             raise JobError(
                 f"{key_of(['load', place, key])}: a load with file must not have this key; got {quote(part[key])}; "
-                f"possible here: {', '.join(known)}"
+                f"possible here: {', '.join(allowed_keys)}"
             )
-    over = (*dict.fromkeys(at for at, _ in tables), TIME)
-    curve = curve_in(read_named_table(files, name, file), over, tuple(dict.fromkeys(of for _, of in tables)))
-    found = tables.get((ANGLE if curve.argument_head.kind is TIME else curve.argument_head.kind, curve.value_head.kind))
-    if found is None:
+    argument_kinds = (*dict.fromkeys(at for at, _ in tables), TIME)
+    curve = curve_in(
+        read_named_table(files, name, file),
+        argument_kinds,
+        tuple(dict.fromkeys(value_entry for _, value_entry in tables)),
+    )
+    load_table = tables.get(
+        (ANGLE if curve.argument_head.kind is TIME else curve.argument_head.kind, curve.value_head.kind)
+    )
+    if load_table is None:
         raise InputError(
             f"{curve.name} must be a table of a load; got {quote(curve.value_head.text)} over "
             f"{quote(curve.argument_head.text)}; give torques over the crank angle"
         )
-    at, of = (entry.name for entry in found.entries if entry.several)
+    at, value_entry = (entry.name for entry in load_table.entries if entry.several)
     rest = {key: value for key, value in part.items() if key != "file"}
     if curve.argument_head.kind is TIME:
-        signed = ANGLE_DATUM in found.entries and rest.get(ANGLE_DATUM.name, ANGLE_DATUM.default) == ANGLE_DATUM.default
+        signed = (
+            ANGLE_DATUM in load_table.entries and rest.get(ANGLE_DATUM.name, ANGLE_DATUM.default) == ANGLE_DATUM.default
+        )
         speed = stated_speed(data, curve.name)
         curve = over_angle(curve, speed if signed else abs(speed))
     if curve.argument_head.kind is ANGLE:
@@ -65,7 +76,7 @@ def _filled(part: Any, place: int, files: Files, data: Mapping[str, Any]) -> Any
     curve = thinned(curve)
     require_point_count(len(curve.arguments), curve.name, 2)
     places, sizes = curve.texts()
-    return rest | {at: places, of: sizes, SOURCE: curve.source(file)}
+    return rest | {at: places, value_entry: sizes, SOURCE: curve.source(file)}
 
 
 def tables_of_points() -> list[tuple[Table, Entry, Entry]]:

@@ -28,24 +28,24 @@ from .named_files import MOST_POINTS, SOURCE, unread_file_error
 from .values import Checked, optional
 
 
-def increasing(given: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
+def increasing(typed: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
     """Return the points of a table in SI, refusing any that is not above the one before."""
-    points: tuple[float, ...] = handler(given)
+    points: tuple[float, ...] = handler(typed)
     for n, (before, after) in enumerate(itertools.pairwise(points)):
         if after <= before:
             raise InputError(
-                f"must increase; got {quote(given[n + 1])} after {quote(given[n])}; sort the table and remove "
+                f"must increase; got {quote(typed[n + 1])} after {quote(typed[n])}; sort the table and remove "
                 "repeated points"
             )
     return points
 
 
-def stepping(given: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
-    """Return the points of a load's table in SI, refusing any below the one before, and a third one at one place."""
-    at: tuple[float, ...] = handler(given)
+def stepping(typed: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
+    """Return the points of a load's table in SI; raise an error if one decreases or repeats twice."""
+    at: tuple[float, ...] = handler(typed)
     n = model.out_of_order(at)
     if n is not None:
-        raise InputError(model.order_rule(n, at, quote(given[n]), quote(given[n - 1])))
+        raise InputError(model.order_rule(n, at, quote(typed[n]), quote(typed[n - 1])))
     return at
 
 
@@ -77,8 +77,8 @@ def _part(table: model.Table) -> type[LoadPart]:
 
 
 def _type(entry: model.Entry) -> Any:
-    one: Any = getattr(values, entry.kind) if isinstance(entry.kind, str) else Literal[entry.kind]
-    several: Any = tuple.__class_getitem__((one, ...)) if entry.several else one
+    item_type: Any = getattr(values, entry.kind) if isinstance(entry.kind, str) else Literal[entry.kind]
+    several: Any = tuple.__class_getitem__((item_type, ...)) if entry.several else item_type
     return Annotated[several, WrapValidator(stepping)] if entry.increasing else several
 
 

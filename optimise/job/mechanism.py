@@ -213,8 +213,8 @@ class MechanismPart(CrankSpeedPart):
         size = self.gravity or 0.0
         angle = 1.5 * math.pi if self.gravity_direction is None else self.gravity_direction
         # Rounding of pi would leave 1e-16 of gravity along an axis that it is normal to.
-        along, across = (0.0 if abs(part) < 1e-12 else size * part for part in (math.cos(angle), math.sin(angle)))
-        return along, across
+        axial, lateral = (0.0 if abs(part) < 1e-12 else size * part for part in (math.cos(angle), math.sin(angle)))
+        return axial, lateral
 
 
 def _part(ends: tuple[float, float]) -> tuple[float, float]:

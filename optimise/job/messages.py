@@ -63,15 +63,15 @@ def explain(error: ValidationError, schema: Schema, tables: Mapping[str, Any] | 
     schema: the JSON Schema of the job, which says the allowed keys and an example for each. tables: what was read, for
     the order of its keys. Unknown keys come first: a misspelt key explains the missing one, which is then left out.
     """
-    unknown, wrong, missing, meant = dict[tuple[Any, ...], str](), list[str](), dict[str, str](), set[str]()
+    unknown, wrong, missing, explained = dict[tuple[Any, ...], str](), list[str](), dict[str, str](), set[str]()
     listed = error.errors(include_url=False)[:LONGEST]
-    above = {details["loc"][:steps] for details in listed for steps in range(len(details["loc"]))}
+    parents = {details["loc"][:steps] for details in listed for steps in range(len(details["loc"]))}
     for details in listed:
-        if details["type"] == "too_short" and details["loc"] in above:
+        if details["type"] == "too_short" and details["loc"] in parents:
             continue  # a list that is too short for want of the entries that were refused
         if details["type"] == "extra_forbidden":
             unknown[details["loc"]], near = _unknown(details["loc"], details["input"], schema)
-            meant.add(near)
+            explained.add(near)
         elif details["loc"][:-1] == ("constraints",) and details["input"] in _WISHES:
             unknown[details["loc"]] = f"{key_of(details['loc'])}: {sentence_of(details, schema)}"
         else:
@@ -92,8 +92,12 @@ def explain(error: ValidationError, schema: Schema, tables: Mapping[str, Any] | 
                 f"{key_of(keys_of([*table, keys[0]]))}: {', '.join(keys[:-1])} and {keys[-1]} belong below the heading "
                 f"{owner}; got them {place}; write {owner} above {keys[0]}, or move them there"
             )
-            meant.add(owner.strip("[]"))
-    return [*unknown.values(), *wrong, *(text for key, text in missing.items() if not {key, key.split(".")[0]} & meant)]
+            explained.add(owner.strip("[]"))
+    return [
+        *unknown.values(),
+        *wrong,
+        *(text for key, text in missing.items() if not {key, key.split(".")[0]} & explained),
+    ]
 
 
 def _is_tag(part: object) -> bool:
@@ -127,24 +131,26 @@ def _unknown(loc: Sequence[Any], value: object, schema: Schema) -> tuple[str, st
     table, key = loc[:-1], loc[-1]
     path = keys_of(table)
     allowed = sorted(_properties(schema, table), key=FACTS.__contains__)  # a job's own quantities first
-    more = f" and {len(allowed) - _MOST_KEYS} more, all in `slidercrank schema`" if len(allowed) > _MOST_KEYS else ""
-    possible = f"possible here: {', '.join(allowed[:_MOST_KEYS])}{more}"
+    left_over = (
+        f" and {len(allowed) - _MOST_KEYS} more, all in `slidercrank schema`" if len(allowed) > _MOST_KEYS else ""
+    )
+    possible = f"possible here: {', '.join(allowed[:_MOST_KEYS])}{left_over}"
     place = key_of([*path, key])
-    others, kind = _kinds_with(str(key), schema, path), table[-1][1:-1] if table and _is_tag(table[-1]) else ""
-    if others and kind in allowed:
+    owning_kinds, kind = _kinds_with(str(key), schema, path), table[-1][1:-1] if table and _is_tag(table[-1]) else ""
+    if owning_kinds and kind in allowed:
         noun = path[-2] if isinstance(path[-1], int) else "table"
-        owners = " or ".join(filter(None, (", ".join(others[:-1]), others[-1])))
+        owners = " or ".join(filter(None, (", ".join(owning_kinds[:-1]), owning_kinds[-1])))
         return (
             f"{place}: a {noun} with {kind} must not have this key; got {quote(value)}; it belongs to a {noun} with "
             f"{owners}; {possible}"
         ), ""
     owner = place_of(str(key), schema)
     near = None if owner else closest(str(key), allowed)
-    what, meant = f"key {quote(str(key))}", near
+    subject, suggestion = f"key {quote(str(key))}", near
     if not table and isinstance(value, Mapping | list):
-        what, meant = f"heading [{place}]", next(iter(headings([near or ""], schema)), near)
-    choice = f"did you mean {meant}?" if near else owner or possible
-    return f"{place}: unknown {what}; {choice}", key_of([*path, near]) if near else ""
+        subject, suggestion = f"heading [{place}]", next(iter(headings([near or ""], schema)), near)
+    choice = f"did you mean {suggestion}?" if near else owner or possible
+    return f"{place}: unknown {subject}; {choice}", key_of([*path, near]) if near else ""
 
 
 def place_of(key: str, schema: Schema) -> str:
@@ -158,7 +164,12 @@ def place_of(key: str, schema: Schema) -> str:
 def _owners(keys: Sequence[str], schema: Schema) -> list[str]:
     """Return the headings of the tables that have all of some keys."""
     names = schema["properties"]
-    return [one for name in names for one, known in headings([name], schema).items() if known.issuperset(keys)]
+    return [
+        heading
+        for name in names
+        for heading, allowed_keys in headings([name], schema).items()
+        if allowed_keys.issuperset(keys)
+    ]
 
 
 def headings(words: Sequence[str], schema: Schema) -> dict[str, set[str]]:
@@ -172,8 +183,8 @@ def headings(words: Sequence[str], schema: Schema) -> dict[str, set[str]]:
 def _kinds_with(key: str, schema: Schema, path: Sequence[Any]) -> list[str]:
     """Return the keys that tell those kinds of a table that have a key."""
     having = [node for node in nodes_at(schema, path) if key in node.get("properties", {})]
-    told = [node.get("x-load", {}).get("key") or next(iter(node.get("required", ())), "") for node in having]
-    return list(dict.fromkeys(filter(None, told)))
+    keys = [node.get("x-load", {}).get("key") or next(iter(node.get("required", ())), "") for node in having]
+    return list(dict.fromkeys(filter(None, keys)))
 
 
 def sentence_of(details: ErrorDetails, schema: Schema) -> str:
@@ -181,7 +192,7 @@ def sentence_of(details: ErrorDetails, schema: Schema) -> str:
     kind, value, context, path = details["type"], details["input"], details.get("ctx", {}), details["loc"]
     example = example_of(schema, path)
     write = f"; write for example {example}" if example else ""
-    got = f"got {quote(value)}"
+    value_text = f"got {quote(value)}"
     if kind == "value_error":
         return str(context["error"])
     if kind == "missing":
@@ -189,29 +200,29 @@ def sentence_of(details: ErrorDetails, schema: Schema) -> str:
     table = ".".join(str(key) for key in keys_of(path) if isinstance(key, str))
     if kind in ("tuple_type", "list_type") and isinstance(value, Mapping) and _properties(schema, [*path, 0]):
         return f"{SEVERAL.format(table)}; got a single one; write [[{table}]] for [{table}]"
-    if rule_of(details) == _TABLE and isinstance(value, list) and any(isinstance(one, Mapping) for one in value):
+    if rule_of(details) == _TABLE and isinstance(value, list) and any(isinstance(item, Mapping) for item in value):
         return f"{SINGLE.format(table)}; got a list of {len(value)}; write [{table}] for [[{table}]]"
     if kind == "literal_error":
         # Of loads, tables of several kinds have keys of one name: the words of this one are the validator's.
-        said = re.findall(r"'([^']*)'", str(context.get("expected", "")))
-        words = said or list(dict.fromkeys(_words(nodes_at(schema, path))))
+        expected = re.findall(r"'([^']*)'", str(context.get("expected", "")))
+        words = expected or list(dict.fromkeys(_words(nodes_at(schema, path))))
         near = closest(value, words) if isinstance(value, str) else None
-        meant = f'; did you mean "{near}"?' if near else ""
-        return f"must be {_any_of(words)}; {got}{meant}"
+        hint = f'; did you mean "{near}"?' if near else ""
+        return f"must be {_any_of(words)}; {value_text}{hint}"
     if kind == "string_pattern_mismatch":  # names of choices, which become columns
-        return f"must begin with a letter and contain only letters, digits, spaces, - and _; {got}{write}"
+        return f"must begin with a letter and contain only letters, digits, spaces, - and _; {value_text}{write}"
     if kind == "string_too_long":
-        return f"{rule_of(details)}; {got}; shorten it"
+        return f"{rule_of(details)}; {value_text}; shorten it"
     if kind in ("too_short", "too_long"):
         return f"{rule_of(details)}; got {len(value)}{write}"
     if rule_of(details) == _TABLE and isinstance(value, str | float | int) and "equals" in _properties(schema, path):
         if value in _WISHES:
             return f"{quote(value)} belongs below [objectives]; got it below [{path[0]}]; move it there"
         bounds = ["equals"] if spread(value) else ["equals", "min", "max"]
-        first, *others = (f"{{ {word} = {toml(value)} }}" for word in bounds)
-        write = f"; write {key_of(path[-1:])} = {', '.join(filter(None, (first, ' or '.join(others))))}"
-        return f"must be exact, a minimum or a maximum; {got}{write}"
-    return f"{rule_of(details)}; {got}{write}"
+        first, *alternatives = (f"{{ {word} = {toml(value)} }}" for word in bounds)
+        write = f"; write {key_of(path[-1:])} = {', '.join(filter(None, (first, ' or '.join(alternatives))))}"
+        return f"must be exact, a minimum or a maximum; {value_text}{write}"
+    return f"{rule_of(details)}; {value_text}{write}"
 
 
 def rule_of(details: Mapping[str, Any]) -> str:
@@ -248,10 +259,10 @@ def toml(value: object) -> str:
 
 def _properties(schema: Schema, path: Sequence[Any]) -> dict[str, Any]:
     """Return the keys that are possible in a table."""
-    found: dict[str, Any] = {}
+    properties: dict[str, Any] = {}
     for node in nodes_at(schema, path):
-        found |= node.get("properties", {})
-    return found
+        properties |= node.get("properties", {})
+    return properties
 
 
 def _words(nodes: Sequence[Schema]) -> Iterator[str]:
@@ -262,21 +273,21 @@ def _words(nodes: Sequence[Schema]) -> Iterator[str]:
 
 
 def nodes_at(schema: Schema, path: Sequence[Any]) -> list[Schema]:
-    """Return every alternative that the schema has at a location; of a tag, those of that kind, which have its key."""
+    """Return every alternative of the schema at a location; after a tag, those with its key."""
     nodes = _alternatives(schema, schema)
     for part in path:
         if _is_tag(part):
             nodes = [node for node in nodes if part[1:-1] in node.get("properties", {})] or nodes
             continue
-        below = []
+        inner_nodes = []
         for node in nodes:
             inner = node.get("items") if isinstance(part, int) else None
             inner = inner or node.get("properties", {}).get(part) or _by_pattern(node, part)
             if inner is None and isinstance(node.get("additionalProperties"), dict):
                 inner = node["additionalProperties"]
             if inner:
-                below += _alternatives(schema, inner)
-        nodes = below
+                inner_nodes += _alternatives(schema, inner)
+        nodes = inner_nodes
     return nodes
 
 
@@ -288,9 +299,9 @@ def _by_pattern(node: Schema, part: object) -> Schema | None:
 
 def _alternatives(schema: Schema, node: Schema) -> list[Schema]:
     """Return a node, and what it refers to or offers a choice of."""
-    found = [node]
+    nodes = [node]
     if "$ref" in node:
-        found += _alternatives(schema, schema["$defs"][node["$ref"].rsplit("/", 1)[1]])
+        nodes += _alternatives(schema, schema["$defs"][node["$ref"].rsplit("/", 1)[1]])
     for choice in (*node.get("anyOf", ()), *node.get("oneOf", ())):
-        found += _alternatives(schema, choice)
-    return found
+        nodes += _alternatives(schema, choice)
+    return nodes

@@ -171,21 +171,25 @@ class Job(Part):
 
     def machine(self) -> Mechanism:
         """Return the machine of the job, its numbers as they are given."""
-        own = self.mechanism
-        parts: dict[str, Any] = {"crank": own.crank, "rod": own.rod, "counterweight": own.counterweight}
-        parts |= {"drive": self.drive, "clearance": self.clearance, "arrangement": own.cylinders}
-        parts |= {"speed_profile": own.speed_profile}
+        mechanism = self.mechanism
+        parts: dict[str, Any] = {
+            "crank": mechanism.crank,
+            "rod": mechanism.rod,
+            "counterweight": mechanism.counterweight,
+        }
+        parts |= {"drive": self.drive, "clearance": self.clearance, "arrangement": mechanism.cylinders}
+        parts |= {"speed_profile": mechanism.speed_profile}
         loads = tuple(load.build() for load in self.load)
         return Mechanism(
-            speed=own.crank_speed(turns_per_cycle(loads)),
-            acceleration=own.acceleration,
-            slider_mass=0.0 if own.slider is None else own.slider.mass,
-            slider=SliderDistances() if own.slider is None else own.slider.distances,
-            gravity=own.gravity_vector,
+            speed=mechanism.crank_speed(turns_per_cycle(loads)),
+            acceleration=mechanism.acceleration,
+            slider_mass=0.0 if mechanism.slider is None else mechanism.slider.mass,
+            slider=SliderDistances() if mechanism.slider is None else mechanism.slider.distances,
+            gravity=mechanism.gravity_vector,
             loads=loads,
             tolerances=self.tolerances.build(),
             friction=self.friction.with_pins(None if self.sections is None else self.sections.pins),
-            branch=own.branch,
+            branch=mechanism.branch,
             strength=None if self.sections is None else self.sections.strength(),
             start=self.motion.start,
             **{name: part.build() for name, part in parts.items() if part is not None},
@@ -200,8 +204,8 @@ def job_with(declared: Declared) -> type[Job]:
 
 
 @lru_cache(maxsize=16)  # a form asks for the same job again and again, and each takes as long as reading ten others
-def _job_with(own: tuple[tuple[str, Stated], ...], formulas: tuple[str, ...]) -> type[Job]:
-    constraints, objectives = tables(dict(own), formulas)
+def _job_with(custom_facts: tuple[tuple[str, Stated], ...], formulas: tuple[str, ...]) -> type[Job]:
+    constraints, objectives = tables(dict(custom_facts), formulas)
     choice: Any = choice_with(constraints)
     wishes: Any = Annotated[objectives, AfterValidator(_require_objective)]
     return retyped(Job, choice=tuple[choice, ...], constraints=constraints, objectives=wishes)

@@ -42,32 +42,36 @@ def _swing(
 ) -> Swing | None:
     """Return the swing that a table states; None for a crank that turns through."""
     if kind == _TURN:
-        given = [*ends, *(["duration"] if duration is not None else []), *(["margin"] if margin is not None else [])]
-        given += ["actuator_tolerance"] if actuator_tolerance else []
-        given += [f"driver {driver}"] if driver != "crank" else []
-        given += [f"law {law}"] if law != "slow" else []
-        given += ["law_times or law_shares"] if law_times or law_shares else []
-        given += [f"crank_side {crank_side}"] if crank_side != "left" else []
-        if given:
+        swing_keys = [
+            *ends,
+            *(["duration"] if duration is not None else []),
+            *(["margin"] if margin is not None else []),
+        ]
+        swing_keys += ["actuator_tolerance"] if actuator_tolerance else []
+        swing_keys += [f"driver {driver}"] if driver != "crank" else []
+        swing_keys += [f"law {law}"] if law != "slow" else []
+        swing_keys += ["law_times or law_shares"] if law_times or law_shares else []
+        swing_keys += [f"crank_side {crank_side}"] if crank_side != "left" else []
+        if swing_keys:
             raise InputError(
-                f"keys of a swing must not be given for a rotating crank; got {', '.join(given)}; "
+                f"keys of a swing must not be given for a rotating crank; got {', '.join(swing_keys)}; "
                 'write kind = "swing", or leave them out'
             )
         return None
-    of = _stated(set(ends))
-    start, span = ends[_STARTS[of]], ends.get(_SPANS[of])
-    if of == "crank" and crank_side != "left":
+    end_kind = _stated(set(ends))
+    start, span = ends[_STARTS[end_kind]], ends.get(_SPANS[end_kind])
+    if end_kind == "crank" and crank_side != "left":
         raise InputError(
             f"crank_side may only be given with slider positions; got {crank_side} with crank angles; leave it out"
         )
     return Swing(
         start=start,
-        end=ends[_ENDS[of]] if span is None else start + span,
+        end=ends[_ENDS[end_kind]] if span is None else start + span,
         driver=driver,
         law=law,
         duration=duration,
         actuator_tolerance=actuator_tolerance,
-        stated_for=of,
+        stated_for=end_kind,
         side=crank_side,
         follows=span is not None,
         points=_points(law, law_times, law_shares),
@@ -96,25 +100,26 @@ _SPANS: dict[Stated, str] = {"crank": "swing", "slider": "slider_travel"}
 
 def _stated(keys: set[str]) -> Stated:
     """Return the kind of the ends of a swing. Raises `InputError` unless there is a start, and an end or a span."""
-    found = [of for of in _STARTS if keys & {_STARTS[of], _ENDS[of], _SPANS[of]}]
-    if len(found) > 1:
+    stated_kinds = [end_kind for end_kind in _STARTS if keys & {_STARTS[end_kind], _ENDS[end_kind], _SPANS[end_kind]}]
+    if len(stated_kinds) > 1:
         raise InputError(
             f"a swing must be given by two crank angles or by two slider positions; got {', '.join(sorted(keys))}; "
             "leave out those of one kind"
         )
-    of = found[0] if found else "crank"
-    if _STARTS[of] not in keys or len(keys) < 2:
-        missing = [name for name in (_STARTS[of], _ENDS[of]) if name not in keys]
-        missing = missing if _SPANS[of] not in keys else [_STARTS[of]]
+    end_kind = stated_kinds[0] if stated_kinds else "crank"
+    if _STARTS[end_kind] not in keys or len(keys) < 2:
+        missing = [name for name in (_STARTS[end_kind], _ENDS[end_kind]) if name not in keys]
+        missing = missing if _SPANS[end_kind] not in keys else [_STARTS[end_kind]]
         raise InputError(
-            f"a swing needs two {_PLACES[of]}s, a start and an end; {' and '.join(missing)} is missing; add for "
-            f"example {_EXAMPLES[of]}"
+            f"a swing needs two {_PLACES[end_kind]}s, a start and an end; {' and '.join(missing)} is missing; add for "
+            f"example {_EXAMPLES[end_kind]}"
         )
     if len(keys) > 2:
         raise InputError(
-            f"{_ENDS[of]} is where {_SPANS[of]} leads from {_STARTS[of]}; got all three; leave out one of the first two"
+            f"{_ENDS[end_kind]} is where {_SPANS[end_kind]} leads from {_STARTS[end_kind]}; got all three; leave out "
+            "one of the first two"
         )
-    return of
+    return end_kind
 
 
 _PLACES: dict[Stated, str] = {"crank": "crank angle", "slider": "slider position"}
@@ -202,17 +207,17 @@ else:  # "from" is no name of a field in a class
 def require_swing_asked(swing: Swing | None, objectives: Part, constraints: Part) -> None:
     """Raise JobError if a job asks for a quantity of a swing that its motion does not have."""
     for table, part in (("objectives", objectives), ("constraints", constraints)):
-        for of in swing_facts():
-            if getattr(part, of.name) is None:
+        for quantity in swing_facts():
+            if getattr(part, quantity.name) is None:
                 continue
             if swing is None:
                 raise JobError(
-                    f"{table}.{of.name}: needs a swinging crank; this crank rotates fully; add "
+                    f"{table}.{quantity.name}: needs a swinging crank; this crank rotates fully; add "
                     '[motion] kind = "swing" with from and to, or leave it out'
                 )
-            reason = of.unfit(swing)
+            reason = quantity.unfit(swing)
             if reason is not None:
-                raise JobError(f"{table}.{of.name}: {reason}")
+                raise JobError(f"{table}.{quantity.name}: {reason}")
 
 
 def require_no_speed(varying: Iterable[str]) -> None:
@@ -224,20 +229,25 @@ def require_no_speed(varying: Iterable[str]) -> None:
             )
 
 
-def require_speed(mechanism: CrankSpeedPart, machine: Mechanism, asked: Iterable[Quantity], slow_stroke: bool) -> None:
-    """Raise JobError for a crank that turns through without a speed, if something that the job asks for depends on it.
+def require_speed(
+    mechanism: CrankSpeedPart, machine: Mechanism, quantities: Iterable[Quantity], slow_stroke: bool
+) -> None:
+    """Raise JobError for a fully rotating crank without a speed on which a requirement or objective depends.
 
-    asked: quantities of objectives and constraints. slow_stroke: whether the job asks which stroke is the slow one.
+    quantities: of objectives and constraints. slow_stroke: whether the job states the slow stroke.
     """
     if mechanism.speed_keys:
         return
-    given = [key for key in ("direction", "acceleration", "speed_profile") if getattr(mechanism, key)]
-    follow = [*given, *(["slow_stroke"] if slow_stroke else [])]
-    lacking = ((of, of.undefined_because([machine])) for of in asked)
-    follow += [of.name for of, why in lacking if (SPEED.missing in why if why else of.follows_speed(machine))][:1]
-    if follow:
+    dependent_keys = [key for key in ("direction", "acceleration", "speed_profile") if getattr(mechanism, key)]
+    dependents = [*dependent_keys, *(["slow_stroke"] if slow_stroke else [])]
+    lacking = ((quantity, quantity.undefined_because([machine])) for quantity in quantities)
+    dependents += [
+        quantity.name for quantity, why in lacking if (SPEED.missing in why if why else quantity.follows_speed(machine))
+    ][:1]
+    if dependents:
         raise JobError(
-            f"mechanism.speed: is missing, but required unless cycle_time or strokes_per_minute is given; {follow[0]} "
+            "mechanism.speed: is missing, but required unless cycle_time or strokes_per_minute is given; "
+            f"{dependents[0]} "
             'depends on it; add for example speed = "300 rpm"'
         )
 
@@ -260,7 +270,7 @@ def require_start(varying: Mapping[str, bool]) -> None:
 
 
 def require_apart(motion: Swing | None, varying: tuple[Varying, ...]) -> None:
-    """Raise JobError for a range of starts about an end that stays: swings of next to nothing would be the best."""
+    """Raise JobError if starts may lie on both sides of a fixed end: the best swing would vanish."""
     if motion is None or motion.follows:
         return
     name = _STARTS[motion.stated_for]
@@ -280,10 +290,10 @@ def with_margin(constraints: tuple[Constraint, ...], margin: float | None) -> tu
     if margin is None:
         return constraints
     name = SWING_TRANSMISSION_ANGLE.name
-    own = next((item for item in constraints if item.quantity == name), None)
-    if own is not None and own.lower is not None:
+    constraint = next((item for item in constraints if item.quantity == name), None)
+    if constraint is not None and constraint.lower is not None:
         raise JobError(f"motion.margin: same as the min of constraints.{name}; got both; leave out one of the two")
-    upper = None if own is None else own.upper
+    upper = None if constraint is None else constraint.upper
     if upper is not None and margin > upper:
         raise JobError(
             f"motion.margin: must not exceed constraints.{name}, which is at most "

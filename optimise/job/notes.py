@@ -29,17 +29,17 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
     """
     data, tables = with_options(data)
     job, plain = read_noting(job_with(declared(data, allowed=True)), data)
-    told = [item.note for item in plain if not item.warning]
+    plain_notes = [item.note for item in plain if not item.warning]
     notes = []
-    if told:
-        more = f", and {len(told) - _MOST} more" if len(told) > _MOST else ""
-        notes.append(f"numbers without a unit are read in SI: {', '.join(told[:_MOST])}{more}")
+    if plain_notes:
+        left_over = f", and {len(plain_notes) - _MOST} more" if len(plain_notes) > _MOST else ""
+        notes.append(f"numbers without a unit are read in SI: {', '.join(plain_notes[:_MOST])}{left_over}")
     notes += [note for table in tables for note in _of_catalogue(table)]
     notes += [
-        f"constraints.{name}: larger is better, but max = {toml(given['max'])} excludes larger values; for a minimum "
-        f"write {{ min = {toml(given['max'])} }}"
-        for name, given in data.get("constraints", {}).items()
-        if name in FACTS and FACTS[name].better == "high" and isinstance(given, Mapping) and set(given) == {"max"}
+        f"constraints.{name}: larger is better, but max = {toml(bounds['max'])} excludes larger values; for a minimum "
+        f"write {{ min = {toml(bounds['max'])} }}"
+        for name, bounds in data.get("constraints", {}).items()
+        if name in FACTS and FACTS[name].better == "high" and isinstance(bounds, Mapping) and set(bounds) == {"max"}
     ]
     machine = job.machine()
     moving = machine.crank, machine.rod
@@ -70,20 +70,24 @@ def _of_catalogue(table: Catalogue) -> Iterator[str]:
     """Yield which rows of a catalogue are not searched and why, and columns that may mean something else."""
     few = [f"{row} to {better}" for row, better in table.lost.items()]
     left = table.rows - len(table.lost) - len(table.excluded)
-    told = bool(table.lost or table.excluded)
-    said = [f"of {counted(table.rows, 'row')} {left} {'is' if left == 1 else 'are'} searched"] if told else []
-    said += (
+    has_omissions = bool(table.lost or table.excluded)
+    sentences = (
+        [f"of {counted(table.rows, 'row')} {left} {'is' if left == 1 else 'are'} searched"] if has_omissions else []
+    )
+    sentences += (
         [f"omitted: {_join_first([f'{row} ({why})' for row, why in table.excluded.items()])}"] if table.excluded else []
     )
     if few:
-        said += [
+        sentences += [
             f"{'others' if table.excluded else 'the others'} lose in {_join_all(table.compared)}: {_join_first(few)}"
         ]
-        said += ["each design names the least row that also suffices"]
-    said += [f"not used, but stored with each design: {_join_all(table.idle)}"] if table.idle else []
-    if said:
-        yield f"{table.name}: {'; '.join(said)}"
-    yield from (f"{table.name}: the column {header} is read as {said}" for header, said in table.added.items())
+        sentences += ["each design names the least row that also suffices"]
+    sentences += [f"not used, but stored with each design: {_join_all(table.idle)}"] if table.idle else []
+    if sentences:
+        yield f"{table.name}: {'; '.join(sentences)}"
+    yield from (
+        f"{table.name}: the column {header} is read as {sentences}" for header, sentences in table.added.items()
+    )
 
 
 def _join_all(names: Sequence[str]) -> str:
@@ -95,7 +99,7 @@ def _join_first(lines: Sequence[str]) -> str:
 
 
 def sources_of(data: Mapping[str, Any]) -> list[str]:
-    """Return what was understood of each file of a valid job, the key of its table first."""
+    """Return a summary of each file of a valid job, after the key of its table."""
     mechanism = data["mechanism"]
     places: list[tuple[list[object], Any]] = [
         (["mechanism", "speed_profile"], mechanism.get("speed_profile")),
@@ -119,11 +123,14 @@ def _pins(job: Job) -> list[str]:
         if radius is None:
             continue
         path = f"sections.pins.{name}"
-        varies = path in job.variables.paths or any(path in of.paths for part in job.choice for of in part.option)
+        varies = path in job.variables.paths or any(
+            path in option.paths for part in job.choice for option in part.option
+        )
         if varies or not math.isclose(2.0 * radius, diameter, rel_tol=1e-6):
             notes.append(
                 f"friction.{name}.radius: stays {1e3 * radius:.6g} mm, while {path} "
-                f"{'varies' if varies else f'is a diameter of {1e3 * diameter:.6g} mm'}; leave the radius out, and it "
+                f"{'varies' if varies else f'is a diameter option {1e3 * diameter:.6g} mm'}; leave the radius out, "
+                "and it "
                 "is half of that"
             )
     return notes

@@ -13,9 +13,9 @@ _MOST = 5  # told one by one
 
 def require_options(problem: Problem) -> None:
     """Raise InfeasibleError if no combination of options can have a design."""
-    found = impossible_options(problem)
-    if problem.variants and len(found) == len(problem.variants):
-        label, why = found[0]
+    impossible = impossible_options(problem)
+    if problem.variants and len(impossible) == len(problem.variants):
+        label, why = impossible[0]
         raise InfeasibleError(
             f"choice: at least one option must have a design within the ranges; none has: for {label} {why}; widen "
             "the ranges, relax the constraints, or add another option"
@@ -24,10 +24,10 @@ def require_options(problem: Problem) -> None:
 
 def idle_options(problem: Problem) -> list[str]:
     """Return in words which combinations of options no design can have, and why."""
-    found = [*problem.left_out, *impossible_options(problem)]
-    more = f", and {len(found) - _MOST} more" if len(found) > _MOST else ""
-    told = "; ".join(f"{label}: {why}" for label, why in found[:_MOST])
-    return [f"the front omits options without any design: {told}{more}"] if found else []
+    impossible = [*problem.left_out, *impossible_options(problem)]
+    left_over = f", and {len(impossible) - _MOST} more" if len(impossible) > _MOST else ""
+    reasons = "; ".join(f"{label}: {why}" for label, why in impossible[:_MOST])
+    return [f"the front omits options without any design: {reasons}{left_over}"] if impossible else []
 
 
 def impossible_options(problem: Problem) -> list[tuple[str, str]]:
@@ -52,15 +52,16 @@ def _reasons(problem: Problem, variant: int) -> Iterator[str]:
         yield "no rod in its range exceeds crank + |offset|"
         return
     for constraint in part.constraints:
-        of = part.quantity(constraint.quantity)
-        if part.reach_of(of) is None or not of.of_dimensions:
+        quantity = part.quantity(constraint.quantity)
+        if part.reach_of(quantity) is None or not quantity.of_dimensions:
             continue
-        least, greatest = box.possible(of)
-        room = SLACK * max(abs(least), abs(greatest))
-        face = of.unit
+        least, greatest = box.possible(quantity)
+        rounding = SLACK * max(abs(least), abs(greatest))
+        unit = quantity.unit
         for word, bound in constraint.sides:
-            beyond = word != "max" and bound > greatest + room, word != "min" and bound + room < least
-            if any(beyond):
-                end = f"{(greatest if beyond[0] else least) * face.factor:.6g} {face.symbol}".rstrip()
-                asked = f"{bound * face.factor:.6g} {face.symbol}".rstrip()
-                yield f"{of.title} {word} {asked}, where {'at most' if beyond[0] else 'at least'} {end} is possible"
+            exceeds = word != "max" and bound > greatest + rounding, word != "min" and bound + rounding < least
+            if any(exceeds):
+                end = f"{(greatest if exceeds[0] else least) * unit.factor:.6g} {unit.symbol}".rstrip()
+                bound_text = f"{bound * unit.factor:.6g} {unit.symbol}".rstrip()
+                side = "at most" if exceeds[0] else "at least"
+                yield f"{quantity.title} {word} {bound_text}, where {side} {end} is possible"

@@ -20,24 +20,29 @@ def with_number(job: Part | Mapping[str, Any], path: str, value: Any) -> dict[st
     root, *rest = path.split(".")
     if root not in ROOTS:
         raise LookupError(root)
-    found: dict[str, Any] = _replace_at(job, [root, *rest], value)
-    return found
+    tables: dict[str, Any] = _replace_at(job, [root, *rest], value)
+    return tables
 
 
 def unknown_path(path: str, tables: Mapping[str, Any]) -> str:
-    """Return in words that the tables of a job give no number at a path, or state the crank speed by another key."""
+    """Return the message for a path without a number, or a crank speed under another key."""
     table, _, key = path.partition(".")
-    given = tables.get(table)
-    other = [one for one in SPEED_KEYS if one in given] if isinstance(given, Mapping) and key in SPEED_KEYS else []
-    if table == "mechanism" and other:
+    entries = tables.get(table)
+    speed_keys = (
+        [speed_key for speed_key in SPEED_KEYS if speed_key in entries]
+        if isinstance(entries, Mapping) and key in SPEED_KEYS
+        else []
+    )
+    if table == "mechanism" and speed_keys:
         return (
-            f"must name a number that the job gives; got {path}, but the job gives mechanism.{other[0]}; give {key} in "
-            f"[mechanism] in place of {other[0]}"
+            f"must name a number that the job gives; got {path}, but the job gives mechanism.{speed_keys[0]}; give "
+            f"{key} in "
+            f"[mechanism] in place of {speed_keys[0]}"
         )
     several = _several(path, tables)
     if several:
         return several
-    near = closest(path, [known for known, value in _leaves(tables, "") if _is_plain(value)])
+    near = closest(path, [known_path for known_path, value in _leaves(tables, "") if _is_plain(value)])
     hint = (
         f"did you mean {near}?" if near else f"give it in [{path.partition('.')[0]}] first, as single designs have it"
     )
@@ -45,15 +50,15 @@ def unknown_path(path: str, tables: Mapping[str, Any]) -> str:
 
 
 def _several(path: str, tables: Mapping[str, Any]) -> str:
-    """Return in words that a path names a table, or a list or a value in one; "" if it does not."""
-    part, whole = _reached(path, tables)
+    """Return the message for a path to a table, a list or a value in one; else ""."""
+    part, is_complete = _reached(path, tables)
     if isinstance(part, list | tuple) and part and not any(isinstance(item, Mapping) for item in part):
         return (
-            f"must name a single number; got {path}{',' if whole else ' from'} a list of {len(part)} values; the "
+            f"must name a single number; got {path}{',' if is_complete else ' from'} a list of {len(part)} values; the "
             "values in a list, such as the points of a table, cannot vary; solve a job for each list"
         )
-    if whole and isinstance(part, Mapping):
-        number = next((known for known, value in _leaves(part, path) if _is_number(value)), None)
+    if is_complete and isinstance(part, Mapping):
+        number = next((known_path for known_path, value in _leaves(part, path) if _is_number(value)), None)
         named = f"; did you mean {number}?" if number else " without a number that can vary"
         return f"must name a number that the job gives; got {path}, a table{named}"
     return ""

@@ -12,13 +12,13 @@ from ..problem.problem import Problem
 
 def require_room_for_pins(problem: Problem) -> None:
     """Raise `InfeasibleError` if stresses are requested and no choice has eyes wider than their pins."""
-    asked = {*(of.quantity for of in problem.constraints), *(of.quantity for of in problem.objectives)}
-    found = [of for of in map(problem.quantity, asked) if isinstance(of, LinkStress)]
-    if not found:
+    names = {*(item.quantity for item in problem.constraints), *(item.quantity for item in problem.objectives)}
+    stresses = [item for item in map(problem.quantity, names) if isinstance(item, LinkStress)]
+    if not stresses:
         return
     refused = []
     for part in problem.parts():
-        links = {link for of in found for link in of.bars(part.mechanism)}
+        links = {link for item in stresses for link in item.bars(part.mechanism)}
         reasons = [reason for link in sorted(links) for reason in _too_thick(part.mechanism, link)]
         if not reasons:
             return
@@ -41,8 +41,8 @@ def _too_thick(mechanism: Mechanism, link: str) -> list[str]:
 def _ends(mechanism: Mechanism, path: str) -> tuple[float, ...]:
     """Return the ends between which a number of a machine may vary, or its only value."""
     for item in mechanism.varying:
-        for own, factor in item.sets:
-            if own == path:
+        for set_path, factor in item.sets:
+            if set_path == path:
                 return factor * item.lower, factor * item.upper
     value = number_at(mechanism.nominal, path)
     assert value is not None

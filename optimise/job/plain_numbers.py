@@ -1,4 +1,4 @@
-"""Numbers of a job without a unit, which are in SI: where they stand, and which ones probably mean another unit."""
+"""Numbers of a job without a unit, read in SI: their keys, and which ones probably mean another unit."""
 
 from __future__ import annotations
 
@@ -48,27 +48,27 @@ class PlainNumbers:
             return None
         number = (doubtful or numbers)[0]
         text = toml(self.value)
-        given = text if len(text) <= _LONGEST else quote(self.value)
-        what = "mixes numbers with and without a unit" if mixed else "has no unit"
-        what = f"{what} and is" if number == self.value else f"{what}: {number:g} is"
+        value_text = text if len(text) <= _LONGEST else quote(self.value)
+        doubt = "mixes numbers with and without a unit" if mixed else "has no unit"
+        doubt = f"{doubt} and is" if number == self.value else f"{doubt}: {number:g} is"
         read = f'"{number:g} {self.kind.unit}"'
-        said = f"{self.key} = {given} {what} read as {read[1:-1]}{self._usual(number, ' ({})')}"
+        sentence = f"{self.key} = {value_text} {doubt} read as {read[1:-1]}{self._usual(number, ' ({})')}"
         usual = f"{number:g} {self.kind.metric.symbol}"
         every = isinstance(self.value, list | tuple) and len(doubtful) == len(self.value) > 1
         if self.kind.believed is not None and abs(number) < self.kind.believed[0]:
-            return f"{said}; write it with its unit"
+            return f"{sentence}; write it with its unit"
         if usual == read[1:-1]:
-            return f"{said}; write {read}"
+            return f"{sentence}; write {read}"
         if every and len(text) <= _LONGEST:
             in_usual, in_si = (
-                toml([f"{one:g} {unit}" for one in numbers]) for unit in (self.kind.metric.symbol, self.kind.unit)
+                toml([f"{plain:g} {unit}" for plain in numbers]) for unit in (self.kind.metric.symbol, self.kind.unit)
             )
-            return f"{said}; if you mean {self.kind.metric.symbol}, write {in_usual}, otherwise {in_si}"
-        return f'{said}; if you mean {usual}, write "{usual}", otherwise {read}'
+            return f"{sentence}; if you mean {self.kind.metric.symbol}, write {in_usual}, otherwise {in_si}"
+        return f'{sentence}; if you mean {usual}, write "{usual}", otherwise {read}'
 
     def concerns(self, key: str) -> bool:
         """Return whether the value stands at a key of the job, in it, or in the table of it."""
-        return any(f"{one}.".startswith(f"{other}.") for one, other in ((self.key, key), (key, self.key)))
+        return any(f"{inner}.".startswith(f"{outer}.") for inner, outer in ((self.key, key), (key, self.key)))
 
     def _usual(self, number: float, form: str) -> str:
         """Return the number in the usual unit in a form of words; "" if that is the SI unit."""
@@ -79,17 +79,17 @@ class PlainNumbers:
 def read_noting(
     job: type[Table], data: Mapping[str, Any], values: Mapping[str, Any] | None = None
 ) -> tuple[Table, list[PlainNumbers]]:
-    """Return the tables of a job as it reads them, and the numbers without a unit there, but for ratios and counts.
+    """Return the tables of a job as read, and their numbers without a unit except ratios and counts.
 
     values: put in place of numbers of the job, by their paths, in what is noted. Raises `ValidationError`.
     """
-    read, found = _placed(job, data)
+    read, placed_numbers = _placed(job, data)
     read = job.model_validate(data) if read is None else read
-    placed = {path: PlainNumbers(key, value, kind) for path, key, value, kind in found}
+    placed = {path: PlainNumbers(key, value, kind) for path, key, value, kind in placed_numbers}
     for path in values or ():
         placed.pop(path, None)
-    given = [(path, path, value) for path, value in (values or {}).items()]
-    varying = [item for item in (*given, *_varying(data)) if plain_in(item[2])]
+    stated = [(path, path, value) for path, value in (values or {}).items()]
+    varying = [item for item in (*stated, *_varying(data)) if plain_in(item[2])]
     if not varying:
         return read, list(placed.values())
     tried: Mapping[str, Any] = data
@@ -99,22 +99,22 @@ def read_noting(
         except LookupError:  # a word of the table, such as the name of a series
             continue
     kinds = {path: kind for path, _, _, kind in _placed(job, tried)[1]}
-    more = [PlainNumbers(key, value, kinds[path]) for key, path, value in varying if path in kinds]
-    return read, [*placed.values(), *more]
+    further = [PlainNumbers(key, value, kinds[path]) for key, path, value in varying if path in kinds]
+    return read, [*placed.values(), *further]
 
 
 def plain_values(job: type[Part], data: Mapping[str, Any]) -> list[PlainNumbers]:
-    """Return the numbers without a unit that stand in their own places, in the tables of a job that may be invalid."""
+    """Return the numbers without a unit in the tables of a job that may be invalid."""
     return [PlainNumbers(key, value, kind) for _, key, value, kind in _placed(job, data)[1]]
 
 
 def plain_bounds(problem: Problem, data: Mapping[str, Any]) -> Iterator[PlainNumbers]:
     """Yield the bounds and targets without a unit of formulas, whose kinds the problem of a job knows."""
     for table in ("constraints", "objectives"):
-        for name, given in data.get(table, {}).items():
-            if name not in FACTS and isinstance(given, Mapping):
+        for name, bounds in data.get(table, {}).items():
+            if name not in FACTS and isinstance(bounds, Mapping):
                 kind = problem.quantity(name).kind
-                for word, value in given.items():
+                for word, value in bounds.items():
                     if plain_in(value) and kind.unit and not kind.amount:
                         yield PlainNumbers(key_of([table, name, word]), value, kind)
 
@@ -124,7 +124,7 @@ def _placed(job: type[Table], data: Mapping[str, Any]) -> tuple[Table | None, li
 
     Of each that has a place of its own dotted path, key, value and kind.
     """
-    found = []
+    placed = []
     try:
         return job.model_validate(data, context=PLAIN), []
     except ValidationError as error:
@@ -134,8 +134,8 @@ def _placed(job: type[Table], data: Mapping[str, Any]) -> tuple[Table | None, li
                 keys = keys[:-1] if isinstance(keys[-1], int) else keys  # of a list, as a whole
                 value = reduce(getitem, keys, data)
                 path = ".".join(str(key + 1) if isinstance(key, int) else key for key in keys)
-                found.append((path.removeprefix("variables."), key_of(keys), value, details["ctx"]["kind"]))
-    return None, found
+                placed.append((path.removeprefix("variables."), key_of(keys), value, details["ctx"]["kind"]))
+    return None, placed
 
 
 def _varying(data: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]]:

@@ -57,19 +57,23 @@ class Bounds(Part):
         if lower is None and upper is None and equals is None:
             raise InputError("must have min, max or equals; got an empty table; add one of the three")
         if equals is not None and not (lower is None and upper is None):
-            given = data if isinstance(data, Mapping) else {"equals": equals, "min": lower, "max": upper}
-            got = " and ".join(f"{word} {quote(given[word])}" for word in ("equals", "min", "max") if word in given)
-            raise InputError(f"equals cannot be combined with min or max; got {got}; leave out equals or the other")
-        both = isinstance(lower, float) and isinstance(upper, float)  # a formula is a text still
-        if both and lower > upper:
+            stated = data if isinstance(data, Mapping) else {"equals": equals, "min": lower, "max": upper}
+            bounds_text = " and ".join(
+                f"{word} {quote(stated[word])}" for word in ("equals", "min", "max") if word in stated
+            )
+            raise InputError(
+                f"equals cannot be combined with min or max; got {bounds_text}; leave out equals or the other"
+            )
+        both_numbers = isinstance(lower, float) and isinstance(upper, float)  # a formula is a text still
+        if both_numbers and lower > upper:
             raise InputError(_crossed(data if isinstance(data, Mapping) else {"min": lower, "max": upper}))
         return bounds
 
 
-def _crossed(given: Mapping[Any, object]) -> str:
+def _crossed(bounds: Mapping[Any, object]) -> str:
     return (
-        f"min must not exceed max; got min {quote(given['min'])} and max {quote(given['max'])}; "
-        f"{swap(given['min'], given['max'])} or leave out one"
+        f"min must not exceed max; got min {quote(bounds['min'])} and max {quote(bounds['max'])}; "
+        f"{swap(bounds['min'], bounds['max'])} or leave out one"
     )
 
 
@@ -93,9 +97,12 @@ class _Bound(Physical):
         return super().read(value)
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        found = super().__get_pydantic_json_schema__(schema, handler)
-        about = {key: found.pop(key) for key in ("description", "examples")}
-        return {"anyOf": [*found.get("anyOf", [found]), {"type": "string", "pattern": _NAMED}], **about}
+        value_schema = super().__get_pydantic_json_schema__(schema, handler)
+        annotations = {key: value_schema.pop(key) for key in ("description", "examples")}
+        return {
+            "anyOf": [*value_schema.get("anyOf", [value_schema]), {"type": "string", "pattern": _NAMED}],
+            **annotations,
+        }
 
 
 class _Raw(Physical):
@@ -139,8 +146,8 @@ def _sense(value: object) -> object:
         if value in SENSES and value != "target":
             return SENSES[value]
         near = closest(value, ("minimise", "maximise"))
-        meant = f'; did you mean "{near}"?' if near else ""
-        raise InputError(f"must be {_WANTED}; got {quote(value)}{meant}")
+        hint = f'; did you mean "{near}"?' if near else ""
+        raise InputError(f"must be {_WANTED}; got {quote(value)}{hint}")
     if not isinstance(value, Mapping | Target):
         raise InputError(f"must be {_WANTED}; got {quote(value)}")
     return value
@@ -192,17 +199,17 @@ class _Table(Part):
     def _together(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         """Return the table as a job has it, its formulas among the other keys."""
         data: dict[str, Any] = handler(self)
-        own: dict[str, Any] = data.pop("formulas", data.pop(_KEY, {}))
-        return data | own
+        formulas: dict[str, Any] = data.pop("formulas", data.pop(_KEY, {}))
+        return data | formulas
 
     @classmethod
     def _is_formula(cls, key: str) -> bool:
-        own = key in cls.model_fields or key == _KEY
-        return key in cls.named or (not own and _IS_FORMULA.search(key) is not None)
+        is_key = key in cls.model_fields or key == _KEY
+        return key in cls.named or (not is_key and _IS_FORMULA.search(key) is not None)
 
 
 class Stated(NamedTuple):
-    """Facts of a quantity that the tables of a job have: title, kind, a usual value, and which bound it mostly has."""
+    """Facts of a quantity for the tables of a job: title, kind, usual value and usual bound."""
 
     title: str
     kind: Kind
@@ -210,22 +217,23 @@ class Stated(NamedTuple):
     bound: Literal["min", "max"] = "min"
 
 
-def tables(own: Mapping[str, Stated], named: Iterable[str] = ()) -> tuple[type[Part], type[Part]]:
+def tables(custom_facts: Mapping[str, Stated], named: Iterable[str] = ()) -> tuple[type[Part], type[Part]]:
     """Return the tables [constraints] and [objectives]: one optional key for each quantity.
 
-    own: quantities that a job has besides those that every job has. named: its formulas that have a name.
+    custom_facts: quantities that a job has besides those that every job has. named: its formulas that have a name.
     """
     limits: dict[str, Any] = {}
     wishes: dict[str, Any] = {}
-    made: dict[Kind, tuple[Any, Any]] = {}
-    names = frozenset((*own, *named))
-    known = {
-        name: Stated(of.title, of.kind, of.usual, "max" if of.better == "low" else "min") for name, of in FACTS.items()
+    forms: dict[Kind, tuple[Any, Any]] = {}
+    names = frozenset((*custom_facts, *named))
+    product_facts = {
+        name: Stated(fact.title, fact.kind, fact.usual, "max" if fact.better == "low" else "min")
+        for name, fact in FACTS.items()
     }
-    for name, (title, kind, example, bound) in (known | dict(own)).items():
-        if kind not in made:
-            made[kind] = _forms(kind, names)
-        bounds, wish = made[kind]
+    for name, (title, kind, example, bound) in (product_facts | dict(custom_facts)).items():
+        if kind not in forms:
+            forms[kind] = _forms(kind, names)
+        bounds, wish = forms[kind]
         limits[name] = (bounds | None, optional(title, {bound: example}))
         wishes[name] = (wish | None, optional(title, "minimise", {"target": example}))
     slow = optional("the slow stroke; determines offset and direction of rotation", "outward")
@@ -248,8 +256,8 @@ def _forms(kind: Kind, names: frozenset[str]) -> tuple[Any, Any]:
     help_of = {"min": "least", "max": "greatest", "equals": "exact value"}
     limits: Any = {word: (bound | None, optional(text, *example)) for word, text in help_of.items()}
     bounds = create_model(f"{name}Bounds", __base__=Bounds, **limits)
-    wanted: Any = {"target": (value, required("to come near to", *example))}
-    target = create_model(f"{name}Target", __base__=Target, **wanted)
+    target_field: Any = {"target": (value, required("to come near to", *example))}
+    target = create_model(f"{name}Target", __base__=Target, **target_field)
     return bounds, _wish(target)
 
 
@@ -280,29 +288,29 @@ def constraints_of(
     for name, bounds in _entries(part):
         if name == SLOW_STROKE:
             continue
-        given = {word: value for word in WORDS if (value := getattr(bounds, word)) is not None}
-        if all(isinstance(value, float) for value in given.values()) and name in FACTS:
-            yield Constraint(quantity=name, **_ends(given))
+        stated_bounds = {word: value for word in WORDS if (value := getattr(bounds, word)) is not None}
+        if all(isinstance(value, float) for value in stated_bounds.values()) and name in FACTS:
+            yield Constraint(quantity=name, **_ends(stated_bounds))
         elif formulas is not None:
-            yield from _bounded(f"{key}{key_of([name])}", name, given, formulas)
+            yield from _bounded(f"{key}{key_of([name])}", name, stated_bounds, formulas)
 
 
-def _bounded(key: str, name: str, given: Mapping[Word, object], formulas: Formulas) -> Iterator[Constraint]:
+def _bounded(key: str, name: str, bounds: Mapping[Word, object], formulas: Formulas) -> Iterator[Constraint]:
     """Yield the constraints of a formula, or of a quantity bounded by formulas: those on one quantity together."""
     of = formulas.quantity(name, key)
-    found: dict[str, dict[Word, float]] = {}
-    for word, value in given.items():
+    merged_bounds: dict[str, dict[Word, float]] = {}
+    for word, value in bounds.items():
         bounded, bound = formulas.bound(of, value, f"{key}.{word}")
-        found.setdefault(bounded.name, {})[word] = bound
-    for quantity, ends in found.items():
+        merged_bounds.setdefault(bounded.name, {})[word] = bound
+    for quantity, ends in merged_bounds.items():
         if "min" in ends and "max" in ends and ends["min"] > ends["max"]:
-            raise JobError(f"{key}: {_crossed(given)}")
+            raise JobError(f"{key}: {_crossed(bounds)}")
         yield Constraint(quantity=quantity, **_ends(ends))
 
 
-def _ends(given: Mapping[Word, Any]) -> dict[str, float | None]:
-    equals = given.get("equals")
-    return {"lower": given.get("min", equals), "upper": given.get("max", equals)}
+def _ends(bounds: Mapping[Word, Any]) -> dict[str, float | None]:
+    equals = bounds.get("equals")
+    return {"lower": bounds.get("min", equals), "upper": bounds.get("max", equals)}
 
 
 def _entries(part: Part) -> Iterator[tuple[str, Any]]:

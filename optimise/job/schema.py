@@ -21,11 +21,11 @@ def _without_null(node: Any) -> Any:
         return [_without_null(item) for item in node]
     if not isinstance(node, dict):
         return node
-    kept = {key: _without_null(item) for key, item in node.items()}
-    if kept.get("default", 0) is None or isinstance(kept.get("default"), dict):
-        del kept["default"]
-    choices = [choice for choice in kept.get("anyOf", ()) if choice != {"type": "null"}]
-    if len(choices) == 1 and len(kept["anyOf"]) == 2:
-        del kept["anyOf"]
-        return {**choices[0], **kept}
-    return {**kept, "anyOf": choices} if choices else kept
+    entries = {key: _without_null(item) for key, item in node.items()}
+    if entries.get("default", 0) is None or isinstance(entries.get("default"), dict):
+        del entries["default"]
+    choices = [choice for choice in entries.get("anyOf", ()) if choice != {"type": "null"}]
+    if len(choices) == 1 and len(entries["anyOf"]) == 2:
+        del entries["anyOf"]
+        return {**choices[0], **entries}
+    return {**entries, "anyOf": choices} if choices else entries

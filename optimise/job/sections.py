@@ -123,10 +123,10 @@ class SectionsPart(Checked[SectionLimits]):
 
     def build(self) -> SectionLimits:
         """Return the limits as the sizing has them."""
-        own = dict(self)
+        entries = dict(self)
         for name in ("material", "pins", "wear_coefficient"):
-            own.pop(name)
-        return SectionLimits(**dict(self.pins), **own)
+            entries.pop(name)
+        return SectionLimits(**dict(self.pins), **entries)
 
     def strength(self) -> Strength:
         """Return material and pins as quantities have them."""

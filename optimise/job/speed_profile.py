@@ -122,15 +122,18 @@ def _over_turn(curve: Curve) -> Curve:
         raise InputError(
             f"{curve.name}: a record over time must cover at least one turn; got {turned[-1]:.6g} deg; record longer"
         )
-    kept = np.flatnonzero(turned < 360.0 - near)  # a point closer than that repeats the first one
+    in_turn = np.flatnonzero(turned < 360.0 - near)  # a point closer than that repeats the first one
     end = float(CubicSpline(turned, rpm)(360.0))
     if abs(end - rpm[0]) > 0.02 * abs(rpm[0]):
         raise InputError(
             f"{curve.name}: the speed must repeat after a turn, within 2 %; got {rpm[0]:.6g} rpm at its start and "
             f"{end:.6g} rpm at its end; record steady running"
         )
-    angles = np.mod(way * turned[kept], 360.0)
+    angles = np.mod(way * turned[in_turn], 360.0)
     order = np.argsort(angles, kind="stable")
-    over, of = curve.argument_head._replace(kind=ANGLE, unit="deg"), curve.value_head._replace(unit="rpm")
-    said = (*curve.notes, f"the first of {turned[-1] / 360.0:.4g} turns over time")
-    return Curve(curve.name, over, of, angles[order], rpm[kept][order], said)
+    argument_head, value_head = (
+        curve.argument_head._replace(kind=ANGLE, unit="deg"),
+        curve.value_head._replace(unit="rpm"),
+    )
+    notes = (*curve.notes, f"the first of {turned[-1] / 360.0:.4g} turns over time")
+    return Curve(curve.name, argument_head, value_head, angles[order], rpm[in_turn][order], notes)

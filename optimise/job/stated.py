@@ -45,37 +45,37 @@ def problem_of(
     chosen = {path for part in job.choice for option in part.option for path in option.paths}
     if motion is not None:
         require_no_speed({*variables.paths, *chosen})
-    chosen |= {path for path, given in variables.paths.items() if is_choice(given)}
+    chosen |= {path for path, stated_value in variables.paths.items() if is_choice(stated_value)}
     require_start({path: path in chosen for path in {**variables.paths, **dict.fromkeys(chosen)}})
     require_swing_asked(motion, job.objectives, job.constraints)
     machine = varying_machine(job)
     require_apart(motion, machine.varying)
     amounts = amounts_of({part.name: [option.amounts for option in part.option] for part in job.choice}, job.quantity)
-    own = (
+    custom = (
         *amounts,
         *(() if job.target_motion is None else motion_deviations(job.target_motion.build())),
         *functions_of(job.quantity, folder),
         *installed,
         *(() if motion is None else swing_quantities(motion)),
     )
-    formulas = Formulas(own, machine, reach_of(job), formulas_of(job.quantity), turning=motion is None)
+    formulas = Formulas(custom, machine, reach_of(job), formulas_of(job.quantity), turning=motion is None)
     choices, variants, catalogue = variants_of(job, formulas, {of.name: of for of in amounts})
     objectives = tuple(objectives_of(job.objectives, formulas))
     constraints = with_margin(_joined(constraints_of(job.constraints, formulas), formulas), job.motion.margin_asked)
-    asked = {item.quantity for item in objectives} | {item.quantity for item in constraints}
-    missing = [of for of in amounts if of.name in asked]
-    known = QUANTITIES | {of.name: of for of in (*own, *formulas.formula_quantities.values())}
-    variants, left_out = _possible(variants, constraints, known, missing)
-    catalogue, _ = _possible(catalogue, constraints, known, missing)
+    named_quantities = {item.quantity for item in objectives} | {item.quantity for item in constraints}
+    missing = [of for of in amounts if of.name in named_quantities]
+    quantities = QUANTITIES | {of.name: of for of in (*custom, *formulas.formula_quantities.values())}
+    variants, left_out = _possible(variants, constraints, quantities, missing)
+    catalogue, _ = _possible(catalogue, constraints, quantities, missing)
     if choices and not variants:
         if require_feasible:
             raise no_option(left_out)
         choices, catalogue = (), ()  # what a design is judged by does not depend on them
     limits = [*constraints, *(limit for variant in variants for limit in variant.limits)]
-    named = {*asked, *(item.quantity for item in limits)}
+    named = {*named_quantities, *(item.quantity for item in limits)}
     if motion is None:
         slow = bool(slow_stroke_of(job.constraints) or any(variant.slow_stroke for variant in variants))
-        require_speed(job.mechanism, machine, [known[name] for name in sorted(named)], slow)
+        require_speed(job.mechanism, machine, [quantities[name] for name in sorted(named)], slow)
     problem = Problem(
         name=job.name,
         mechanism=machine,
@@ -95,8 +95,12 @@ def problem_of(
         sections=None if job.sections is None else job.sections.build(),
         settings=job.optimiser.build(),
         own=(
-            *own,
-            *(made for name, made in formulas.formula_quantities.items() if name in job.quantity or name in named),
+            *custom,
+            *(
+                formula
+                for name, formula in formulas.formula_quantities.items()
+                if name in job.quantity or name in named
+            ),
         ),
     )
     _require_shorter(problem)
@@ -113,9 +117,9 @@ def problem_of(
 
 def _require_shorter(problem: Problem) -> None:
     """Refuse a tolerance that is as long as its link may be: a unit is wrong."""
-    for own in problem.variants or (problem,):
-        for name, ends in (("crank", own.crank), ("rod", own.rod)):
-            limit = getattr(own.mechanism.fullest.tolerances, name).limit(ends.lower)
+    for part in problem.variants or (problem,):
+        for name, ends in (("crank", part.crank), ("rod", part.rod)):
+            limit = getattr(part.mechanism.fullest.tolerances, name).limit(ends.lower)
             if limit >= ends.lower:
                 raise JobError(
                     f"tolerances.{name}: must be less than the {name} itself, which may be {1e3 * ends.lower:g} mm; "
@@ -128,68 +132,74 @@ def _joined(constraints: Iterable[Constraint], formulas: Formulas) -> tuple[Cons
 
     Raises `InfeasibleError` if they leave nothing.
     """
-    found: dict[str, Constraint] = {}
+    joined: dict[str, Constraint] = {}
     for constraint in constraints:
         name = constraint.quantity
         try:
-            (found[name],) = merged((found.get(name, constraint), constraint))
+            (joined[name],) = merged((joined.get(name, constraint), constraint))
         except InputError:
-            asked = _bounds_text((found[name], constraint), formulas.formula_quantities[name])
+            bounds_text = _bounds_text((joined[name], constraint), formulas.formula_quantities[name])
             raise InfeasibleError(
                 f"{key_of(['constraints', name])}: the requirements on one formula must not contradict each other; "
-                f"got {asked}; leave out one of them"
+                f"got {bounds_text}; leave out one of them"
             ) from None
-    return tuple(found.values())
+    return tuple(joined.values())
 
 
 def _possible(
     variants: tuple[Variant, ...],
     constraints: tuple[Constraint, ...],
-    known: Mapping[str, Quantity],
-    asked: Iterable[Quantity],
+    quantities: Mapping[str, Quantity],
+    required: Iterable[Quantity],
 ) -> tuple[tuple[Variant, ...], tuple[tuple[str, str], ...]]:
     """Return the variants whose limits leave something of the job's constraints; labels of the others, and why not.
 
-    known: quantities by name. asked: amounts that a variant must have.
+    quantities: quantities by name. required: amounts that a variant must have.
     """
-    reasons = [_missing(variant, asked) or _contradiction(variant, constraints, known) for variant in variants]
+    reasons = [_missing(variant, required) or _contradiction(variant, constraints, quantities) for variant in variants]
     left_out = tuple(
         (", ".join(variant.labels), why) for variant, why in zip(variants, reasons, strict=True) if why is not None
     )
     return tuple(variant for variant, why in zip(variants, reasons, strict=True) if why is None), left_out
 
 
-def _missing(variant: Variant, asked: Iterable[Quantity]) -> str | None:
+def _missing(variant: Variant, required: Iterable[Quantity]) -> str | None:
     """Return in words which amount that is asked for a variant does not have; None if there is no such."""
-    had = dict(variant.amounts)
-    return next((f"no {of.title}, which the job requires" for of in asked if of.name not in had), None)
+    amounts = dict(variant.amounts)
+    return next(
+        (f"no {quantity.title}, which the job requires" for quantity in required if quantity.name not in amounts), None
+    )
 
 
-def _contradiction(variant: Variant, constraints: Iterable[Constraint], known: Mapping[str, Quantity]) -> str | None:
+def _contradiction(
+    variant: Variant, constraints: Iterable[Constraint], quantities: Mapping[str, Quantity]
+) -> str | None:
     """Return in words which limit of a variant leaves nothing of a constraint; None if there is no such."""
-    given = {of.quantity: of for of in constraints}
+    constraint_by_name = {item.quantity: item for item in constraints}
     for name, value in variant.amounts:
-        own = given.get(name)
-        if own is not None and violated_by(own, np.array([value]))[0] > FEASIBLE:
-            face = known[name].unit
+        constraint = constraint_by_name.get(name)
+        if constraint is not None and violated_by(constraint, np.array([value]))[0] > FEASIBLE:
+            unit = quantities[name].unit
             word, bound = next(
                 (word, bound)
-                for word, bound in own.sides
+                for word, bound in constraint.sides
                 if (value < bound and word != "max") or (value > bound and word != "min")
             )
-            texts = [f"{number * face.factor:.6g} {face.symbol}".rstrip() for number in (value, bound)]
-            return excluded_in_words(known[name].title, texts[0], word, texts[1])
+            texts = [f"{number * unit.factor:.6g} {unit.symbol}".rstrip() for number in (value, bound)]
+            return excluded_in_words(quantities[name].title, texts[0], word, texts[1])
     for limit in variant.limits:
         name = limit.quantity
-        both = (given[name], limit) if name in given else (limit,)
+        pair = (constraint_by_name[name], limit) if name in constraint_by_name else (limit,)
         try:
-            (given[name],) = merged(both)
+            (constraint_by_name[name],) = merged(pair)
         except InputError:
-            return f"{known[name].title} {_bounds_text(both, known[name])}, which exclude each other"
+            return f"{quantities[name].title} {_bounds_text(pair, quantities[name])}, which exclude each other"
     return None
 
 
-def _bounds_text(constraints: Iterable[Constraint], of: Quantity) -> str:
+def _bounds_text(constraints: Iterable[Constraint], quantity: Quantity) -> str:
     """Return in words what constraints ask of a quantity."""
     sides = (side for item in constraints for side in item.sides)
-    return " and ".join(f"{word} {bound * of.unit.factor:.6g} {of.unit.symbol}".rstrip() for word, bound in sides)
+    return " and ".join(
+        f"{word} {bound * quantity.unit.factor:.6g} {quantity.unit.symbol}".rstrip() for word, bound in sides
+    )

@@ -52,9 +52,9 @@ class StatedFormula:
 def own_names(tables: Mapping[str, Any]) -> list[OwnName]:
     """Return the names that formulas may have in this job alone: its own quantities, and the numbers that vary."""
     kinds = _Kinds(tables)
-    own = [OwnName(name, _title(name, part), kinds.quantity_kind(name)) for name, part in kinds.stated.items()]
-    own += [OwnName(name, name.replace("_", " "), kind) for name, kind in kinds.amounts.items()]
-    return [*own, *(OwnName(path, number_in_words(path), kind) for path, kind in kinds.varying)]
+    names = [OwnName(name, _title(name, part), kinds.quantity_kind(name)) for name, part in kinds.stated.items()]
+    names += [OwnName(name, name.replace("_", " "), kind) for name, kind in kinds.amounts.items()]
+    return [*names, *(OwnName(path, number_in_words(path), kind) for path, kind in kinds.varying)]
 
 
 def stated_formulas(tables: Mapping[str, Any]) -> list[StatedFormula]:
@@ -78,8 +78,8 @@ def _formulas(tables: Mapping[str, Any], kinds: _Kinds) -> Iterator[tuple[str, s
         if isinstance(part.get("formula"), str):
             yield key_of(["quantity", name, "formula"]), part["formula"]
     for table in ("constraints", "objectives"):
-        given = tables.get(table)
-        for name, bounds in given.items() if isinstance(given, Mapping) else ():
+        entries = tables.get(table)
+        for name, bounds in entries.items() if isinstance(entries, Mapping) else ():
             if not isinstance(name, str) or name == SLOW_STROKE:
                 continue
             if name not in FACTS:
@@ -102,14 +102,14 @@ class _Kinds:
         with suppress(InputError):  # a table that is wrong, which the job says
             tables = with_options(tables)[0]
         self.amounts = kinds_of_amounts(amounts_in(tables))
-        own = tables.get("quantity")
-        given = own.items() if isinstance(own, Mapping) else ()
+        quantity_tables = tables.get("quantity")
+        entries = quantity_tables.items() if isinstance(quantity_tables, Mapping) else ()
         self.stated = {
-            name: part for name, part in islice(given, _MOST) if isinstance(name, str) and isinstance(part, Mapping)
+            name: part for name, part in islice(entries, _MOST) if isinstance(name, str) and isinstance(part, Mapping)
         }
         self.varying = [(path, _kind_of(value)) for path, value in islice(varying_in(tables).items(), _MOST)]
         self._known: dict[str, Kind | None] = dict.fromkeys(DIMENSIONS, LENGTH)
-        self._known |= dict(self.varying) | {name: of.kind for name, of in FACTS.items()} | self.amounts
+        self._known |= dict(self.varying) | {name: fact.kind for name, fact in FACTS.items()} | self.amounts
         self.names = frozenset((*self._known, *self.stated))
         self._units = Units(self.names)
 
@@ -118,13 +118,13 @@ class _Kinds:
         if not text.strip():
             raise InputError('is missing; write a formula such as "offset - 2 * crank"')
         node = parse(text, self._units)
-        found = {}
+        kinds = {}
         for name in names_in(node):
             if name not in self.names:
                 raise unknown_name(name, [*self._known, *self.stated], self._units, text)
-            found[name] = self.quantity_kind(name)
-        known = {name: kind for name, kind in found.items() if kind is not None}
-        return kind_of_formula(node, known) if len(known) == len(found) else None
+            kinds[name] = self.quantity_kind(name)
+        known_kinds = {name: kind for name, kind in kinds.items() if kind is not None}
+        return kind_of_formula(node, known_kinds) if len(known_kinds) == len(kinds) else None
 
     def quantity_kind(self, name: str) -> Kind | None:
         """Return the kind of a quantity of the job's own; None while it is not known."""
@@ -143,12 +143,12 @@ class _Kinds:
             return None
 
 
-def _kind_of(given: object) -> Kind | None:
+def _kind_of(value: object) -> Kind | None:
     """Return the kind of the first value with a unit in a range, choices or a table of values."""
-    if isinstance(given, Mapping):
-        return next((kind for item in given.values() if (kind := _kind_of(item))), None)
-    if isinstance(given, list | tuple):
-        return next((kind for item in given[:2] if (kind := _kind_of(item))), None)
-    if not (isinstance(given, str) and is_value(given)):
+    if isinstance(value, Mapping):
+        return next((kind for item in value.values() if (kind := _kind_of(item))), None)
+    if isinstance(value, list | tuple):
+        return next((kind for item in value[:2] if (kind := _kind_of(item))), None)
+    if not (isinstance(value, str) and is_value(value)):
         return None
-    return kind_for(given.strip().lstrip("+-.0123456789eE").strip())
+    return kind_for(value.strip().lstrip("+-.0123456789eE").strip())

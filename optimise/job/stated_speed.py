@@ -18,16 +18,16 @@ def stated_speed(data: Mapping[str, Any], name: str) -> float:
     name: of the file, for messages.
     """
     mechanism, loads = data.get("mechanism"), data.get("load")
-    given = mechanism if isinstance(mechanism, Mapping) else {}
+    stated_mechanism = mechanism if isinstance(mechanism, Mapping) else {}
     varies = {f"mechanism.{key}" for key in SPEED_KEYS} & (set(varying_in(data)) | set_by_options(data))
-    if "speed_profile" in given or given.get("acceleration") or varies:
+    if "speed_profile" in stated_mechanism or stated_mechanism.get("acceleration") or varies:
         raise InputError(f"{name} is given over time, which needs a constant crank speed; give crank angles instead")
-    stated = {key: given[key] for key in (*SPEED_KEYS, "direction") if key in given}
+    stated = {key: stated_mechanism[key] for key in (*SPEED_KEYS, "direction") if key in stated_mechanism}
     try:
         part = CrankSpeedPart.model_validate(stated)
     except ValidationError:
         stated = {}
     if not stated:
         raise InputError(f"{name} is given over time, which needs the crank speed; got none; give speed in [mechanism]")
-    long = [one for one in loads or () if isinstance(one, Mapping) and one.get("cycle") == "720 deg"]
+    long = [load for load in loads or () if isinstance(load, Mapping) and load.get("cycle") == "720 deg"]
     return part.crank_speed(2 if long else 1)

@@ -1,4 +1,4 @@
-"""Tables in text files as loggers and spreadsheets of any language write them: every file that a job or command names.
+"""Tables in text files, as loggers and spreadsheets of any language write them.
 
 The first line with content names the columns; a commented one does where no other line can. Empty lines and lines that
 begin with #, % or // are passed over. Between cells stand commas, semicolons, tabs, bars or blanks: the sign by which
@@ -57,11 +57,11 @@ _BREAK = re.compile(r"\s*[\r\n]+\s*")  # within a cell in quotes
 _NUMBER = re.compile(rf"[+-]?(?:\d+\.?\d*|\.\d+){EXPONENT}", re.ASCII)
 
 
-def bytes_of(path: Path, name: str, most: int) -> bytes:
-    """Return the content of a file of at most `most` bytes. Raises `InputError`; name: how messages call the file."""
+def bytes_of(path: Path, name: str, limit: int) -> bytes:
+    """Return the content of a file of at most `limit` bytes. Raises `InputError`; name: how messages call the file."""
     try:
         with path.open("rb") as file:
-            content = file.read(most + 1)
+            content = file.read(limit + 1)
     except FileNotFoundError:
         raise InputError(f"{name} not found; check the name and the folder") from None
     except IsADirectoryError:
@@ -69,9 +69,9 @@ def bytes_of(path: Path, name: str, most: int) -> bytes:
     except (OSError, ValueError) as error:  # ValueError: a path with a null character
         why = getattr(error, "strerror", None) or str(error)
         raise InputError(f"{name} cannot be read: {why}; name another file, or change its permissions") from None
-    if len(content) > most:
+    if len(content) > limit:
         raise InputError(
-            f"{name} must have at most {most / 1e6:.3g} MB; got more; keep only the rows and columns that matter"
+            f"{name} must have at most {limit / 1e6:.3g} MB; got more; keep only the rows and columns that matter"
         )
     return content
 
@@ -131,17 +131,18 @@ class TableFile:
         return sum(len(portion.lines) for portion in self.portions)
 
     def understood(self, places: Sequence[int]) -> str:
-        """Return what was read in words: rows, the first columns of some, first and last row as numbers, signs."""
-        more = f" and {counted(len(places) - _NAMED, 'column')} more" if len(places) > _NAMED else ""
+        """Return a summary of the table: rows, first columns, first and last row, decimal sign."""
+        left_over = f" and {counted(len(places) - _NAMED, 'column')} more" if len(places) > _NAMED else ""
         places = places[:_NAMED]
         ends = ((self.portions[0], 0), (self.portions[-1], -1))
         first, last = (
-            ", ".join(self._number_in_words(of.columns[place].split("\n")[n]) for place in places) for of, n in ends
+            ", ".join(self._number_in_words(portion.columns[place].split("\n")[n]) for place in places)
+            for portion, n in ends
         )
         names = (self.heads[place] for place in places)
         heads = ", ".join(name if name.isprintable() else quote(name) for name in names)
         rows = f"{len(self):,} row{'s' if len(self) > 1 else ''}"
-        return "; ".join([f"{rows} of {heads}{more}", f"first {first}", f"last {last}", *self.notes])
+        return "; ".join([f"{rows} of {heads}{left_over}", f"first {first}", f"last {last}", *self.notes])
 
     def _number_in_words(self, cell: str) -> str:
         decimal, grouping = self.signs
@@ -176,13 +177,13 @@ class TableFile:
         Raises `InputError` for other cells.
         """
         numbers, parts = self.numbers(places, missing=missing), self._with_points(places)
-        found = [[cell for _, of in parts for cell in of[n].split("\n")] for n in places]
-        for place, column, cells in zip(places, numbers, found, strict=True):
+        columns = [[cell for _, cells_by_column in parts for cell in cells_by_column[n].split("\n")] for n in places]
+        for place, column, cells in zip(places, numbers, columns, strict=True):
             for n in np.flatnonzero(np.isnan(column)):
                 if cells[n]:
-                    where = self.cell_name(self.rows[n], place)
-                    raise InputError(f"{where}: must be a number or empty; got {quote(cells[n])}; correct it")
-        return found
+                    cell_text = self.cell_name(self.rows[n], place)
+                    raise InputError(f"{cell_text}: must be a number or empty; got {quote(cells[n])}; correct it")
+        return columns
 
     def _with_points(self, places: Sequence[int]) -> list[tuple[_Portion, dict[int, str]]]:
         """Return the cells of columns with decimal points and without signs that part thousands."""
@@ -191,12 +192,12 @@ class TableFile:
         decimal, grouping = self.signs = self._decimal(signs)
         example = signs.first_match(_group(decimal))
         word = "comma" if decimal == "," else "point"
-        said = f"decimal {word}"
+        note = f"decimal {word}"
         if example is not None and (number := f"{float(example.replace(decimal, '.')):g}") != example:
-            said = f"the {word} is read as a decimal {word}, so {example} is {number}; if it separates thousands, "
-            said += f"write {example.replace(decimal, '')}"
-        if (example is not None or decimal == ",") and said not in self.notes:
-            self.notes.append(said)
+            note = f"the {word} is read as a decimal {word}, so {example} is {number}; if it separates thousands, "
+            note += f"write {example.replace(decimal, '')}"
+        if (example is not None or decimal == ",") and note not in self.notes:
+            self.notes.append(note)
         in_threes = rf"[+-]?\d{{1,3}}(?:\{grouping}\d{{3}})+(?:\{decimal}\d*)?{EXPONENT}"
         wrong = re.compile(rf"^(?!{in_threes}$).*\{grouping}.*$", re.MULTILINE | re.ASCII)
         for _, cells in parts:
@@ -215,9 +216,9 @@ class TableFile:
             return (".", ",") if comma is None else (",", ".")
         comma, point = signs.first_match(_group(",")), signs.first_match(_group("."))
         if comma is not None and (point is not None or self.separator == ","):
-            other = f" and {point}" if point is not None else ""
+            second = f" and {point}" if point is not None else ""
             raise InputError(
-                f"{self.name} must have an unambiguous decimal sign; got {comma}{other}, which may mean a thousand "
+                f"{self.name} must have an unambiguous decimal sign; got {comma}{second}, which may mean a thousand "
                 "times as much; leave out the thousands separator"
             )
         return (".", ",") if comma is None else (",", ".")
@@ -226,9 +227,9 @@ class TableFile:
         """Return the numbers of cells that have decimal points, the quick way where all are numbers."""
         cells = text.split("\n")
         try:
-            found = np.array([float(cell) if cell else np.nan for cell in cells])
-            if "_" not in text and np.isfinite(found).all():
-                return found
+            numbers = np.array([float(cell) if cell else np.nan for cell in cells])
+            if "_" not in text and np.isfinite(numbers).all():
+                return numbers
         except ValueError:
             pass
         return np.array([self._number(place, portion, n, cell, missing=missing) for n, cell in enumerate(cells)])
@@ -238,15 +239,15 @@ class TableFile:
             return float(cell)
         if missing and cell.casefold() in MISSING:
             return float("nan")
-        got = portion.columns[place].split("\n")[n]
-        if not got:
+        cell_text = portion.columns[place].split("\n")[n]
+        if not cell_text:
             why = "an empty cell; fill it, or leave out the row"
-        elif got.startswith("="):
-            why = f"the formula {quote(got)}; save values instead of formulas"
+        elif cell_text.startswith("="):
+            why = f"the formula {quote(cell_text)}; save values instead of formulas"
         else:
-            with_unit = number_and_unit(got) if is_value(got) else None
+            with_unit = number_and_unit(cell_text) if is_value(cell_text) else None
             number = with_unit[0] if with_unit and with_unit[1] else "the number alone"
-            why = f"{quote(got)}; write {number}, as the unit belongs in the heading"
+            why = f"{quote(cell_text)}; write {number}, as the unit belongs in the heading"
         raise InputError(f"{self.cell_name(int(portion.lines[n]), place)}: must be a number; got {why}")
 
     def cell_name(self, line: int, place: int) -> str:
@@ -273,9 +274,9 @@ def _group(sign: str) -> str:
 
 def _sure(decimal: str, grouping: str) -> str:
     """Return the form of a number whose decimal sign is certain: 0.3, .3, 1.3000, 1,300.5, and 1,000,000."""
-    one = rf"(?!{_group(decimal)}$)[+-]?(?:\d+\{decimal}\d*|\{decimal}\d+){EXPONENT}"
+    plain_number = rf"(?!{_group(decimal)}$)[+-]?(?:\d+\{decimal}\d*|\{decimal}\d+){EXPONENT}"
     parted = rf"[+-]?\d{{1,3}}(?:\{grouping}\d{{3}})+\{decimal}\d*{EXPONENT}"
-    return rf"{one}|{parted}|[+-]?\d{{1,3}}(?:\{grouping}\d{{3}}){{2,}}"
+    return rf"{plain_number}|{parted}|[+-]?\d{{1,3}}(?:\{grouping}\d{{3}}){{2,}}"
 
 
 def read_table(text: str, name: str, *, ragged: bool = False) -> TableFile:
@@ -295,16 +296,16 @@ def read_table(text: str, name: str, *, ragged: bool = False) -> TableFile:
 def _read(text: str, name: str, *, ragged: bool) -> TableFile:
     separator = separator_of(text)
     lines = split(content_lines(text), separator)
-    above = list(itertools.islice(lines, SAMPLE))
-    titles = title_lines([cells for _, cells in above])
-    lines = itertools.chain(above[titles:], lines)
+    leading = list(itertools.islice(lines, SAMPLE))
+    titles = title_lines([cells for _, cells in leading])
+    lines = itertools.chain(leading[titles:], lines)
     head = next(lines, None)
     if head is None:
         raise InputError(f"{name} must begin with a line of column names; got an empty file; fill it")
     heads = [cell.strip() for cell in head[1]]
     first = next(lines, None)
-    below = first[1] if first is not None and of_units(first[1]) else None
-    if below is not None:
+    units = first[1] if first is not None and of_units(first[1]) else None
+    if units is not None:
         first = next(lines, None)
     elif len(heads) == 1 and stated_separator(text) and any(sign in heads[0] for sign in SEPARATORS if sign != " "):
         raise InputError(
@@ -319,7 +320,7 @@ def _read(text: str, name: str, *, ragged: bool) -> TableFile:
     elif len(heads) != width:
         line = next(line for line in content_lines(text) if line.strip())
         heads = named_in(line, separator, width) or heads
-    heads = with_units(heads, below or [])
+    heads = with_units(heads, units or [])
     if of_numbers(heads):
         raise InputError(
             f"{name} must begin with a line of column names with units; got {', '.join(heads)[:60]!r}; add one "
@@ -329,25 +330,25 @@ def _read(text: str, name: str, *, ragged: bool) -> TableFile:
         raise InputError(
             f"{name} must have at most {_MOST_COLUMNS} columns; got {len(heads)}; keep only those that matter"
         )
-    found = list(_portions(rows, len(heads), name, ragged=ragged))
-    if not found:
+    portions = list(_portions(rows, len(heads), name, ragged=ragged))
+    if not portions:
         raise InputError(f"{name} must have rows below the column names; got none; add them")
-    said = [f"separated by {SEPARATORS.get(separator, quote(separator))}"] if len(heads) > 1 else []
-    said += [f"{counted(titles, 'title line')} above the column names skipped"] if titles else []
-    return TableFile(name, tuple(heads), said, separator, found)
+    notes = [f"separated by {SEPARATORS.get(separator, quote(separator))}"] if len(heads) > 1 else []
+    notes += [f"{counted(titles, 'title line')} above the column names skipped"] if titles else []
+    return TableFile(name, tuple(heads), notes, separator, portions)
 
 
 def _portions(rows: Iterable[tuple[int, list[str]]], width: int, name: str, *, ragged: bool) -> Iterator[_Portion]:
     """Yield some rows at a time, each of `width` cells; short ones are filled up if they may be `ragged`."""
     rows = iter(rows)
-    while some := list(itertools.islice(rows, _AT_ONCE)):
-        for place, cells in some:
+    while block := list(itertools.islice(rows, _AT_ONCE)):
+        for place, cells in block:
             if len(cells) != width and (any(cell.strip() for cell in cells[width:]) or not (ragged or cells[width:])):
                 raise InputError(
                     f"{name}, row {place} must have {width} cells, like the first line; got {len(cells)}; correct it, "
                     "or delete lines above the column names; if numbers have a decimal comma, separate them by "
                     "semicolons"
                 )
-        full = [cells[:width] + [""] * (width - len(cells)) for _, cells in some]
+        full = [cells[:width] + [""] * (width - len(cells)) for _, cells in block]
         columns = ["\n".join([_BREAK.sub(" ", cell.strip()) for cell in column]) for column in zip(*full, strict=True)]
-        yield _Portion(np.array([place for place, _ in some]), columns)
+        yield _Portion(np.array([place for place, _ in block]), columns)

@@ -31,12 +31,12 @@ def with_plain_signs(text: str) -> str:
 
 
 def content_lines(text: str) -> Iterator[str]:
-    """Yield the lines of a text, empty ones in place of comments and of a first one that says the separator."""
-    begun = False
+    """Yield the lines of a text, with comments and a line that states the separator replaced by empty ones."""
+    has_content = False
     for line in io.StringIO(text):
         empty = _COMMENT.match(line) or not line.strip()
-        yield "\n" if empty or (not begun and _SAID.fullmatch(line)) else line
-        begun = begun or not empty
+        yield "\n" if empty or (not has_content and _SAID.fullmatch(line)) else line
+        has_content = has_content or not empty
 
 
 def split(lines: Iterable[str], separator: str) -> Iterator[tuple[int, list[str]]]:
@@ -55,8 +55,8 @@ def split(lines: Iterable[str], separator: str) -> Iterator[tuple[int, list[str]
 
 def separator_of(text: str) -> str:
     """Return the sign between cells: that of a first line such as "sep=;", or that which splits most lines alike."""
-    if said := stated_separator(text):
-        return said
+    if stated := stated_separator(text):
+        return stated
     sample = [line for line in itertools.islice(content_lines(text), 10 * SAMPLE) if line.strip()][:SAMPLE]
     best, separator = 0.0, ","
     for sign in SEPARATORS:
@@ -111,8 +111,8 @@ def _is_number(cell: str) -> bool:
 def stated_separator(text: str) -> str:
     """Return the sign between cells that the first line with content says; empty if it says none."""
     first = next((line for line in io.StringIO(text) if line.strip() and not _COMMENT.match(line)), "")
-    said = _SAID.fullmatch(first)
-    return "" if said is None else said[1].replace("\\t", "\t")
+    statement = _SAID.fullmatch(first)
+    return "" if statement is None else statement[1].replace("\\t", "\t")
 
 
 def of_units(cells: Sequence[str]) -> bool:
@@ -139,20 +139,20 @@ def of_numbers(cells: Sequence[str]) -> bool:
 
 def commented(text: str, separator: str, width: int) -> list[str] | None:
     """Return the names of columns in the last comment before the numbers that has as many; None without one."""
-    found = None
+    names = None
     for line in io.StringIO(text):
         comment = _COMMENT.match(line)
         if comment:
             named = named_in(line[comment.end() :], separator, width)
-            found = with_units(found, named) if found and named and of_units(named) else named or found
+            names = with_units(names, named) if names and named and of_units(named) else named or names
         elif line.strip() and not _SAID.fullmatch(line):
             break
-    return found
+    return names
 
 
 def named_in(line: str, separator: str, width: int) -> list[str] | None:
-    """Return the names of so many columns in a line, also of more words than one between blanks; None without them."""
+    """Return the names of `width` columns in a line, also of several words each; None without them."""
     ways = [[cell.strip() for _, cells in split([line], separator) for cell in cells]]
     if separator == " ":
-        ways += [re.split(apart, line.strip()) for apart in (r"\s{2,}|\t", r"(?<=[)\]])\s+")]
+        ways += [re.split(pattern, line.strip()) for pattern in (r"\s{2,}|\t", r"(?<=[)\]])\s+")]
     return next((heads for heads in ways if len(heads) == width and not of_numbers(heads)), None)

@@ -40,32 +40,36 @@ def problem(
     >>> found.rod
     Range(lower=0.05, upper=0.25)
     """
-    given: dict[str, Function] = {}
+    functions: dict[str, Function] = {}
     if not isinstance(tables, Mapping):
         raise JobError(f"a job must be a dict of tables; got {type(tables).__name__}; for a file use load_job")
     try:
         data = {key: _plain(item) for key, item in tables.items()}
     except RecursionError:
         raise JobError("a job must be a dict of tables; got one that contains itself, or endless tables") from None
-    own = data.get("quantity")
-    if isinstance(own, dict):
-        for name, part in own.items():
+    quantity_tables = data.get("quantity")
+    if isinstance(quantity_tables, dict):
+        for name, part in quantity_tables.items():
             if isinstance(part, dict) and callable(part.get("function")):
-                given[name] = part["function"]
+                functions[name] = part["function"]
                 part["function"] = "given:function"  # in the place of a name, for the validation
-    found = parse_job(
+    stated_problem = parse_job(
         with_files(data, Path() if folder is None else Path(folder)),
         folder=None if folder is None else Path(folder),
         require_feasible=require_feasible,
     )
-    warn_of(found)
-    return replace(found, own=tuple(_with_functions(item, given) for item in found.own)) if given else found
+    warn_of(stated_problem)
+    return (
+        replace(stated_problem, own=tuple(_with_functions(item, functions) for item in stated_problem.own))
+        if functions
+        else stated_problem
+    )
 
 
-def _with_functions(item: Quantity, given: Mapping[str, Function]) -> Quantity:
-    if isinstance(item, OwnQuantity) and item.name in given:
-        return replace(item, function=given[item.name])
-    return item.with_parts(tuple(_with_functions(part, given) for part in item.made_of))
+def _with_functions(item: Quantity, functions: Mapping[str, Function]) -> Quantity:
+    if isinstance(item, OwnQuantity) and item.name in functions:
+        return replace(item, function=functions[item.name])
+    return item.with_parts(tuple(_with_functions(part, functions) for part in item.made_of))
 
 
 def _plain(value: object) -> object:

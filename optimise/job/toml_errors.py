@@ -1,4 +1,4 @@
-"""Mistakes in the syntax of a TOML text, in words: the line and key, the rule, what was typed, and how to write it.
+"""Mistakes in TOML syntax, in words: line and key, rule, typed text, and correction.
 
 The parser says only where it stops. So the line is tried with each of some edits; the one with which most of it can be
 read is kept, until all of it can be. A remedy is therefore always a line that the parser takes.
@@ -138,23 +138,23 @@ def in_words(text: str, error: str) -> str:
     opened = [n for n, line in enumerate(lines, start=1) for _ in re.findall("\"\"\"|'''", line)]
     if not place and len(opened) % 2:
         return _unclosed(lines[: opened[-1]], "the end of the file")
-    within = start < number and _unread_size(lines[start - 1 : number - 1]) < 0
-    if not place or (within and begins):
-        first = start if within else number
-        if _unread_size(lines[first - 1 : number - begins * within]) < 0:
+    in_list = start < number and _unread_size(lines[start - 1 : number - 1]) < 0
+    if not place or (in_list and begins):
+        first = start if in_list else number
+        if _unread_size(lines[first - 1 : number - begins * in_list]) < 0:
             return _unclosed(lines[:first], f"line {number}" if place else "the end of the file")
-    path = _path_of(lines[: start if within else number]) or _path_of([*lines[: number - 1], f"{code} ="])
+    path = _path_of(lines[: start if in_list else number]) or _path_of([*lines[: number - 1], f"{code} ="])
     like = example_of(schema_of(Job), path)
-    before = _LIST if within else ""
+    before = _LIST if in_list else ""
     if like and _BARE.fullmatch(code) and _with_brackets(code)[1] == code:
         rules, edited = ["there must be = and a value after a key"], like
-    elif within and _unread_size([before + code]) <= 0:
+    elif in_list and _unread_size([before + code]) <= 0:
         number = max(n for n in range(start, number) if _code(lines[n - 1]).strip())
         code = _code(lines[number - 1])
         rules, edited = ["a line of a list must end with a comma"], f"{code},"
     else:
         joined = [" ".join(map(_code, lines[number - 1 : n])) for n in range(number + 1, number + _MOST_JOINED)]
-        few = not within and len(joined[-1]) <= _LONGEST
+        few = not in_list and len(joined[-1]) <= _LONGEST
         last = next((number + n for n, one in enumerate(joined, start=1) if few and not _unread_size([one])), 0)
         if last:
             rule = "a text, or keys in braces, must be on one line"
@@ -162,11 +162,11 @@ def in_words(text: str, error: str) -> str:
         rules, edited = _edited(before + code, path)
     if rules:
         edited = edited.removeprefix(before)
-        path = path if within else _path_of([*lines[: number - 1], edited])
+        path = path if in_list else _path_of([*lines[: number - 1], edited])
         if set(rules) <= {_TEXT_QUOTED, _VALUE_QUOTED} and (refused := _refused(lines[: number - 1], edited)):
             return f"line {number}, {refused}"
-        got, write = (_quote_line(one, _same(code, edited)) for one in (code, edited))
-        return f"{_line_prefix(number, path)}{'; '.join(rules)}; got {got}; write {write}"
+        typed, write = (_quote_line(one, _same(code, edited)) for one in (code, edited))
+        return f"{_line_prefix(number, path)}{'; '.join(rules)}; got {typed}; write {write}"
     like = like or "key = value, a heading like [objectives], or # and a comment"
     return (
         f"{_line_prefix(number, path)}must be a line like {like}; got "
@@ -176,28 +176,28 @@ def in_words(text: str, error: str) -> str:
 
 
 def with_lines(message: str, text: str) -> str:
-    """Return a message on the tables of a TOML text with the line of the key with which each of its lines begins."""
+    """Return a message on the tables of a TOML text, with the line number of each key."""
     keys = list(_paths(text.split("\n")))
     lines = {key_of(path[:-1]): number for number, path, brackets in reversed(keys) if brackets == "[["}
     lines |= {key_of(path): number for number, path, _ in keys}
 
-    def numbered(found: re.Match[str]) -> str:
-        key = found[2]
+    def numbered(match: re.Match[str]) -> str:
+        key = match[2]
         while key and key not in lines:
             key = re.sub(r"(\.| #)?[^.#]*$", "", key)
-        return f"{found[1]}line {lines[key]}, {found[2]}" if key else found[0]
+        return f"{match[1]}line {lines[key]}, {match[2]}" if key else match[0]
 
     return re.sub(r"(?m)^( *)([^\s:;=][^:;=\n]*)(?=: )", numbered, message)
 
 
 def _code(line: str) -> str:
     """Return a line without its comment."""
-    return line[: next((found.start() for found in _COMMENT.finditer(line[:_LONGEST]) if found[1]), None)]
+    return line[: next((comment.start() for comment in _COMMENT.finditer(line[:_LONGEST]) if comment[1]), None)]
 
 
-def _refused(above: Sequence[str], line: str) -> str:
-    """Return key and fault of the value in a line that can be read; "" if there is none. above: the lines above it."""
-    lines = [*(one for one in above if _HEADER.fullmatch(one[:_LONGEST])), line]
+def _refused(lines_above: Sequence[str], line: str) -> str:
+    """Return key and mistake of the value in a line with valid syntax; "" if it has none."""
+    lines = [*(line_above for line_above in lines_above if _HEADER.fullmatch(line_above[:_LONGEST])), line]
     path = _path_of(lines)
     try:
         Job.model_validate(tomllib.loads("\n".join(lines)))
@@ -232,17 +232,17 @@ def _unread_size(lines: Sequence[str]) -> int:
 
 
 def _edited(line: str, path: Path) -> tuple[list[str], str]:
-    """Return the rules that a line breaks and the line as they want it; no rules if it cannot be read even then."""
+    """Return the rules that a line breaks, and the corrected line; no rules if no correction works."""
     rules: list[str] = []
-    left = _unread_size([line]) if len(line) <= _LONGEST else 0
-    while left > 0:
+    unread = _unread_size([line]) if len(line) <= _LONGEST else 0
+    while unread > 0:
         rule, values = _with_values(line, path)
-        both = [(f"{rule}; {_APART_BY}", _COMMAS(values)[1])] if rule else []
-        tried = [*(edit(line) for edit in _SIGNS), (rule, values), *both, *(edit(line) for edit in _EDITS)]
+        combined = [(f"{rule}; {_APART_BY}", _COMMAS(values)[1])] if rule else []
+        tried = [*(edit(line) for edit in _SIGNS), (rule, values), *combined, *(edit(line) for edit in _EDITS)]
         tried += _with_a_sign_more_or_less(line)
         rule, line = min(tried, key=lambda one: max(_unread_size([one[1]]), 0))
-        left, before = _unread_size([line]), left
-        if left >= before:
+        unread, before = _unread_size([line]), unread
+        if unread >= before:
             return [], line
         rules += [rule] if rule not in rules else []
     return rules, line
@@ -252,21 +252,21 @@ def _with_values(line: str, path: Path) -> tuple[str, str]:
     """Return a line whose values are numbers or in quotes, and the rule of the first that was neither."""
     rules = []
 
-    def value(found: re.Match[str]) -> str:
-        if found[1] or not _unread_size([f"x = {found[3]}"]) or not _WRITTEN.match(found[3]):
-            return found[0]
-        inner = _INNER.search(line[: found.start(3)])
+    def value(match: re.Match[str]) -> str:
+        if match[1] or not _unread_size([f"x = {match[3]}"]) or not _WRITTEN.match(match[3]):
+            return match[0]
+        inner = _INNER.search(line[: match.start(3)])
         in_braces = inner is not None and "{" in line[: inner.start()]
-        rule, text = _value(found[3], (*path, inner[1]) if inner and in_braces else path)
+        rule, text = _value(match[3], (*path, inner[1]) if inner and in_braces else path)
         rules.append(rule)
-        return found[2] + text
+        return match[2] + text
 
     edited = _VALUE.sub(value, line) if "=" in line else line
     return rules[0] if rules else "", edited
 
 
 def _value(token: str, path: Path) -> tuple[str, str]:
-    """Return what is wrong with the value of a key, and the value as it is to be written."""
+    """Return the rule that the value of a key breaks, and the corrected value."""
     if token.lower() in ("true", "false"):
         return "true and false must be in lower case", token.lower()
     point = re.sub(r"^([+-]?\d*),(\d)", r"\1.\2", token)
@@ -276,8 +276,8 @@ def _value(token: str, path: Path) -> tuple[str, str]:
         measured = token[0] in "+-−.0123456789"
         rules.append(_VALUE_QUOTED if measured else _TEXT_QUOTED)
         return "; ".join(rules), f'"{point}"'
-    sign, whole, separator, part, power = digits.groups(default="")
-    number = f"{sign}{whole.lstrip('0') or '0'}{f'.{part or 0}' if separator else ''}{power}"
+    sign, integer_part, separator, part, power = digits.groups(default="")
+    number = f"{sign}{integer_part.lstrip('0') or '0'}{f'.{part or 0}' if separator else ''}{power}"
     plain = "a number must have digits before and after its point" if separator else "a number must not begin with 0"
     rules = rules or [plain]
     unit = _unit_of(path)
@@ -295,27 +295,27 @@ def _unit_of(path: Path) -> str:
 
 
 def _with_a_sign_more_or_less(line: str) -> Iterator[tuple[str, str]]:
-    """Yield a line with one more quote where a text may begin or end, then without one of its quotes or brackets."""
+    """Yield a line with one quote added at a border of a text, then with one quote or bracket removed."""
     if re.search("[\"']", re.sub(_TEXT, "", line)):
         for place in (border.end() for border in _BORDER.finditer(line)):
             yield "text must have quotes on both sides", f'{line[:place]}"{line[place:]}'
-    for found in reversed(list(re.finditer("[]\"'[(){}]", line))):
-        without = line[: found.start()] + line[found.end() :]
-        if not _unread_size([without]):
-            yield f"one {found[0]} too many", without
+    for sign in reversed(list(re.finditer("[]\"'[(){}]", line))):
+        shortened = line[: sign.start()] + line[sign.end() :]
+        if not _unread_size([shortened]):
+            yield f"one {sign[0]} too many", shortened
 
 
 def _with_brackets(line: str) -> tuple[str, str]:
     """Return the heading of a table in its brackets."""
     rule = "a heading must be one name in matching brackets, its parts joined by dots"
-    if (found := _NAMES.fullmatch(line)) is None:
+    if (heading_match := _NAMES.fullmatch(line)) is None:
         return rule, line
-    opening, name, closing = found.groups()
+    opening, name, closing = heading_match.groups()
     words = re.findall(r"[\w-]+", name)
     tried = [words if len(words) < 3 else ["_".join(words)], ["_".join(words)], ["".join(words)]]
     count = min(len(opening) or len(closing), 2) if len(words) == 1 + name.count(".") else 0
-    other = f"{'[' * count}{name}{']' * count}" if count else line
-    return rule, next((heading for one in tried for heading in headings(one, schema_of(Job))), other)
+    bracketed = f"{'[' * count}{name}{']' * count}" if count else line
+    return rule, next((heading for candidate in tried for heading in headings(candidate, schema_of(Job))), bracketed)
 
 
 def _unclosed(lines: Sequence[str], end: str) -> str:
@@ -324,12 +324,13 @@ def _unclosed(lines: Sequence[str], end: str) -> str:
     three = next((three for three in ('"""', "'''") if three in line), "")
     if three:
         rule = f"text that begins with {three} must end with {three}; on one line, use a single quote at each end"
-        one = line.replace(three, '"')
-        tried = [one, f'{one}"'] if not line.endswith(three) else []
+        candidate = line.replace(three, '"')
+        tried = [candidate, f'{candidate}"'] if not line.endswith(three) else []
     else:
         rule, tried = "a list must end with ]", [f"{line}]"]
     write = next(
-        (f"write {_quote_line(one)}" for one in tried if not _unread_size([one])), f"add {three or ']'} where it ends"
+        (f"write {_quote_line(candidate)}" for candidate in tried if not _unread_size([candidate])),
+        f"add {three or ']'} where it ends",
     )
     return f"{_line_prefix(len(lines), _path_of(lines))}{rule}; got {_quote_line(line)}, open at {end}; {write}"
 
@@ -393,9 +394,11 @@ def _line_prefix(number: int, path: Path) -> str:
     return f"line {number}, {key_of(path)}: " if path else f"line {number}: "
 
 
-def _same(one: str, other: str) -> int:
+def _same(first: str, second: str) -> int:
     """Return how many characters of two texts are the same from their beginnings on."""
-    return next((n for n, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other)))
+    return next(
+        (n for n, (a, b) in enumerate(zip(first, second, strict=False)) if a != b), min(len(first), len(second))
+    )
 
 
 def _quote_line(line: str, place: int = 0) -> str:

@@ -56,7 +56,7 @@ Source = Annotated[str, Field(max_length=2000)] | None
 
 
 def source() -> Any:
-    """Return the entry of what was understood of a file whose content a table has; it says nothing of the problem."""
+    """Return the entry for the summary of a file whose content a table holds; the problem ignores it."""
     return optional("what was read from the file that the values come from", "motion.csv: 360 rows")
 
 
@@ -76,8 +76,8 @@ class Built(Part, Generic[Made]):
     def build(self) -> Made:
         """Return the part of the model that the table states. Raises InputError for values that exclude each other."""
         names = [name for name in type(self).model_fields if name != SOURCE]
-        given = {self.renamed.get(name, name): getattr(self, name) for name in names}
-        parts = {name: part.build() if isinstance(part, Built) else part for name, part in given.items()}
+        arguments = {self.renamed.get(name, name): getattr(self, name) for name in names}
+        parts = {name: part.build() if isinstance(part, Built) else part for name, part in arguments.items()}
         return cast(Made, type(self).makes(**{name: part for name, part in parts.items() if part is not None}))
 
 
@@ -92,7 +92,7 @@ class Checked(Built[Made], Generic[Made]):
 
 def retyped(part: type[Table], **types: Any) -> type[Table]:
     """Return a table with some of its entries of other types."""
-    fields: Any = {name: (other, part.model_fields[name]) for name, other in types.items()}
+    fields: Any = {name: (new_type, part.model_fields[name]) for name, new_type in types.items()}
     return cast(type[Table], create_model(part.__name__, __base__=part, **fields))
 
 
@@ -102,8 +102,8 @@ PLAIN = "plain_number"
 
 def values_in(value: object) -> list[object]:
     """Return the values of a list, or of a table of values and lists; a single value as a list."""
-    given = list(value.values()) if isinstance(value, Mapping) else [value]
-    return [one for item in given for one in (item if isinstance(item, list | tuple) else [item])]
+    items = list(value.values()) if isinstance(value, Mapping) else [value]
+    return [entry for item in items for entry in (item if isinstance(item, list | tuple) else [item])]
 
 
 def plain_in(value: object) -> list[float]:
@@ -113,7 +113,7 @@ def plain_in(value: object) -> list[float]:
 
 
 def of_spread(value: object, ends: Sequence[object], error: InputError) -> InputError:
-    """Return the refusal of a range in the words of its ends, which were refused; `error` for a value without ends."""
+    """Return the error for a range whose ends are invalid; `error` itself for a value without ends."""
     if ends[0] == value:
         return error
     rule = str(error).partition(";")[0]
@@ -135,13 +135,13 @@ class _Read:
         """Read a value; in the validation context `PLAIN` raise instead for one with numbers without a unit."""
         plain = info.context == PLAIN and self.kind.unit and not self.kind.amount and plain_in(value)
         try:
-            found = self.read(value)
+            result_in_si = self.read(value)
         except InputError:
             if not plain:
                 raise
         if plain:
             raise PydanticCustomError(PLAIN, "has no unit", {"kind": self.kind})
-        return found
+        return result_in_si
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
         return core_schema.with_info_plain_validator_function(self._validate)
@@ -188,17 +188,19 @@ class Within(Physical):
 
     def read(self, value: object) -> float:
         """Return the value in SI; raises InputError."""
-        found = super().read(value)
-        if not self.least <= found <= self.most:
+        number = super().read(value)
+        if not self.least <= number <= self.most:
             raise InputError(f"must be {self.rule}; got {quote(value)}; {self.hint}")
-        return found
+        return number
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        found = super().__get_pydantic_json_schema__(schema, handler)
+        value_schema = super().__get_pydantic_json_schema__(schema, handler)
         number = {"type": "number", "minimum": self.least, "maximum": self.most}
-        if "anyOf" not in found:  # of a kind without a unit, which no text has
-            return {key: of for key, of in found.items() if key != "exclusiveMinimum"} | number
-        return found | {"anyOf": [number if of.get("type") == "number" else of for of in found["anyOf"]]}
+        if "anyOf" not in value_schema:  # of a kind without a unit, which no text has
+            return {key: subschema for key, subschema in value_schema.items() if key != "exclusiveMinimum"} | number
+        return value_schema | {
+            "anyOf": [number if subschema.get("type") == "number" else subschema for subschema in value_schema["anyOf"]]
+        }
 
 
 @dataclass(frozen=True)
@@ -222,11 +224,11 @@ class Limited:
         return core_schema.no_info_after_validator_function(self.check, handler(source))
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        found: dict[str, Any] = handler(schema)
-        given = {"minimum": self.least, "exclusiveMinimum": self.above, "maximum": self.most}
-        stated = {word: limit for word, limit in given.items() if limit is not None}
+        value_schema: dict[str, Any] = handler(schema)
+        limits = {"minimum": self.least, "exclusiveMinimum": self.above, "maximum": self.most}
+        stated = {word: limit for word, limit in limits.items() if limit is not None}
         lower = {"minimum", "exclusiveMinimum"}
-        return {key: of for key, of in found.items() if not (key in lower and lower & set(stated))} | stated
+        return {key: rule for key, rule in value_schema.items() if not (key in lower and lower & set(stated))} | stated
 
 
 def described(kind: Kind, sign: Sign = "any") -> dict[str, Any]:
@@ -307,18 +309,23 @@ class RangeOf(_Read):
         return Choices(tuple(lengths))
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        one = described(kinds.LENGTH, self.sign)["anyOf"]
+        entryschemas = described(kinds.LENGTH, self.sign)["anyOf"]
         if self.sign == "positive":
-            number = {key: of for key, of in one[1].items() if key != "exclusiveMinimum"} | {"minimum": SHORTEST}
-            one = [one[0], number]
-        pair = {"type": "array", "items": {"anyOf": one}, "minItems": 2, "maxItems": 2}
+            number = {key: rule for key, rule in entryschemas[1].items() if key != "exclusiveMinimum"} | {
+                "minimum": SHORTEST
+            }
+            entryschemas = [entryschemas[0], number]
+        pair = {"type": "array", "items": {"anyOf": entryschemas}, "minItems": 2, "maxItems": 2}
         choices = {
             "type": "object",
-            "properties": {"choices": {"type": "array", "items": {"anyOf": one}, "minItems": 2}},
+            "properties": {"choices": {"type": "array", "items": {"anyOf": entryschemas}, "minItems": 2}},
             "required": ["choices"],
             "additionalProperties": False,
         }
-        return {"anyOf": [pair, *one, choices, *grid_schema(one)], "examples": [["20 mm", "200 mm"], "140 mm"]}
+        return {
+            "anyOf": [pair, *entryschemas, choices, *grid_schema(entryschemas)],
+            "examples": [["20 mm", "200 mm"], "140 mm"],
+        }
 
 
 _FIT = replace(kinds.LENGTH, believed=(1e-8, 1e-2))
@@ -376,17 +383,17 @@ class PartOfStroke(_Read):
         """Return the part, its length in m; raises InputError."""
         if isinstance(value, load.StrokePart):
             return value
-        found = self._text.fullmatch(value) if isinstance(value, str) else None
-        part = found[1].lower() if found else ""
-        if not found or (part == "whole" and f"{part} {found[2].lower()}" != "whole stroke"):
+        match = self._text.fullmatch(value) if isinstance(value, str) else None
+        part = match[1].lower() if match else ""
+        if not match or (part == "whole" and f"{part} {match[2].lower()}" != "whole stroke"):
             raise InputError(
                 f'must be "first" or "last" and a length, or "whole stroke"; got {quote(value)}; write it like '
                 '"last 60 mm"'
             )
         if part == "whole":
             return load.StrokePart()
-        of = replace(self.kind, example=f"{part} 60 mm")
-        length = to_si(found[2], of, sign="positive", plain=False)
+        kind = replace(self.kind, example=f"{part} 60 mm")
+        length = to_si(match[2], kind, sign="positive", plain=False)
         return load.StrokePart("first" if part == "first" else "last", length)
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:

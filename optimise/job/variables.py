@@ -28,8 +28,8 @@ EXAMPLE = {"peak_torque": {"max": "40 N m"}, "rms_torque": {"max": "22 N m"}}
 """Of what an option may ask for."""
 
 
-def _variable_table(what: str, example: dict[str, Any]) -> Any:
-    return optional(f"numbers of {what} that may vary, by their keys there", example, default={})
+def _variable_table(table_name: str, example: dict[str, Any]) -> Any:
+    return optional(f"numbers of {table_name} that may vary, by their keys there", example, default={})
 
 
 class VariablesPart(Part):
@@ -58,13 +58,13 @@ class VariablesPart(Part):
         """Take a path in quotes for the same without: both are dotted keys to an engineer, one key to TOML."""
         if not isinstance(data, Mapping):
             return data
-        found: dict[str, Any] = {}
+        nested: dict[str, Any] = {}
         for key, value in data.items():
             steps = key.split(".") if isinstance(key, str) and key.partition(".")[0] in ROOTS else [key]
             if len(steps) > DEEPEST:
                 raise InputError(f"a path must have at most {DEEPEST} words; got {quote(key)}; shorten it")
-            _place(found, steps, deepcopy(value), key)
-        return found
+            _place(nested, steps, deepcopy(value), key)
+        return nested
 
     @property
     def paths(self) -> dict[str, Any]:
@@ -162,20 +162,20 @@ def choice_with(constraints: type[ConstraintsPart]) -> type[ChoicePart]:
 
 def varying_in(tables: Mapping[str, Any]) -> dict[str, Any]:
     """Return the numbers that an incomplete job lets vary besides the dimensions: path and what is given for it."""
-    given = tables.get("variables")
-    found: dict[str, Any] = {}
-    for key, value in given.items() if isinstance(given, Mapping) else ():
+    variables = tables.get("variables")
+    varying: dict[str, Any] = {}
+    for key, value in variables.items() if isinstance(variables, Mapping) else ():
         if isinstance(key, str) and key.partition(".")[0] in ROOTS:
-            found |= dict(leaves_of({key: value}, ""))
-    return found
+            varying |= dict(leaves_of({key: value}, ""))
+    return varying
 
 
 def set_by_options(tables: Mapping[str, Any]) -> set[str]:
     """Return the paths of numbers that options of an incomplete job's choices set."""
     choices = tables.get("choice")
     parts = [part for part in choices or () if isinstance(part, Mapping)] if isinstance(choices, list | tuple) else []
-    options = [one for part in parts for one in part.get("option") or () if isinstance(one, Mapping)]
-    return {path for one in options if isinstance(one.get("values"), Mapping) for path in one["values"]}
+    options = [option for part in parts for option in part.get("option") or () if isinstance(option, Mapping)]
+    return {path for option in options if isinstance(option.get("values"), Mapping) for path in option["values"]}
 
 
 def _place(table: dict[str, Any], steps: list[str], value: Any, key: str) -> None:
@@ -186,11 +186,11 @@ def _place(table: dict[str, Any], steps: list[str], value: Any, key: str) -> Non
             raise InputError(
                 f"{key} may be given only once; got it again as part of another key; leave out one of the two"
             )
-    own = table.get(steps[-1])
-    if isinstance(own, dict) and isinstance(value, Mapping):
+    present = table.get(steps[-1])
+    if isinstance(present, dict) and isinstance(value, Mapping):
         for inner, item in value.items():
-            _place(own, [inner], item, f"{key}.{inner}")
-    elif own is not None:
+            _place(present, [inner], item, f"{key}.{inner}")
+    elif present is not None:
         raise InputError(f"{key} is given twice; leave out one of the two")
     else:
         table[steps[-1]] = value

@@ -61,14 +61,14 @@ class _Option:
 def varying_machine(job: Job, key: str = "variables") -> Mechanism:
     """Return the machine of a job with the numbers that vary in [variables]. Raises JobError, naming the path."""
     base = job.machine()
-    found = []
-    for path, given in job.variables.paths.items():
-        if not is_choice(given):
-            found.append(_varying(job, f"{key}.{path}", path, given))
-    if not any(path.startswith("start.") for item in found for path in item.paths):
+    varying = []
+    for path, stated_value in job.variables.paths.items():
+        if not is_choice(stated_value):
+            varying.append(_varying(job, f"{key}.{path}", path, stated_value))
+    if not any(path.startswith("start.") for item in varying for path in item.paths):
         base = replace(base, start=Start())
     try:
-        return replace(base, varying=tuple(found))
+        return replace(base, varying=tuple(varying))
     except InputError as error:
         raise JobError(f"{key}: {error}") from None
 
@@ -91,7 +91,7 @@ def variants_of(
             f"variables: at most {MOST} combinations of choices may be given, because each is tried; got {sizes} = "
             f"{count}; leave out some, or let a number vary over a range"
         )
-    numbers = sum(not is_choice(given) for given in job.variables.paths.values())
+    numbers = sum(not is_choice(value) for value in job.variables.paths.values())
     if count * numbers > _MOST_READ:
         raise JobError(
             f"variables: variables times combinations of choices must be at most {_MOST_READ}; got {numbers} "
@@ -118,45 +118,45 @@ def variants_of(
 
 def discrete_of(job: Job) -> tuple[Discrete, ...]:
     """Return the variables of a job that have some values only. Raises JobError, naming the path."""
-    found = []
+    discrete = []
     for name in DIMENSIONS:
-        given = getattr(job.variables, name)
-        if isinstance(given, Grid):
+        stated = getattr(job.variables, name)
+        if isinstance(stated, Grid):
             for part in job.choice:
                 if any(name in option.paths for option in part.option):
                     raise JobError(
                         f"variables.{name}: a number set by options of the choice {quote(part.name)} must not be a "
                         "variable as well; leave out one of the two"
                     )
-            found.append(Discrete(name=name, values=given.values, rule=given.rule))
-    for path, given in job.variables.paths.items():
-        if says_values(given):
-            grid = _grid(job, f"variables.{path}", path, given)
-            found.append(Discrete(name=path, values=grid.values, rule=grid.rule))
-    return tuple(found)
+            discrete.append(Discrete(name=name, values=stated.values, rule=stated.rule))
+    for path, stated in job.variables.paths.items():
+        if says_values(stated):
+            grid = _grid(job, f"variables.{path}", path, stated)
+            discrete.append(Discrete(name=path, values=grid.values, rule=grid.rule))
+    return tuple(discrete)
 
 
-def _grid(job: Job, key: str, path: str, given: Mapping[str, Any]) -> Grid:
+def _grid(job: Job, key: str, path: str, table: Mapping[str, Any]) -> Grid:
     """Return the values of a number that varies, read by the rules of its own key."""
     try:
-        return read_grid(given, lambda value: _number(with_values(job, {path: value}, key), path, key))
+        return read_grid(table, lambda value: _number(with_values(job, {path: value}, key), path, key))
     except InputError as error:
         text = str(error)
         raise JobError(text if text.startswith(key) else f"{key}: {text}") from None
 
 
-def ends_of(given: tuple[float, float] | Choices | Grid) -> Range:
+def ends_of(stated: tuple[float, float] | Choices | Grid) -> Range:
     """Return the range of a dimension; of choices and values the one from the least to the greatest."""
-    if isinstance(given, Grid):
-        return Range(lower=given.values[0], upper=given.values[-1])
-    if isinstance(given, Choices):
-        return Range(lower=min(given.choices), upper=max(given.choices))
-    return Range(lower=given[0], upper=given[1])
+    if isinstance(stated, Grid):
+        return Range(lower=stated.values[0], upper=stated.values[-1])
+    if isinstance(stated, Choices):
+        return Range(lower=min(stated.choices), upper=max(stated.choices))
+    return Range(lower=stated[0], upper=stated[1])
 
 
 def reach_of(job: Job) -> dict[str, Range]:
     """Return where each dimension may lie, whatever is chosen."""
-    found = {}
+    ranges_by_name = {}
     for name in DIMENSIONS:
         options = [
             _length(name, option.paths[name], f"choice {quote(part.name)}, option {quote(option.name)}")
@@ -165,24 +165,24 @@ def reach_of(job: Job) -> dict[str, Range]:
             if name in option.paths
         ]
         ranges = [ends_of(getattr(job.variables, name)), *map(ends_of, options)]
-        found[name] = Range(lower=min(of.lower for of in ranges), upper=max(of.upper for of in ranges))
-    return found
+        ranges_by_name[name] = Range(lower=min(ends.lower for ends in ranges), upper=max(ends.upper for ends in ranges))
+    return ranges_by_name
 
 
-def is_choice(given: object) -> bool:
+def is_choice(value: object) -> bool:
     """Return whether a variable is one of some values that need not be numbers."""
-    return isinstance(given, Mapping) and set(given) == {"choices"}
+    return isinstance(value, Mapping) and set(value) == {"choices"}
 
 
 def _axes(job: Job, formulas: Formulas, amounts: Mapping[str, Amount]) -> Iterator[tuple[str, list[_Option]]]:
     """Yield name and options of every choice."""
     for name in DIMENSIONS:
-        given = getattr(job.variables, name)
-        if isinstance(given, Choices):
-            yield name, [_Option(f"{1e3 * value:.6g} mm", {name: value}) for value in given.choices]
-    for path, given in job.variables.paths.items():
-        if is_choice(given):
-            values = given["choices"]
+        stated = getattr(job.variables, name)
+        if isinstance(stated, Choices):
+            yield name, [_Option(f"{1e3 * value:.6g} mm", {name: value}) for value in stated.choices]
+    for path, stated in job.variables.paths.items():
+        if is_choice(stated):
+            values = stated["choices"]
             if not isinstance(values, list | tuple) or len(values) < 2:
                 raise JobError(f"variables.{path}: choices must be a list of at least two values; got {quote(values)}")
             labels = [str(value) for value in values]
@@ -192,14 +192,14 @@ def _axes(job: Job, formulas: Formulas, amounts: Mapping[str, Amount]) -> Iterat
     for part in job.choice:
         options = []
         for rank, o in enumerate(part.option):
-            where = f"choice {quote(part.name)}, option {quote(o.name)}"
+            option_name = f"choice {quote(part.name)}, option {quote(o.name)}"
             options.append(
                 _Option(
                     o.name,
                     o.paths,
-                    tuple(constraints_of(o.constraints, formulas, f"{where}: ")),
+                    tuple(constraints_of(o.constraints, formulas, f"{option_name}: ")),
                     slow_stroke_of(o.constraints),
-                    values_of(o.amounts, amounts, where),
+                    values_of(o.amounts, amounts, option_name),
                     tuple((part.name, head, text) for head, text in o.notes.items()),
                     o.searched,
                     0 if part.table is None else rank,
@@ -237,7 +237,7 @@ def _variant(job: Job, names: list[str], chosen: tuple[_Option, ...]) -> Variant
 
 
 def _of_options(names: list[str], chosen: tuple[_Option, ...]) -> dict[str, Any]:
-    """Return what a combination has of its options besides the numbers of the job."""
+    """Return limits, amounts and notes of a combination of options."""
     labelled = [option for name, option in zip(names, chosen, strict=True) if name not in DIMENSIONS]
     return {
         "labels": tuple(option.label for option in labelled),

@@ -84,7 +84,7 @@ NAMES = (*DIMENSIONS, "crank_angle")
 
 def costs_before(costs: Costs, linkage: Linkage, before: Mechanism) -> dict[str, float] | None:
     """Return the cost of each tolerance of a mechanism, by name; None if one with a cost is zero."""
-    reach = dict(zip(NAMES, limits(before, linkage)[: len(NAMES)], strict=True))
-    if not all(reach[name] > 0.0 for name in costs.by_name):
+    limits_by_name = dict(zip(NAMES, limits(before, linkage)[: len(NAMES)], strict=True))
+    if not all(limits_by_name[name] > 0.0 for name in costs.by_name):
         return None
-    return {name: cost.cost_at(float(reach[name])) for name, cost in costs.by_name.items()}
+    return {name: cost.cost_at(float(limits_by_name[name])) for name, cost in costs.by_name.items()}

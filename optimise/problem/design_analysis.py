@@ -258,7 +258,7 @@ def analysed(
     title: str = "",
     swing: Swing | None = None,
 ) -> Analysis:
-    """Return what `analyse` does. machine: of the design with the numbers `sizes` (3 + k,)."""
+    """Return the analysis of `analyse`. machine: of the design with the numbers `sizes` (3 + k,)."""
     given = Linkage(sizes[0], sizes[1], sizes[2], machine.branch)
     linkage = single(machine, given) if swing is None else require_swing(machine, given, swing)
     values: dict[str, float] = {}

@@ -383,7 +383,7 @@ class Problem:
 
     @property
     def choice_fields(self) -> list[tuple[str, str]]:
-        """Keys of the columns that say what was chosen and what comes with it, each with what it is, in words."""
+        """Keys of the columns with chosen options and their amounts, each with its meaning in words."""
         least = [self.choices[place] for place in self.catalogues]
         return [
             *((choice_field(name), f"the choice {name}") for name in self.choices),

@@ -27,7 +27,7 @@ _REMEDIES = {
 
 
 class DesignQuestion(Protocol):
-    """What a design can be asked. One with a `subject`, "front" or "job", is a `FrontOrJobQuestion`."""
+    """Question about a design. One with a `subject`, "front" or "job", is a `FrontOrJobQuestion`."""
 
     def answer(
         self, mechanism: Mechanism, linkage: Linkage, problem: Any, inputs: Mapping[str, object]
@@ -67,7 +67,7 @@ def questions() -> dict[str, Any]:
 
 
 def subject_of(name: str) -> str:
-    """Return what a question is asked of: "design", "front", "runs" or "job".
+    """Return the subject of a question: "design", "front", "runs" or "job".
 
     Raises `InputError` with the nearest name, or all, for a question that there is not.
     """

@@ -86,8 +86,8 @@ class Constraint:
         """The bounds that there are, by their words in a job."""
         if self.equality and self.lower is not None:
             return [("equals", self.lower)]
-        both: tuple[tuple[Word, float | None], ...] = (("min", self.lower), ("max", self.upper))
-        return [(word, bound) for word, bound in both if bound is not None]
+        pairs: tuple[tuple[Word, float | None], ...] = (("min", self.lower), ("max", self.upper))
+        return [(word, bound) for word, bound in pairs if bound is not None]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,14 +116,14 @@ class Objective:
 
 def merged(constraints: Iterable[Constraint]) -> tuple[Constraint, ...]:
     """Return constraints, those on one quantity as one that holds where all do. Raises `InputError` if none can."""
-    found: dict[str, Constraint] = {}
+    merged_constraints: dict[str, Constraint] = {}
     for constraint in constraints:
         name = constraint.quantity
-        same = (found.get(name, constraint), constraint)
+        same = (merged_constraints.get(name, constraint), constraint)
         lower = max((item.lower for item in same if item.lower is not None), default=None)
         upper = min((item.upper for item in same if item.upper is not None), default=None)
-        found[name] = Constraint(quantity=name, lower=lower, upper=upper)
-    return tuple(found.values())
+        merged_constraints[name] = Constraint(quantity=name, lower=lower, upper=upper)
+    return tuple(merged_constraints.values())
 
 
 def _require_name(name: object) -> None:

@@ -93,10 +93,10 @@ def restate(problem: Problem, constraint: Constraint) -> Constraint:
     return Constraint(quantity=known.quantity, lower=lower, upper=upper)
 
 
-def _is_possible(of: Quantity, value: float, *, least: bool) -> bool:
+def _is_possible(quantity: Quantity, value: float, *, least: bool) -> bool:
     """Return whether the quantity can have a value as a bound."""
-    refused = of.domain is not None and of.domain.refuses(value, least=least)
-    return math.isfinite(value) and not refused and (of.signed or value >= 0.0)
+    refused = quantity.domain is not None and quantity.domain.refuses(value, least=least)
+    return math.isfinite(value) and not refused and (quantity.signed or value >= 0.0)
 
 
 @lru_cache(maxsize=256)
@@ -123,13 +123,13 @@ def _restatement(
     return None
 
 
-def _known_parts(of: FormulaQuantity) -> Iterator[Quantity]:
+def _known_parts(formula: FormulaQuantity) -> Iterator[Quantity]:
     """Yield the quantities that a formula is made of, those of its parts included."""
-    for part in of.parts:
+    for part in formula.parts:
         yield from _known_parts(part) if isinstance(part, FormulaQuantity) else (part,)
 
 
-def _is_analytic(of: FormulaQuantity) -> bool:
+def _is_analytic(formula: FormulaQuantity) -> bool:
     """Return whether a formula and its parts are analytic for each sign of the offset.
 
     An argument of an inverse sine or cosine may be clipped to 1: beyond it the function is undefined.
@@ -148,8 +148,8 @@ def _is_analytic(of: FormulaQuantity) -> bool:
             return node.arguments[0] == Name("offset")
         return node.function not in ("min", "max") and all(map(has_analytic_form, node.arguments))
 
-    return has_analytic_form(of.expression) and all(
-        _is_analytic(part) for part in of.parts if isinstance(part, FormulaQuantity)
+    return has_analytic_form(formula.expression) and all(
+        _is_analytic(part) for part in formula.parts if isinstance(part, FormulaQuantity)
     )
 
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass, fields
 from ...model.errors import InputError
 
 
-def _require(what: str, name: str, value: float, least: float = 0.0) -> None:
+def _require(subject: str, name: str, value: float, least: float = 0.0) -> None:
     if not math.isfinite(value) or value <= least:
-        raise InputError(f"{what} must have a finite {name} above {least:g}; got {value:g}")
+        raise InputError(f"{subject} must have a finite {name} above {least:g}; got {value:g}")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -29,9 +29,9 @@ def least_field(name: str) -> str:
     return choice_field(f"least {name}")
 
 
-def least_amount_field(choice: str, of: Quantity) -> str:
+def least_amount_field(choice: str, quantity: Quantity) -> str:
     """Return the key of the column with an amount, such as the price, of the least option that also serves."""
-    return f"{least_field(choice).removeprefix(_CHOICE)}_{of.field}"
+    return f"{least_field(choice).removeprefix(_CHOICE)}_{quantity.field}"
 
 
 def note_field(choice: str, head: str) -> str:
@@ -39,9 +39,9 @@ def note_field(choice: str, head: str) -> str:
     return choice_field(f"{choice} {head}")
 
 
-def slack_field(of: Quantity) -> str:
+def slack_field(quantity: Quantity) -> str:
     """Return the key of the column with the slack of a requirement on a quantity."""
-    return f"{_SLACK}{of.field}"
+    return f"{_SLACK}{quantity.field}"
 
 
 def require_own_columns(

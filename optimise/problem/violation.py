@@ -35,14 +35,14 @@ def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
     """
     if problem.motion is not None:
         return _with_floor(problem, problem.constraints, SWING_TRANSMISSION_ANGLE)
-    found = _with_floor(problem, problem.constraints, TRANSMISSION_ANGLE)
+    constraints = _with_floor(problem, problem.constraints, TRANSMISSION_ANGLE)
     if problem.mechanism.fullest.friction.acts:
-        found = _with_floor(problem, found, SELF_LOCKING_MARGIN)
+        constraints = _with_floor(problem, constraints, SELF_LOCKING_MARGIN)
     if may_deliver_nothing(problem.mechanism):
-        found = _with_floor(problem, found, VOLUMETRIC_EFFICIENCY)
+        constraints = _with_floor(problem, constraints, VOLUMETRIC_EFFICIENCY)
     if problem.slow_stroke is not None:
-        found = _with_slow_stroke(problem, found)
-    return found
+        constraints = _with_slow_stroke(problem, constraints)
+    return constraints
 
 
 def _with_slow_stroke(problem: Problem, constraints: tuple[Constraint, ...]) -> tuple[Constraint, ...]:
@@ -93,7 +93,9 @@ def minimised(objective: Objective, values: Array) -> Array:
 
 def all_minimised(problem: Problem, values: Array) -> Array:
     """Return the objectives (n, m) of a problem as they are minimised."""
-    return np.stack([minimised(of, values[:, column]) for column, of in enumerate(problem.objectives)], axis=1)
+    return np.stack(
+        [minimised(quantity, values[:, column]) for column, quantity in enumerate(problem.objectives)], axis=1
+    )
 
 
 def sides(constraint: Constraint) -> list[Side]:

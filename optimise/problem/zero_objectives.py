@@ -31,7 +31,10 @@ def require_ranking(problem: Problem) -> None:
 def idle_rules(problem: Problem) -> list[str]:
     """Return a warning for each constraint on a quantity that is zero for every design, which all of them meet."""
     machines = [part.mechanism for part in problem.parts()]
-    reasons = {each.quantity: problem.quantity(each.quantity).zero_because(machines) for each in problem.constraints}
+    reasons = {
+        sentence.quantity: problem.quantity(sentence.quantity).zero_because(machines)
+        for sentence in problem.constraints
+    }
     return [
         f"constraints.{name} excludes no design: it is zero for every design of this job; {reason}"
         for name, reason in reasons.items()

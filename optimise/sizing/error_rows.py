@@ -54,10 +54,10 @@ class ErrorRows:
 
     def machine(self, x: Array) -> Mechanism:
         """Return the mechanism with the tolerances of x."""
-        own: dict[str, Any] = {
+        machine_tolerances: dict[str, Any] = {
             name: Tolerance(absolute=float(value)) for name, value in zip(self.names, self.tolerances(x), strict=True)
         }
-        return replace(self.mechanism, tolerances=replace(self.mechanism.tolerances, **own))
+        return replace(self.mechanism, tolerances=replace(self.mechanism.tolerances, **machine_tolerances))
 
     def peaks(self, x: Array) -> tuple[Array, Array]:
         """Return the exact local peaks (k,) over the counted angles, highest first, and their crank angles, rad."""

@@ -120,7 +120,7 @@ def limit_states(
         z = 1.0 / (1.0 - u) if u < 1.0 else math.inf
     swell = above(_SWELL * u * z * loads.moment)
     fatigue = loads.fatigue_axial / (w * d) + 6.0 * (loads.fatigue_moment + swell / material.endurance) / (d * w**2)
-    found = {
+    states = {
         AMPLIFICATION: 1.0 / z + u,
         "static stress": static * (loads.axial / (w * d) + 6.0 * (loads.moment + swell) / (d * w**2)),
         "fatigue": limits.fatigue_safety * fatigue,
@@ -129,10 +129,10 @@ def limit_states(
     }
     raised = limits.eye_concentration
     for name, (force, diameter) in loads.pins.items():
-        found[f"net section at the {name}"] = eye(static * raised * force / (w * d), diameter / w)
+        states[f"net section at the {name}"] = eye(static * raised * force / (w * d), diameter / w)
         tired = limits.fatigue_safety * raised * loads.fatigue_axial
-        found[f"fatigue of the eye at the {name}"] = eye(tired / (w * d), diameter / w)
-        found[f"bearing at the {name}"] = force / (diameter * d * material.bearing_pressure)
+        states[f"fatigue of the eye at the {name}"] = eye(tired / (w * d), diameter / w)
+        states[f"bearing at the {name}"] = force / (diameter * d * material.bearing_pressure)
     if loads.bent_eye:
         diameter = loads.pins[loads.bent_eye][1]
         rest = above(w**2 + diameter * w + diameter**2)
@@ -143,10 +143,10 @@ def limit_states(
                 ("fatigue of the ", limits.fatigue_safety, loads.fatigue_axial, tiring),
             ):
                 stress = n * (pulled * axial * rest + 6.0 * bent * turned * lever) / (d * w**3)
-                found[f"{kind}{edge} of the eye at the {loads.bent_eye}"] = eye(stress, (diameter / w) ** 3)
-    found["least width"], found["greatest width"] = limits.width[0] / w, w / limits.width[1]
-    found["least depth"], found["greatest depth"] = limits.depth[0] / d, d / limits.depth[1]
-    return found
+                states[f"{kind}{edge} of the eye at the {loads.bent_eye}"] = eye(stress, (diameter / w) ** 3)
+    states["least width"], states["greatest width"] = limits.width[0] / w, w / limits.width[1]
+    states["least depth"], states["greatest depth"] = limits.depth[0] / d, d / limits.depth[1]
+    return states
 
 
 def rod_loads(

@@ -45,17 +45,19 @@ def rows(mechanism: Mechanism, linkage: Linkage, angles: Array) -> tuple[Array, 
 
     def curves(**masses: Any) -> Array:
         machine = Mechanism(speed=mechanism.speed, branch=mechanism.branch, **masses)
-        found = shaking_curves(machine, linkage, angles)
-        return np.stack([found.force_x, found.force_y, found.moment])
+        shaking = shaking_curves(machine, linkage, angles)
+        return np.stack([shaking.force_x, shaking.force_y, shaking.moment])
 
     bare = curves(crank=mechanism.crank, rod=mechanism.rod, slider_mass=mechanism.slider_mass)
-    along, across = (curves(counterweight=Counterweight(mass=1.0, radius=1.0, angle=at)) for at in (0.0, 0.5 * math.pi))
+    axial, lateral = (
+        curves(counterweight=Counterweight(mass=1.0, radius=1.0, angle=at)) for at in (0.0, 0.5 * math.pi)
+    )
     mass = curves(rod=RigidLink(mass=1.0, centre=0.0, inertia=0.0))
     inertia = curves(rod=RigidLink(mass=0.0, inertia=1.0))
     pin = mass + inertia  # a mass of 1 kg at 1 m has both, besides its first moment
     ahead = curves(rod=RigidLink(mass=1.0, centre=1.0, inertia=0.0)) - pin
     aside = curves(rod=RigidLink(mass=1.0, centre=0.0, centre_across=1.0, inertia=0.0)) - pin
-    table = np.stack([bare, along, across, mass, ahead, aside, inertia], axis=-1)
+    table = np.stack([bare, axial, lateral, mass, ahead, aside, inertia], axis=-1)
     return table[:2], table[2]
 
 
@@ -67,8 +69,8 @@ def mean_rows(mechanism: Mechanism, linkage: Linkage) -> tuple[Array, Array]:
     weight = kappa / (np.cos(tau) ** 2 + (kappa * np.sin(tau)) ** 2) / _NODES
     force, moment = rows(mechanism, linkage, angles)
     share = np.sqrt(weight)[:, None]
-    both = np.concatenate([share * force[0], share * force[1]]), share * moment
-    reduced: list[Array] = [np.asarray(np.linalg.qr(table, mode="r")) for table in both]
+    weights = np.concatenate([share * force[0], share * force[1]]), share * moment
+    reduced: list[Array] = [np.asarray(np.linalg.qr(table, mode="r")) for table in weights]
     return reduced[0], reduced[1]
 
 

@@ -268,5 +268,5 @@ class _Programme:
 
 def _nearest(angles: Array, among: Array) -> NDArray[np.intp]:
     """Return which of some crank angles is nearest to each angle, rad."""
-    apart: Array = np.abs(np.mod(angles[:, None] - among + math.pi, _TURN) - math.pi)
-    return np.asarray(apart.argmin(axis=1))
+    distance: Array = np.abs(np.mod(angles[:, None] - among + math.pi, _TURN) - math.pi)
+    return np.asarray(distance.argmin(axis=1))
