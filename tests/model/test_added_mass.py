@@ -105,7 +105,7 @@ def test_the_equation_of_motion_has_the_added_mass_in_its_inertia_and_in_no_load
     for added, heavier in pairs(3):
         equations = [CrankEquation(machine, linkage_of(design, machine.branch)) for machine in (added, heavier)]
         for way in (1.0, -1.0):
-            one, other = (equation.stretch(0, way).at(angles) for equation in equations)
+            one, other = (equation.stretch(0, way).terms_at(angles) for equation in equations)
             for name in ("inertia", "spin", "static", "drag", "square", "load"):
                 agree(getattr(one, name), getattr(other, name), rtol=1e-11, atol=1e-12)
         agree(equations[0].inertia(angles), equations[1].inertia(angles), rtol=1e-13)
