@@ -417,7 +417,7 @@ folder = Path(sys.argv[2])
 front = front_of(problem_of(folder, read_run(folder)), read_run(folder))
 inputs = {"column": "rod_mm"}
 asked = {"run": folder.name, "topics": ["reach"], "inputs": inputs, "units": "inch"}
-agent = ASK.answer(call_in(folder.parent), asked)
+agent = ASK.execute(call_in(folder.parent), asked)
 print(json.dumps([front.ask("reach", **inputs), agent.record, agent.text]))
 """
 
