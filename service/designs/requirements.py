@@ -66,6 +66,14 @@ class JudgedRule:
     missed_by: float | None
 
 
+@dataclass(frozen=True, kw_only=True)
+class JudgedChoice:
+    """A combination of a job's choices at one design. labels: what is chosen. missed: rules that fail with it."""
+
+    labels: tuple[str, ...]
+    missed: tuple[JudgedRule, ...]
+
+
 def requirements_of(part: Problem) -> list[Requirement]:
     """Return the constraints of a problem without choices, with the floors that hold where it sets none."""
     from ...optimise.problem.violation import constraints_of
@@ -119,6 +127,11 @@ def judge_rules(problem: Problem, row: Row, system: System = "metric") -> list[J
     alternatives = zip(*lengths, strict=True)  # of several, where it is chosen
     ranges = [min(same_length, key=lambda rule: rule.missed_by(row) or 0.0) for same_length in alternatives]
     return [_judged(rule, row, system) for rule in (*ranges, *requirements_of(problem))]
+
+
+def missed_rules(part: Problem, row: Row, system: System = "metric") -> tuple[JudgedRule, ...]:
+    """Return the ranges and constraints of a problem without choices that a design's metric row does not meet."""
+    return tuple(rule for rule in judge_rules(part, row, system) if not rule.met)
 
 
 def _number(cell: Cell) -> float | None:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from ...objectives.kinds import System
     from ...objectives.quantity import Quantity
-    from ..designs.requirements import JudgedRule
+    from ..designs.requirements import JudgedChoice, JudgedRule
     from .design_analysis import Analysis
 
 
@@ -25,18 +25,20 @@ def show_analysis(
     rules: Sequence[JudgedRule],
     units: System,
     *,
+    choices: Sequence[JudgedChoice] = (),
     custom: Sequence[Quantity] = (),
     hint: str = "",
 ) -> None:
     """Write all numbers of a design, how it meets the rules of its job, and its topics.
 
-    custom: quantities of its job. hint: a line before the topics, "" for none.
+    choices: of its job, judged at the design. custom: quantities of its job. hint: a line before the topics, "" for
+    none.
     """
     row, reasons = analysis.row, (analysis.undefined or {}).items()
     show_design(screen, row_in({key: row[key] for key in row if key not in TOPIC_COLUMNS}, units), custom=custom)
     show_undefined(screen, {key: why for key, why in reasons if key not in TOPIC_COLUMNS}, custom)
     show_violated(screen, record_in(analysis.violated, units), row_in(row, units))
-    show_rules(screen, rules)
+    show_rules(screen, rules, choices)
     if hint:
         screen.print(hint, style="dim")
     for topic in analysis.topics:

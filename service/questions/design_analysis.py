@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
 from ..designs.display_units import record_in, row_in
+from ..designs.requirements import JudgedChoice, JudgedRule, missed_rules
 from ..designs.violations import violated_by
 from ..runs.result import Row, rows_of
 from .design_question import BoundQuestion
@@ -20,8 +21,11 @@ if TYPE_CHECKING:
     from ...model.swing.swing import Swing
     from ...objectives.kinds import System
     from ...objectives.quantity import Quantity
-    from ..designs.requirements import JudgedRule
+    from ...optimise.problem.problem import Problem
     from ..designs.stored_designs import StoredDesign
+
+
+_MOST_CHOICES = 256
 
 
 @dataclass(frozen=True)
@@ -41,15 +45,39 @@ class Analysis:
     undefined: dict[str, str] | None = None
     violated: dict[str, float] = field(default_factory=dict)
 
-    def record(self, units: System = "metric", rules: Sequence[JudgedRule] | None = None) -> dict[str, Any]:
+    def record(
+        self,
+        units: System = "metric",
+        rules: Sequence[JudgedRule] | None = None,
+        choices: Sequence[JudgedChoice] = (),
+    ) -> dict[str, Any]:
         """Return all numbers of the design and of its topics, for JSON, with what is undefined and what is violated.
 
-        rules: of its job at the design; None without one.
+        rules: of its job at the design; None without one. choices: of its job, judged at the design.
         """
         topics = {topic.name: topic.numbers_in(self.topic_numbers[topic.name], units) for topic in self.topics}
         undefined = {} if self.undefined is None else {"undefined": record_in(self.undefined, units)}
         judged = {} if rules is None else {"rules": [asdict(rule) for rule in rules]}
+        judged |= {"choices": [asdict(choice) for choice in choices]} if choices else {}
         return row_in(self.row, units) | topics | undefined | {"violated": record_in(self.violated, units)} | judged
+
+
+def judge_choices(
+    problem: Problem, mechanism: Mechanism, linkage: Linkage, row: Row, system: System = "metric"
+) -> list[JudgedChoice]:
+    """Return every combination of a job's choices with the rules that a design misses with it.
+
+    mechanism: of the design without a choice. row: its quantities. Empty for a job without choices, and for one with
+    more than 256 combinations.
+    """
+    judged = []
+    for index, variant in enumerate(problem.variants if len(problem.variants) <= _MOST_CHOICES else ()):
+        part = problem.part(index)
+        machine, quantities = replace(part.mechanism.nominal, speed=mechanism.speed), row
+        if machine != mechanism:
+            quantities, _ = quantities_of_design(machine, linkage, part.own)
+        judged.append(JudgedChoice(labels=variant.labels, missed=missed_rules(part, quantities, system)))
+    return judged
 
 
 def quantities_of_design(

@@ -21,11 +21,12 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from ...objectives.quantity import Quantity
-    from ..designs.requirements import JudgedRule
+    from ..designs.requirements import JudgedChoice, JudgedRule
 
 ROWS = 15
 """Designs shown of a front unless asked otherwise."""
 _DIGITS = 4
+_CHOICES = 6  # named
 
 
 def show_result(screen: Console, result: Result) -> None:
@@ -211,14 +212,26 @@ def show_violated(screen: Console, violated: Mapping[str, float], row: Row) -> N
         screen.print(f"Beyond the allowable value: {sentence}.", style="bold yellow", soft_wrap=True)
 
 
-def show_rules(screen: Console, rules: Sequence[JudgedRule]) -> None:
-    """Print whether a design meets each requirement of its job, those that it misses first."""
+def show_rules(screen: Console, rules: Sequence[JudgedRule], choices: Sequence[JudgedChoice] = ()) -> None:
+    """Print whether a design meets each requirement of its job, with which choices, those that it misses first."""
     if not rules:
         return
     broken = [rule for rule in rules if not rule.met]
+    fitting = [" and ".join(choice.labels) for choice in choices if not choice.missed]
     screen.print()
-    if not broken:
+    if not broken and not choices:
         screen.print("It meets every range and requirement of the job.", soft_wrap=True)
+    elif not broken and fitting:
+        shown, more = fitting[:_CHOICES], len(fitting) - _CHOICES
+        listed = ", ".join(shown) + (f" and {more} more" if more > 0 else "")
+        screen.print(
+            f"It meets every range and requirement of the job with {len(fitting)} of {len(choices)} choices: {listed}.",
+            soft_wrap=True,
+        )
+    elif not broken:
+        nearest = min(choices, key=lambda choice: len(choice.missed))
+        screen.print(f"No choice of the job fits; with {' and '.join(nearest.labels)}:", style="bold")
+        broken = list(nearest.missed)
     for rule in broken:
         value = "has no value" if rule.value is None else f"is {_format_value(rule.value, rule)}"
         miss = "" if rule.missed_by is None else f", by {_format_value(rule.missed_by, rule)}"

@@ -19,6 +19,22 @@ from tests.service import fronts
 from tests.service.conftest import Command
 from tests.service.test_result import DESIGN_KEYS
 
+JOB_WITH_MOTORS = """
+name = "pusher"
+[mechanism]
+speed = "200 rpm"
+slider = {{ mass = "{mass} kg" }}
+[variables]
+crank = ["40 mm", "60 mm"]
+rod = ["150 mm", "300 mm"]
+offset = ["0 mm", "20 mm"]
+[[choice]]
+name = "gearmotor"
+file = "motors.csv"
+[objectives]
+price = "minimise"
+transmission_angle = "maximise"
+"""
 FEEDER = ("--crank", "40 mm", "--rod", "64 mm", "--offset", "20 mm")
 
 
@@ -174,3 +190,26 @@ def test_the_help_says_when_a_missing_topic_is_an_error(tmp_path: Path, command:
     assert (named.exit_code, every.exit_code) == (2, 0)
     text = " ".join(command("analyse", "--help").stdout.split())
     assert "the exit code is then 2 if the topic was named, and 0 with `--show all`" in text
+
+
+@pytest.mark.parametrize(("mass", "fitting"), [(2.0, 3), (12.0, 1), (60.0, 0)])
+def test_a_design_of_a_job_with_choices_is_judged_with_each_of_them(
+    command: Command, tmp_path: Path, mass: float, fitting: int
+) -> None:
+    """Limits come with each gearmotor: without one, a design that none can drive would seem to meet the job."""
+    limits = (4.0, 7.0, 20.0)
+    rows = "\n".join(f"GM {limit:g};{limit};{10.0 * limit}" for limit in limits)
+    (tmp_path / "motors.csv").write_text(f"name;peak_torque max (Nm);price (EUR)\n{rows}\n", encoding="utf-8")
+    job = tmp_path / "job.toml"
+    job.write_text(JOB_WITH_MOTORS.format(mass=mass), encoding="utf-8")
+    sized = ("--crank", "50 mm", "--rod", "200 mm", "--offset", "10 mm")
+    record = json.loads(command("analyse", job, *sized, "--json").stdout)
+    torque = record["peak_torque_Nm"]
+    assert sum(torque <= limit for limit in limits) == fitting
+    assert [not choice["missed"] for choice in record["choices"]] == [torque <= limit for limit in limits]
+    printed = " ".join(command("analyse", job, *sized).stdout.split())
+    if fitting:
+        fit = ", ".join(f"GM {limit:g}" for limit in limits if torque <= limit)
+        assert f"meets every range and requirement of the job with {fitting} of 3 choices: {fit}." in printed
+    else:
+        assert "No choice of the job fits; with GM 4: Not met: peak torque (at most 4 N m)" in printed
