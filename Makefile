@@ -100,7 +100,7 @@ $(VENV)/.created:
 define install
 	@echo 'Installing into $(VENV) (about a minute) ...'
 	@$(BIN)/python .package/links.py
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile -c constraints.txt -e '.$(1)'
+	@PYTHONWARNINGS=ignore $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile -c constraints.txt -e '.$(1)'
 	@$(BIN)/python -m compileall -qq -j 0 -x '[/\\]tests[/\\]' '$(CURDIR)/$(VENV)/lib' || true
 	@touch $(VENV)/.installed $@
 endef

@@ -31,7 +31,8 @@ OUTWARD: Final = "outward stroke"
     [
         (
             PositionTable(positions=(0.0, 0.06), forces=(350.0, 350.0), datum=OUTER, during=OUTWARD),
-            "350 N outward, helps the outward stroke, from 60 mm before the outer dead centre to it; constant beyond",
+            "350 N outward, helps the outward stroke, from 60 mm before the outer dead centre to it; "
+            "constant beyond, hence everywhere",
         ),
         (
             PositionTable(

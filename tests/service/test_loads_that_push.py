@@ -22,7 +22,10 @@ forces = ["350 N", "350 N"]
 measured_from = "outer dead centre"
 during = "outward stroke"
 """
-SENTENCE = "350 N outward, helps the outward stroke, from 60 mm before the outer dead centre to it; constant beyond"
+SENTENCE = (
+    "350 N outward, helps the outward stroke, from 60 mm before the outer dead centre to it; "
+    "constant beyond, hence everywhere"
+)
 QUESTION = f"in every {{}} loads do more work on the machine than they absorb, by 98 J per cycle: load #1 ({SENTENCE})"
 
 

@@ -151,7 +151,10 @@ def test_check_says_of_each_load_what_it_does_and_warns_of_one_that_pushes_with_
 ) -> None:
     job = shipped(pytestconfig.rootpath)["feeder"]
     push = {"positions": ["0 mm", "60 mm"], "forces": ["350 N", "350 N"], "measured_from": "outer dead centre"}
-    sentence = "350 N outward, helps the outward stroke, from 60 mm before the outer dead centre to it; constant beyond"
+    sentence = (
+        "350 N outward, helps the outward stroke, from 60 mm before the outer dead centre to it; "
+        "constant beyond, hence everywhere"
+    )
     before = shared.post("/check", json={"job": job}).json()
     assert before["loads"] == [
         "2000 N inward, resists the outward stroke, throughout",
