@@ -98,7 +98,7 @@ def range_of_positions(positions: Sequence[float], forces: Sequence[float], datu
     else:
         place = f"from {low} to {high} after the {datum}" if inner_end else f"from the {datum} to {high} after it"
     if len(set(forces)) == 1 and forces[0]:
-        return f"{place}; constant beyond, hence everyplace"
+        return f"{place}; constant beyond, hence everywhere"
     near, far = ("zero" if not end else sized((end,)) for end in (forces[0], forces[-1]))
     return f"{place}; {near} nearer and {far} beyond" if inner_end and near != far else f"{place}; {far} beyond"
 
