@@ -179,5 +179,5 @@ def _nearest_possible(problem: Problem, constraint: Constraint, ends: Ends) -> l
         is_beyond = {"min": bound > nearest, "max": bound < nearest, "equals": True}[word]
         item = missed(problem, constraint, word, bound, nearest) if is_beyond else None
         if item is not None:
-            sentences.append(replace(item, alone=bool(is_constant(ends))).sentence(kept=_REST))
+            sentences.append(replace(item, alone=bool(is_constant(ends))).sentence(other_requirements=_REST))
     return sentences
