@@ -50,7 +50,7 @@ class CycleWindow(NamedTuple):
 
 
 class Cuts(NamedTuple):
-    """Work space of one design's breakpoints: angle, what it is, its number (knot or fraction) and its load."""
+    """Work space for one design's breakpoints: angle, kind, number (of the knot or fraction) and load."""
 
     angle: Row
     code: Integers
@@ -72,13 +72,13 @@ def crank_angle_at(x: float, r: float, l: float, e: float, second: bool) -> floa
 
 @analytic
 def room_for(loads: Loads) -> int:
-    """Return how many breakpoints a design has at most."""
+    """Return the greatest number of breakpoints that a design can have."""
     return int(ROOM + 2 * loads.at.shape[0] + 4 * loads.kind.shape[0])
 
 
 @analytic
 def add_cut(cuts: Cuts, n: int, angle: float, code: int, number: float, load: int) -> int:
-    """Insert a breakpoint into the first `n`, in ascending order; return how many there are then."""
+    """Insert a breakpoint into the first `n`, in ascending order; return the new count."""
     wrapped = angle - _TURN * math.floor(angle / _TURN)
     i = n
     while i > 0 and cuts.angle[i - 1] > wrapped:
@@ -128,8 +128,8 @@ def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: CycleWindow, c
             x = d.branch * (d.inner + fraction * (d.outer - d.inner))
             for second in (False, True):
                 n = add_cut(cuts, n, crank_angle_at(x, d.r, d.l, d.e, second), _FRACTION, fraction, -1)
-    # A knot on a dead centre is no breakpoint. There the slider stands still, so that a force continuous over position
-    # has no kink over crank angle, while the crank angle of the knot has no derivative.
+    # A knot on a dead centre is not a breakpoint. There the slider stands still, so that a force continuous over
+    # position has no kink over crank angle, while the crank angle of the knot has no derivative.
     margin = 1e-12 * (d.outer - d.inner)
     for k in range(loads.kind.shape[0]):
         first, last = loads.start[k], loads.start[k + 1]
@@ -187,10 +187,10 @@ def cut_shift(d: Any, block: Any, j: int, theta: float, cuts: Cuts, i: int) -> f
 
 @analytic
 def angle_within(a: float, b: float) -> float:
-    """Return a crank angle in (a, b) that tells the segment's stroke and table pieces.
+    """Return a crank angle in (a, b) that identifies the segment's stroke and table pieces.
 
-    Not its middle: without offset that is a dead centre, where rounding decides on which side of an end of the stroke,
-    or of a knot there, the slider is.
+    The middle would not do: without offset it is a dead centre. There, rounding decides on which side of the stroke's
+    end, or of a knot, the slider is.
     """
     return a + 0.382 * (b - a)
 
@@ -211,7 +211,7 @@ def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Lo
         else:
             at = block[DESIGN + LOAD_ROWS * k, j] * (x - block[DESIGN + LOAD_ROWS * k + 1, j])
         low, high, near = first, last, piece[k]
-        if first <= near < last:  # mostly the piece of the segment before, or one beside it
+        if first <= near < last:  # usually the piece of the previous segment, or its neighbour
             if loads.at[near] < at:
                 low = near + 1
                 if low < last and loads.at[low] >= at:
@@ -235,14 +235,14 @@ def enter(
 ) -> tuple[bool, bool]:
     """Fix the table pieces of the segment that the crank angle `probe` lies in; return (counts, outward).
 
-    Within rounding of a dead centre, where the sign of x' is luck, the stroke is the inward one.
+    Within rounding of a dead centre, where the sign of x' is arbitrary, the inward stroke is taken.
     """
     m = motion(math.sin(probe), math.cos(probe), d.r, d.l, d.e, d.branch)
     x = d.branch * m.x
     outward = d.branch * m.x_1 * (1.0 if d.speed >= 0.0 else -1.0) > _STILL * d.r
     fraction = (x - d.inner) / (d.outer - d.inner)
     counts = watch.strokes == 0 or (watch.strokes == 1) == outward
-    # Only at ends that are cuts: a dead centre in the middle lies a rounding error outside 0 to 1.
+    # Only at ends that are cuts: otherwise a dead centre in mid-segment may lie outside 0 to 1 by a rounding error.
     if (watch.start > 0.0 and fraction < watch.start) or (watch.end < 1.0 and fraction > watch.end):
         counts = False
     find_pieces(d, block, j, probe, x, loads, piece, shift)
@@ -251,7 +251,7 @@ def enter(
 
 @analytic
 def with_formulas(force: Any, m: Any, d: Any, block: Any, j: int, outward: bool, loads: Loads) -> Any:
-    """Return a force, N outward, with all loads added that have a formula of their own."""
+    """Return a force plus all loads that have their own formula, N outward."""
     way = 1.0 if outward else -1.0
     for k in range(loads.kind.shape[0]):
         if loads.kind[k] >= _FORMULA:
@@ -267,7 +267,7 @@ def with_formulas(force: Any, m: Any, d: Any, block: Any, j: int, outward: bool,
 def load_on_slider(
     m: Any, d: Any, block: Any, j: int, theta: Any, outward: bool, loads: Loads, piece: Any, shift: Any
 ) -> Any:
-    """Return the load on the slider, N outward, in a segment entered before."""
+    """Return the load on the slider in a previously entered segment, N outward."""
     force = smooth_load(m, d, d.outward_force if outward else d.inward_force)
     force = with_formulas(force, m, d, block, j, outward, loads)
     for k in range(loads.kind.shape[0]):
@@ -287,7 +287,7 @@ def load_on_slider(
         else:
             slope = (loads.force[i] - loads.force[i - 1]) / (loads.at[i] - loads.at[i - 1])
             if loads.kind[k] == _ANGLE_TABLE:
-                # Apart, as the compiler may group a sum anew: tables from zero keep their last digits.
+                # Summed separately, as the compiler may regroup a sum: tables from zero keep their last digits.
                 if loads.datum[k] == 0:
                     force = force + factor * (loads.force[i - 1] + slope * (theta + shift[k] - loads.at[i - 1]))
                 else:

@@ -1,4 +1,4 @@
-"""The linkage: crank, connecting rod, offset and branch, with its closed forms and its kinematics."""
+"""The linkage: crank, connecting rod, offset and branch, with closed-form formulas and kinematics."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ Stroke = Literal["outward", "inward", "equal"]
 class Linkage:
     """An offset slider-crank: crank, rod and offset in metres (scalars, or arrays that broadcast), and its branch.
 
-    Dimensions, crank angles, speeds and accelerations may be complex: then so are the results, and the imaginary part
-    of one, over that of the number that was stepped, is the derivative, exact to rounding (complex step; a step such as
-    1e-30j, as only its first power is kept). Conditions and limits look at the real parts.
+    Dimensions, crank angles, speeds and accelerations may be complex; then so are the results. The imaginary part of a
+    result, divided by that of the stepped number, is the derivative, exact to rounding (complex step). Use a step such
+    as 1e-30j, as only its first power is kept. Conditions and limits use the real parts.
 
     The sketch and the sign conventions are in `slidercrank.model.kinematics.position`. Any linkage that assembles at
-    some crank angle is accepted; what needs full rotation says so and raises `AssemblyError` otherwise.
+    some crank angle is accepted. Methods that need full rotation say so and raise `AssemblyError` otherwise.
 
     >>> linkage = Linkage(crank=0.04, rod=0.064, offset=0.02)
     >>> round(float(linkage.stroke) * 1000, 6)
@@ -64,7 +64,7 @@ class Linkage:
     def __init__(self, crank: ArrayLike, rod: ArrayLike, offset: ArrayLike = 0.0, branch: Branch = "open") -> None:
         """Take lengths, m. Raises `InputError` for other values, `AssemblyError` where no crank angle is possible.
 
-        A linkage by itself has no scale: lengths in another unit serve as well where nothing but it is asked.
+        A linkage by itself has no scale: for pure geometry, lengths in any other unit serve as well.
         """
         values = dimensions(crank, rod, offset)
         if branch not in ("open", "crossed"):
@@ -92,12 +92,12 @@ class Linkage:
 
     @property
     def rotates_fully(self) -> Mask:
-        """Whether the crank turns through: rod > crank + |offset|."""
+        """Whether the crank rotates fully: rod > crank + |offset|."""
         turns: Mask = self.rod.real > self.crank.real + np.abs(self.offset.real)
         return turns
 
     def require_full_rotation(self) -> None:
-        """Raise `AssemblyError` unless every linkage turns fully."""
+        """Raise `AssemblyError` unless every linkage rotates fully."""
         fails = ~np.asarray(self.rotates_fully)
         if np.any(fails):
             crank, rod, offset = np.broadcast_arrays(self.crank.real, self.rod.real, self.offset.real)
@@ -194,7 +194,7 @@ class Linkage:
         theta = atan2(e, x) -+ beta as in `slidercrank.model.linkage.inverse`; speed = v / x', acceleration =
         (a - x'' speed^2) / x'. position: m, signed as x; velocity, m/s, and acceleration, m/s^2: along +x.
         Two solutions, the outward one first; one at a dead centre, or where the other is on the other branch. At a dead
-        centre a slider at rest goes with any crank speed: speed and acceleration are None.
+        centre any crank speed leaves the slider at rest: speed and acceleration are None.
 
         Raises `AssemblyError` for a position out of reach. Raises `InputError` for an array, an acceleration without
         velocity, and at a dead centre for a velocity other than 0 or an acceleration away from the stroke.
@@ -262,7 +262,7 @@ class Linkage:
         return figure(self._pose(crank_angle), float(self.crank.real), self.label)
 
     def _repr_html_(self) -> str | None:
-        """Picture of one linkage for notebooks; none of an array of them."""
+        """Picture of one linkage for notebooks; None for an array of linkages."""
         if np.ndim(self.rotates_fully):
             return None
         normal_angle = np.arcsin(np.clip(self.offset.real / self.crank.real, -1.0, 1.0))

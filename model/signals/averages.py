@@ -6,8 +6,8 @@ Smooth curves are integrated by the trapezoidal rule in the crowded angle, which
 analytic functions; piecewise curves by Gauss-Legendre panels between breakpoints. The nearer a linkage is to locking,
 the nearer are the curves' singularities, at the distance atanh(kappa) in the crowded angle (`segments.crowding`): nodes
 grow in number with 1 / kappa. The rod's direction would lose digits likewise; `quadrature.square_along` keeps them.
-Loads that jump at a dead centre do so where the slider stands still, so that without friction only steps of tables make
-the torque jump. A breakpoint that moves adds the jump times its own motion to the derivatives.
+Loads that jump at a dead centre do so while the slider stands still. Without friction, therefore, only steps of tables
+make the torque jump. A breakpoint that moves adds the jump times its own motion to the derivatives.
 
 With friction the curves contain sizes of joint forces, |A| and the like, which turn sharply where a force passes close
 to zero: there panels are halved until the last Legendre coefficients of curve and derivatives have died out, or are
@@ -69,7 +69,7 @@ from .signal_inputs import cycle_window, signal_inputs
 from .signals import Signal, signal
 from .two_turns import averaged
 
-_NODES = 192  # of a smooth curve; why so many: `quadrature`
+_NODES = 192  # nodes for a smooth curve; `quadrature` explains the number
 _TORQUE = int(Signal.TORQUE)
 _TURN = 2.0 * math.pi
 
@@ -169,7 +169,7 @@ def _average(
         if rubbing and not always_drives(d) > 0.0:
             mean[n], rms[n] = np.nan, np.inf
             continue
-        # That of `crowding`, from the gap: no digits lost, so no floor.
+        # Same as `crowding`, but from the gap: no digits are lost, so no floor is needed.
         kappa = math.sqrt(math.sqrt(gaps[n] * (gaps[n] + 2.0 * d.r)) / (gaps[n] + d.r))
         denser = math.ceil(max(1.0, EVEN / kappa))
         resolved = max(1.0, NOISE / (kappa * kappa))
@@ -204,7 +204,7 @@ def _average(
                         weight[i] = share * width / _TURN * kappa / (c * c + kappa * kappa * y * y)
                         square = square_along(theta, d, gaps[n])
                         value[i] = _curve(kind, theta, square, d, block, outward, loads, piece, shift, sides)
-                        if turned:  # added afterwards, so that machines without keep their last digits
+                        if turned:  # added last, so that machines without it keep their last digits
                             value[i] += beside_crank_loads(0.0, d, block, 0, theta, sense_of(d), loads, piece, shift)
                         for v in range(nv):
                             z = design_at(stepped[v], 0)
@@ -269,9 +269,9 @@ def average_torque(mechanism: Mechanism, designs: Array, *, gradients: bool = Fa
 def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bool = False) -> Averages:
     """Return mean and RMS values of a signal for fully turning designs (n, 3 + k): crank, rod, offset, m.
 
-    The k columns more are the values of the machine's varying numbers.
-    The torque counts with its sign, any other signal by its size; its mean is exactly zero for a machine that takes no
-    work over a turn. Several cylinders and a profile of the speed count as `shaft_statistics` says.
+    The k further columns are the values of the machine's varying numbers.
+    The torque counts with its sign, any other signal by its size. The mean torque is exactly zero for a machine that
+    takes no work over a turn. `shaft_statistics` describes how several cylinders and a speed profile count.
     """
     averages = _batch_averages(mechanism, designs, kind, gradients)
     return Averages(averages.values.copy(), None if averages.gradients is None else averages.gradients.copy())
@@ -279,7 +279,7 @@ def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bo
 
 @memoise_by_batch
 def _batch_averages(mechanism: Mechanism, designs: Array, kind: Signal, gradients: bool) -> Averages:
-    """Return averages that are kept: of one batch mean and RMS torque, power, energy and more are asked for."""
+    """Return memoised averages: one batch is evaluated for mean and RMS torque, power, energy and more."""
     designs = turning(designs)
     if is_shaft(mechanism):
         return Averages(*shaft_signal_averages(mechanism, kind, designs, gradients=gradients))
@@ -318,7 +318,7 @@ def _batch_averages(mechanism: Mechanism, designs: Array, kind: Signal, gradient
         )
 
     in_chunks(n, work, knots=len(loads.at))
-    if kind is Signal.TORQUE and not works_over_a_turn(mechanism):  # exactly, not the rounding of what cancels
+    if kind is Signal.TORQUE and not works_over_a_turn(mechanism):  # exact: no rounding of cancelling terms
         mean[:], slopes[0] = 0.0, 0.0
     values = np.stack([mean, rms, rms])
     if not gradients:

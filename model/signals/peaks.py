@@ -1,10 +1,10 @@
 """Peaks of a curve over the cycle, to machine precision, with exact gradients.
 
-Each segment between breakpoints (`segments`) is sampled at crowded angles; every local maximum, or where one peak is
-asked for those near the highest, is then bracketed and refined by a safeguarded secant iteration on the slope, which
-the complex step gives exactly. A breakpoint is a peak too when the curve has a kink or a jump there. The derivative of
-a peak by a design variable is the partial derivative at the peak angle (envelope theorem); a peak on a breakpoint moves
-with it, which the complex step carries along.
+Each segment between breakpoints (`segments`) is sampled at crowded angles. Every local maximum (for a single peak:
+those near the highest) is then bracketed. A safeguarded secant iteration refines it on the slope, which the complex
+step gives exactly. A breakpoint is a peak too when the curve has a kink or a jump there. The derivative of a peak by a
+design variable is the partial derivative at the peak angle (envelope theorem); a peak on a breakpoint moves with it,
+which the complex step carries along.
 """
 
 from __future__ import annotations
@@ -176,7 +176,7 @@ def _is_listed(angles: Any, count: Any, theta: Any) -> bool:
 
 @analytic
 def _keep(values: Any, angles: Any, segment: Any, pin: Any, count: Any, value: Any, theta: Any, s: Any, p: Any) -> Any:
-    """Insert a peak into the lists, highest first; the lowest falls off when they are full."""
+    """Insert a peak into the lists, highest first; if they are full, drop the lowest."""
     capacity = values.shape[0]
     if count == capacity and value <= values[capacity - 1]:
         return count
@@ -209,11 +209,11 @@ def _find(
     listed = values.shape[1]
     peak, at = np.empty(listed), np.empty(listed)
     segment, pin = np.empty(listed, np.int64), np.empty(listed, np.int64)
-    edge = np.empty((cut_room, 4))  # of each segment: value and slope at its start and at its end
+    edge = np.empty((cut_room, 4))  # value and slope at the start and end of each segment
     counts, is_thin = np.empty(cut_room, np.bool_), np.empty(cut_room, np.bool_)
-    theta = np.empty(angles + 8 + 5 * cut_room)  # of all segments, one after another
+    theta = np.empty(angles + 8 + 5 * cut_room)  # samples of all segments, one after another
     f = np.empty(theta.shape[0])
-    first = np.empty(cut_room + 1, np.int64)  # of each segment: where its samples begin
+    first = np.empty(cut_room + 1, np.int64)  # index at which the samples of each segment begin
     for n in range(blocks.shape[0]):
         block = blocks[n]
         d = design_at(block, 0)
@@ -227,7 +227,7 @@ def _find(
         if rubbing:
             count = cut_contacts(d, block, 0, loads, watch, cuts, count, piece, shift)
         cuts.angle[count] = cuts.angle[0] + _TURN
-        # First the samples of all segments: where one peak is asked for, low ones need no more.
+        # First sample all segments: for a single peak, low segments need nothing more.
         highest = -1.0
         first[0] = 0
         has_motion = False
@@ -243,8 +243,8 @@ def _find(
                 has_motion = False
                 continue
             sides = sides_of(probe, d, block, 0, outward, loads, piece, shift, rubbing)
-            # What is shorter than the spacing, as between the knots of a long table, has no samples of its own: the
-            # slopes at its ends tell whether there is a peak.
+            # A segment shorter than the spacing, such as between knots of a long table, has no samples of its own: the
+            # slopes at its ends show whether it has a peak.
             low = high = 0.0
             points = 2
             if angles * (b - a) > 0.99 * kappa * _TURN:  # the spacing is nowhere less than kappa times that of tau
@@ -301,7 +301,7 @@ def _find(
                 if not top:
                     continue
                 left, right, angle = theta[max(i - 1, start)], theta[min(i + 1, end)], theta[i]
-                # One place in the code for both rows: the compiler works out each anew.
+                # One call serves both rows, as the compiler inlines each call separately.
                 for finer in range(2):
                     value, angle = _refine(kind, left, right, angle, d, block, 0, outward, loads, piece, shift, sides)
                     # A finer row that rises to the very end of the segment has no top; the breakpoint may be one.
@@ -372,13 +372,13 @@ def find_peaks(
     limit: int = KEPT,
     angles: int = ANGLES,
 ) -> Peaks:
-    """Return the local peaks of a signal for designs (n, 3 + k): crank, rod, offset, m, each turning fully.
+    """Return the local peaks of a signal for designs (n, 3 + k): crank, rod, offset, m, each rotating fully.
 
-    The k columns more are the values of the machine's varying numbers.
+    The k further columns are the values of the machine's varying numbers.
 
-    during: for torque, "outward stroke" or "inward stroke" restricts the search; the position error counts over the
-    window of the mechanism's tolerances. limit: peaks returned a design. angles: samples a turn.
-    Several cylinders and a profile of the speed count as `shaft_statistics` says.
+    during: stroke that restricts the torque search, "outward stroke" or "inward stroke"; the position error counts over
+    the window of the mechanism's tolerances. limit: peaks returned per design. angles: samples per turn.
+    `shaft_statistics` describes how several cylinders and a speed profile count.
     """
     designs = turning(designs)
     if is_shaft(mechanism) or kind is Signal.ROCKING_COUPLE:

@@ -1,11 +1,11 @@
-"""Peak torque and greatest position error of very many designs at once, with gradients.
+"""Peak torque and greatest position error of very many designs together, with gradients.
 
 The innermost loop is over designs, so that every operation is a vector instruction. All designs share the crowded
 angles, at which `locate` samples the curves and finds the cells of the two highest local maxima; these are refined by
 the formulas of `peaks`. The result equals that of `peaks.find_peaks` to rounding where the curve is smooth. Where a
-load changes at the dead centres, a peak that sits on the kink there is found only to the spacing of the angles: good
-for choosing designs, while what is delivered is evaluated by `peaks`. Tables, loads with a
-formula of their own and partial strokes are not handled here.
+load changes at the dead centres, a peak that sits on the kink there is found only to the spacing of the angles. This
+suffices for choosing designs; `peaks` evaluates the results. Tables, loads with their own formula and partial strokes
+are not handled here.
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ _FLAT = 1e-13
 class Screened:
     """Greatest value over the cycle: values (n,), gradients (n, 3 + k) or None.
 
-    angles: its crank angles (n,), rad, or (0,). still: greater size of the drive torque at the dead centres (n,), N m,
-    or (0,); where a load changes there, a peak that is no more than this may be a kink.
+    angles: crank angles of the greatest value (n,), rad, or (0,). still: greater size of the drive torque at the dead
+    centres (n,), N m, or (0,). Where a load changes there, a peak that does not exceed `still` may be a kink.
     """
 
     values: Array
@@ -161,7 +161,7 @@ def _refine(
     """Move every lane to its local maximum within one angle on either side, from the vertex of the parabola.
 
     top: place, vertex and curvature of `locate.two_highest`. work: room (12, lanes). A lane that has settled stays
-    where it is, however many steps the others take: what it gives does not depend on them.
+    where it is while others take more steps, so its result does not depend on them.
     """
     share = 0.5 if kind == _RSS else 1.0  # `locate` samples its square, which curves twice as much
     for j in range(LANES):
@@ -193,7 +193,8 @@ def _refine(
             trial = t - rise / bend
             middle = 0.5 * (floor + ceiling)
             trial = trial if (trial > floor) & (trial < ceiling) else middle
-            # So short a step is taken without another look: its square still counts in the value, its cube does not.
+            # Such a short step is taken without checking again: its square still counts in the value, its cube does
+            # not.
             goes_on = moves if (abs(trial - t) > _SETTLED) | (step == 0) else 0.0
             ahead = 0.0 if goes_on > 0.0 else trial - t
             value_here += 0.5 * rise * ahead
@@ -211,7 +212,7 @@ def _refine(
 
 @analytic
 def _still(d: Any) -> Any:
-    """Size of the torque at the dead centres, the greater one: there, loads along the stroke take none."""
+    """Greater size of the torque at the two dead centres, where loads along the stroke need no torque."""
     outer, inner = d.e * inverse(d.l + d.r), -d.e * inverse(d.l - d.r)
     sine, cosine = outer, d.branch * root(1.0 - outer * outer)
     at_outer = forces(sine, cosine, design_motion(sine, cosine, d), d, 0.0).torque
@@ -253,7 +254,7 @@ def _screen(
     samples, top, slope = np.empty((3, angles + 2, LANES), np.float32), np.empty((6, LANES)), np.empty(LANES)
     value, peak_sines = np.empty((2, LANES)), np.empty((2, signals, LANES))
     sines, cosines = np.empty((2, LANES)), np.empty((2, LANES))
-    work = np.empty((12, LANES))  # one array: the compiler sees that its rows do not overlap
+    work = np.empty((12, LANES))  # in one array, so that the compiler sees that the rows do not overlap
     for begin in range(0, n, LANES):
         for i in range(columns.shape[0]):
             for j in range(LANES):
@@ -320,11 +321,11 @@ def screen(
 ) -> tuple[Screened, ...]:
     """Return the greatest values of torque or position errors for designs (n, 3 + k): crank, rod, offset, m.
 
-    The k columns more are the values of the machine's varying numbers.
+    The k further columns are the values of the machine's varying numbers.
 
-    kinds: signals that `screens` accepts; evaluated together they share the motion. places, still: whether to give
-    these, see `Screened`. angles: samples a turn, a multiple of 4. crowd: concentrate them where the linkage
-    comes close to locking.
+    kinds: signals that `screens` accepts; evaluated together, they share the motion. places, still: whether to return
+    these, see `Screened`. angles: samples per turn, a multiple of 4. crowd: whether to concentrate samples where the
+    linkage comes close to locking.
     """
     designs = turning(designs)
     n, signals = len(designs), len(kinds)
@@ -337,7 +338,7 @@ def screen(
     codes = np.array([int(kind) for kind in kinds])
 
     def work(begin: int, end: int) -> None:
-        # Whole tables: parts of them would be arrays of another kind, for which the kernel would be compiled again.
+        # Pass whole tables: slices have another array type, for which the kernel would be compiled again.
         _screen(
             codes,
             raw,

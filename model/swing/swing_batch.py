@@ -1,8 +1,8 @@
 """Many designs over one swing: their pieces between kinks, and states at points of them.
 
-A swing is cut where its law has a corner, where a table has a knot, where friction or a load changes sides, and where
-the guide's force does. Between two cuts every curve is smooth. A cut moves with the design: where a state g is zero on
-it, by -dg/dp / (dg/dt) in the share t of the time (implicit function theorem).
+A swing is cut where its law has a corner, where a table has a knot, and where friction, a load or the guide's force
+changes sides. Between two cuts every curve is smooth. A cut moves with the design: where a state g is zero on it, the
+fraction t of the time changes by -dg/dp / (dg/dt) (implicit function theorem).
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ _ROOTS = 60
 
 @dataclass(frozen=True)
 class Pieces:
-    """Pieces of one way.
+    """Pieces of one direction of the swing.
 
-    cuts: (n, c), shares in ascending order from 0 to 1. state: (n, c), which one has a value of its own on a cut; -1
-    where the cut stays.
+    cuts: fractions of the time (n, c), ascending from 0 to 1. state: index (n, c) of the state that takes a fixed value
+    on a cut; -1 where the cut does not move.
     """
 
     back: bool
@@ -60,7 +60,7 @@ class Pieces:
 
 
 class SwingBatch:
-    """Designs that can swing as asked. numbers: raw ones that they set. slopes: whether derivatives are asked for."""
+    """Designs that can make the swing. numbers: raw numbers that they set. slopes: whether derivatives are needed."""
 
     def __init__(
         self,
@@ -91,7 +91,7 @@ class SwingBatch:
         self.plain_ends = np.stack([self.ends.start, self.ends.end], axis=1).astype(np.complex128)
         self.stepped_ends = self.ends.stepped(self.columns, column) if slopes else self.plain_ends
         self.table = self.swing.table
-        # Alike on both ways is what depends on the position alone: laws are the same backwards, but for tables.
+        # Quantities that depend only on position are alike both ways: all laws but tables are symmetric in time.
         alike = all(load.by_position or load.inertial for load in mechanism.loads)
         self.ways_differ = self.rubs or self.swing.law == "table" or not alike
 
@@ -121,13 +121,14 @@ class SwingBatch:
         return np.asarray(drives(np.sqrt(d.l * d.l - pin_distance * pin_distance), pin_distance, d) <= 0.0)
 
     def ways(self) -> tuple[bool, ...]:
-        """Return the ways that differ: forth, and back unless it is alike."""
+        """Return the directions that differ: the forward stroke, and the return stroke unless it is alike."""
         return (False, True) if self.ways_differ else (False,)
 
     def pieces(self, *, back: bool, forces: bool = True, contacts: bool = True) -> Pieces:
         """Return the pieces of one way.
 
-        forces: whether cuts that only forces have are wanted too. contacts: of these, those of the guide's force.
+        forces: whether to include cuts that only forces have. contacts: whether these include sign changes of the
+        guide's force.
         """
         self.table = mirrored(self.swing.points) if back else self.swing.table
         kinks = list(self._kinks()) if forces else []
@@ -147,7 +148,7 @@ class SwingBatch:
             yield np.full(self.count, share), -1
 
     def _kinks(self) -> Any:
-        """Yield every cut that forces have: its share (n,) of the way forth, and the state with a value there."""
+        """Yield every cut in the forces: fraction (n,) of the forward stroke, and state with a fixed value there."""
         friction, slider = self.mechanism.fullest.friction, self.swing.driver == "slider"
         if self.rubs:
             for angle in (0.5 * np.pi, 1.5 * np.pi):
@@ -195,7 +196,7 @@ class SwingBatch:
             return np.asarray(motion(np.sin(theta), np.cos(theta), r, l, e, self.sign).x)
 
     def driver_at(self, theta: Array) -> Array:
-        """Return where the driver is at crank angles (n,): these, or slider positions, m."""
+        """Return the driver's place at crank angles (n,): these angles, or slider positions, m."""
         return theta if self.swing.driver == "crank" else self._slider_position(theta)
 
     def _share_at_position(self, x: Array) -> Array:
@@ -205,7 +206,7 @@ class SwingBatch:
         return np.where((s >= 0.0) & (s <= 1.0), s, np.nan)
 
     def _shares(self, ways: list[Array]) -> list[Array]:
-        """Return the shares of the time (n,) of shares of the way, NaN where these are; sooner together."""
+        """Return the fractions of the time (n,) at fractions of the travel; NaN stays NaN. One call is fastest."""
         if not ways:
             return []
         s = np.stack(ways)
@@ -213,7 +214,7 @@ class SwingBatch:
         return list(np.where(off, np.nan, shares_of(self.swing.law, np.where(off, 0.0, s), self.table)))
 
     def _with_contacts(self, pieces: Pieces) -> Pieces:
-        """Return pieces cut where the guide's force changes sides, between neighbours of a row of samples in each."""
+        """Return pieces, cut further where the guide's force changes sides between neighbouring samples."""
         u = np.linspace(0.0, 1.0, _SCAN)
         a, span = pieces.cuts[:, :-1, None], np.diff(pieces.cuts, axis=1)[:, :, None]
         share = a + span * u
@@ -240,7 +241,7 @@ class SwingBatch:
         return _sorted(Pieces(pieces.back, cuts, states_of))
 
     def _contact_shares(self, design: Whole, low: Array, high: Array, probe: Array, back: float) -> Array:
-        """Return the shares between two at which the guide's force is zero, by bisection and Newton's iteration."""
+        """Return the fractions between two at which the guide's force is zero, by bisection and Newton's iteration."""
         rising = self.states(design, high, probe, back)[:, GUIDE].real > 0.0
         roots, rows = 0.5 * (low + high), np.arange(len(low))
         for _ in range(_ROOTS):
@@ -258,7 +259,7 @@ class SwingBatch:
         return roots
 
     def moved(self, pieces: Pieces, design: Whole, cut: Whole, probe: Array) -> Array:
-        """Return by how much cuts (p,) of designs move in share per unit of each raw number, (p, c)."""
+        """Return the derivatives (p, c) of the cuts (p,), as fractions of the time, by each raw number."""
         state = pieces.state[design, cut]
         slips = np.zeros((len(design), self.columns))
         rows = np.flatnonzero(state >= 0)
@@ -277,12 +278,12 @@ def _sorted(pieces: Pieces) -> Pieces:
     order = np.argsort(pieces.cuts, axis=1, kind="stable")
     cuts = np.take_along_axis(pieces.cuts, order, axis=1)
     state = np.take_along_axis(pieces.state, order, axis=1)
-    ends = (cuts <= 0.0) | (cuts >= 1.0)  # what does not lie on the way counts as its end
+    ends = (cuts <= 0.0) | (cuts >= 1.0)  # a place outside the swing counts as its end
     return Pieces(pieces.back, cuts, np.where(ends, -1, state))
 
 
 def driven(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
-    """Return which designs (n, 3 + k) can swing as asked, and are not locked by friction on the way."""
+    """Return which designs (n, 3 + k) can make the swing without being locked by friction."""
     passing = passes(mechanism, swing, designs)
     if mechanism.fullest.friction.acts:
         rows = np.flatnonzero(passing)

@@ -2,14 +2,16 @@
 
     J(theta) theta'' + J'(theta) theta'^2 / 2 + C(theta) + D(theta) theta' = T_motor(theta'),
 
-J with the drive's inertia; with friction in the joints, the acceleration of `accelerated`. Integrated over time by an
-explicit Runge-Kutta method of order 8 (DOP853; Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I,
-2nd ed. 1993, II.5), stretch by stretch: no step crosses a dead centre at which a load changes, a knot of a table, or a
-standstill. The work of motor and loads, and the heat of friction, are integrated with it. Where a guide's force changes
-sides the acceleration has a kink, not a jump: the control of the step finds it, as the energy balance tells.
+J includes the drive's inertia; with friction in the joints, `accelerated` gives the acceleration. Integrated over time
+by an explicit Runge-Kutta method of order 8 (DOP853; Hairer, Norsett and Wanner, Solving Ordinary Differential
+Equations I, 2nd ed. 1993, II.5), stretch by stretch: no step crosses a dead centre at which a load changes, a knot of a
+table, or a standstill. The work of motor and loads, and the heat of friction, are integrated with it. Where a guide's
+force changes sides the acceleration has a kink, not a jump: the step-size control resolves it, as the energy balance
+confirms.
 
-At standstill the loads of both ways of turning are asked: the crank starts the way in which motor and loads leave a
-torque that pushes it on, or stands still for good (motor and loads depend on nothing but angle and speed).
+At standstill the loads for both directions of rotation are evaluated. The crank starts in the direction in which motor
+and loads leave an accelerating torque. Otherwise it stands still for good, since motor and loads depend only on angle
+and speed.
 """
 
 from __future__ import annotations
@@ -60,7 +62,7 @@ Stop = Literal["edge", "standstill", "table", "time"]
 
 
 def drive_of(mechanism: Mechanism, drive: Drive | None) -> Drive:
-    """Return the drive, the mechanism's own if None. Raises `InputError` if it has none either."""
+    """Return the drive, by default the mechanism's own. Raises `InputError` if there is neither."""
     chosen = mechanism.drive if drive is None else drive
     if chosen is None:
         raise InputError("a start or a run needs a motor; got a mechanism without a drive; add a [drive]")
@@ -83,15 +85,15 @@ def simulate(
 ) -> Transient:
     """Return the motion of one fully turning linkage under a motor.
 
-    drive: the mechanism's own if None. The motor turns the crank the way the sign of the mechanism's speed says.
-    Several cylinders move as one shaft, and a cycle of two turns counts from the first at angles below 360 deg.
-    duration: greatest time, s. turns: ends after so many turns either way, if given. steady: ends when, a cycle later
-    at the same crank angle, the speed is the same but for this share. tolerance: relative, of the integration.
-    samples: points of the result for each turn, at least. progress: called after every stretch. cancelled: asked
-    as often; what was found so far is returned then.
+    drive: motor and flywheel, by default the mechanism's own. The motor turns the crank in the direction given by the
+    sign of the mechanism's speed. Several cylinders move as one shaft. In a cycle of two turns, angles below 360 deg
+    belong to the first. duration: time limit, s. turns: number of turns, either way, after which the motion ends.
+    steady: relative change of speed over a cycle below which the motion ends. tolerance: relative tolerance of the
+    integration. samples: least number of points per turn in the result. progress: function called after every stretch.
+    cancelled: function called as often; if true, the motion so far is returned.
 
-    Why it ended is the result's `verdict`. Raises `InputError` for values out of range and where nothing resists an
-    acceleration, `AssemblyError` if the linkage does not turn fully.
+    The result's `verdict` says why the motion ended. Raises `InputError` for values out of range and where nothing
+    resists an acceleration, `AssemblyError` if the linkage does not rotate fully.
     """
     drive = drive_of(mechanism, drive)
     _require(duration, turns, steady, tolerance, samples)
@@ -156,7 +158,7 @@ class _Run:
         self.turn = round((start.angle - self.local) / self.period)
         gaps = breakpoints - self.local - np.array([[0.0], [TURN]])
         marks = np.argmin(np.abs((gaps + math.pi) % self.period - math.pi), axis=1).tolist()
-        self.index = self.mark = marks[0]  # the start is a breakpoint, or as good as one
+        self.index = self.mark = marks[0]  # the start is a breakpoint, or nearly one
         self.marks = {*marks}
         if self.local > first + self.period - 2.0 * NEAREST:
             self.turn, self.local = self.turn + 1, first
@@ -189,7 +191,7 @@ class _Run:
         return self.local + self.period * self.turn
 
     def advance(self) -> Verdict | None:
-        """Go on to the end of the stretch, to standstill or to the end of the time, whichever comes first.
+        """Integrate to the end of the stretch, to standstill or to the time limit, whichever comes first.
 
         Return why the motion ends, if it does.
         """
@@ -232,7 +234,7 @@ class _Run:
             self.turn, self.local = self.turn + 1, float(self.equation.breakpoints[0])
 
     def _speed_scale(self, speed: float) -> float:
-        """Return a speed, rad/s, against which errors are measured while the crank is slow."""
+        """Return the reference speed for errors while the crank is slow, rad/s."""
         pull, resist = abs(float(self.drive.torque(0.0, self.equation.direction))), 0.0
         for stretch in self.equation.turn(self.equation.direction):
             terms = stretch.terms_at(np.linspace(stretch.low, stretch.high, 9))
@@ -251,7 +253,7 @@ class _Run:
         def rate(_time: float, y: Array) -> Array:
             angle[0], speed = y[0], float(y[1])
             terms = stretch.terms_at(angle)
-            # Beyond its table the motor goes on as at the end, until the event below has found the end.
+            # Beyond its table the motor keeps its last value until the event below has found the end.
             torque = float(motor(min(max(speed, slowest), fastest), direction))
             drag = (terms.drag[0] + terms.square[0] * speed) * speed
             surplus = torque - terms.spin[0] * speed * speed - terms.static[0] - drag
@@ -290,14 +292,14 @@ class _Run:
         return solution, ended[0] if ended else "time"
 
     def _standing(self, stretch: Span, local: float) -> float:
-        """Return the torque, N m, against which the crank starts from standstill, in the span's way."""
+        """Return the torque that resists a start from standstill in the span's direction, N m."""
         at = np.array([local])
         if self.equation.rubs:
             return float(stretch.with_friction(at, np.zeros(1), np.zeros(1)).torque[0])
         return float(stretch.terms_at(at).static[0])
 
     def _leave_rest(self) -> Verdict | None:
-        """Find out which way the crank starts from standstill; return why it does not, if so."""
+        """Find the direction in which the crank starts from standstill; if it does not start, return the reason."""
         count = len(self.equation.breakpoints)
         motor = float(self.drive.torque(0.0, self.equation.direction))
         at_edge = abs(self.local - self._stretch(1.0).low) <= NEAREST

@@ -1,4 +1,4 @@
-"""One cycle of steady running, a turn or two, as a boundary-value problem, solved by collocation.
+"""One cycle of steady running (one or two turns), solved as a boundary-value problem by collocation.
 
 With the crank angle as the variable and E = w^2 / 2 the equation of motion
 
@@ -6,14 +6,14 @@ With the crank angle as the variable and E = w^2 / 2 the equation of motion
 
 is regular even where the crank nearly stops. The turn is cut into panels at the breakpoints and finer; on each, dE is
 a polynomial through the Gauss-Legendre nodes (a Gauss method; Hairer, Norsett and Wanner, Solving Ordinary
-Differential Equations I, 2nd ed. 1993, II.7). Newton's iteration is direct: the linearised panels are maps of one
-number, E at the start, onto E at the end, and chained they close the turn.
+Differential Equations I, 2nd ed. 1993, II.7). Newton's iteration is direct: each linearised panel maps one number, E
+at its start, to E at its end, and the chained maps close the turn.
 
-Where the crank nearly stops, the time for an angle, 1 / sqrt(2 E), rises steeply: panels whose last Legendre
-coefficients have not died out, neither at the node nor in the integral over the turn, are halved, and the turn is
-solved anew. The second matters where a load changes over a tiny distance: the rounding error of the slider's position
-then changes the load considerably, and halving does not reduce it. With friction, panels also end where a guide's
-force changes sides, and as that moves with the motion, the turn is solved anew until it stays.
+Where the crank nearly stops, the time per angle, 1 / sqrt(2 E), rises steeply. Panels whose last Legendre coefficients
+have not died out, neither at the nodes nor in the integral over the turn, are halved; the turn is then solved again.
+The integral matters where a load changes over a tiny distance: the rounding error of the slider's position then changes
+the load considerably, and halving does not reduce it. With friction, panels also end where a guide's force changes
+sides. These angles depend on the motion, so the turn is solved again until they settle.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ _PANELS = 40
 _STEPS = 60
 _EXACT = 1e-13
 _TAIL = 3  # Legendre coefficients that tell whether a panel is resolved ...
-_RESOLVED = 1e-11  # ... and what is left of them then, of the greatest value over the turn
+_RESOLVED = 1e-11  # ... and their remaining size then, relative to the greatest value over the turn
 _NEGLIGIBLE = 1e-13  # error of one panel as a fraction of the integral over the turn: a smaller one is rounding
 _MOST = 4_000  # panels that halving may add: each needs a few matrices of 2 kB
 _HALVINGS = 24  # a panel of 1e-8 rad: a crank that comes to less than 1e-8 of its greatest speed stops
-_MOVES = 12  # times that panels are moved to where guides change sides
-_MOVED = 1e-9  # rad; a kink nearer to the end of a panel than its first node is off by the square of this
+_MOVES = 12  # greatest number of times that panels are moved to where guides change sides
+_MOVED = 1e-9  # rad; a kink nearer to a panel's end than its first node causes an error of the square of this
 
 Torque = Callable[[Array], tuple[Array, Array]]
 """Torque on the crank, N m, and its derivative by speed, N m s, at crank speeds, rad/s, of any shape."""
@@ -54,7 +54,8 @@ Guess = tuple[Array, Array, float]
 class Profile:
     """A solution: E, (panels, nodes), and at the panels' starts, (panels,); its derivative by angle at the nodes.
 
-    added: torque added to the motor's, N m. memory: what is left after a turn of a small change of E at its start.
+    added: torque added to the motor's, N m. memory: fraction of a small change of E at the start that remains after a
+    turn.
     """
 
     energy: Array
@@ -66,7 +67,7 @@ class Profile:
 
 @cache
 def _collocation() -> tuple[Array, Array, Array, Array, Array]:
-    """Return nodes, weights of means, the matrix of integrals to the nodes, and those of series and their integrals."""
+    """Return nodes, weights of means, and the matrices of integrals to the nodes, of series and of their integrals."""
     nodes, weights = legendre.leggauss(_NODES)
     series: Array = np.asarray(np.linalg.inv(legendre.legvander(nodes, _NODES - 1)), np.float64)
     integral: Array = np.asarray(legendre.legint(np.eye(_NODES), lbnd=-1.0, axis=0) * 0.5, np.float64)
@@ -75,7 +76,7 @@ def _collocation() -> tuple[Array, Array, Array, Array, Array]:
 
 
 def _sum(series: Array, x: float) -> float:
-    """Return the sum of a Legendre series by Clenshaw's recursion, as `legval` does, in plain numbers: sooner."""
+    """Return the sum of a Legendre series by Clenshaw's recursion, as `legval` does, but faster, in plain numbers."""
     numbers: list[float] = series.tolist()
     before, last = numbers[-2:]
     for degree in range(len(numbers) - 1, 1, -1):
@@ -87,8 +88,8 @@ def _sum(series: Array, x: float) -> float:
 class PeriodicTurn:
     """Terms of the equation of motion on the nodes of a cycle, in the order of the crank's passage.
 
-    angle: (panels, nodes). width: (panels,), angle turned in each, negative clockwise. low: where each starts.
-    cuts: crank angles, rad, at which panels end besides; contacts: those where a guide changes sides, ascending.
+    angle: (panels, nodes). width: angle turned in each panel, (panels,), negative clockwise. low: start of each panel.
+    cuts: further crank angles at which panels end, rad; contacts: angles where a guide changes sides, ascending.
     spans: the parts of the cycle, each with its panels.
     """
 
@@ -153,7 +154,7 @@ class PeriodicTurn:
         return (torque - t.torque(speed, 0.0)) / total, ((slope - t.drag) / speed - 2.0 * (t.spin + t.square)) / total
 
     def rates(self, energy: Array, motor: Torque, inertia: float, added: float) -> tuple[Array, Array, Array]:
-        """Return dE / d(theta) and its derivatives by E and by a torque, of which there is `added`, N m."""
+        """Return dE / d(theta) with the torque `added`, N m, and its derivatives by E and by that torque."""
         rate, by_energy = self.rate(energy, motor, inertia)
         by_torque = 1.0 / (self.terms.inertia + inertia)
         rate = rate + added * by_torque
@@ -189,12 +190,12 @@ class PeriodicTurn:
         return torque - frictionless
 
     def rubbing_at(self, speed: float) -> PeriodicTurn:
-        """Return the turn whose panels end where guides change sides at a constant speed, rad/s, of its size."""
+        """Return the turn with panels that end where guides change sides at a constant speed of this size, rad/s."""
         energy, start, rate = self.even(speed)
         return (self.moved(energy, start, np.full(energy.shape, rate)) if self.equation.rubs else None) or self
 
     def even(self, speed: float) -> Guess:
-        """Return the first guess of a constant speed, rad/s, of its size."""
+        """Return the first guess: a constant speed of this size, rad/s."""
         return np.full(self.angle.shape, 0.5 * speed**2), np.full(len(self.width), 0.5 * speed**2), 0.0
 
     def resolved(
@@ -205,7 +206,7 @@ class PeriodicTurn:
         *,
         mean_speed: float | None = None,
     ) -> tuple[PeriodicTurn, Profile] | None:
-        """Return the turn that repeats, on panels fine enough for it; None if none is found that never stops.
+        """Return the periodic turn on sufficiently fine panels; None if no turn without a stop is found.
 
         guess: start of Newton's iteration for a turn; None ends the search. Other arguments: see `solve`. Raises
         `InputError` if the motion is still not resolved after halving has added `_MOST` panels.
@@ -233,12 +234,12 @@ class PeriodicTurn:
         return None
 
     def cut(self, angles: Array) -> PeriodicTurn:
-        """Return the same turn whose panels end at further crank angles, (n,), rad."""
+        """Return the same turn with panels that also end at further crank angles, (n,), rad."""
         cuts = (*self.cuts, *(float(angle) for angle in angles))
         return PeriodicTurn(self.equation, self.dimensions, cuts, self.contacts)
 
     def moved(self, energy: Array, start: Array, rate: Array) -> PeriodicTurn | None:
-        """Return the turn whose panels end where guides change sides in a motion; None if they do.
+        """Return the turn with panels that end where guides change sides in a motion; None if they already do.
 
         energy, rate: E and its derivative on the nodes. start: E at the panels' starts.
         """
@@ -273,10 +274,10 @@ class PeriodicTurn:
         return np.asarray(~((tail <= _RESOLVED * size.max()) | negligible))
 
     def solve(self, motor: Torque, inertia: float, guess: Guess, *, mean_speed: float | None = None) -> Profile | None:
-        """Return the turn that repeats; None if none is found that never stops.
+        """Return the periodic turn; None if no turn without a stop is found.
 
-        inertia: of the drive, kg m^2. guess: where Newton's iteration starts. mean_speed: if given, a constant torque
-        is added that makes 2 pi / period this, rad/s.
+        inertia: inertia of the drive, kg m^2. guess: start of Newton's iteration. mean_speed: desired 2 pi / period,
+        rad/s, if given; a constant torque is added to reach it.
         """
         energy, start, added = guess
         last = math.inf
