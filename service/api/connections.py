@@ -146,7 +146,7 @@ class Connection(HttpToolsProtocol):
 
     @property
     def is_dispensable(self) -> bool:
-        """Whether it may be closed to make room: it has no token, is at rest, or does not read its answers."""
+        """Whether it may be closed to make room: without a token, idle, or not reading its answers."""
         return not self.is_known or self.is_at_rest or bool(self._backlog) or self.flow.write_paused
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as in the parent

@@ -36,7 +36,7 @@ class Wanted:
     target: float | None = None
 
     def rank(self, row: Row) -> float:
-        """Return a number that is the smaller the better a design is in it."""
+        """Return a number that is smaller for a better design."""
         value = row[self.column]
         if not isinstance(value, float | int) or math.isnan(value):
             return math.inf
@@ -49,7 +49,7 @@ class Wanted:
 class Exact:
     """Designs of a front as the search left them: dimensions and slopes, SI; the fields are those of `ParetoFront`.
 
-    dimensions: (n, 3 + v). variants: n, empty if nothing was to be chosen. goals: for each design, objective index (p,)
+    dimensions: (n, 3 + v). variants: (n,), empty without choices. goals: for each design, objective index (p,)
     and gradient (p, f) of every active piece. active: gradients (a, f) of its active constraints.
     """
 
@@ -59,13 +59,13 @@ class Exact:
     active: tuple[Array, ...]
 
     def __post_init__(self) -> None:
-        """Refuse, with ValueError, parts of fronts of different length."""
+        """Raise ValueError if the parts differ in length."""
         count = len(self.dimensions)
         if not count == len(self.goals) == len(self.active) or len(self.variants) not in (0, count):
             raise ValueError(f"dimensions of {count} designs, slopes of {len(self.goals)}, {len(self.active)}")
 
     def select(self, rows: Sequence[int]) -> Exact:
-        """Return those of some designs, in the order given."""
+        """Return the data of selected designs, in the given order."""
         return Exact(
             self.dimensions[list(rows)],
             tuple(self.variants[row] for row in rows) if self.variants else (),
@@ -79,11 +79,11 @@ class Result:
     """Result of a run.
 
     run: its folder. status: "done", "cancelled" or "infeasible". designs: best in the first objective first.
-    extremes: the position in `designs` of the best in each objective. knee: that of the knee; None without designs.
-    trade_offs: at the knee, in words. warnings: of what an engineer may not have meant, in words. violated: by column,
-    by how much each design goes beyond an allowable value, zero where it does not. exact: the designs as
-    the search left them; None for a run read from its files, and from stores of early versions. discrete: how the
-    designs of discrete values were found, see `discrete_record`; None without such values.
+    extremes: position in `designs` of the best design in each objective. knee: position of the knee; None without
+    designs. trade_offs: trade-offs at the knee, in words. warnings: warnings about what an engineer may not have meant.
+    violated: per column, the excess of each design over an allowable value, zero if it is met. exact: the designs as
+    the search left them; None for a run read from its files or from a store of an early version. discrete: how the
+    designs with discrete values were found, see `discrete_record`; None without such values.
     """
 
     run: str
@@ -106,13 +106,13 @@ class Result:
 
     @property
     def strokes_differ(self) -> bool:
-        """Whether a design has a stroke that is loaded more than the other: then the slow one matters."""
+        """Whether one stroke of a design carries more load than the other: then the slow stroke matters."""
         return any(row.get("loaded_stroke", "equal") != "equal" for row in self.designs)
 
     def record(self, columns: Sequence[str] | None = None) -> dict[str, Any]:
         """Return the result for JSON: null for undefined values, "inf" and "-inf" for infinite ones.
 
-        columns: of the designs, all of them if None.
+        columns: columns of the designs, all if None.
         """
         left_out = ("exact",) if self.discrete else ("exact", "discrete")
         fields = {name: json_ready(value) for name, value in vars(self).items() if name not in left_out}
@@ -173,7 +173,7 @@ def result_of(front: ParetoFront, run: str) -> Result:
 
 
 def _violated(front: ParetoFront) -> dict[str, list[float]]:
-    """Return by how much designs go beyond allowable values, by the columns of these."""
+    """Return the excess of designs over allowable values, by column."""
     excess_by_quantity = ((front.problem.quantity(name), excess) for name, excess in front.violated.items())
     return {
         quantity.field: [quantity.unit.factor * float(amount) for amount in excess]
@@ -204,7 +204,7 @@ def unsearched_result(error: InfeasibleError, run: str = "") -> Result:
 
 
 def discrete_record(front: ParetoFront) -> dict[str, Any] | None:
-    """Return how designs of discrete values were found, and the best of each objective with continuous ones."""
+    """Return how designs with discrete values were found, and the best of each objective with continuous values."""
     summary = front.discrete
     if summary is None:
         return None
@@ -243,9 +243,9 @@ def wanted_record(objective: Wanted) -> dict[str, Any]:
 
 
 def json_ready(value: Any, *, gaps: bool = False) -> Any:
-    """Return a value as JSON has it: None for every number that is not defined, "inf" and "-inf" for infinities.
+    """Convert a value to JSON: None for undefined numbers, "inf" and "-inf" for infinities.
 
-    CSV files have the same words. gaps: None for infinities too, in what is drawn.
+    CSV files have the same words. gaps: None for infinities too, for drawings.
     """
     if isinstance(value, float):
         if math.isfinite(value):
@@ -267,15 +267,15 @@ def read_row(row: Mapping[str, Any]) -> Row:
 
 
 def json_text(value: Any) -> str:
-    """Return strict JSON, every number as precise as it is; in ASCII, so that no terminal garbles it."""
+    """Return strict JSON with numbers at full precision; in ASCII, so that no terminal garbles it."""
     return json.dumps(json_ready(value), indent=2, allow_nan=False) + "\n"
 
 
 def csv_text(rows: Iterable[Row], *, spreadsheet: bool = False) -> str:
     """Return the rows as CSV (RFC 4180 with plain line ends): JSON keys as header, numbers at full precision.
 
-    Infinity is written inf; what is not defined stays empty. spreadsheet: put an apostrophe before text that a
-    spreadsheet would take for a formula; such a cell does not read back as it was.
+    Infinity is written as inf; undefined values stay empty. spreadsheet: put an apostrophe before text that a
+    spreadsheet would take for a formula; such a cell cannot be read back unchanged.
     """
     rows = list(rows)
     out = io.StringIO()

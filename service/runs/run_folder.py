@@ -1,15 +1,15 @@
-"""Writing a run: a folder that is whole, or marked unfinished, whenever the machine stops.
+"""Writing of a run: a folder that is complete or marked unfinished, whenever the machine stops.
 
     runs/20260131-142501-feeder/
         job.toml        the job, byte for byte (job.json if it was JSON), and the files beside it that it names
         front.csv       every design with all its quantities, full precision
         front.json      the same with how it was found: what `slidercrank optimise --json` prints
         figures/        PNG files
-        versions.json   of this software and of what computed the numbers
+        versions.json versions of this software and of the libraries that computed the numbers
         log.txt         what happened when
         UNFINISHED      only until everything else is on the disk
 
-The folder appears under its name with UNFINISHED already in it, and losing that file is the last thing that happens.
+The folder appears under its name with UNFINISHED already in it; removing that file is the last step.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ PLACE_VARIABLE = "SLIDERCRANK_RUNS"
 
 
 def runs_place(option: Path | None) -> Path:
-    """Return where runs are kept: the option, else SLIDERCRANK_RUNS, else ./runs."""
+    """Return the folder of runs: the option, else SLIDERCRANK_RUNS, else ./runs."""
     return option or Path(os.environ.get(PLACE_VARIABLE) or DEFAULT_PLACE)
 
 
@@ -49,17 +49,17 @@ def slug(name: str) -> str:
 
 
 def run_name(name: str) -> str:
-    """Return the name of a folder for a run that begins now: the time, then the name of its job."""
+    """Return the folder name for a run that begins now: the time, then the job name."""
     return f"{time.strftime('%Y%m%d-%H%M%S')}-{slug(name)}"
 
 
 class RunFolder:
     """A run being written. Every method raises `RunError` when the disk refuses.
 
-    As a context manager it says what became of the run. Leaving without an error finishes it. An `InputError` or a
+    As a context manager it records the outcome of the run. Leaving without an error finishes it. An `InputError` or a
     `MissingExtra` before there is a result removes the folder: nothing was done. Any other error leaves the run
-    unfinished, with the reason in log.txt, and adds the log's place to the error as a note. A resumed run keeps what it
-    had: before `go_on` nothing changes, and after an error the result of a cancelled run can still be read.
+    unfinished, with the reason in log.txt, and adds the log's place to the error as a note. A resumed run keeps its
+    files: nothing changes before `go_on`, and after an error the result of a cancelled run stays readable.
     """
 
     def __init__(self, place: Path, name: str) -> None:
@@ -113,13 +113,13 @@ class RunFolder:
             file.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')}  {path_text(line)}\n")
 
     def rename(self, name: str) -> None:
-        """Give the folder another name. Raises `RunError` where that is taken."""
+        """Rename the folder. Raises `RunError` if the name is taken."""
         if name != self.path.name:
             with disk(self.path.parent):
                 self.path = self.path.rename(self.path.with_name(name))
 
     def keep_files(self, files: Mapping[str, bytes]) -> None:
-        """Write files under their names, which may lead into folders but not out of this one."""
+        """Write files under their names, which may include subfolders but must stay inside this folder."""
         for name, content in files.items():
             target = self.path / path_from_text(name)
             if not target.resolve().is_relative_to(self.path.resolve()):
@@ -137,7 +137,7 @@ class RunFolder:
             _write(self.path / "front.json", json_text(result.record()))
 
     def finish(self) -> None:
-        """Make sure that everything is on the disk, then take away the mark."""
+        """Make sure that everything is on the disk, then remove the mark."""
         self.log("run finished")
         with disk(self.path):
             for folder in (self.figures, self.path):
@@ -185,10 +185,10 @@ class RunFolder:
 
 
 def write_file(path: Path, content: str | bytes) -> None:
-    """Write a file as a whole or not at all.
+    """Write a file completely or not at all.
 
-    A pipe or a device takes it as it comes, a link stays one, and a file that is there keeps its permissions. Raises
-    `RunError` when the disk refuses, `InputError` for a folder.
+    A pipe or device receives the content directly, a link stays a link, and an existing file keeps its permissions.
+    Raises `RunError` when the disk refuses, `InputError` for a folder.
     """
     if path.is_dir():
         raise InputError(f"an output must be a file; got the folder {path}; name a file in it")
@@ -201,9 +201,9 @@ def write_file(path: Path, content: str | bytes) -> None:
 
 
 def _lock(folder: Path) -> int | None:
-    """Return a handle that keeps other processes from the folder while it is open; None where there are no locks.
+    """Return a handle that locks the folder against other processes while it is open; None without lock support.
 
-    The lock ends with the process, however that ends. Raises `InputError` if another one holds it.
+    The lock ends with the process, however the process ends. Raises `InputError` if another process holds it.
     """
     if os.name == "nt":
         return None
@@ -269,7 +269,7 @@ def sync(path: Path) -> None:
 
 @contextlib.contextmanager
 def disk(place: Path) -> Iterator[None]:
-    """Turn an error of the disk into a `RunError` that names the place, and its free room if full."""
+    """Turn a disk error into a `RunError` that names the place, and its free space if it is full."""
     try:
         yield
     except OSError as error:

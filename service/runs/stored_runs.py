@@ -1,4 +1,4 @@
-"""Reading runs that are on the disk."""
+"""Reading of runs from the disk."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 
 def read_run(folder: Path, again: str = "slidercrank optimise --resume") -> Result:
-    """Return the result of a run. Raises `RunError` for one that is unfinished, damaged, or no run.
+    """Return the result of a run. Raises `RunError` if it is unfinished, damaged, or not a run.
 
-    again: what an unfinished run goes on with, in the words of the door.
+    again: how to continue an unfinished run, in the words of the interface in use.
     """
     try:
         if (folder / MARK).exists():
@@ -39,9 +39,9 @@ def read_run(folder: Path, again: str = "slidercrank optimise --resume") -> Resu
 
 
 def result_from(record: dict[str, Any], rows: list[Row], run: str, exact: Exact | None = None) -> Result:
-    """Return the result of a record as front.json has it, designs apart, with the rows of its designs.
+    """Return the result for a record of front.json, without its designs, and the rows of its designs.
 
-    exact: the same designs as the search left them, where that is kept.
+    exact: the same designs as the search left them, if stored.
 
     Raises ValueError, KeyError or TypeError if they contradict each other, or something is missing.
     """
@@ -80,8 +80,8 @@ def result_from(record: dict[str, Any], rows: list[Row], run: str, exact: Exact 
 def problem_of(folder: Path, result: Result) -> Problem:
     """Return the problem that a run solved: its job, with the seed of the run.
 
-    No warnings about the job: the result of the run has those of its own designs. Raises `RunError` for a run without a
-    job, or with one that is not valid any more.
+    Gives no warnings about the job: the result of the run has the warnings for its own designs. Raises `RunError` if
+    the run has no job, or a job that is no longer valid.
     """
     from ...optimise.job import parse_job, read_job
 
@@ -96,5 +96,5 @@ def problem_of(folder: Path, result: Result) -> Problem:
 
 
 def job_file(folder: Path) -> Path | None:
-    """Return the job file of a run, None if it has none."""
+    """Return the job file of a run, None without one."""
     return next((file for name in ("job.toml", "job.json") if (file := folder / name).is_file()), None)

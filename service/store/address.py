@@ -1,4 +1,4 @@
-"""Addresses of stores: which database one is of, and how it is shown without its secrets."""
+"""Addresses of stores: the database of an address, and its text without secrets."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ HIDDEN = "***"
 
 
 def without_secrets(text: str) -> str:
-    """Return a word of a command line as it may be shown: an address, also after `--option=`, without its secrets."""
+    """Return a command-line word without the secrets of an address, also after `--option=`."""
     option, equals, value = text.partition("=") if text.startswith("--") else ("", "", text)
     scheme, server, _ = value.partition("://")
     if not server:
@@ -41,7 +41,7 @@ def _parsed(text: str) -> URL | None:
 
 
 def shown_url(url: URL) -> str:
-    """Return an address as it may be shown."""
+    """Return an address without its secrets, fit to be shown."""
     hidden = {name: value if name in _OPEN else HIDDEN for name, value in url.query.items()}
     text = url.set(query=hidden, database=url.database and path_text(url.database)).render_as_string(hide_password=True)
     return text.replace(quote(HIDDEN), HIDDEN).replace("+psycopg://", "://", 1)
@@ -55,7 +55,7 @@ def secrets_of(url: URL) -> list[str]:
 
 
 def url_of(address: str | PathLike[str]) -> URL:
-    """Return the database at an address. Raises `InputError` for one of another kind of database."""
+    """Return the database at an address. Raises `InputError` for another kind of database."""
     text = str(address)
     if "://" not in text and not _MANGLED.match(text):
         return URL.create("sqlite", database=str(path_from_text(text)))
@@ -72,16 +72,16 @@ def url_of(address: str | PathLike[str]) -> URL:
 
 
 def file_of(address: str | PathLike[str]) -> Path | None:
-    """Return the file of a store, None for one on a server. Raises `InputError` for an address that is none."""
+    """Return the file of a store, None for a server. Raises `InputError` for an invalid address."""
     url = url_of(address)
     return Path(url.database) if url.database and url.get_backend_name() == "sqlite" else None
 
 
 def is_there(file: Path) -> bool:
-    """Whether the file of a store is there.
+    """Whether the file of a store exists.
 
-    Raises `StoreError` for what can be no such file, and for one that was deleted or emptied and has left its
-    write-ahead log: SQLite would delete that, too, with the latest jobs in it.
+    Raises `StoreError` if it cannot be such a file, or was deleted or emptied and has left its write-ahead log: SQLite
+    would delete the log too, with the latest jobs in it.
     """
     try:
         size = file.stat().st_size
@@ -105,7 +105,7 @@ def is_there(file: Path) -> bool:
 
 
 def has_content(file: Path) -> bool:
-    """Whether the file of a store is there, to look into it. Raises `StoreError` if it is empty, or as `is_there`."""
+    """Whether the file of a store exists and can be inspected. Raises `StoreError` if it is empty, or as `is_there`."""
     exists = is_there(file)
     if exists and not file.stat().st_size:
         raise StoreError(

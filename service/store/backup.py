@@ -1,4 +1,4 @@
-"""A copy of a store in a file, made while it is used."""
+"""Backup of a store into a file while the store is in use."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _PATIENCE = 30.0  # s to wait for other writers
 
 
 def back_up(database: Database, target: Path) -> None:
-    """Copy an SQLite database as it is at one moment into a new file, which appears only when whole.
+    """Copy a consistent snapshot of an SQLite database into a new file, which appears only when complete.
 
-    Jobs are submitted and solved meanwhile. The copy is looked through before it gets its name. Raises `InputError` for
-    a database on a server and for a file that is there already, `StoreError` if it cannot be read or written.
+    Jobs can be submitted and solved meanwhile. The copy is checked before it gets its name. Raises `InputError` for a
+    database on a server and for an existing file, `StoreError` if it cannot be read or written.
     """
     source = database.engine.url.database
     if not database.sqlite or source is None:

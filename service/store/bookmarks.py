@@ -1,4 +1,4 @@
-"""Bookmarked designs of a front: named, annotated, starred, one of them chosen."""
+"""Bookmarked designs of a front: named, annotated and starred; one may be chosen."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ MOST_KEPT = 500
 
 @dataclass(frozen=True, kw_only=True)
 class Bookmark:
-    """A bookmarked design. number: among those of its job, from 1. at: time of bookmarking, s since 1970.
+    """A bookmarked design. number: number within its job, from 1. at: time of bookmarking, s since 1970.
 
-    design: of the front, by its number, that it is or began as; None for neither. variant: of the job's choices.
-    dimensions: crank, rod, offset, m, and each varying number, SI. decided: whether it was chosen, at most one of a
-    job. reason: why, or why not.
+    design: number of the design of the front that it is or began as; None for neither. variant: variant of the job's
+    choices. dimensions: crank, rod, offset, m, and each extra variable, SI. decided: whether it was chosen, at most one
+    per job. reason: reason for or against it.
     """
 
     job: int

@@ -1,4 +1,4 @@
-"""A job claimed by a worker: everything written about it goes through its claim."""
+"""Claim of a worker on a job: everything written about the job goes through its claim."""
 
 from __future__ import annotations
 
@@ -38,24 +38,24 @@ def _never(_: float) -> bool:
 
 
 class Claim:
-    """The right to write of a job until its lease ends.
+    """Right to write to a job until its lease ends.
 
-    Every write is one transaction that holds only if the fence is still that of this claim and the lease has not ended,
-    by the monotonic clock of this process or by that of the database, which may jump; else nothing is written and
-    `LeaseLost` is raised, also when no other worker has come yet. Every write renews the lease. A write that the
-    database refuses, or whose answer is lost, is tried again for as long as the lease lasts, and takes effect once.
-    Threads may share a claim.
+    Every write is one transaction. It takes effect only if the fence is still that of this claim and the lease has not
+    ended, by the monotonic clock of this process or by the database clock, which may jump. Otherwise nothing is written
+    and `LeaseLost` is raised, even if no other worker has claimed the job yet. Every write renews the lease. A write
+    that the database refuses, or whose answer is lost, is retried while the lease lasts, and takes effect once. Threads
+    may share a claim.
 
-    A write that finds no room on the disk waits for some, while other threads renew the lease: that takes less room.
-    Where not even that is written, nobody else can claim the job either, and it stays this worker's until one does.
+    A write that finds the disk full waits for free space, while other threads renew the lease: that takes less space.
+    If even the renewal fails, nobody else can claim the job either, and this worker keeps it until someone does.
 
     has_begun: whether its search has evaluated anything yet. astray: whether the lease ends at a wrong time because the
-    clock of the database has jumped; it must be renewed. patient: whether a write waits for room.
-    waits: why a write waits, in words; empty if none does. waited: for how long writes have waited for room, s.
+    database clock has jumped; it must be renewed. patient: whether a write waits for free space. waits: reason why a
+    write waits; empty if none does. waited: time that writes have waited for free space, s.
     """
 
     def __init__(self, database: Database, job: Job, lease: float) -> None:
-        """Hold a job that was claimed a moment ago. lease: in s."""
+        """Hold a job that was just claimed. lease: length of the lease, s."""
         self.job = job
         self.lease = lease
         self.cancel_asked = job.cancel_asked
@@ -83,16 +83,16 @@ class Claim:
             return records_of(connection, self.job.id)
 
     def keep(self, record: Record) -> None:
-        """Take in the next record; it is written with the next progress, or with the end."""
+        """Accept the next record; it is written with the next progress report, or at the end."""
         with self._lock:
             self.has_begun = True
             self._kept.append(record)
 
     def report(self, progress: Progress, front: Mapping[str, Any] | None = None) -> None:
-        """Write the progress of the search with the records since the last report. Loading is not a beginning.
+        """Write the progress of the search and the records since the last report. Loading does not count as begun.
 
-        front: some designs of the front so far, as JSON has them. Only the latest is kept, with the job: events that
-        each carried one would make a store of many runs grow.
+        front: some designs of the front so far, as JSON. Only the latest is stored, with the job: a front in each event
+        would make a store of many runs grow.
         """
         self.has_begun = self.has_begun or not progress.prepares
         data = json_ready(asdict(progress), gaps=True)
@@ -100,12 +100,12 @@ class Claim:
         self._write({"progress": text_of(standing)}, [("progress", data)])
 
     def renew(self) -> None:
-        """Renew the lease and look whether the job is to be cancelled; writes nothing else but why a write waits."""
+        """Renew the lease and check for cancellation; writes nothing else but the reason why a write waits."""
         with self._lock:  # else the write may end its wait meanwhile
             self._write({"reason": plain(self.waits)} if self.waits else {}, [], keep=False, patient=_never)
 
     def look(self) -> None:
-        """Look whether the job is to be cancelled, without writing. Raises `LeaseLost` if another worker has it."""
+        """Check for cancellation of the job without writing. Raises `LeaseLost` if another worker has it."""
         left = (jobs.c.lease_until - now()).label("left")
         query = select(jobs.c.cancel_asked, left).where(self._mine, jobs.c.state == "running")
         with self._database.reading() as connection:
@@ -120,7 +120,7 @@ class Claim:
         self._write({}, [("message", {"text": plain(text)})])
 
     def start_over(self, reason: str) -> None:
-        """Forget all records: the search begins anew. reason: for the events of the job."""
+        """Delete all records: the search restarts. reason: reason for the events of the job."""
         with self._lock:
             self._kept = []
             of_job = records.c.job == self.job.id
@@ -132,11 +132,11 @@ class Claim:
             self._records = 0
 
     def write_files(self, *files: Artefact) -> None:
-        """Write files of the job, each in place of one of its name."""
+        """Write files of the job, replacing those of the same names."""
         self._write({}, [], lambda connection: put_files(connection, self.job.id, files))
 
     def finish(self, result: Result, files: Sequence[Artefact] = ()) -> None:
-        """Write what was found and end the job, done, infeasible or cancelled, all in one transaction."""
+        """Write the result and end the job as done, infeasible or cancelled, all in one transaction."""
         record = result.record()
         del record["designs"]
         record["columns"] = list(result.designs[0]) if result.designs else []
@@ -168,8 +168,8 @@ class Claim:
     def fail(self, reason: str, *, again: bool, delay: float = 0.0) -> None:
         """Give the job back after an error.
 
-        again: whether another attempt may succeed; it is then queued for `delay` s from now on, at most a minute,
-        unless it has used up its attempts. Else it is set aside as failed.
+        again: whether another attempt may succeed; the job is then queued again after `delay` s, at most a minute,
+        unless its attempts are used up. Otherwise it is set aside as failed.
         """
         attempts = 0 if self._kept else self._attempts
         tries = f" (attempt {attempts} of {self.job.most_attempts})" if again and attempts else ""
@@ -179,13 +179,13 @@ class Claim:
             self._leave("failed", f"{reason}{tries}", {})
 
     def give_up(self, reason: str = NOT_DONE) -> None:
-        """End the job, cancelled, with what it had found before this claim."""
+        """End the job as cancelled, with the result from before this claim."""
         self._leave("cancelled", reason, {})
 
     def hand_back(self, reason: str, *, delay: float = 0.0) -> None:
-        """Queue the job again as it is, without counting the attempt: what stops it is no fault of its own.
+        """Queue the job again unchanged, without counting the attempt: the job did not cause the stop.
 
-        delay: after which it may be claimed, in s, at most a minute.
+        delay: time until it may be claimed, s, at most a minute.
         """
         fewer = case((jobs.c.attempts > 0, jobs.c.attempts - 1), else_=0)
         due = {"due": later(min(delay, MOST_DELAY))} if delay else {}
@@ -197,7 +197,7 @@ class Claim:
             connection.execute(update(jobs).where(self._mine, jobs.c.state == "running").values(lease_until=0.0))
 
     def _leave(self, state: str, reason: str, changes: dict[str, Any]) -> None:
-        """End the claim without a result. Records for which there is no room are left out: they are computed again."""
+        """End the claim without a result. Records that do not fit on the disk are omitted: they are computed again."""
         try:
             self._end(state, reason, changes, patient=_never)
         except Full:
@@ -247,7 +247,7 @@ class Claim:
     def _try(
         self, changes: dict[str, Any], new_events: Sequence[Told], rest: Rest | None, *, keep: bool, tried: bool
     ) -> None:
-        """Write it all in one transaction. tried: whether an earlier try may have taken effect already."""
+        """Write everything in one transaction. tried: whether an earlier attempt may already have taken effect."""
         pending, started = self._kept if keep else [], time.monotonic()
         rows = [
             {"job": self.job.id, "number": number, "content": packed(record)}

@@ -1,10 +1,10 @@
-"""The time, as the database sees it: leases of several machines are compared by one clock only.
+"""Time by the database clock, the only one that compares leases of several machines.
 
-That clock may be set, by hours and in either direction, and nothing may hang on it. Whoever holds a job measures its
-lease on its own monotonic clock, and renews it when it sees that the database's clock has jumped. Whoever looks for
-jobs takes none for a moment after a jump, so that holders come first; nor after the disk of the database was full, so
-that leases could not be renewed. What cannot be, a sign of life or a due time too far in the future, is of a clock that
-was set back, and holds nothing up. Results hang on fences alone.
+That clock may be set by hours in either direction, and nothing may depend on it. A worker with a job measures its lease
+on its own monotonic clock, and renews it when the database clock has jumped. A worker that looks for jobs claims none
+for a moment after a jump, so that holders come first. It also waits after the disk of the database was full, when
+leases could not be renewed. A sign of life or a due time impossibly far in the future comes from a clock that was set
+back, and delays nothing. Results depend on fences alone.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ their lease."""
 
 
 class Jumps:
-    """Jumps of the database's clock, seen by comparing it with a monotonic one at every look."""
+    """Jumps of the database clock, detected by comparing it with a monotonic clock at every check."""
 
     def __init__(self, monotonic: Callable[[], float] = time.monotonic) -> None:
         self._monotonic = monotonic
@@ -37,7 +37,7 @@ class Jumps:
     def is_settled(self, database_time: float, last_full: float = -math.inf) -> bool:
         """Return whether the last clock jump and the last full disk are both some time ago.
 
-        database_time: time of the database, s. last_full: of the monotonic clock, s.
+        database_time: time of the database, s. last_full: time of the last full disk on the monotonic clock, s.
         """
         monotonic_time = self._monotonic()
         if self._ahead is not None and abs(database_time - monotonic_time - self._ahead) > JUMP:
@@ -47,14 +47,14 @@ class Jumps:
 
 
 class now(FunctionElement[float]):
-    """Seconds since 1970 (UTC) at the moment when the statement looks, to a millisecond."""
+    """Seconds since 1970 (UTC) when the statement runs, to a millisecond."""
 
     inherit_cache = True
     type = Double()
 
 
 def later(seconds: float) -> ColumnElement[float]:
-    """Return the time in so many seconds from now on."""
+    """Return the time a number of seconds from now."""
     return now() + cast(literal(seconds), Double)
 
 

@@ -1,7 +1,7 @@
-"""A database by its address, opened so that what was committed survives, and what fails is told in one sentence.
+"""A database opened by its address: commits survive, and failures are reported in one sentence.
 
 SQLite: write-ahead log, `synchronous=FULL`, and every writing transaction begins with `BEGIN IMMEDIATE`, so that none
-has to be given up half-way because another one wrote meanwhile. PostgreSQL: psycopg 3, `synchronous_commit=on`.
+must be abandoned half-way because another one wrote meanwhile. PostgreSQL: psycopg 3, `synchronous_commit=on`.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _IDLE = 0.1  # s after which a connection has to prove that it is alive: no serv
 _POSTGRESQL = {
     "synchronous_commit": "on",
     "lock_timeout": "30s",
-    # A worker that is stopped in the middle of a transaction would otherwise hold its job for good.
+    # A worker that is stopped in the middle of a transaction would otherwise hold its job forever.
     "idle_in_transaction_session_timeout": "10s",
 }
 
@@ -42,23 +42,23 @@ _DISK_FULL = "53100"  # of PostgreSQL
 
 
 class Unavailable(StoreError):
-    """A refusal of the database that may pass: it restarts, its disk is full, another writer is at work."""
+    """Temporary refusal of the database: it restarts, its disk is full, or another writer is active."""
 
 
 class Full(Unavailable):
-    """The disk of the database has no room."""
+    """The disk of the database is full."""
 
 
 class Database:
     """An open database. Both kinds of transaction raise `StoreError` when the database refuses or cannot be reached.
 
-    last_full: when its disk was last seen without room, s of the monotonic clock.
+    last_full: time when its disk was last seen full, s on the monotonic clock.
     """
 
     def __init__(self, address: str | PathLike[str]) -> None:
-        """Open what is at an address: postgresql://..., sqlite:///file, or the path of a file.
+        """Open the database at an address: postgresql://..., sqlite:///file, or the path of a file.
 
-        Raises `InputError` for an address of another kind, `StoreError` where nothing can be opened.
+        Raises `InputError` for an address of another kind, `StoreError` if it cannot be opened.
         """
         url = url_of(address)
         self.name = shown_url(url)
@@ -93,12 +93,12 @@ class Database:
             self._use_write_ahead_log()
 
     def require_room(self) -> None:
-        """Raise `Full` if the disk of a file has no room; of a server's nothing is known."""
+        """Raise `Full` if the disk of a file is full; the disk of a server is unknown."""
         if self._folder is not None and free(self._folder) < LEAST:
             raise self._full("its disk is full")
 
     def require_ready(self) -> None:
-        """Raise `StoreError` if the disk of a file has no room, or a server takes no changes."""
+        """Raise `StoreError` if the disk of a file is full, or a server accepts no changes."""
         self.require_room()
         if self.sqlite:
             return
@@ -135,14 +135,14 @@ class Database:
 
     @contextlib.contextmanager
     def reading(self) -> Iterator[Connection]:
-        """Enter a transaction that sees one state of the database and keeps no writer waiting."""
+        """Enter a transaction that sees one state of the database and does not block writers."""
         self._require_file()
         with self._translated_errors(), self._reader.begin() as connection:
             yield connection
 
     @contextlib.contextmanager
     def writing(self) -> Iterator[Connection]:
-        """Enter a transaction that writes; committed at the end, taken back as a whole after an error."""
+        """Enter a write transaction; committed at the end, rolled back completely after an error."""
         self._require_file()
         if self._file is not None and not self._open:
             raise StoreError(
@@ -153,7 +153,7 @@ class Database:
             yield connection
 
     def _require_file(self) -> None:
-        """Raise `StoreError` if the file was deleted or replaced: what is written into it now would be lost."""
+        """Raise `StoreError` if the file was deleted or replaced: further writes would be lost."""
         if self._file is not None and _identity(self._file) != self._known:
             raise StoreError(
                 f"the file of a store stays where it is while it is used; {self.name} was deleted, moved or replaced; "
@@ -207,7 +207,7 @@ class Database:
 
 
 def _identity(file: Path) -> tuple[int, int] | None:
-    """Return device and inode of a file, which writing keeps; None if it is not there."""
+    """Return device and inode of a file, which writing preserves; None if it does not exist."""
     try:
         status = file.stat()
     except OSError:
@@ -264,7 +264,7 @@ def _postgresql(url: URL) -> Engine:
 
     @event.listens_for(engine, "checkout")
     def prove(connection: Any, record: Any, _proxy: Any) -> None:
-        # Not each time, as the pool itself would do it: that takes as long as what the connection is for.
+        # Not each time, as the pool itself would: that takes as long as the use of the connection.
         if time.monotonic() - record.info.get("since", math.inf) > _IDLE and not _alive(engine, connection):
             raise InvalidatePoolError  # by which the pool gives up its connections and makes another one
 

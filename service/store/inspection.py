@@ -36,7 +36,7 @@ def damages(database: Database) -> list[str]:
 
 
 def clock_ahead(database: Database) -> float:
-    """Return how far the clock of the database is ahead of the one of this machine, in s."""
+    """Return how far the database clock is ahead of the clock of this machine, s."""
     with database.reading() as connection:
         before = time.time()
         database_time = connection.execute(select(now())).scalar_one()
@@ -44,7 +44,7 @@ def clock_ahead(database: Database) -> float:
 
 
 def server_version(database: Database) -> str:
-    """Return which database it is, with its version."""
+    """Return the name and version of the database."""
     query = "SELECT sqlite_version()" if database.sqlite else "SHOW server_version"
     with database.reading() as connection:
         number = str(connection.scalar(text(query))).split()[0]
@@ -78,7 +78,7 @@ def _of_postgresql(connection: Connection) -> list[str]:
 
 
 def _miscounts(connection: Connection) -> list[str]:
-    """Return the jobs of which rows are missing or too many; one statement, so that all is of one moment."""
+    """Return the jobs with missing or surplus rows; one statement, so that all counts are of one moment."""
 
     def count(table: FromClause) -> ColumnElement[int]:
         return select(func.count()).where(table.c.job == jobs.c.id).scalar_subquery()
@@ -106,7 +106,7 @@ def _miscounts(connection: Connection) -> list[str]:
 
 
 def _damaged_results(connection: Connection) -> list[str]:
-    """Return the jobs that differ, with their results, from their checksums."""
+    """Return the jobs that, with their results, do not match their checksums."""
     summed = (jobs.c.tables, jobs.c.result, jobs.c.summary)
     query = select(jobs.c.id, jobs.c.checksum, *summed).where(jobs.c.checksum.is_not(None)).order_by(jobs.c.id)
     damage = []

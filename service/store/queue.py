@@ -1,4 +1,4 @@
-"""The queue of a store: putting jobs in, and the choice of the job that a worker gets next."""
+"""The queue of a store: adding jobs, and choosing the next job for a worker."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from .serialisation import plain, text_of
 
 MOST_DELAY = 60.0
 """s after which a job is due again at the latest: one that is due later was queued under a clock set back since."""
-# Every write of a job is a sign of life of its worker. One in the future was given under a clock set back since, and a
-# worker that lives gives another one at once: so the lease, which lies as far in the future, is of one that does not.
+# Every write of a job is a sign of life of its worker. One in the future dates from before the clock was set back, and
+# a live worker gives another one immediately: so a lease as far in the future belongs to a dead worker.
 _FROM_LATER = exists(select(workers.c.id).where(workers.c.id == jobs.c.worker, workers.c.seen > now() + JUMP))
 ENDED_LEASE = or_(jobs.c.lease_until < now(), _FROM_LATER)
 """Whether the lease of a running job has ended."""
@@ -38,7 +38,7 @@ _CLAIMABLE = (
 
 
 def require_bounds(priority: int, key: str | None, most_attempts: int) -> None:
-    """Raise `InputError` for what no job can have."""
+    """Raise `InputError` for values that no job can have."""
     if not (abs(priority) <= 1000 and 1 <= most_attempts <= 1000):
         raise InputError(
             f"a job has a priority from -1000 to 1000 and 1 to 1000 attempts; got {priority} and {most_attempts}; "
@@ -49,13 +49,13 @@ def require_bounds(priority: int, key: str | None, most_attempts: int) -> None:
 
 
 def take_turns(connection: Connection) -> None:
-    """Wait until no other session of PostgreSQL submits; those of SQLite take turns anyway."""
+    """Wait until no other PostgreSQL session submits; SQLite sessions take turns anyway."""
     if connection.dialect.name == "postgresql":
         connection.execute(text("SELECT pg_advisory_xact_lock(:lock)"), {"lock": LOCK + 1})
 
 
 def submitted_before(connection: Connection, key: str, tables: Mapping[str, Any]) -> Job | None:
-    """Return the job that was submitted with a key, None if there is none. Raises `InputError` if it differs."""
+    """Return the job submitted with a key, None if there is none. Raises `InputError` if it differs."""
     row = connection.execute(select(*SHOWN, jobs.c.tables).where(jobs.c.key == key)).first()
     if row is None:
         return None
@@ -65,7 +65,7 @@ def submitted_before(connection: Connection, key: str, tables: Mapping[str, Any]
 
 
 def require_room(connection: Connection, most_queued: int) -> None:
-    """Raise `QueueFull` if as many jobs wait as may wait."""
+    """Raise `QueueFull` if the maximum number of jobs is waiting."""
     waiting = connection.scalar(select(func.count()).where(jobs.c.state == "queued")) or 0
     if waiting >= most_queued:
         raise QueueFull(f"at most {most_queued} jobs may wait; {waiting} do; wait, or cancel some")
@@ -81,7 +81,7 @@ def add_job(
     run: str,
     **values: Any,
 ) -> int:
-    """Insert a queued job and return its number. run: the name of its folder; another is made if that one is taken."""
+    """Insert a queued job and return its number. run: name of its folder, changed if taken."""
     row = {
         "name": plain(name),
         "run": _free(connection, run),
@@ -100,7 +100,7 @@ def add_job(
 
 
 def in_hand(worker: str, lease: float) -> dict[str, Any]:
-    """Return the changes, besides the state, to a job that a worker takes for `lease` s."""
+    """Return the changes, besides the state, to a job that a worker claims for `lease` s."""
     return {
         "attempts": jobs.c.attempts + 1,
         "started": func.coalesce(jobs.c.started, now()),
@@ -112,16 +112,16 @@ def in_hand(worker: str, lease: float) -> dict[str, Any]:
 
 
 def any_claimable(connection: Connection, jumps: Jumps, last_full: float) -> bool:
-    """Whether some job may be claimed; asked before claiming, so that idle workers do not write.
+    """Whether some job may be claimed; checked before claiming, so that idle workers do not write.
 
-    jumps: of the database's clock. last_full: when its disk had no room, s. None is claimed soon after either.
+    jumps: jumps of the database clock. last_full: time when its disk was full, s. No job is claimed soon after either.
     """
     clock_settled = jumps.is_settled(connection.execute(select(now())).scalar_one(), last_full)
     return clock_settled and connection.execute(_CLAIMABLE).first() is not None
 
 
 def running(connection: Connection) -> int:
-    """Return how many jobs are in the hands of workers whose lease has not ended."""
+    """Return the number of jobs held by workers whose lease has not ended."""
     in_hands = and_(jobs.c.state == "running", not_(ENDED_LEASE))
     return connection.scalar(select(func.count()).where(in_hands)) or 0
 
@@ -129,8 +129,8 @@ def running(connection: Connection) -> int:
 def claim_next(connection: Connection, worker: str, lease: float) -> Job | None:
     """Give the foremost job to a worker, highest priority first, then oldest first; None if there is none.
 
-    It is queued and due, or its lease has ended without a word. Of the latter those without an attempt left are set
-    aside: whatever stopped their workers would stop the next one too.
+    It is queued and due, or its lease has expired. Jobs with an expired lease and no attempt left are set aside:
+    whatever stopped their workers would stop the next one too.
     """
     while True:
         foremost = connection.execute(_CLAIMABLE.with_for_update(skip_locked=True)).first()
@@ -162,7 +162,7 @@ def _set_aside(connection: Connection, job: Job) -> None:
 
 
 def put_files(connection: Connection, job: int, files: Sequence[Artefact]) -> None:
-    """Write files of a job, each in place of one of its name."""
+    """Write files of a job, replacing those of the same names."""
     for file in files:
         connection.execute(delete(artefacts).where(artefacts.c.job == job, artefacts.c.name == file.name))
         row = {"name": file.name, "media_type": file.media_type, "content": file.content}

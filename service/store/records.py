@@ -25,8 +25,8 @@ SHOWN = tuple(column for column in jobs.c if column.name not in ("tables", "resu
 class Limits:
     """Limits of a job on time, evaluations and memory; None is no limit.
 
-    seconds, evaluations: of its search, which then ends with what it found, as if it had been cancelled. memory: of its
-    worker, bytes; beyond it the job fails.
+    seconds, evaluations: limits of its search, which then ends with its result so far, as if cancelled. memory: limit
+    of its worker, bytes; beyond it the job fails.
     """
 
     seconds: float | None = None
@@ -55,9 +55,9 @@ NO_LIMITS = Limits()
 class Queueing(TypedDict, total=False):
     """How a job is queued.
 
-    priority: higher ones are claimed first, 0 if not given. key: of this submission; with one that was used before,
-    nothing is queued and the job of that time is returned. most_attempts: how often it is tried without going forward
-    before it is set aside, `store.MOST_ATTEMPTS` if not given.
+    priority: higher ones are claimed first, 0 if not given. key: key of this submission; a key used before queues
+    nothing and returns the earlier job. most_attempts: number of attempts without progress before it is set aside,
+    `store.MOST_ATTEMPTS` if not given.
     """
 
     priority: int
@@ -69,13 +69,13 @@ class Queueing(TypedDict, total=False):
 class Job:
     """State of a job. Times are seconds since 1970 on the clock of the database.
 
-    run: the name of its run folder, wherever it is exported. state: queued, running, done, infeasible (nothing can meet
+    run: name of its run folder, wherever it is exported. state: queued, running, done, infeasible (nothing can meet
     its rules), cancelled, or failed: set aside, not tried again unless someone resumes it. reason: why it is in this
-    state, in a sentence, or empty. attempts: since it last went forward by a record. due: it is not claimed before.
-    worker, lease_until: of a running one. records: how many it can go on from. events: how many there are.
-    progress: fields of the latest `Progress`, or None; `front` with them where the search gave one, see `Claim.report`.
-    summary: what it found, see `serialisation.summary_of`, or None. origin: the number of the job that it is a changed
-    copy of, or None.
+    state, in a sentence, or empty. attempts: attempts since its last new record. due: earliest time of a claim. worker,
+    lease_until: worker and end of lease of a running job. records: number of records to continue from. events: number
+    of events. progress: fields of the latest `Progress`, or None; `front` included if the search gave one, see
+    `Claim.report`. summary: summary of its result, see `serialisation.summary_of`, or None. origin: number of the job
+    from which it was copied and changed, or None.
     """
 
     id: int
@@ -104,7 +104,7 @@ class Job:
 
     @classmethod
     def from_row(cls, row: Found[*tuple[Any, ...]], *, left_out: Sequence[str] = ()) -> Job:
-        """Return a job from a row of the columns `SHOWN`, and perhaps more, which are left out."""
+        """Return a job from a row with the columns `SHOWN`; other columns are ignored."""
         from pydantic_core import from_json  # in a quarter of the time of json's
 
         values = dict(row._mapping)
@@ -128,7 +128,7 @@ class Job:
     def front_points(self) -> dict[str, Any]:
         """Return columns of at most two objectives, and points of at most 64 designs of its front.
 
-        None of either where no front is known.
+        Both are empty if no front is known.
         """
         if self.summary is not None and self.summary["points"]:
             return {"columns": self.summary["axes"], "points": self.summary["points"]}
@@ -138,7 +138,7 @@ class Job:
 
 @dataclass(frozen=True, kw_only=True)
 class Event:
-    """Something that happened to a job. kind: "state", "progress" or "message"; data: what, as JSON has it."""
+    """Something that happened to a job. kind: "state", "progress" or "message"; data: its content as JSON."""
 
     job: int
     number: int
@@ -158,7 +158,7 @@ class Event:
 
 @dataclass(frozen=True, kw_only=True)
 class News:
-    """News of a job. last: the number of its last event, which may come after `events`, as some of them may."""
+    """News of a job. last: number of its last event, which may come after `events` if these are cut."""
 
     state: State
     last: int
@@ -166,7 +166,7 @@ class News:
 
     @property
     def is_over(self) -> bool:
-        """Whether the job has ended and these events are all of the rest."""
+        """Whether the job has ended and these are all its remaining events."""
         return self.state in ENDED and (not self.events or self.events[-1].number == self.last)
 
 
@@ -187,7 +187,7 @@ SILENT = 120.0
 class Worker:
     """A worker that solves jobs.
 
-    started, seen: when it began, and when it was heard of last. silent: seconds between then and now. busy: whether it
+    started, seen: times when it began, and when it was last heard from. silent: time since `seen`, s. busy: whether it
     has a job.
     """
 
@@ -199,5 +199,5 @@ class Worker:
 
     @property
     def at_work(self) -> bool:
-        """Whether it was heard of lately."""
+        """Whether it was heard from recently."""
         return self.silent <= SILENT

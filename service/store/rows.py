@@ -1,4 +1,4 @@
-"""Jobs in a transaction: reading their rows and news, changing their state, adding to their events."""
+"""Jobs within a transaction: reading rows and news, changing states, adding events."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _TOGETHER = 100  # jobs of one query: databases refuse very long ones
 
 
 def the_job(connection: Connection, number: int, *, lock: bool = False) -> Job:
-    """Return a job, locked for the transaction if asked. Raises `NotFound` if it is not there."""
+    """Return a job, locked for the transaction on request. Raises `NotFound` if it does not exist."""
     query = select(*SHOWN).where(jobs.c.id == number)
     row = connection.execute(query.with_for_update() if lock else query).first() if 0 < number < 2**63 else None
     if row is None:
@@ -32,7 +32,7 @@ def the_job(connection: Connection, number: int, *, lock: bool = False) -> Job:
 
 
 def become(connection: Connection, job: Job, state: State, reason: str, **changes: Any) -> Job:
-    """Bring a job into a state, tell it, and return the job."""
+    """Change the state of a job, add the event, and return the job."""
     values = {"state": state, "reason": reason, "events": job.events + 1, **changes}
     connection.execute(update(jobs).where(jobs.c.id == job.id).values(values))
     add_events(connection, job.id, job.events + 1, [state_event(state, reason)])
@@ -40,7 +40,7 @@ def become(connection: Connection, job: Job, state: State, reason: str, **change
 
 
 def require_resumable(job: Job) -> None:
-    """Raise `InputError` for a job that cannot go on."""
+    """Raise `InputError` for a job that cannot continue."""
     if job.state not in RESUMABLE:
         raise InputError(f"only a cancelled or failed job can go on; job {job.id} is {job.state}; submit it anew")
 
@@ -48,7 +48,7 @@ def require_resumable(job: Job) -> None:
 def the_record(connection: Connection, job: Job) -> tuple[dict[str, Any], str]:
     """Return the record of a job's result, and the checksum of its designs, empty if there is none.
 
-    Raises `RunError` if it has no result, or a damaged one.
+    Raises `RunError` if the result is missing or damaged.
     """
     query = select(jobs.c.tables, jobs.c.result, jobs.c.summary, jobs.c.checksum).where(jobs.c.id == job.id)
     tables, text, summary, sums = connection.execute(query).one()
@@ -65,7 +65,7 @@ def the_record(connection: Connection, job: Job) -> tuple[dict[str, Any], str]:
 
 
 def require_sum(expected: str, *parts: str | bytes | None) -> None:
-    """Raise ValueError for parts of a result that have not the checksum they should; an empty one is not known."""
+    """Raise ValueError if parts of a result do not match their checksum; an empty checksum is unknown."""
     if expected and checksum(*parts) != expected:
         raise ValueError("it differs from its checksum, so that its numbers may be wrong")
 
@@ -77,24 +77,24 @@ def records_of(connection: Connection, number: int) -> list[Record]:
 
 
 def damaged(number: int, error: Exception) -> RunError:
-    """Return the error of a result that cannot be read."""
+    """Return the error for an unreadable result."""
     return RunError(f"the result of job {number} is damaged: {type(error).__name__}: {error}; submit the job again")
 
 
 def add_events(connection: Connection, job: int, last: int, new_events: Sequence[Told]) -> None:
-    """Add events, of which the last has the number `last`, to a job whose row was updated in this transaction."""
+    """Add events, the last with the number `last`, to a job whose row was updated in this transaction."""
     for number, (kind, data) in enumerate(new_events, last - len(new_events) + 1):
         row = {"job": job, "number": number, "at": now(), "kind": kind, "data": text_of(data)}
         connection.execute(insert(events).values(row))
 
 
 def state_event(state: str, reason: str = "") -> Told:
-    """Return the event of a job that comes into a state."""
+    """Return the event for a new state of a job."""
     return "state", {"state": state, "reason": reason}
 
 
 def news_of(connection: Connection, after: Mapping[int, int], limit: int) -> dict[int, News]:
-    """Return the news of jobs since an event of each; jobs that are gone are left out. See `Store.news`."""
+    """Return the news of jobs since an event of each; deleted jobs are omitted. See `Store.news`."""
     numbers = list(after)
     news: dict[int, News] = {}
     for start in range(0, len(numbers), _TOGETHER):

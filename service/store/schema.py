@@ -1,13 +1,13 @@
 """The tables of the store. Times are seconds since 1970 on the clock of the database; tables of a job are JSON text.
 
-    jobs          one row a job: what is asked, where it stands, who has it until when
+    jobs          one row per job: its content, its state, its worker and lease
     events        what happened to a job, numbered 1, 2, 3, ... without gaps: states, progress, messages
-    records       what the search of a job has found out, step by step: it resumes from these
-    designs       the front of a finished job, one row a design, as it is shown
-    exact         the same designs in SI with their slopes, one file a front; fronts of early stores have none
+    records       steps of the search of a job, from which it resumes
+    designs       the front of a finished job, one row per design, as shown
+    exact         the same designs in SI with their slopes, one file per front; fronts of early stores have none
     artefacts     files of a job
-    kept          designs that people keep of a front, with their names, notes and reasons
-    workers       who solves jobs, and when each was heard of last
+    kept          bookmarked designs of a front, with their names, notes and reasons
+    workers       workers, and when each was last heard from
 
 Every change of a job, and every row that belongs to it, is written in a transaction that updates its row in `jobs`
 first. So the writers of one job take turns, and its events become visible in the order of their numbers.

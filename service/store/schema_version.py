@@ -1,4 +1,4 @@
-"""The version of a store's tables: upgraded when a store is opened, refused when newer than this software."""
+"""Version of a store's tables: upgraded when a store is opened, rejected if newer than this software."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ LOCK = 0x51C7  # PostgreSQL's advisory lock of whoever changes the tables
 
 
 def upgrade(database: Database) -> None:
-    """Create the tables, or bring those of an earlier release up to date, in one transaction.
+    """Create the tables, or upgrade those of an earlier release, in one transaction.
 
-    Raises `StoreError` if they are of a later release.
+    Raises `StoreError` if they come from a later release.
     """
     with database.reading() as connection:
         if _version(connection) == LATEST:
@@ -51,7 +51,7 @@ def upgrade(database: Database) -> None:
 
 
 def versions(database: Database) -> tuple[str | None, str | None, bool]:
-    """Return the version of the tables, None without any, the one of this software, and whether it knows the first."""
+    """Return the version of the tables (None without any), that of this software, and whether it knows the former."""
     with database.reading() as connection:
         version = _version(connection)
     return version, LATEST, version == LATEST or _knows(_alembic()[1], version)

@@ -25,7 +25,7 @@ _POINTS = 64
 
 
 def packed(record: Record) -> bytes:
-    """Return a record of a search as a file of NumPy's .npz form, without pickles."""
+    """Return a record of a search as a file in NumPy's .npz format, without pickles."""
     import numpy as np
 
     return _saved(
@@ -58,7 +58,7 @@ def unpacked(content: bytes) -> Record:
 
 
 def packed_exact(exact: Exact) -> bytes:
-    """Return exact designs as a file like `packed`: slopes one after the other, with the shapes of each design's."""
+    """Return exact designs as a file like `packed`: slopes in sequence, with the shapes for each design."""
     import numpy as np
 
     parts_by_design = [(*pieces, edges) for pieces, edges in zip(exact.goals, exact.active, strict=True)]
@@ -113,7 +113,7 @@ def _loaded(content: bytes) -> NpzFile:
 
 
 def checksum(*parts: str | bytes | None) -> str:
-    """Return the SHA-256 of some parts, each with its length; None is an empty one."""
+    """Return the SHA-256 of some parts, each with its length; None is an empty part."""
     digest = hashlib.sha256()
     for part in parts:
         content = part.encode() if isinstance(part, str) else bytes(part or b"")
@@ -128,7 +128,7 @@ def text_of(value: Any) -> str:
 
 
 def plain(text: str) -> str:
-    """Return a text as every database takes it: without NUL and lone surrogates, and not longer than a page."""
+    """Return a text that every database accepts: without NUL and lone surrogates, at most a page long."""
     text = text.replace("\0", "?").encode(errors="replace").decode()
     return text if len(text) <= _LONGEST else text[: _LONGEST - 4] + " ..."
 
@@ -139,11 +139,11 @@ def cells_of(row: Mapping[str, Cell]) -> str:
 
 
 def rows_of(columns: Sequence[str], texts: Sequence[str]) -> list[Row]:
-    """Return the designs that `cells_of` was given; what is not defined as NaN, as in a table read from CSV.
+    """Return the designs passed to `cells_of`; undefined values as NaN, as in a table read from CSV.
 
-    Raises ValueError for a text that is no such array. Made for fronts of 10,000 designs: read by pydantic's parser,
-    which gives the same numbers as json's in a quarter of the time, and cells are looked at one by one only where some
-    may be infinite or not defined.
+    Raises ValueError for a text that is not such an array. Made for fronts of 10,000 designs: pydantic's parser gives
+    the same numbers as json's in a quarter of the time. Cells are checked one by one only if some may be infinite or
+    undefined.
     """
     from pydantic_core import from_json
 
@@ -179,7 +179,7 @@ def summary_of(result: Result) -> dict[str, Any]:
 
 
 def _spread(rows: Sequence[Row]) -> list[Row]:
-    """Return at most `_POINTS` rows, evenly spread, with the first and the last."""
+    """Return at most `_POINTS` evenly spread rows, including the first and the last."""
     count = min(len(rows), _POINTS)
     return [rows[i * (len(rows) - 1) // max(count - 1, 1)] for i in range(count)]
 

@@ -1,4 +1,4 @@
-"""The store: jobs, what happens to them and what they found, in one database that many processes share."""
+"""The store: jobs, their events and their results, in one database that many processes share."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ LEASE = 30.0
 class Store(Workers):
     """An open store. Threads may share it; processes open their own. Also a context manager, which closes it.
 
-    Every method raises `StoreError` when the database refuses or cannot be reached, and `NotFound` for a job that is
-    not there. What a method has written when it returns outlives a crash of the machine.
+    Every method raises `StoreError` if the database refuses or cannot be reached, and `NotFound` for a missing job.
+    Whatever a method has written when it returns survives a crash of the machine.
     """
 
     def __init__(self, address: str | PathLike[str], *, most_queued: int = MOST_QUEUED) -> None:
         """Open the store at an address: the path of a file, sqlite:///file, or postgresql://user@host/database.
 
-        The tables are created, or brought up to date. most_queued: how many jobs may wait.
+        The tables are created or upgraded. most_queued: maximum number of waiting jobs.
         """
         super().__init__(address)
         self.most_queued = most_queued
@@ -54,7 +54,7 @@ class Store(Workers):
             raise
 
     def require_writable(self) -> None:
-        """Raise `StoreError` where jobs cannot be put in."""
+        """Raise `StoreError` if jobs cannot be added."""
         with self.writing() as connection:
             queue.take_turns(connection)
 
@@ -70,10 +70,10 @@ class Store(Workers):
     ) -> Job:
         """Queue a job and return it. The job itself is not read; `submission.submit` checks it first.
 
-        tables: of its job file. files: what belongs to it, such as the job file as it was given. origin: the number of
-        the job that it is a changed copy of. queueing: see there.
+        tables: tables of its job file. files: files that belong to it, such as the original job file. origin: number of
+        the job from which it was copied and changed. queueing: see `Queueing`.
 
-        Raises `QueueFull`, and `InputError` if the key was used for another job.
+        Raises `QueueFull`, and `InputError` if the key belongs to another job.
         """
         queueing_values: Queueing = {"priority": 0, "key": None, "most_attempts": MOST_ATTEMPTS, **queueing}
         queue.require_bounds(**queueing_values)
@@ -89,14 +89,14 @@ class Store(Workers):
     def begin(
         self, tables: Mapping[str, Any], *, name: str, run: str, worker: str, lease: float, files: Sequence[Artefact]
     ) -> Claim:
-        """Put in a job that its submitter solves itself, in `run`, and return its claim. It is never tried again."""
+        """Add a job that its submitter solves itself, in `run`, and return its claim. It is never retried."""
         with self.writing() as connection:
             queue.take_turns(connection)
             number = queue.add_job(connection, tables, files, NO_LIMITS, name=name, run=run, most_attempts=1)
             return self._claim(connection, the_job(connection, number), worker, lease, f"begun by {worker}")
 
     def go_on(self, number: int, *, worker: str, lease: float, alone: bool = False) -> Claim:
-        """Claim a cancelled or failed job at once, to go on with it. alone: also a running one, whose worker is gone.
+        """Claim a cancelled or failed job immediately, to continue it. alone: also a running job whose worker is gone.
 
         Raises `InputError` for a job in another state.
         """
@@ -112,7 +112,7 @@ class Store(Workers):
         return Claim(self, running_job, lease)
 
     def job(self, number: int) -> Job:
-        """Return a job with its state; the reason of a waiting one says whether it lacks disk space or a worker."""
+        """Return a job with its state; a waiting job's reason says whether disk space or a worker is missing."""
         with self.reading() as connection:
             stored = the_job(connection, number)
         return self._waiting([stored])[0]
@@ -135,7 +135,7 @@ class Store(Workers):
             return records_of(connection, number)
 
     def find(self, run: str) -> Job | None:
-        """Return the job of a run folder's name, None if there is none."""
+        """Return the job with a run folder name, None if there is none."""
         with self.reading() as connection:
             row = connection.execute(select(*SHOWN).where(jobs.c.run == run)).first()
         return None if row is None else Job.from_row(row)
@@ -149,10 +149,10 @@ class Store(Workers):
         numbers: Collection[int] = (),
         limit: int = 100,
     ) -> list[Job]:
-        """Return jobs, latest first. states: of these; all if empty. name: contains this, in any case of letters.
+        """Return jobs, latest first. states: states to include, all if empty. name: part of the name, case ignored.
 
-        before: older than the job of this number, to turn pages. numbers: of these; all if empty. limit: at most so
-        many.
+        before: number of a job; only older jobs, for paging. numbers: numbers to include, all if empty. limit: maximum
+        number of jobs.
         """
         query = select(*SHOWN).order_by(jobs.c.id.desc()).limit(limit)
         if numbers:
@@ -168,7 +168,7 @@ class Store(Workers):
         return self._waiting(listed)
 
     def counts(self) -> dict[str, int]:
-        """Return how many jobs are in each state that any is in."""
+        """Return the number of jobs in each state that occurs."""
         with self.reading() as connection:
             rows = connection.execute(select(jobs.c.state, func.count()).group_by(jobs.c.state)).all()
         return {row.state: int(row[1]) for row in rows}
@@ -188,19 +188,19 @@ class Store(Workers):
         return tables
 
     def events(self, number: int, *, after: int = 0, limit: int = 1000) -> list[Event]:
-        """Return the events of a job after the one of a number, in order, at most `limit` of them."""
+        """Return at most `limit` events of a job after a given number, in order."""
         query = select(events).where(and_(events.c.job == number, events.c.number > after))
         with self.reading() as connection:
             the_job(connection, number)
             return [Event.from_row(row) for row in connection.execute(query.order_by(events.c.number).limit(limit))]
 
     def news(self, after: Mapping[int, int], *, limit: int = 1000) -> dict[int, News]:
-        """Return the news of jobs after a given event of each, at most `limit` events a job."""
+        """Return the news of jobs after a given event of each, at most `limit` events per job."""
         with self.reading() as connection:
             return news_of(connection, after, limit)
 
     def record(self, number: int) -> dict[str, Any]:
-        """Return the result of a job as `Result.record` does, with "count" and "columns" in place of the designs.
+        """Return the result of a job as in `Result.record`, with "count" and "columns" in place of the designs.
 
         Raises `RunError` if it has no result (yet), or a damaged one.
         """
@@ -209,7 +209,7 @@ class Store(Workers):
             record, _ = the_record(connection, job)
             if job.summary is not None:
                 return {**record, "count": job.summary["designs"]}
-            # Only results of the first stores have none.
+            # Only results in the first stores have none.
             count = select(func.count()).select_from(designs).where(designs.c.job == number)
             return {**record, "count": connection.execute(count).scalar_one()}
 
@@ -244,9 +244,9 @@ class Store(Workers):
         return Artefact(name=name, media_type=row.media_type, content=bytes(row.content))
 
     def cancel(self, number: int) -> Job:
-        """Cancel and return a job: at once if no worker is at it, else when its worker hears of it.
+        """Cancel and return a job: immediately if no worker has it, else when its worker notices.
 
-        A cancelled job keeps what it found, and can go on. One that has ended stays as it is.
+        A cancelled job keeps its result so far, and can continue. A job that has ended stays unchanged.
         """
         with self.writing() as connection:
             job = the_job(connection, number, lock=True)
@@ -261,7 +261,7 @@ class Store(Workers):
             return the_job(connection, number)
 
     def resume(self, number: int) -> Job:
-        """Queue a cancelled or failed job again, to go on from the records that it has, and return it.
+        """Queue a cancelled or failed job again, to continue from its records, and return it.
 
         Raises `InputError` for a job in another state.
         """
@@ -273,7 +273,7 @@ class Store(Workers):
         return self.job(number)
 
     def delete(self, number: int) -> None:
-        """Delete a job that has ended and everything of it. Raises `InputError` for a job that has not."""
+        """Delete an ended job and all its data. Raises `InputError` for a job that has not ended."""
         with self.writing() as connection:
             job = the_job(connection, number, lock=True)
             if job.state not in ENDED:
@@ -285,8 +285,8 @@ class Store(Workers):
     def claim(self, worker: str, *, lease: float = LEASE, most_running: int | None = None) -> Claim | None:
         """Give the foremost waiting job to a worker for `lease` s; None if there is none now. See `queue.claim_next`.
 
-        most_running: how many jobs may be in the hands of workers at a time; None is as many as there are workers.
-        Raises `Full` if one waits and the disk has no room: its claim may fit into the files, its records do not.
+        most_running: maximum number of jobs held by workers at a time; None for no limit. Raises `Full` if one waits
+        and the disk is full: its claim may fit into the files, its records do not.
         """
         if not 0.0 < lease <= 3600.0:
             raise InputError(f"a lease lasts more than 0 s and at most an hour; got {lease} s")

@@ -1,4 +1,4 @@
-"""Wishes that people made on the front of a job: the latest of them, each once."""
+"""Wishes that people made on the front of a job: the latest ones, each once."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Wished = Mapping[str, tuple[str, float | None]]
 
 @dataclass(frozen=True, kw_only=True)
 class MadeWish:
-    """A wish that somebody made. number: among those of its job. design: that classes speak of. at: s since 1970."""
+    """A recorded wish. number: number within its job. design: design that classes refer to. at: s since 1970."""
 
     number: int
     wishes: Wished
@@ -30,7 +30,7 @@ class MadeWish:
 
 
 def wishes_of(store: Database, job: int) -> list[MadeWish]:
-    """Return the wishes that were made of a job, the latest first. Raises `NotFound` without the job."""
+    """Return the wishes made on a job, the latest first. Raises `NotFound` without the job."""
     with store.reading() as connection:
         the_job(connection, job)
         rows = connection.execute(select(wishes).where(wishes.c.job == job).order_by(wishes.c.number.desc()))
@@ -46,7 +46,7 @@ def wishes_of(store: Database, job: int) -> list[MadeWish]:
 
 
 def note_wish(store: Database, job: int, stated: Wished, design: int | None) -> None:
-    """Note a wish on the front of a job as the latest, in place of the same one before."""
+    """Record a wish on the front of a job as the latest, replacing an identical earlier one."""
     text = json.dumps({name: list(wish) for name, wish in sorted(stated.items())})
     with store.writing() as connection:
         the_job(connection, job, lock=True)

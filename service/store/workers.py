@@ -17,7 +17,7 @@ class Workers(Database):
     """A database with its table of workers."""
 
     def greet(self, worker: str) -> None:
-        """Note that a worker is there; forget those that have been silent for days."""
+        """Record a worker as present; delete those that have been silent for days."""
         with self.writing() as connection:
             sign_of_life = update(workers).where(workers.c.id == worker).values(seen=now())
             if not connection.execute(sign_of_life).rowcount:
@@ -25,12 +25,12 @@ class Workers(Database):
                 connection.execute(insert(workers).values(id=worker, started=now(), seen=now()))
 
     def part(self, worker: str) -> None:
-        """Note that a worker has left."""
+        """Record the departure of a worker."""
         with self.writing() as connection:
             connection.execute(delete(workers).where(workers.c.id == worker))
 
     def has_waiting(self) -> bool:
-        """Whether a job waits for a worker, even one that is not due or may not be claimed yet."""
+        """Whether a job waits for a worker, even if it is not due or cannot be claimed yet."""
         query = select(jobs.c.id).where(or_(jobs.c.state == "queued", LEFT)).limit(1)
         with self.reading() as connection:
             return connection.execute(query).first() is not None
@@ -40,9 +40,9 @@ class Workers(Database):
         return sum(worker.at_work for worker in self.workers())
 
     def workers(self) -> list[Worker]:
-        """Return all workers that came and have not left, the one heard of last first.
+        """Return all workers that have not left, the most recently heard from first.
 
-        One that was heard of in the future, by a clock set back since, counts as silent for as long.
+        A worker heard from in the future, because the clock was set back since, counts as silent for as long.
         """
         silent = func.abs(now() - workers.c.seen).label("silent")
         has_job = exists().where(jobs.c.worker == workers.c.id, jobs.c.state == "running", not_(ENDED_LEASE))

@@ -1,4 +1,4 @@
-"""Engine of heavy evaluation: options of the command line, and the engine that they ask for."""
+"""Engine for expensive evaluations: command-line options, and the engine that they select."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class EngineOptions:
-    """Engine for heavy evaluation. cores: processes here, None for one a processor. scheduler: of a Dask cluster."""
+    """Engine for expensive evaluations. cores: local processes, None for one per processor. scheduler: Dask address."""
 
     cores: Annotated[
         int | None,
@@ -37,7 +37,7 @@ class EngineOptions:
     tls_key: Annotated[File, "Key of that certificate, for tls://."] = None
 
     def checked(self) -> EngineOptions:
-        """Return the options. Raises `InputError` for those that do not go together."""
+        """Return the options. Raises `InputError` for options that exclude each other."""
         files = (self.tls_ca, self.tls_cert, self.tls_key)
         if self.scheduler is None and any(files):
             raise InputError(
@@ -58,13 +58,13 @@ class EngineOptions:
         return self
 
     def shared_by(self, workers: int) -> EngineOptions:
-        """Return the options of each of several workers on this machine: they share the processors."""
+        """Return the options for each of several workers on this machine: they share the processors."""
         return replace(self, cores=self.cores or max(1, (os.cpu_count() or 1) // workers))
 
 
 @contextlib.contextmanager
 def engine_of(options: EngineOptions) -> Iterator[Engine]:
-    """Enter the engine that is asked for; it ends with the block. Nothing is started before it is needed."""
+    """Enter the selected engine; it ends with the block. Nothing is started before it is needed."""
     engine = _make_engine(options)
     try:
         yield engine

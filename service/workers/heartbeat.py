@@ -1,4 +1,4 @@
-"""Heartbeat of a claimed job: a thread that keeps the lease and notices what the search cannot; and its budget."""
+"""Heartbeat and budget of a claimed job: a thread keeps the lease and notices what the search cannot."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ Stop = Callable[[], bool]
 
 @dataclass
 class Budget:
-    """Time and evaluations that a search may still use; it begins now. A search ends at the next look after either.
+    """Time and evaluations left to a search, from now on. A search ends at the next check after either is used up.
 
-    limits: the one of memory is not looked at here. waited: time, s, that the search has waited for room on a disk.
+    limits: the memory limit is ignored here. waited: time that the search has waited for disk space, s.
     """
 
     limits: Limits
@@ -44,20 +44,20 @@ class Budget:
     _evaluations: int = field(default=0, init=False)
 
     def count(self, evaluations: int) -> None:
-        """Take note of how many designs have been evaluated so far."""
+        """Record the number of designs evaluated so far."""
         self._evaluations = evaluations
 
     def spent(self) -> bool:
-        """Whether the search is to end with what it has."""
+        """Whether the search must end with its result so far."""
         return bool(self.reason())
 
     def explained(self, result: Result) -> Result:
-        """Return a result with the limit that ended its search in its message, if one did."""
+        """Return a result whose message names the limit that ended its search, if any."""
         reason = self.reason() if result.status == "cancelled" else ""
         return replace(result, message=f"{result.message}; {reason}") if reason else result
 
     def reason(self) -> str:
-        """Return which limit is reached, in words; nothing if none is."""
+        """Return the reached limit in words; empty if there is none."""
         seconds, evaluations = self.limits.seconds, self.limits.evaluations
         if seconds is not None and time.monotonic() - self._began - self.waited() >= seconds:
             return f"its search reached its time limit of {seconds:g} s"
@@ -70,16 +70,14 @@ class Budget:
 class Heartbeat:
     """While entered, a thread that keeps the lease of a claim and learns whether its job is to be cancelled.
 
-    budget: of the job. Beyond its memory, as `memory` measures it, the job is set aside as failed and the process ends
-    with the exit code `EXHAUSTED`: nothing else gives the memory back for sure. Where the search does not end within a
-    minute of being over the rest, or of a cancellation, the job ends without it and the process with the exit code
-    `DEAF`; only where there is a grace, too.
-    grace: for how long, in s, a search may go on once `stop` says so. The job is then handed back and the process
-    ends with 0. For as long as it takes, if None.
-    patience: how long, in s, a cancelled job waits for a search that has not begun; it then ends without it. So
-    does one whose worker is to stop: nothing is lost. While a search loads or compiles what it computes with, it
-    hears of nothing. For as long as it takes, if None.
-    lost: why the job is not this worker's any more, in words; empty as long as it is.
+    budget: budget of the job. Beyond its memory, as `memory` measures it, the job is set aside as failed and the
+    process ends with exit code `EXHAUSTED`: nothing else frees the memory reliably. If the search does not end within a
+    minute after another limit or a cancellation, the job ends without it and the process with exit code `DEAF`; only if
+    there is a grace, too. grace: time that a search may continue after `stop` is true, s; unlimited if None. The job is
+    then handed back and the process ends with 0. patience: time that a cancelled job waits for a search that has not
+    begun, s; unlimited if None. It then ends without the search. So does a job whose worker must stop: nothing is lost.
+    While a search loads or compiles its functions, it notices nothing. lost: reason why this worker no longer has the
+    job; empty while it has.
     """
 
     claim: Claim
@@ -126,7 +124,7 @@ class Heartbeat:
                 pass  # the writes of the search find out whether it stays so
 
     def _waited(self, condition: str) -> float:
-        """Return for how long, in s, something has been so: since this was first asked."""
+        """Return the time that a condition has held, s, since the first call."""
         now = time.monotonic()
         return now - self._since.setdefault(condition, now)
 
@@ -182,7 +180,7 @@ class Heartbeat:
 
 
 def leave(code: int) -> NoReturn:
-    """End this process at once, whatever its other threads do, and before it its children with their groups."""
+    """End the children with their groups, then this process, immediately, whatever its other threads do."""
     end_children()
     os._exit(code)
 

@@ -17,10 +17,10 @@ _SUBJECT: ContextVar[tuple[str | None, int | None]] = ContextVar("subject", defa
 
 
 def set_up_logs(form: Format = "text", *, stream: TextIO | None = None) -> None:
-    """Log everything of this process from INFO on to a stream, one line a record; standard error if None.
+    """Log everything in this process from INFO up to a stream, one line per record; standard error if None.
 
-    json: one object a line with time (UTC, ISO 8601), level, logger, message, and where there is one worker, job and
-    exc_info.
+    json: one object per line with time (UTC, ISO 8601), level, logger, message, and worker, job and exc_info if
+    present.
     """
     handler = logging.StreamHandler(stream or sys.stderr)
     handler.addFilter(_with_subject)
@@ -56,7 +56,7 @@ class _Text(logging.Formatter):
         super().__init__("%(asctime)s %(levelname)-7s %(subject)s%(message)s")
 
     def formatTime(self, record: logging.LogRecord, datefmt: str | None = None) -> str:
-        """Return when it was logged."""
+        """Return the time of logging."""
         return datetime.fromtimestamp(record.created, UTC).isoformat(timespec="milliseconds")
 
     def format(self, record: logging.LogRecord) -> str:
@@ -68,7 +68,7 @@ class _Text(logging.Formatter):
         return super().format(record)
 
     def formatMessage(self, record: logging.LogRecord) -> str:
-        """Return a record without its traceback, on one line: what a job says cannot pass for another record."""
+        """Return a record without its traceback, on one line: text from a job cannot pass for another record."""
         return super().formatMessage(record).replace("\r", "\\r").replace("\n", "\\n")
 
 
@@ -77,7 +77,7 @@ def _json() -> logging.Formatter:
         from pythonjsonlogger.json import JsonFormatter
 
     class Json(JsonFormatter):
-        """Leaves out the subject of a record that has none."""
+        """JSON lines without the subject if a record has none."""
 
         def process_log_record(self, log_data: dict[str, object]) -> dict[str, object]:
             return {key: value for key, value in log_data.items() if value is not None}

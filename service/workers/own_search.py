@@ -1,4 +1,4 @@
-"""A search by the process at hand: its job is claimed in the store, and its run folder written meanwhile."""
+"""A search in this process: its job is claimed in the store, and its run folder written meanwhile."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Opened = tuple[RunFolder, "Problem", "Claim"]
 def with_settings(
     problem: Problem, tables: Mapping[str, Any], changes: Mapping[str, Any]
 ) -> tuple[Problem, dict[str, Any]]:
-    """Return a problem and the tables that state it with other settings: designs, seed."""
+    """Return a problem and its tables with other settings: designs, seed."""
     settings = replace(problem.settings, **changes)
     stated = {"designs": settings.designs, "seed": settings.seed}
     return replace(problem, settings=settings), {**tables, "optimiser": {**tables.get("optimiser", {}), **stated}}
@@ -39,7 +39,7 @@ def with_settings(
 def new_run(
     store: Store, place: Path, problem: Problem, tables: Mapping[str, Any], files: Sequence[Artefact]
 ) -> Iterator[Opened]:
-    """Enter the run of a new job. files: the job and what it names, as the run folder keeps them."""
+    """Enter the run of a new job. files: the job and the files that it names, for the run folder."""
     with RunFolder(place, problem.name) as folder:
         yield folder, problem, begin(store, folder, tables, problem.name, files)
 
@@ -48,7 +48,7 @@ def new_run(
 def resumed_run(
     store: Store, place: Path, text: str, read: Callable[[Mapping[str, Any], Path], Problem]
 ) -> Iterator[Opened]:
-    """Enter a run that was stopped. text: its name or number. read: gives the problem of a job and its run folder."""
+    """Enter a stopped run. text: its name or number. read: function that gives a job's problem and its run folder."""
     from ...optimise.solve import require_records
 
     job = stopped_job(store, text, place)
@@ -71,7 +71,7 @@ def kept_alive(claim: Claim, *, again: str) -> Iterator[None]:
 def search(
     opened: Opened, engine: Engine, *, cancelled: Callable[[], bool], show: Callable[[Progress], None]
 ) -> ParetoFront:
-    """Return the front of an open run. show: hears of the progress, which store and log hear of too."""
+    """Return the front of an open run. show: listener to the progress, which store and log receive too."""
     from ...optimise.solve import solve
 
     run, problem, claim = opened
@@ -99,7 +99,7 @@ def search(
 
 
 def keep_front(opened: Opened, front: ParetoFront, budget: Budget | None = None) -> Result:
-    """Write the result of a search into its run folder and the store, and return it. budget: that may have ended it."""
+    """Write the result of a search to its run folder and the store, and return it. budget: budget of the search."""
     run, _, claim = opened
     result = result_of(front, path_text(run.path))
     result = result if budget is None else budget.explained(result)

@@ -1,4 +1,4 @@
-"""Keeps worker processes running: starts them, starts them again when they end, and stops them together."""
+"""Supervision of worker processes: starts them, restarts them when they end, and stops them together."""
 
 from __future__ import annotations
 
@@ -45,13 +45,13 @@ class _Place:
 class Supervisor:
     """While entered, keeps a number of worker processes running, watched by a thread.
 
-    A worker that ends is replaced: at once, if it had run for a minute or ended because of its jobs, else after half
-    a second, doubled each time up to 30 s. On leaving, all are asked to stop, which they do within their grace; those
-    that do not are killed. A worker whose supervisor is gone, however that ended, stops in the same way.
+    A worker that ends is replaced: immediately, if it had run for a minute or ended because of its jobs, else after
+    half a second, doubled each time up to 30 s. On leaving, all are asked to stop; those that do not within their grace
+    are killed. A worker whose supervisor is gone, however that ended, stops in the same way.
     """
 
     def __init__(self, settings: WorkerSettings, processes: int, *, program: Sequence[str] = WORKER) -> None:
-        """Prepare; nothing is started yet. program: of a worker; it reads the settings from standard input."""
+        """Prepare; nothing is started yet. program: worker program; it reads the settings from standard input."""
         self.settings = settings
         self._program = program
         self._places = [_Place(number) for number in range(1, processes + 1)]
@@ -71,7 +71,7 @@ class Supervisor:
         self._leaving.set()
 
     def processes(self) -> list[int]:
-        """Return the process numbers of the workers that run now."""
+        """Return the process numbers of the running workers."""
         running = [place.process for place in self._places]
         return [process.pid for process in running if process is not None and process.poll() is None]
 
@@ -145,7 +145,7 @@ class Supervisor:
 
 
 def _release(process: subprocess.Popen[bytes]) -> None:
-    """Close the standard input of a worker, by which it knows that it is to stop."""
+    """Close the standard input of a worker, which tells it to stop."""
     if process.stdin is not None:
         with contextlib.suppress(OSError):  # what could not be written to one that has ended
             process.stdin.close()

@@ -1,4 +1,4 @@
-"""A worker: claims jobs of a store, solves them, and writes what it finds."""
+"""A worker: claims jobs in a store, solves them, and writes the results."""
 
 from __future__ import annotations
 
@@ -45,9 +45,9 @@ _DELAY = 2.0  # s before another attempt after the first error; doubled with eve
 class Terms:
     """Limits and permissions that a worker gives to its jobs.
 
-    limits: hold for every job, besides its own. Beyond the one of memory the process ends, and beyond `grace`, the time
-    in s that a round has to end once the worker is to stop, too; see `Heartbeat`. allowed_quantities: functions,
-    "module:function", that jobs may name as quantities. engine: where heavy work is done.
+    limits: limits for every job, besides its own. Beyond the memory limit the process ends. It also ends beyond
+    `grace`, the time that a round has left once the worker must stop, s; see `Heartbeat`. allowed_quantities:
+    functions, "module:function", that jobs may name as quantities. engine: engine for expensive work.
     """
 
     limits: Limits = NO_LIMITS
@@ -60,15 +60,15 @@ DEFAULT = Terms()
 
 
 class Stopped(Exception):
-    """The worker is to stop, so its job goes back."""
+    """The worker must stop, so its job goes back to the queue."""
 
 
 class Stale(Exception):
-    """Earlier jobs have left so much memory that a fresh process is to take the next one."""
+    """Earlier jobs occupy so much memory that a fresh process must take the next one."""
 
 
 def worker_name() -> str:
-    """Return a name for a worker that no other one has: machine, process, and some letters."""
+    """Return a unique name for a worker: machine, process, and some letters."""
     return f"{socket.gethostname()}-{os.getpid()}-{secrets.token_hex(3)}"
 
 
@@ -82,14 +82,15 @@ def work(
     most_running: int | None = None,
     terms: Terms = DEFAULT,
 ) -> int:
-    """Solve jobs of a store one after the other, and return how many were taken on.
+    """Solve jobs in a store one after the other, and return the number of claimed ones.
 
-    lease: for how long, in s, a job stays this worker's without a word of it; a third of it is how often it renews one.
-    stop: asked between rounds and while nothing waits; when it says so, the job under way goes back into the queue and
-    the work ends. drain: end as soon as no job waits. most_running: claim nothing while so many jobs are in work.
+    lease: time that a job stays with this worker without a sign of life, s; renewed after every third of it. stop:
+    function called between rounds and while nothing waits; once true, the current job goes back into the queue and the
+    work ends. drain: end as soon as no job waits. most_running: number of running jobs at which nothing more is
+    claimed.
 
-    While the database cannot be reached, it is tried again every second; to drain it raises `StoreError`, unless the
-    disk is full. Raises `Stale`, only where there is a grace.
+    An unreachable database is retried every second; with `drain`, raises `StoreError`, unless the disk is full. Raises
+    `Stale`, only if there is a grace.
     """
     memory = Memory()
     name = name or worker_name()
@@ -131,7 +132,7 @@ def work(
 
 
 def _leaves_room(claim: Claim, memory: Memory, terms: Terms) -> bool:
-    """Whether a job is handed back, for a fresh process: earlier jobs have left too much memory in this one."""
+    """Whether a job is handed back, for a fresh process: earlier jobs occupy too much memory in this one."""
     allowed = claim.job.limits.stricter(terms.limits).memory
     if terms.grace is None or allowed is None or memory.left_behind <= TOLERATED * allowed:
         return False
@@ -150,8 +151,8 @@ def solve_claimed(
 ) -> None:
     """Solve a claimed job and end it; or give it back, with the reason, when that does not succeed.
 
-    What the job evaluated under earlier claims is not evaluated again. When the lease is lost, or the database out of
-    reach for as long as it lasts, nothing is written: whoever claims the job next goes on from what is there.
+    Designs evaluated under earlier claims are not evaluated again. If the lease is lost, or the database unreachable
+    until it ends, nothing is written: the next worker continues from the stored records.
     """
     budget = Budget(claim.job.limits.stricter(terms.limits), waited=lambda: claim.waited)
     claim.patient = lambda _: not (claim.cancel_asked or stop())
@@ -252,8 +253,8 @@ def _solve(
 def front_so_far(problem: Problem, values: Array) -> dict[str, Any]:
     """Return at most `MOST` designs of a front, evenly spread along its first objective, as JSON has them.
 
-    values: objectives (n, m), SI, as they are minimised. columns: those of the objectives in tables of designs; points:
-    in their units, of an objective with a target the distance from that.
+    values: objectives (n, m), SI, as they are minimised. columns: columns of the objectives in tables of designs.
+    points: values in their units; for an objective with a target, the distance from it.
     """
     import numpy as np
 
@@ -268,7 +269,7 @@ def front_so_far(problem: Problem, values: Array) -> dict[str, Any]:
 
 
 def _load(claim: Claim, parts: int) -> None:
-    """Report how much of a search is loaded, with the numbers and the front that the job had before."""
+    """Report how much of a search is loaded, with the earlier numbers and front of the job."""
     from ...optimise.front.progress import LOADING, Progress
 
     earlier = {name: value for name, value in (claim.job.progress or {}).items() if value is not None}
@@ -278,12 +279,12 @@ def _load(claim: Claim, parts: int) -> None:
 
 
 def versions_file(versions: Mapping[str, str]) -> Artefact:
-    """Return the file of what computed a result."""
+    """Return the file with the versions that computed a result."""
     return Artefact(name="versions.json", media_type="application/json", content=json_text(versions).encode())
 
 
 def _ends(claim: Claim, heartbeat: Heartbeat, stop: Stop) -> bool:
-    """Whether the search is to end with what it has; raises what ends it without."""
+    """Whether the search must end with its result so far; raises the error that ends it without one."""
     if heartbeat.lost:
         raise LeaseLost(f"job {claim.job.id}: {heartbeat.lost}")
     if not claim.cancel_asked and stop():

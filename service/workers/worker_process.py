@@ -1,7 +1,7 @@
 """A worker in a process of its own: `python -m slidercrank.service.workers.worker_process`, started by a supervisor.
 
-It reads its settings from standard input, one line of JSON, so that no password stands in the list of processes. It
-stops in an orderly way on SIGTERM, or when standard input ends: then its supervisor has asked for it, or is gone.
+It reads its settings from standard input, one line of JSON, so that no password appears in the process list. It stops
+cleanly on SIGTERM, or when standard input ends: its supervisor has asked for it or is gone.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _log = logging.getLogger(__name__)
 
 @dataclass(frozen=True, kw_only=True)
 class WorkerSettings:
-    """Settings of a worker process. address: of the store. Times in s; the rest as `worker.work` has it."""
+    """Settings of a worker process. address: address of the store. Times in s; the rest as in `worker.work`."""
 
     address: str
     lease: float = LEASE
@@ -94,7 +94,7 @@ def main() -> int:
 
 
 def _opened(settings: WorkerSettings, stop: threading.Event) -> Store | None:
-    """Return the store, as soon as it can be reached; None if told to stop before."""
+    """Return the store as soon as it can be reached; None if stopped before."""
     away = False
     while not stop.is_set():
         try:
@@ -110,7 +110,7 @@ def _opened(settings: WorkerSettings, stop: threading.Event) -> Store | None:
 
 
 def _line() -> bytes:
-    """Return the first line of standard input, or nothing. Unbuffered: nothing may hold a lock of it at the end."""
+    """Return the first line of standard input, or nothing. Unbuffered: nothing may hold its lock at the end."""
     line = b""
     while not line.endswith(b"\n"):
         part = os.read(0, 1)
@@ -121,9 +121,9 @@ def _line() -> bytes:
 
 
 def _wait_for_end(stop: threading.Event, grace: float | None) -> None:
-    """Stop when standard input ends, and exit once the grace time has passed: no supervisor may be left.
+    """Stop when standard input ends, and exit after the grace time: the supervisor may be gone.
 
-    That is the end of what even its heartbeat cannot stop, such as a database that does not answer.
+    This ends even what its heartbeat cannot stop, such as a database that does not answer.
     """
     while os.read(0, 64):
         pass

@@ -1,4 +1,4 @@
-"""Designs that people keep of a front; earlier stores have none."""
+"""Bookmarked designs of a front; earlier stores have none."""
 
 from __future__ import annotations
 

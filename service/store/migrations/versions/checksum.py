@@ -1,4 +1,4 @@
-"""Checksums of results; those of earlier releases have none, and are read without."""
+"""Checksums of results; those of earlier releases have none, and are read without checks."""
 
 from __future__ import annotations
 

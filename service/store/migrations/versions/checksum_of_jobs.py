@@ -1,4 +1,4 @@
-"""Checksums of results with their jobs; those without are forgotten, and such results are read without."""
+"""Checksums of results and their jobs; older checksums are dropped, and such results are read without checks."""
 
 from __future__ import annotations
 
@@ -9,5 +9,5 @@ down_revision = "0006"
 
 
 def upgrade() -> None:
-    """Forget the checksums that do not cover the job."""
+    """Drop the checksums that do not cover the job."""
     op.execute("UPDATE jobs SET checksum = NULL")

@@ -1,4 +1,4 @@
-"""Exact designs of a front; those of earlier releases have their rows only, and are read from these as before."""
+"""Exact designs of a front; fronts of earlier releases have only rows, and are read from these as before."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The first tables. Migrations stay as they were released: they do not read `schema.py`, which goes on."""
+"""The first tables. Migrations stay as they were released: they do not read `schema.py`, which changes."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def upgrade() -> None:
 
 
 def _of_a_job(name: str, second: sa.Column[object], *columns: sa.Column[object]) -> None:
-    """Create a table whose rows belong to a job, each the only one with its job and its second column."""
+    """Create a table whose rows belong to a job; job and second column are unique together."""
     op.create_table(
         name,
         sa.Column("job", _NUMBER, nullable=False),

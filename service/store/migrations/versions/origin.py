@@ -1,4 +1,4 @@
-"""The job that a job is a changed copy of; jobs of earlier releases have none."""
+"""The job from which a job was copied and changed; jobs of earlier releases have none."""
 
 from __future__ import annotations
 
