@@ -1,15 +1,15 @@
-"""Location of the peaks of very many designs: the curves sampled in single precision, and each one's highest samples.
+"""Location of the peaks of very many designs: curves sampled in single precision, and their highest samples.
 
 The sweep only has to find the cell that a peak lies in; `screening` refines it in double precision, by the formulas of
 `signals`. Single precision is twice as fast and enough: near locking rounding grows to 1e-7 l / (l - r - |e|), but so
 does the drop from a peak to the next sample, to spacing^2 / 4 times the same factor: at 360 angles a thousand times as
-much. What could still mislead, a second peak that is as high to rounding, is refined as well. Lengths are scaled by the
+much. A second peak of equal height to rounding could still mislead, so it is refined as well. Lengths are scaled by the
 rod and curves to about one, so that no unit overflows.
 
-For the same reason the torque is written by virtual work here, with half the operations of the joint forces of
-`dynamics`; the tests hold the two together. With S the rod's first moment about the crank pin, C that of the crank, to
-which the rod's mass at the crank pin is added, a = phi'' w^2 + phi' alpha, and u, v = r times the components of S along
-and across the crank,
+For the same reason the torque comes from virtual work here, with half the operations of the joint forces in `dynamics`;
+tests compare the two. With S the rod's first moment about the crank pin, C that of the crank, to which the rod's mass
+at the crank pin is added, a = phi'' w^2 + phi' alpha, and u, v = r times the components of S along and across the
+crank,
 
     T = a (I phi' + u) + phi' (w^2 (1 - phi') v + alpha u - S x G) + x' F + I_O alpha - C x G,
 
@@ -38,7 +38,7 @@ ROWS = 25
 _TORQUE, _WORST = int(Signal.TORQUE), int(Signal.POSITION_ERROR)
 _ZERO, _EIGHTH, _HALF, _ONE, _TWO = (np.float32(x) for x in (0.0, 0.125, 0.5, 1.0, 2.0))
 _LOCKED = np.float32(2.0**-22)  # least square of cos(phi): below, rounding could make it negative
-_ROUNDING = 2.0**-20  # of a sample, with room, where the linkage is far from locking
+_ROUNDING = 2.0**-20  # rounding error of a sample, with a margin, where the linkage is far from locking
 
 
 @analytic
@@ -104,8 +104,8 @@ def _turned(sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: Any) -> Any:
 def _curves(b: Any, j: Any, sine: Any, cosine: Any) -> Any:
     """Torque, worst case and square of the root-sum-square, each at theta and at pi - theta, which share the motion.
 
-    What is `odd` changes its sign between the two, as the cosine does; x_1 and the like belong to theta, y_1 to
-    pi - theta. `turn` is -phi' at theta.
+    Terms named `odd` change sign between the two, as the cosine does; x_1 and the like belong to theta, y_1 to pi -
+    theta. `turn` is -phi' at theta.
     """
     rs, rc = b[_R, j] * sine, b[_R, j] * cosine
     l_sin = b[_E, j] - rs
@@ -168,7 +168,7 @@ def _sample_squares(sine_tau: Any, cosine_tau: Any, crowd: Any, b: Any, at_tau: 
 
 @analytic
 def row_of(kind: Any) -> Any:
-    """Return where the samples of a signal are."""
+    """Return the row that holds the samples of a signal."""
     return 0 if kind == _TORQUE else (1 if kind == _WORST else 2)
 
 
@@ -176,8 +176,8 @@ def row_of(kind: Any) -> Any:
 def sweep(kinds: Any, tau: Any, crowd: Any, b: Any, samples: Any) -> None:
     """Fill the samples (3, angles + 2, LANES) at `tau` (2, angles): rows 1 to angles, and the wrapped ends.
 
-    Torque and worst case come together, asked for or not: two ways to compute a curve would round differently, and a
-    result would depend on what else was asked for.
+    Torque and worst case are always computed together. Two ways to compute a curve would round differently, and a
+    result would depend on what else was requested.
     """
     angles = tau.shape[1]
     for squares in (False, True):
@@ -185,7 +185,7 @@ def sweep(kinds: Any, tau: Any, crowd: Any, b: Any, samples: Any) -> None:
         for kind in kinds:
             is_needed = is_needed or (row_of(kind) == 2) == squares
         for k in range(angles // 2 + 1 if is_needed else 0):
-            # Where an angle is its own mirror image the other row is one to spare: written twice, it would be slow.
+            # Where an angle is its own mirror image, the other row is a spare one: writing one row twice would be slow.
             w = angles - k + 1 if 2 * k < angles else 0
             if squares:
                 _sample_squares(tau[0, k], tau[1, k], crowd, b, samples[:, k + 1], samples[:, w])
@@ -226,9 +226,9 @@ def _vertices(samples: Any, i: Any, mark: Any, top: Any) -> None:
 def two_highest(samples: Any, b: Any, mark: Any, top: Any) -> bool:
     """Find each lane's highest sample, and the highest other local maximum that could exceed it between samples.
 
-    samples: of one signal. `top` (6, LANES) gets of both the place, the vertex of the parabola through its samples (in
-    spacings from there), and their second difference over the middle one; the place is -1 if there is no second.
-    Returns whether any lane has one. mark: (7, LANES), for working.
+    samples: samples of one signal. `top` (6, LANES) receives, for both maxima, the place, the vertex of the parabola
+    through the samples (in spacings from there), and their second difference over the middle one. The place is -1
+    without a second maximum. Returns whether any lane has one. mark: work space, (7, LANES).
     """
     angles = samples.shape[0] - 2
     for j in range(LANES):

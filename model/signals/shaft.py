@@ -1,4 +1,4 @@
-"""A crankshaft under way: breakpoints of all its cylinders, and its curves between them."""
+"""A rotating crankshaft: breakpoints of all its cylinders, and its curves between them."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from .shaft_segments import CONTACT, FIXED, Breaks, joined, segments_of
 from .signal_inputs import cycle_window, signal_inputs
 from .signals import Signal
 
-_NEAR = 1e-9  # rad: so near to where a turn of two begins a breakpoint may be of either
+_NEAR = 1e-9  # rad: a breakpoint this near to the start of one of two turns may belong to either
 _CONTACTS = 24  # panels of a turn in which the guide's force may change sides, of 16 samples each
 _HALVINGS = 60
 _BESIDE = 1e-12  # rad
@@ -36,7 +36,7 @@ _BESIDE = 1e-12  # rad
 class Shaft:
     """Designs (n, 3 + k) of a machine with cylinders or a profile, followed by one curve.
 
-    kind: a signal, or a curve of `shaft_curves`. members: which cylinders, added up. during: a stroke of the first one.
+    kind: signal, or curve of `shaft_curves`. members: cylinders to be summed. during: stroke of the first cylinder.
     """
 
     def __init__(
@@ -92,14 +92,14 @@ class Shaft:
         self._blocks = Blocks(np.ascontiguousarray(both_halves), np.ascontiguousarray(all_steps))
 
     def with_curve(self, kind: int) -> Shaft:
-        """Return the same followed by another curve, with the same breakpoints."""
+        """Return the same shaft for another curve, with the same breakpoints."""
         copied = copy(self)
         copied.kind, copied.vector = kind, kind in [int(vector) for vector in VECTORS]
         return copied
 
     @cached_property
     def drives(self) -> Mask:
-        """Designs (n,) that no friction locks."""
+        """Designs (n,) that friction does not lock."""
         if not self.rubbing:
             return np.ones(len(self._designs), dtype=bool)
         return np.asarray(always_drives(design_at(self._plain[0][:, :, 0].T, slice(None))) > 0.0)
@@ -112,7 +112,7 @@ class Shaft:
         return np.asarray(np.ceil(np.maximum(12.0 / np.maximum(crowd, 0.05), 1.0 * len(self._pace.cosines))))
 
     def half(self, angle: Array, row: Whole) -> Whole:
-        """Return the half (p, m) that every cylinder is in at angles (p,) of the shaft."""
+        """Return the half (p, m) of its cycle in which every cylinder is at shaft angles (p,)."""
         if len(self._parts) < 2:
             return np.zeros((len(angle), len(self._axes.lead)), dtype=np.int64)
         inner, outer = self._dead_centres
@@ -131,7 +131,8 @@ class Shaft:
     ) -> tuple[Array, Array]:
         """Return the curve (p, k, 2 + v) and its sizes (p, k) at angles (p, k) of segments.
 
-        Value, slope over the crank angle, derivatives where wanted. rate: (p, v), of the angles by the design.
+        Value, slope over the crank angle and, if requested, derivatives. rate: (p, v), derivatives of the angles by the
+        design.
         """
         return self._evaluate(self.kind, self.members, row, probe, angle, rate, gradients)[:2]
 
@@ -144,7 +145,7 @@ class Shaft:
     def _evaluate(
         self, kind: int, members: Whole, row: Whole, probe: Array, angle: Array, rate: Array | None, gradients: bool
     ) -> tuple[Array, Array, Whole]:
-        """Return curve, sizes and strokes; for an angle where every force vanishes at once those beside it."""
+        """Return curve, sizes and strokes; where all forces vanish together, those beside that angle."""
         curve = self._run_kernel(kind, members, row, probe, angle, rate, gradients)
         lost = np.asarray(~np.isfinite(curve[0]).all(axis=(1, 2)))
         if lost.any():
@@ -190,7 +191,7 @@ class Shaft:
 
     @cached_property
     def breaks(self) -> Breaks:
-        """All breakpoints of the designs that no friction locks."""
+        """All breakpoints of the designs that friction does not lock."""
         parts = [self._breaks_of_half(half) for half in range(len(self._parts))]
         rows = np.flatnonzero(self.drives)
         fixed = np.concatenate([self._pace.knots[:-1] + turn * TURN for turn in range(len(self._parts))])
@@ -230,7 +231,7 @@ class Shaft:
         return joined(parts)
 
     def _contacts(self, breaks: Breaks) -> Breaks:
-        """Return where the force of a guide changes sides, between neighbouring samples."""
+        """Return the angles between neighbouring samples at which a guide's force changes sides."""
         segments = segments_of(breaks, self.period)
         row, probe, low, width, _ = segments.panels(np.full(len(self.drives), _CONTACTS))
         angle = low[:, None] + width[:, None] * np.linspace(0.0, 1.0, 17)
@@ -254,7 +255,7 @@ class Shaft:
         return joined(parts)
 
     def rates(self, cuts: Whole, probe: Array) -> Array:
-        """Return the derivatives (c, v) of the angles of breakpoints by the design; probe: of the segments behind."""
+        """Return the derivatives (c, v) of breakpoint angles by the design; probe: angles in the segments behind."""
         breaks = self.breaks
         code, row = breaks.code[cuts], breaks.row[cuts]
         out = np.zeros((len(cuts), self.numbers))

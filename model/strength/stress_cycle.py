@@ -1,7 +1,7 @@
-"""Greatest stresses of crank and rod, and greatest swings of stress, exact over crank angle and place, with gradients.
+"""Greatest stresses and stress ranges in crank and rod, exact over crank angle and place, with gradients.
 
-Of every point of a bar, share xi of its length from the crank pin and face +-, the stress is a smooth curve over each
-segment of the cycle (`segments`). Sought is the greatest value of
+At every point of a bar (fraction xi of its length from the crank pin, face +-), the stress is a smooth curve over each
+segment of the cycle (`segments`). This module finds the greatest value of
 
     p sigma(xi, theta) - q sigma(xi, phi),    p, q >= 0,
 
@@ -9,13 +9,14 @@ over place, face and two crank angles: with (p, q) = (1, 0) and (0, 1) the great
 
     2 p = 1 / S_e + 1 / S_m,   2 q = 1 / S_e - 1 / S_m      and      2 p = 2 q = 1 / S_e
 
-the greatest amplitude / S_e + mean / S_m of one point over the cycle, a mean that is compression left out (Goodman's
-line with its horizontal part, Shigley, "Mechanical Engineering Design", 9th ed., eq. 6-46): the pair of angles that is
-greatest is that of the point's own greatest and least stress, since p, q >= 0.
+the greatest amplitude / S_e + mean / S_m of one point over the cycle, ignoring compressive mean stress (Goodman's line
+with its horizontal part, Shigley, "Mechanical Engineering Design", 9th ed., eq. 6-46). Since p, q >= 0, the maximising
+pair of angles is that of the point's own greatest and least stress.
 
-Samples over crank angle and stations along the bar tell the highest maxima (`stress_search`). Each is then followed
-between samples of its own, closer and closer, until the cubics between them are exact to rounding. Place and angles are
-stationary, or at an end that moves with the design, so the gradient is the partial derivative there (envelope theorem).
+Samples over crank angle and stations along the bar locate the highest maxima (`stress_search`). Each is then followed
+between its own samples, ever closer, until the cubics between them are exact to rounding. Place and angles are
+stationary, or at an end that moves with the design. The gradient is therefore the partial derivative there (envelope
+theorem).
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ _NEAR, _WIDE = 0.05, 0.2  # how far below the highest sample a maximum is refine
 _TURN = 2.0 * math.pi
 _EDGE = 1e-11  # rad, from a breakpoint: on it
 _OTHER = 7.0  # weight of the second angle in a label, more than a turn
-_EQUAL = 1e-6  # relative; what cubics between the samples of the cycle tell of two maxima, with two digits to spare
+_EQUAL = 1e-6  # relative; accuracy of cubics between samples when comparing maxima, with two digits to spare
 # Of the spacing of samples: how far off the ends of a cubic are, and within how much of its foretold place a maximum is
 # then taken as it is: such a cubic is off by a millionth of what the last one was. Then how much closer the next is.
 _CLOSE, _FORETOLD, _CLOSER, _ROUNDS = 0.01, 1e-3, 30.0, 10
@@ -56,9 +57,9 @@ APART, CLASSES = 60.0, 12
 class StressPeaks:
     """Local maxima of n designs, highest first.
 
-    values: (n, k), -inf beyond the last one; inf where friction locks the design. labels: (n, k), what tells those of
-    neighbouring designs apart. places: (n, k, 4), share of the length from the crank pin, face, both angles, rad.
-    gradients: (n, k, 3 + v); None unless asked for.
+    values: (n, k), -inf beyond the last one; inf where friction locks the design. labels: identifiers (n, k) that match
+    maxima across neighbouring designs. places: (n, k, 4), fraction of the length from the crank pin, face, both angles,
+    rad. gradients: (n, k, 3 + v); None unless asked for.
     """
 
     values: Array
@@ -89,7 +90,7 @@ class _Maxima:
         self.angle = np.where(self.is_counted, self.angle, self.angle[:, ::-1])
 
     def select(self, rows: Whole) -> _Maxima:
-        """Return some of them."""
+        """Return a selection of the maxima."""
         return _Maxima(**{name: column[rows] for name, column in vars(self).items()})
 
 
@@ -155,7 +156,7 @@ def _close_in(bars: StressLocations, sides: Array, criteria: Array, maxima: _Max
         is_inside &= (angles < high) | (high >= end[waiting])
         closer = waiting[np.all(is_inside | ~is_counted, axis=1)]
         width[closer] /= _CLOSER
-        near[closer] *= _CLOSER  # what is left is off by less, wherever it was foretold
+        near[closer] *= _CLOSER  # the remaining ones are off by less, wherever they were predicted
         waiting = waiting[~is_settled]
 
 
@@ -188,7 +189,7 @@ def _peaks(bars: StressLocations, criteria: Array, gradients: bool, limit: int) 
         np.full((n, limit, 4), np.nan),
         np.zeros((n, limit, width)) if gradients else None,
     )
-    # Of several that are equal to the samples' accuracy each may be the highest.
+    # Any of several maxima that are equal to the samples' accuracy may be the highest.
     maxima = _of_samples(bars, _SIDES, criteria, _NEAR if limit == 1 else _WIDE, max(limit, 3))
     if limit == 1:
         top = np.full(n, -np.inf)
@@ -220,7 +221,7 @@ def _peaks(bars: StressLocations, criteria: Array, gradients: bool, limit: int) 
 
 
 def _require_one_sided(criteria: Array) -> None:
-    """Raise `InputError` for criteria that compare two crank angles, which may be of different turns."""
+    """Raise `InputError` for criteria that compare two crank angles, which may belong to different turns."""
     if (criteria > 0.0).all(axis=1).any():
         raise InputError(
             "greatest and least stress of one place are those of one turn; got a cycle of 720 deg; leave the fatigue "
@@ -258,7 +259,7 @@ def stress_peaks(
 ) -> list[StressPeaks]:
     """Return the greatest p sigma - q sigma of designs (n, 3 + k) at each place; `StressLocation` defines sigma.
 
-    criteria: (m, 2), p and q of each, none negative. limit: maxima returned a design; if 1, only the highest are
+    criteria: (m, 2), p and q of each, none negative. limit: maxima returned per design; if 1, only the highest are
     followed. The links of the places must be `Bar`.
     """
     designs = turning(designs)

@@ -4,14 +4,13 @@ The drive torque is affine in the crank's acceleration, and quadratic in its spe
 
     T = J(theta) a + (J'(theta) / 2 + E(theta)) w^2 + C(theta) + D(theta) w,
 
-J the moving inertia, C gravity and every load that does not depend on speed, D the viscous loads,
-E loads that grow with the square of the speed. Each term is the
-torque of `dynamics.forces` for a motion and a load that leave only this term: nothing is derived a second time, and
-no term is a difference of great numbers. With friction these are the terms of the same machine without it; what the
-motion takes then is `Span.with_friction`.
+where J is the moving inertia, C gravity and every load independent of speed, D the viscous loads, and E the loads that
+grow with the square of the speed. Each term is the torque of `dynamics.forces` for a motion and a load that leave only
+this term. Nothing is derived a second time, and no term is a difference of large numbers. With friction, these terms
+are those of the frictionless machine; `Span.with_friction` then gives the torque that the motion takes.
 
-C depends on which way the slider moves, hence on the direction of rotation, and is smooth between *breakpoints* only:
-dead centres and knots of load tables. A `Stretch` is the crank turning one way between two of them.
+C depends on the slider's direction, hence on the direction of rotation. It is smooth only between *breakpoints*: dead
+centres and knots of load tables. In a `Stretch` the crank turns one way between two of them.
 """
 
 from __future__ import annotations
@@ -54,7 +53,7 @@ TURN = 2.0 * math.pi
 NEAREST = 1e-12
 """rad; breakpoints closer together are one."""
 _STILL, _SPIN, _PUSH, _BARE, _SQUARE = range(5)
-_KEPT = {_SPIN: 1, _PUSH: 1, _BARE: 1, _SQUARE: 2}  # power of the speed in the loads that a column keeps
+_KEPT = {_SPIN: 1, _PUSH: 1, _BARE: 1, _SQUARE: 2}  # power of the speed in the loads that each column keeps
 
 
 @dataclass(frozen=True)
@@ -63,7 +62,7 @@ class Terms:
 
     inertia: J, kg m^2. spin: J'/2, kg m^2. static: C, N m. drag: D, N m s.
     square: E, N m s^2.
-    load: torque on the crank of the loads that do not depend on speed, N m; it is part of -C.
+    load: torque on the crank from loads independent of speed, N m; part of -C.
     """
 
     inertia: Array
@@ -120,7 +119,7 @@ def _terms(
 class Span:
     """A part of the cycle, from `low` to `high`, rad, on which every term is smooth.
 
-    It is passed one way, +1 or -1."""
+    The crank passes it one way, +1 or -1."""
 
     low: float
     high: float
@@ -139,8 +138,8 @@ class Span:
     ) -> tuple[Array, FrictionState]:
         """Return accelerations (n,), rad/s^2, with friction, and torque and heat of the motion with them.
 
-        torque: of the motor on the crank, N m. inertia: of the drive, kg m^2. guess: where an iteration starts. Raises
-        `InputError` where friction may jam the crank, so that no single acceleration follows.
+        torque: motor torque on the crank, N m. inertia: inertia of the drive, kg m^2. guess: start of the iteration.
+        Raises `InputError` where friction may jam the crank, so that no single acceleration follows.
         """
         raise NotImplementedError
 
@@ -148,10 +147,10 @@ class Span:
 class Equation:
     """An equation of motion over a cycle of the crank.
 
-    direction: +1 or -1, the way the motor turns it. period: crank angle of the cycle, rad. dead_centres: (k,), rad.
-    breakpoints: (n,), ascending, within a cycle from 0, rad. lead: of the first cylinder's crank over the angle, rad.
-    crowds: whether its curves are steep where those of one linkage are (`segments.crowding`).
-    rubs: whether there is friction.
+    direction: +1 or -1, direction in which the motor turns the crank. period: crank angle of the cycle, rad.
+    dead_centres: (k,), rad. breakpoints: (n,), ascending, within a cycle from 0, rad. lead: lead of the first
+    cylinder's crank over the angle, rad. crowds: whether its curves are steep at the same angles as those of one
+    linkage (`segments.crowding`). rubs: whether there is friction.
     """
 
     direction: float
@@ -163,7 +162,7 @@ class Equation:
     rubs: bool = False
 
     def stretch(self, index: int, way: float) -> Span:
-        """Return the stretch from breakpoint `index` to the next, the last one reaching beyond the cycle."""
+        """Return the stretch from breakpoint `index` to the next, the last stretch reaching beyond the cycle."""
         raise NotImplementedError
 
     def turn(self, way: float) -> list[Span]:
@@ -184,9 +183,9 @@ class Equation:
         raise NotImplementedError
 
     def require_inertia(self, added: float) -> None:
-        """Raise `InputError` if nothing resists an acceleration of the crank somewhere; added: of the drive.
+        """Raise `InputError` if nothing resists an acceleration of the crank somewhere.
 
-        With friction, also if it may give back what resists.
+        With friction, also if friction may cancel the resistance. added: inertia of the drive, kg m^2.
         """
         angles = np.concatenate([self.dead_centres, np.linspace(0.0, TURN, 720, endpoint=False)])
         inertia = self.inertia(angles) + added
@@ -222,7 +221,7 @@ class Stretch(Span):
             self._rubbing = CylinderFriction(*arguments)
 
     def terms_at(self, crank_angle: Array) -> Terms:
-        """Return the terms at crank angles (n,), rad; beyond the ends the loads go on as within."""
+        """Return the terms at crank angles (n,), rad; beyond the ends the loads continue as within."""
         out = np.empty((6, len(crank_angle)))
         _terms(self._block, self._loads, self._outward, self.way, self._piece, self._shift, crank_angle, out)
         return Terms(*out)
@@ -241,9 +240,9 @@ class Stretch(Span):
 class CrankEquation(Equation):
     """The equation of motion of one fully turning linkage.
 
-    marks: further crank angles, rad, that shall be breakpoints. breakpoints: (n,), ascending in [0, 2 pi), rad.
-    direction: +1 or -1, the way the mechanism's speed says that the motor turns the crank.
-    Raises AssemblyError if the linkage does not turn fully, InputError where friction locks it.
+    marks: further crank angles to use as breakpoints, rad. breakpoints: (n,), ascending in [0, 2 pi), rad. direction:
+    +1 or -1, direction in which the motor turns the crank, given by the sign of the mechanism's speed. Raises
+    AssemblyError if the linkage does not rotate fully, InputError where friction locks it.
     """
 
     def __init__(self, mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> None:
@@ -277,7 +276,7 @@ class CrankEquation(Equation):
         return np.asarray(angles[is_apart] if len(angles) > 1 else angles)
 
     def stretch(self, index: int, way: float) -> Stretch:
-        """Return the stretch from breakpoint `index` to the next, the last one reaching beyond 2 pi."""
+        """Return the stretch from breakpoint `index` to the next, the last stretch reaching beyond 2 pi."""
         if (index, way) not in self._stretches:
             low = float(self.breakpoints[index])
             last = index + 1 == len(self.breakpoints)

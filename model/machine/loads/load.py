@@ -1,7 +1,7 @@
-"""A load on slider or crank: all that the kernels, job files, the page and summaries ask of one.
+"""A load on slider or crank: everything that kernels, job files, the page and summaries need from it.
 
 A kind of load is a module of this package with a frozen dataclass that derives from `Load`. It declares how it enters
-the kernels: as one of the shapes that these add up before a sweep (`Enters`), or by a `formula` of its own.
+the kernels: as one of the shapes that are summed before a sweep (`Enters`), or by its own `formula`.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ Formula = Callable[[Any, Any, Any, Any, Any], Any]
 
 
 class Enters(IntEnum):
-    """The way by which a kind of load enters the kernels; the order in which lists name kinds.
+    """The way in which a kind of load enters the kernels; also the order of kinds in lists.
 
     Stroke forces, springs, viscous loads and added masses are summed for each design before a sweep: any number of them
-    costs what one does. Tables and cylinders make breakpoints. All others are evaluated one by one: torques on the
-    crank, which the drive torque alone has, and forces with a formula.
+    costs as much as one. Tables and cylinders create breakpoints. All others are evaluated one by one: forces with a
+    formula, and torques on the crank, which affect only the drive torque.
     """
 
     STROKE_FORCE = 0
@@ -50,8 +50,8 @@ class Enters(IntEnum):
 class Passage(NamedTuple):
     """A stroke of n designs in m steps.
 
-    outward: which one. angle: crank angles in the middle of each step, (n, m), rad. distance: of the slider along its
-    line from the crank pivot at the ends of the steps, (n, m + 1), m.
+    outward: whether it is the outward stroke. angle: crank angles in the middle of each step, (n, m), rad. distance:
+    distance of the slider from the crank pivot along its line at the ends of the steps, (n, m + 1), m.
     """
 
     outward: bool
@@ -78,8 +78,8 @@ class StrokePart:
 class Entry:
     """A key of a load's table in a job file.
 
-    kind: of its value, a name of `optimise.job.values`, or the words to choose from. increasing: of a table's points.
-    optional: has the default.
+    kind: kind of its value, a name from `optimise.job.values`, or the words to choose from. increasing: whether a
+    table's points increase. optional: whether it has a default.
     """
 
     name: str
@@ -93,10 +93,11 @@ class Entry:
 
 @dataclass(frozen=True)
 class Table:
-    """A table [[load]] of a job file, told from others by its key.
+    """A table [[load]] of a job file, identified by its key.
 
-    title: of the form's list. help: a sentence. initial: the form's first values. build: from values in SI, by name.
-    motion: of the crank that it is of, which turns through or swings; "" for either.
+    title: title in the form's list. help: help text, one sentence. initial: initial values in the form. build: function
+    that builds the load from SI values by name. motion: motion of the crank to which it applies (full rotation or
+    swing); "" for either.
     """
 
     key: str
@@ -132,13 +133,13 @@ class Load:
     """A load on the slider along its line, positive outward, or on the crank, positive counter-clockwise.
 
     enters: see `Enters`. formula: force of position (m outward of the crank pivot), velocity (m/s outward), way (1
-    while the slider moves outward, -1 inward) and the two numbers of the load's own, zero where both are zero;
-    `analytic`, without branches on its arguments. speed_power: the power of the crank speed that the formula is
-    proportional to. inertial: whether it is a mass that moves with the slider. on_crank: whether it is a torque on the
-    crank. every_corner: whether its numbers that vary must
-    be possible at every combination of their ends, not only all at the lower and all at the upper. sizes: fields that
-    are all zero if the load is zero throughout; none of a load that never is. slots: place in the numbers of a load and
-    SI unit of each field that designs can vary. tables: of job files.
+    while the slider moves outward, -1 inward) and the load's own two numbers; zero where both numbers are zero;
+    `analytic`, without branches on its arguments. speed_power: power of the crank speed to which the formula is
+    proportional. inertial: whether it is a mass that moves with the slider. on_crank: whether it is a torque on the
+    crank. every_corner: whether its varying numbers must be valid at every combination of their bounds, not only all at
+    the lower and all at the upper ones. sizes: fields that are all zero if the load is zero throughout; none for a load
+    that never is. slots: place in the load's numbers and SI unit of each field that designs can vary. tables: its
+    tables in job files.
     """
 
     enters: ClassVar[Enters]
@@ -152,16 +153,16 @@ class Load:
     tables: ClassVar[tuple[Table, ...]]
 
     def numbers(self) -> tuple[float, ...]:
-        """Return factors in the outward and the inward stroke, and two of the load's own; more of a cylinder."""
+        """Return factors for the outward and the inward stroke, and the load's own two numbers; more for a cylinder."""
         raise NotImplementedError
 
     @property
     def acts(self) -> bool:
-        """Whether it is anything but zero throughout."""
+        """Whether it is nonzero anywhere."""
         return not self.sizes or any(np.any(getattr(self, name)) for name in self.sizes)
 
     def knots(self) -> tuple[Sequence[float], Sequence[float]]:
-        """Return where the load's table has knots, and the forces there; none if it has no table.
+        """Return the knots of the load's table, and the forces there; empty without a table.
 
         Two knots at one place are a step: the first has the force before it, the second the force after it.
         """
@@ -179,7 +180,7 @@ class Load:
 
     @property
     def winds(self) -> bool:
-        """Whether the load is another one after a turn of the crank: it is then of a crank that swings."""
+        """Whether the load differs after a turn of the crank; only a crank that swings can have it."""
         return False
 
     @property
@@ -188,7 +189,7 @@ class Load:
         return 1
 
     def on_turn(self, turn: int) -> Load:
-        """Return the load of turn 1 or 2 of a cycle of two alone."""
+        """Return the load in turn 1 or 2 alone, for a cycle of two turns."""
         return self
 
     @property
@@ -197,12 +198,12 @@ class Load:
         return str(getattr(self, "datum", "zero crank angle"))
 
     def number_on_turn(self, name: str, turn: int) -> str | None:
-        """Return the name that one of its numbers has in `on_turn`; None where that turn has it not."""
+        """Return the name of one of its numbers in `on_turn`; None if that turn does not have it."""
         return name
 
     @property
     def by_position(self) -> bool:
-        """Whether the force is the same wherever the slider is at the same place."""
+        """Whether the force depends only on the slider's place."""
         return False
 
     @property
@@ -212,23 +213,23 @@ class Load:
         return first != second
 
     def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
-        """Return sizes of work over a turn by key; those of one key may cancel.
+        """Return sizes of work over a turn by key; works under one key may cancel.
 
-        moving: whether the crank turns; at rest, loads with the speed are none.
+        moving: whether the crank turns; at rest, speed-dependent loads are zero.
         """
         takes = not self.by_position and (moving or not self.speed_power)
         return {type(self).__name__: (1.0,)} if takes else {}
 
     def stroke_work(self, passage: Passage) -> Any:
-        """Return the work (n,), J, that tells which stroke is loaded.
+        """Return the work (n,), J, that shows which stroke is loaded.
 
-        None of a load that gives it back in the other stroke, or that always resists.
+        None for a load that returns it in the other stroke, or that always resists.
         """
         return 0.0
 
     @property
     def drives(self) -> bool:
-        """Whether the load says itself that it may drive the machine: gas, or a force that helps a stroke."""
+        """Whether the load may by definition drive the machine: gas, or a force that helps a stroke."""
         return False
 
     @property
@@ -238,7 +239,7 @@ class Load:
 
     @property
     def push(self) -> tuple[Sequence[float], Sequence[float]] | None:
-        """The forces, N outward, that it may have in the outward and in the inward stroke; None if more decides."""
+        """Possible forces in the outward and inward strokes, N outward; None if they depend on more than the stroke."""
         return None
 
     @property
@@ -257,7 +258,7 @@ class Load:
 
     @property
     def range(self) -> str:
-        """Where it acts."""
+        """Range in which it acts."""
         return ""
 
     @property
@@ -271,7 +272,7 @@ def _listed(names: set[str]) -> str:
 
 
 def built(kind: Callable[..., Load], **fields: str) -> Callable[..., Load]:
-    """Return the function that builds a load from the values of its table. fields: of the load, by keys that differ."""
+    """Return the function that builds a load from its table's values. fields: keys with other names."""
     keys = {field: key for key, field in fields.items()}
 
     def build(**values: Any) -> Load:
@@ -283,18 +284,18 @@ def built(kind: Callable[..., Load], **fields: str) -> Callable[..., Load]:
 
 
 def points(name: str, kind: str, description: str, *example: str) -> Entry:
-    """Return the key of where the points of a table are, in increasing order; two equal ones are a step."""
+    """Return the key of a table's increasing coordinates; two equal ones are a step."""
     return Entry(name, kind, description, list(example), several=True, increasing=True)
 
 
 def require_word(name: str, value: object, words: object) -> None:
-    """Refuse a value that is none of the words of a `Literal`."""
+    """Raise an error unless the value is one of the words of a `Literal`."""
     if value not in get_args(words):
         raise InputError(f"{name} must be {' or '.join(map(repr, get_args(words)))}; got {value!r}")
 
 
 def require_table(argument: str, at: Sequence[float], forces: Sequence[float], *, values: str = "forces") -> None:
-    """Raise `InputError` for a table that decreases, has three points at one place or fewer than two at all.
+    """Raise `InputError` for a table that decreases, has three points at one place or fewer than two in total.
 
     Its numbers must be finite. argument, values: names of both columns, for the message.
     """
