@@ -29,8 +29,8 @@ _KEPT = 0.02
 class Arrays(NamedTuple):
     """Objectives and requirements of n designs, and their Jacobians.
 
-    F (n, m) as minimised, G (n, g) <= 0, H (n, h) = 0. The Jacobians (n, ., 3 + k) are empty, (n, ., 0), unless asked
-    for.
+    F (n, m) as minimised, G (n, g) <= 0, H (n, h) = 0. The Jacobians (n, ., 3 + k) are empty, (n, ., 0), unless
+    requested.
     """
 
     F: Array
@@ -42,7 +42,7 @@ class Arrays(NamedTuple):
 
 
 class ScipyForm(NamedTuple):
-    """Arguments of `scipy.optimize.minimize` and its like: bounds, constraints, a start near the middle."""
+    """Arguments of `scipy.optimize.minimize` and similar functions: bounds, constraints, a start near the middle."""
 
     fun: Callable[[Array], float]
     jac: Callable[[Array], Array]
@@ -55,12 +55,12 @@ class ScipyForm(NamedTuple):
 class StandardForm:
     """A problem in standard form, over designs x = (crank, rod, offset, then the varying numbers), SI.
 
-    names: of the numbers of a design. lower, upper: their bounds (3 + k,). objectives, inequalities, equalities: what
-    each column of F, G and H is of. Objectives to be maximised are negated; for one with a target it is the distance.
-    Each requirement is divided by the size of its bound. The first two inequalities keep the crank turning:
-    crank + offset and crank - offset below the rod. A swing has none of them: its crank need not turn through.
-    With eliminated equalities x is what these leave free, each from 0 to 1; `designs` gives the designs of it, and the
-    ranges of the dimensions that follow come last among the inequalities.
+    names: names of the variables. lower, upper: their bounds (3 + k,). objectives, inequalities, equalities: labels of
+    the columns of F, G and H. Objectives to be maximised are negated; one with a target is the distance from it.
+    Each requirement is divided by the size of its bound. The first two inequalities keep the crank rotating fully:
+    crank + offset and crank - offset below the rod. A swing has neither: its crank need not rotate fully.
+    With eliminated equalities, x holds the remaining free unknowns, each from 0 to 1, and `designs` converts it to
+    designs. The ranges of the computed dimensions then come last among the inequalities.
     """
 
     problem: Problem
@@ -84,9 +84,9 @@ class StandardForm:
     def arrays(self, x: ArrayLike, *, gradients: bool = False) -> Arrays:
         """Return F, G and H of points x (n, 3 + k), and with `gradients` their Jacobians.
 
-        F, G and H of a design that does not turn fully are infinite but for the first two of G, which say by how much
-        it fails; its Jacobians are NaN but for these two rows. Of a swing all are that it cannot make. Raises
-        `InputError` as `Problem.evaluate` does.
+        For a design that does not rotate fully, F, G and H are infinite and their Jacobians NaN. The exceptions are the
+        first two rows of G, which say by how much it fails. For a design that cannot make a swing, all are infinite.
+        Raises `InputError` as `Problem.evaluate` does.
         """
         points = given_designs(x, self.names)
         x = self.designs(points)
@@ -117,9 +117,9 @@ class StandardForm:
     def scipy(self, objective: str | None = None, *, keep_feasible: bool = False) -> ScipyForm:
         """Return arguments for `scipy.optimize`: `minimize(**form.scipy()._asdict(), method="SLSQP")`.
 
-        objective: which one, where the problem has several. keep_feasible: have every iterate turn fully; needed by
-        trust-constr, not known to SLSQP. Raises `InputError` if the objective is not said, or not one of them, and for
-        quantities without a gradient.
+        objective: name of the objective; required if the problem has several. keep_feasible: whether every iterate must
+        rotate fully; needed by trust-constr, unknown to SLSQP. Raises `InputError` if the objective is missing or
+        unknown, and for quantities without a gradient.
         """
         from scipy.optimize import Bounds, LinearConstraint, NonlinearConstraint
 
@@ -149,9 +149,9 @@ class StandardForm:
         )
 
     def start(self) -> Array:
-        """Return a point that turns fully, near the middle of the bounds; of a swing one that makes it.
+        """Return a point near the middle of the bounds whose crank rotates fully, or makes the problem's swing.
 
-        Raises `InputError` if none does.
+        Raises `InputError` if there is none.
         """
         if self._branch is not None or not self._turns:
             grid = self.lower + np.random.default_rng(1).random((4096, len(self.names))) * (self.upper - self.lower)
@@ -191,16 +191,16 @@ class StandardForm:
 
 
 def standard_form(problem: Problem, *, eliminate: bool = False, elimination_branch: int | None = None) -> StandardForm:
-    """Return a problem in the form of other optimisers.
+    """Return a problem in the standard form for other optimisers.
 
-    eliminate: whether equality constraints are eliminated as `solve` does it, exactly: fewer unknowns, and no equality
-    for a method that meets none, such as most genetic algorithms. elimination_branch: which of several solutions of the
-    equalities, from 0, such as those with an offset above and below 0: each has its own form.
+    eliminate: whether to eliminate equality constraints exactly, as `solve` does. This leaves fewer unknowns, and suits
+    methods that cannot meet equalities, such as most genetic algorithms. elimination_branch: index from 0 of one of
+    several solutions of the equalities, such as those with an offset above and below 0; each has its own form.
 
     The requirements are those of `solve`, with its floors where the problem sets none: a transmission angle of 10 deg,
-    and with friction a self-locking margin of 5 deg. Raises `InputError` for a problem with choices: ask its `parts`,
-    for one with discrete values, and with `eliminate` for equalities of several branches unless one is named, as the
-    message lists them. Without equalities an offset of both signs has one form, in which x are designs.
+    and with friction a self-locking margin of 5 deg. Without equalities, an offset of both signs has one form, in which
+    x are designs. Raises `InputError` for a problem with choices (use its `parts`) and for one with discrete values.
+    With `eliminate` it also does so for equalities with several branches unless one is named; the message lists them.
     """
     require_problem(problem, "standard_form")
     if problem.variants:
@@ -274,7 +274,7 @@ def _requested_branch(problem: Problem, index: int | None) -> EliminationBranch 
 
 
 def _side(branch: EliminationBranch) -> str:
-    """Return as text the sign of the offsets of a branch, and the root that it takes of several."""
+    """Return the sign of the offsets in a branch as text, and which of several roots it takes."""
     side = "above 0" if branch.sign > 0.0 else "below 0"
     roots = [
         f"root {step.solutions.index(step) + 1} for {step.target}" for step in branch.steps if len(step.solutions) > 1
@@ -287,7 +287,7 @@ def _computed(branch: EliminationBranch) -> list[str]:
 
 
 def _ranges(x: Array, branch: EliminationBranch, width: int) -> list[Row]:
-    """Rows of G for the ranges of computed dimensions, an offset by its size."""
+    """Rows of G for the ranges of computed dimensions; an offset counts by its size."""
     rows = []
     for name in _computed(branch):
         column, ends = branch.names.index(name), branch.bounds[name]
@@ -309,18 +309,18 @@ def _without_spurious(rows: list[Row], x: Array, problem: Problem, branch: Elimi
 
 
 def _share(constraints: tuple[Constraint, ...]) -> float:
-    """Share of the rod that crank + |offset| may take."""
+    """Greatest allowed ratio of crank + |offset| to the rod."""
     floor = next((c.lower for c in constraints if c.quantity == TRANSMISSION_ANGLE.name and c.lower is not None), None)
     return 1.0 - _KEPT if floor is None or not 0.0 < floor < 1.5 else float(np.cos(floor))
 
 
 def _turning(x: Array, constraints: tuple[Constraint, ...], width: int) -> list[Row]:
-    """Rows of G that keep the crank turning: the floor on the transmission angle, linear in the dimensions."""
+    """Rows of G that keep the crank rotating fully: the floor on the transmission angle, linear in the dimensions."""
     share, rows = _share(constraints), []
     for sign in (1.0, -1.0):
         size = np.abs(x[..., 1])
         slope = np.zeros((*x.shape[:-1], width))
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # a rod of no length fails without bound
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # a rod of zero length fails without bound
             value = (x[..., 0] + sign * x[..., 2] - share * x[..., 1]) / size
             if width:
                 slope[..., 0], slope[..., 2] = 1.0 / size, sign / size

@@ -44,8 +44,8 @@ if TYPE_CHECKING:
 
 Columns = dict[str, NDArray[Any]]
 _NOTHING = 1e-7  # of a range: a gain, and of a range per range a loss, below which there is rounding
-_LEAST = 1e-4  # of a range: a step that is worth telling
-_UNMET = 1e-7  # what counts as no solution, rows being of size one
+_LEAST = 1e-4  # of a range: the least step worth reporting
+_UNMET = 1e-7  # residual that counts as no solution, for rows of size one
 Status = Literal["done", "cancelled", "infeasible"]
 
 
@@ -53,17 +53,17 @@ Status = Literal["done", "cancelled", "infeasible"]
 class ParetoFront:
     """The Pareto front of a problem and the evidence for it.
 
-    columns: of the table of designs, each (n,): all quantities under their JSON names with units, then `slack_<field>`
-    for every constraint (distance to the nearer bound in the quantity's shown unit; zero where active), `residual`
-    (stationarity) and `status` ("stationary" or "best found"). Sorted by the first objective, best first.
-    dimensions: (n, 3 + v) crank, rod, offset, m, and the values of the numbers that vary besides them, SI, exactly.
-    variants: of each design, which of the problem's variants it is; empty if nothing was to be chosen.
+    columns: columns (n,) of the table of designs: all quantities under their JSON names with units, then
+    `slack_<field>` for every constraint (distance to the nearer bound in the quantity's display unit; zero where
+    active), `residual` (stationarity) and `status` ("stationary" or "best found"). Sorted by the first objective, best
+    first. dimensions: (n, 3 + v) crank, rod, offset, m, and the exact values of the extra variables, SI.
+    variants: index of each design's variant in the problem; empty without choices.
     values: (n, m) objectives as they are minimised (maximised ones negated, targets as distances), SI. goals: for each
     design, objective index and gradient of every active piece; active: gradients of its active constraints; both by the
     free unknowns scaled to the unit box.
-    hypervolume: dominated share of the box between the front's ideal and 1.1 times nadir, see `hypervolume.py`.
-    history: rounds, with hypervolumes in the same box. versions: of this software and what computed the numbers.
-    discrete: how far the search among discrete values went; None where there are none.
+    hypervolume: dominated fraction of the box between the front's ideal and 1.1 times nadir, see `hypervolume.py`.
+    history: rounds, with hypervolumes in the same box. versions: versions of this software and its numerical libraries.
+    discrete: extent of the search among discrete values; None without any.
     """
 
     problem: Problem
@@ -85,7 +85,7 @@ class ParetoFront:
 
     @cached_property
     def designs(self) -> pd.DataFrame:
-        """The designs as a table of pandas, one row a design: the columns under their names."""
+        """The designs as a pandas DataFrame: one row per design, the columns under their names."""
         import pandas as pd
 
         return pd.DataFrame(self.columns)
@@ -128,9 +128,9 @@ class ParetoFront:
         return self.problem.objectives
 
     def part(self, row: int) -> Problem:
-        """Return the problem that a design answers, with the choices that it made in place.
+        """Return the problem that a design answers, with its choices in place.
 
-        Raises `InputError` for a row that is none of the front.
+        Raises `InputError` for a row that is not in the front.
         """
         try:
             is_row = 0 <= operator.index(row) < len(self)
@@ -142,16 +142,17 @@ class ParetoFront:
         return self.problem.part(self.variants[row] if self.variants else 0)
 
     def mechanism(self, row: int) -> Mechanism:
-        """Return the machine of a design: with the choices and the varying numbers that it has."""
+        """Return the machine of a design, with its choices and extra variables in place."""
         return self.part(row).mechanism.at(self.dimensions[row, 3:].tolist())
 
     def ask(self, question: str, row: int | None = None, /, **inputs: object) -> dict[str, Any]:
-        """Return the answer of the front to a question, or of the design in a row, as `Problem.ask` gives it.
+        """Answer a question about the front, or about the design in a row, as `Problem.ask` does.
 
-        "certify", "wish", "like" and "round" are asked of a front, as the commands are: `front.ask("certify",
-        epsilon=0.02)`, `front.ask("wish", at={"peak_torque": "110 N m"})`, with a row that "improve" and "keep" speak
-        of, `front.ask("round", 3, to="0.5 mm")`; all others of a design: `front.ask("press", front.knee())`. Raises
-        `InputError` for an unknown question, row or input, and for what the front does not have.
+        "certify", "wish", "like" and "round" are questions about a front, as the commands are:
+        `front.ask("certify", epsilon=0.02)`, `front.ask("wish", at={"peak_torque": "110 N m"})`. A row is the design
+        to which "improve" and "keep" refer, or the one to round: `front.ask("round", 3, to="0.5 mm")`. All others are
+        about a design: `front.ask("press", front.knee())`. Raises `InputError` for an unknown question, row or input,
+        and for anything that the front does not have.
         """
         if row is None or subject_of(question) == "front":
             answer: dict[str, Any] = question_to("front", question).answer_of(self, row, inputs)
@@ -160,9 +161,9 @@ class ParetoFront:
 
     @property
     def violated(self) -> dict[str, Array]:
-        """By how much (n,) each design goes beyond an allowable value, SI, by quantity; see `Analysis.violated`.
+        """Excess (n,) of each design over an allowable value, SI, by quantity; see `Analysis.violated`.
 
-        Zero for a design that does not; quantities of which none does are left out.
+        Zero for a design within the allowable value; quantities that no design exceeds are left out.
         """
         variants = np.array(self.variants or [0] * len(self))
         excess_by_name: dict[str, Array] = {}
@@ -182,7 +183,7 @@ class ParetoFront:
         return excess_by_name
 
     def extremes(self) -> dict[str, int]:
-        """Return for each objective the row of its best design; ties go to the better in the other objectives."""
+        """Return the row of the best design for each objective; ties go to the better in the other objectives."""
         scaled = by_range(self.values, size=self._sizes)
         best = {}
         for index, objective in enumerate(self.objectives):
@@ -195,7 +196,7 @@ class ParetoFront:
         return knee(self.values, size=self._sizes)
 
     def topsis(self, weights: Mapping[str, float], *, normalisation: Normalisation = "range") -> int:
-        """Return the row that weights of the objectives choose, see `picking.closeness`; those not named have none.
+        """Return the row chosen by weights of the objectives, see `picking.closeness`; the others have no weight.
 
         `front.topsis({"peak_torque": 2.0, "transmission_angle": 1.0})`. Raises `InputError` for other names.
         """
@@ -207,10 +208,11 @@ class ParetoFront:
         return topsis(self.values, shares, normalisation=normalisation, size=self._sizes)
 
     def lexicographic(self, *priorities: Priority | str) -> int:
-        """Return the row that is left when objectives decide in turn, see `picking.lexicographic`.
+        """Return the row that remains when objectives decide in turn, see `picking.lexicographic`.
 
         `front.lexicographic(Priority(quantity="peak_torque", share=0.1), "transmission_angle")`: of the designs within
-        a tenth of the range from the least torque, the one of the best transmission angle. A name gives up nothing.
+        a tenth of the range from the least torque, the one with the best transmission angle. A name alone means a
+        share of zero.
         """
         order = [Priority(quantity=item) if isinstance(item, str) else item for item in priorities]
         for item in order:
@@ -221,11 +223,11 @@ class ParetoFront:
 
     @property
     def _sizes(self) -> list[float]:
-        """The targets, SI, 0 without: what distances from them are rounded against."""
+        """The targets, SI, 0 without one: the scale for rounding distances from them."""
         return [abs(objective.target or 0.0) for objective in self.objectives]
 
     def column_of(self, name: str) -> int:
-        """Return the column of an objective in `values`. Raises `InputError` for a name of none."""
+        """Return the column of an objective in `values`. Raises `InputError` for any other name."""
         names = [objective.quantity for objective in self.objectives]
         plain = ["".join(item.split()) for item in names]  # a formula is the same with other spaces
         if "".join(str(name).split()) not in plain:
@@ -236,8 +238,8 @@ class ParetoFront:
         """Return the row that is best in an objective among those within bounds.
 
         best: an objective's quantity name. bounds: column = (least, greatest) in the table's units, None for open:
-        `front.pick("peak_torque", least_transmission_angle_deg=(40, None))`. A quantity or formula may report for a
-        column, its bounds in SI: `**{"2 * crank + rod": (None, 0.4)}`. Raises `InputError` when none qualifies.
+        `front.pick("peak_torque", least_transmission_angle_deg=(40, None))`. A quantity or formula may stand for a
+        column, its bounds in SI: `**{"2 * crank + rod": (None, 0.4)}`. Raises `InputError` if no design qualifies.
         """
         objective = self.column_of(best)
         if not len(self):
@@ -281,13 +283,13 @@ class ParetoFront:
         allow: Mapping[str, float | str] | None = None,
         progress: Callable[[Stage], None] | None = None,
     ) -> Rounded:
-        """Return the best designs of round numbers near a design that meet every requirement, and what each costs.
+        """Return the best designs with round numbers near a design that meet every requirement, and their costs.
 
         to: a step for crank, rod and offset, m, or steps by name, SI: `front.rounded(3, {"crank": 5e-4, "rod": 1e-3})`.
-        allow: how far requirements may be missed, by quantity, SI or as text: `{"stroke": "0.1 mm"}`. Where no rounded
-        design within 32 steps meets all within that, the nearest are given, `met` is False; `misses` has the amounts.
-        progress: called several times a second; what it raises ends the search. See `Rounded` and `rounding.rounding`.
-        Warns of an allowed miss without a unit that is more than a tenth of what is required.
+        allow: allowed misses of requirements, by quantity, SI or as text: `{"stroke": "0.1 mm"}`. If no rounded design
+        within 32 steps meets all of them, the nearest are returned and `met` is False; `misses` has the amounts.
+        progress: called several times a second; an exception from it ends the search. See `Rounded` and
+        `rounding.rounding`. Warns if an allowed miss without a unit is more than a tenth of the required value.
         """
         for doubt in doubtful_misses(self.part(row), allow or {}):
             warn_user(f"allowed misses are in SI: {doubt}")
@@ -306,7 +308,7 @@ class ParetoFront:
         count: int = 5,
         allow: Mapping[str, float | str] | None = None,
     ) -> Generator[Stage | Rounded, None, None]:
-        """Yield where the search of `rounded` is, several times a second, and at last its answer; closing ends it."""
+        """Yield the stage of the search of `rounded` several times a second, finally its answer; closing ends it."""
         part, design = self.part(row), self.dimensions[row]
         labels = self.problem.variants[self.variants[row]].labels if self.variants else ()
         stay = []
@@ -320,12 +322,12 @@ class ParetoFront:
     def rates(self, row: int) -> Array:
         """Return the trade-off rates (m, m) at a design: `[a, b]` is objective a's loss per unit gained in b.
 
-        To first order and in shown units, along the direction that gains one unit of b most cheaply: with the least sum
-        of losses, each scaled by its range over the front, the active constraints held. Losses are zero or more; column
-        b is NaN where b cannot gain at all, where no design of the front is better in it, and of an amount that follows
-        from a choice alone.
+        Rates are first order, in display units, along the direction that gains one unit of b most cheaply. That is the
+        one with the least sum of losses, each scaled by its range over the front, with the active constraints held.
+        Losses are zero or more. Column b is NaN where b cannot gain, where no design of the front is better in it, and
+        for an amount that depends only on a choice.
         """
-        self.part(row)  # refuses what is no row
+        self.part(row)  # refuses an unknown row
         owner, slopes = self.goals[row]
         m, k = len(self.objectives), slopes.shape[1]
         units = np.array([quantity.unit.factor for quantity in self._quantities])
@@ -335,7 +337,7 @@ class ParetoFront:
         slopes = slopes * (units / spans)[owner.astype(int)][:, None]
         residual, shares, pushes = multipliers(slopes, self.active[row]) if k else (np.inf, 0.0, 0.0)
         if residual <= STATIONARY:
-            # Along what is left of the slopes all objectives would gain a little, without end: the design counts as
+            # Along the remaining slopes all objectives would gain a little, without end: the design counts as
             # exactly stationary.
             slopes = slopes - (shares @ slopes + pushes @ self.active[row])
         rates = np.full((m, m), np.nan)
@@ -350,9 +352,9 @@ class ParetoFront:
     def trade_offs(self, row: int, system: System = "metric") -> list[str]:
         """Return the trade-off rates at a design in words: "1 deg more transmission angle costs 0.8 N m ...".
 
-        Steps and costs stay within the front: no gain beyond its best design, no loss beyond its worst. Of an objective
-        that has nothing left to gain this is said; one that is the same in all designs is left out. system: of the
-        units that they are told in.
+        Steps and costs stay within the front: no gain beyond its best design, no loss beyond its worst. The text says
+        if an objective has nothing left to gain; one that is the same in all designs is left out. system: system of the
+        display units.
         """
         require_word("system", system, System)
         rates, ranges = self.rates(row), spread(self.values, size=self._sizes)
@@ -384,7 +386,7 @@ class ParetoFront:
         return f"no design of the front has {'more' if objective.sense == 'maximise' else 'less'} {title}"
 
     def _unit(self, objective: Objective, system: System) -> tuple[str, float]:
-        """Return the unit that a system shows for an objective, and what its metric one is in that."""
+        """Return the display unit of an objective in a system, and the size of its metric unit in it."""
         return shown_in(self.problem.quantity(objective.quantity).unit.symbol, system)
 
     def _change(self, objective: Objective, amount: float, system: System, *, gain: bool) -> str:
@@ -428,7 +430,7 @@ def _cheapest(slopes: Array, owner: Array, active: Array, b: int, m: int) -> Arr
 
 
 def pair(name: str, ends: object) -> tuple[float | None, float | None]:
-    """Return least and greatest of a name, None for open. Raises `InputError` for what is no such pair of numbers."""
+    """Return least and greatest value for a name, None for open. Raises `InputError` unless ends are such a pair."""
     bounds = tuple(ends) if isinstance(ends, tuple | list) else ()
     if len(bounds) != 2 or not all(end is None or (isinstance(end, Real) and not math.isnan(end)) for end in bounds):
         raise InputError(
@@ -438,6 +440,6 @@ def pair(name: str, ends: object) -> tuple[float | None, float | None]:
 
 
 def require_front(front: object, caller: str) -> None:
-    """Refuse what is no front. caller: takes one."""
+    """Raise `InputError` unless the argument is a front. caller: name of the function that takes one."""
     if not isinstance(front, ParetoFront):
         raise InputError(f"{caller} needs a front; got {type(front).__name__}; solve(problem) returns one")

@@ -1,4 +1,4 @@
-"""An optimisation problem: what is given, what may vary, what must hold, what is wanted. SI, immutable, validated."""
+"""An optimisation problem: its machine, variables, requirements and objectives. SI, immutable, validated."""
 
 from __future__ import annotations
 
@@ -52,9 +52,9 @@ _IN_WORDS: dict[Word, str] = {"min": "at least ", "max": "at most ", "equals": "
 class Settings:
     """Settings of the search.
 
-    method: a name from `methods.registry`. designs: how many to deliver at most. samples: designs evaluated per round
-    before the polish; None lets the method choose. evaluations: how many designs a method other than "auto" may
-    evaluate; None for its own budget. seed: of everything random.
+    method: a name from `methods.registry`. designs: greatest number of designs to return. samples: designs evaluated
+    per round before the polish; None lets the method choose. evaluations: number of designs that a method other than
+    "auto" may evaluate; None for its own budget. seed: seed of all random numbers.
     """
 
     method: str = "auto"
@@ -76,11 +76,11 @@ class Settings:
 class Variant:
     """One combination of discrete choices.
 
-    labels: what is chosen, one for each of the problem's `choices`. mechanism, crank, rod, offset: those of the problem
-    with the choice in place. limits: constraints that come with it (what a gearmotor can take); where the problem
-    constrains the same quantity, both hold. slow_stroke: which stroke must be the slow one with it. amounts: values of
-    the problem's amounts, SI. notes: texts such as a maker, each with its choice and its head before it. ranks: of each
-    choice, how many options of its catalogue are less than this one.
+    labels: the chosen options, one for each of the problem's `choices`. mechanism, crank, rod, offset: those of the
+    problem with the choice in place. limits: constraints that come with it (such as the greatest torque of a
+    gearmotor); where the problem constrains the same quantity, both hold. slow_stroke: the stroke that must be slow
+    with it. amounts: values of the problem's amounts, SI. notes: texts such as a maker, each preceded by its choice and
+    its column heading. ranks: for each choice, the number of options in its catalogue that are less than this one.
     """
 
     labels: tuple[str, ...]
@@ -99,7 +99,7 @@ class Variant:
         _require_stroke(self.slow_stroke)
 
     def note(self, choice: str, head: str) -> str:
-        """Return a text that comes with an option of a choice; empty where it has none."""
+        """Return a text that comes with the chosen option; empty if it has none."""
         return next((text for *of, text in self.notes if of == [choice, head]), "")
 
 
@@ -120,18 +120,18 @@ _CHANGE = "change the problem with `dataclasses.replace`, or state it again with
 class Problem:
     """A complete optimisation problem.
 
-    mechanism: its varying numbers are variables besides the dimensions. crank, rod, offset: where the three dimensions
-    may lie, m. choices: names of the discrete choices. variants: every combination of them; none if nothing is to be
-    chosen. left_out: combinations whose limits the constraints exclude, label and reason, to be told. With
-    variants, mechanism and ranges here are those of no variant in particular: use `parts`. catalogue: combinations that
-    a design may name as the least that also serves, see `search.least`; also ones that are not searched. costs: of the
-    tolerances, for their allocation. sections: what bars are sized within, of the material of the mechanism. own:
-    quantities besides those that every problem has; objectives and constraints may name them too. slow_stroke: which
-    stroke must be the slow one, if that is asked; then the offset has only one sign, see `slow_side`, unless the speed
-    follows a profile, and the time ratio is above 1, see `violation.constraints_of`. discrete: which of a design's
-    numbers have one of some values only; their ranges are the hulls of these. motion: a swing
-    of the crank, which then need not turn through; its quantities are among the own ones, those of a turning crank
-    refused. warnings: sentences on what the job says and probably does not mean.
+    mechanism: the machine; its varying numbers are extra variables besides the dimensions. crank, rod, offset: ranges
+    of the three dimensions, m. choices: names of the discrete choices. variants: every combination of them; empty
+    without choices. left_out: combinations whose limits the constraints exclude, label and reason, to be reported. With
+    variants, use the mechanism and ranges of `parts`: those here belong to no particular variant. catalogue:
+    combinations that a design may name as the least that also serves, see `search.least`; some are not searched.
+    costs: costs of the tolerances, for their allocation. sections: limits within which bars are sized, in the material
+    of the mechanism. own: quantities besides those that every problem has; objectives and constraints may name them
+    too. slow_stroke: the stroke that must be slow, if one is required. The time ratio is then above 1, see
+    `violation.constraints_of`, and the offset has only one sign, see `slow_side`, unless the speed follows a profile.
+    discrete: the numbers of a design that take only listed values; their ranges are the hulls of these. motion: a swing
+    of the crank, which then need not rotate fully. Its quantities are among the own ones; quantities of a rotating
+    crank are refused. warnings: sentences on statements of the job that are probably not meant.
     """
 
     name: str
@@ -203,7 +203,7 @@ class Problem:
             raise InputError("crank and rod must be longer than zero; raise the lower end of their ranges")
 
     def _take(self, swing: Swing) -> None:
-        """Add the quantities of a swing. Raises `InputError` for what a swing cannot have."""
+        """Add the quantities of a swing. Raises `InputError` for anything that a swing cannot have."""
         known = {of.name for of in self.own}
         more = tuple(of for of in swing_quantities(swing) if of.name not in known)
         object.__setattr__(self, "own", (*self.own, *more))
@@ -239,7 +239,7 @@ class Problem:
         return f"Problem({self.name!r}: {wanted}; {count})"
 
     def _repr_html_(self) -> str:
-        """Picture of a linkage of the ranges and what is asked of it, for notebooks."""
+        """Picture of a linkage within the ranges and its requirements, for notebooks."""
         sizes = [0.5 * (ends.lower + ends.upper) for ends in (self.crank, self.rod, self.offset)]
         try:
             picture = Linkage(sizes[0], sizes[1], sizes[2], self.mechanism.branch)._repr_html_() or ""
@@ -251,9 +251,9 @@ class Problem:
         return f"<div><p>{escape(repr(self))}</p>{picture}<ul>{ranges}{asked}</ul></div>"
 
     def quantity(self, name: str) -> Quantity:
-        """Return the quantity of a name, the problem's own ones included, or of a formula as in job files.
+        """Return the quantity with a name, custom ones included, or the quantity of a formula as in job files.
 
-        Raises `InputError` with the nearest names, or with what is wrong with the formula.
+        Raises `InputError` with the nearest names, or with the error in the formula.
         """
         require_in_motion([name], self.own, self.motion)
         lengths = {name: getattr(self, name) for name in DIMENSIONS}
@@ -274,8 +274,9 @@ class Problem:
         """Return quantities (n, q) of designs (n, 3 + k), SI; with `gradients` the Jacobian too.
 
         The Jacobian is (n, q, 3 + k). quantities: names or formulas; if None the objectives, in the order of
-        `objectives`. Values are those of the quantities, not yet turned into what is minimised. Rows of designs that do
-        not turn fully are NaN. See `tables.evaluate`. Raises `InputError` for a problem with choices: ask its `parts`.
+        `objectives`. Values are those of the quantities, before any change of sign for minimisation. Rows of designs
+        that do not rotate fully are NaN. See `tables.evaluate`. Raises `InputError` for a problem with choices: use its
+        `parts`.
         """
         self._require_chosen()
         names = [objective.quantity for objective in self.objectives] if quantities is None else quantities
@@ -284,10 +285,10 @@ class Problem:
         return evaluated(self.mechanism, given, names, gradients=gradients, own=self.own, swing=self.motion)
 
     def analyse(self, design: ArrayLike) -> Analysis:
-        """Return everything about one design (3 + k,), crank, rod, offset, m, and the varying numbers, SI.
+        """Return the analysis of one design (3 + k,): crank, rod, offset, m, and the varying numbers, SI.
 
-        Raises `AssemblyError` for a design that does not turn fully, or not as far as a swing asks; `InputError` for a
-        problem with choices.
+        Raises `AssemblyError` for a design that does not rotate fully, or not as far as a swing requires; `InputError`
+        for a problem with choices.
         """
         self._require_chosen()
         machine, sizes = one_design(self.mechanism, design)
@@ -295,15 +296,16 @@ class Problem:
         return analysed(self.mechanism, machine, sizes, own=self.own, title=self.name, swing=self.motion)
 
     def ask(self, question: str, design: ArrayLike | None = None, /, **inputs: object) -> dict[str, Any]:
-        """Return the answer of a design (3 + k,) to a question, as JSON has it: `problem.ask("press", design)`.
+        """Answer a question about a design (3 + k,), with the keys of the JSON: `problem.ask("press", design)`.
 
-        Without a design a question to the job: `problem.ask("sweep", over="offset=0 mm..20 mm:5", of="peak_torque")`
-        gives `rows` as the command prints them; lengths that the job leaves open are given besides, `crank="40 mm"`.
+        Without a design, the question is about the job: `problem.ask("sweep", over="offset=0 mm..20 mm:5",
+        of="peak_torque")` returns `rows` as the command prints them. Lengths that the job leaves open are further
+        inputs, `crank="40 mm"`.
 
         question: a topic of `analyse --show`, "inverse", "swing", "allocate", "counterweight" (the command `balance`),
-        "sections", or one that another installed package has. inputs: those that it takes, in SI or as text with a
-        unit, `touch_distance="12 mm"`. Keys and values are those of `analyse --show press --json`. Raises
-        `InputError` for an unknown question or input, for what the design does not have, and as `analyse` does.
+        "sections", or a question from another installed package. inputs: its inputs, in SI or as text with a unit,
+        `touch_distance="12 mm"`. Keys and values are those of `analyse --show press --json`. Raises `InputError` for an
+        unknown question or input, for anything that the design does not have, and as `analyse` does.
         """
         self._require_chosen()
         if design is None:
@@ -329,15 +331,15 @@ class Problem:
         duration: float | None = None,
         actuator_tolerance: float | None = None,
     ) -> SwingSummary:
-        """Return the numbers of a swing of the crank for a design (3 + k,), which need not turn fully.
+        """Return the summary of a swing of the crank for a design (3 + k,), which need not rotate fully.
 
-        What is left out is as the problem's own motion has it; without one the crank drives, slowly. start, end: crank
-        angles, rad. slider_start, slider_end: slider positions instead, m, with the crank pin on the `crank_side` of
-        the line to the slider pin. driver: "crank", by a torque, or "slider", by a force. law: of its motion, see
-        `model.swing.swing_types`; duration: of one way, s, for all but "slow". actuator_tolerance: of the driven
-        slider, m.
+        Arguments left out are those of the problem's own motion; without one the crank drives, slowly. start, end:
+        crank angles, rad. slider_start, slider_end: slider positions instead, m, with the crank pin on the `crank_side`
+        of the line to the slider pin. driver: "crank", by a torque, or "slider", by a force. law: motion law of the
+        driver, see `model.swing.swing_types`. duration: time from end to end, s, for all laws but "slow".
+        actuator_tolerance: tolerance of the driven slider, m.
         Raises `AssemblyError` where the linkage does not close, `InputError` for a dead point that the slider cannot
-        pass, ends that are missing or of two kinds, and as `analyse` does.
+        pass, for ends that are missing or of two kinds, and as `analyse` does.
         """
         from ...model.swing.summary import summarise
         from ...model.swing.swing_request import SwingRequest, resolve_swing
@@ -378,12 +380,12 @@ class Problem:
 
     @property
     def machines(self) -> tuple[Mechanism, ...]:
-        """The machine of every variant, or that of the problem if there are no choices."""
+        """The machine of every variant; without choices, that of the problem."""
         return tuple(variant.mechanism for variant in self.variants) or (self.mechanism,)
 
     @property
     def choice_fields(self) -> list[tuple[str, str]]:
-        """Keys of the columns with chosen options and their amounts, each with its meaning in words."""
+        """Column keys of chosen options and their amounts, each with its meaning in words."""
         least = [self.choices[place] for place in self.catalogues]
         return [
             *((choice_field(name), f"the choice {name}") for name in self.choices),
@@ -398,7 +400,7 @@ class Problem:
         ]
 
     def heads(self, choice: str) -> list[str]:
-        """Return the heads of the texts that options of a choice have, such as "maker"."""
+        """Return the headings of the texts that options of a choice have, such as "maker"."""
         every = (note for variant in (*self.variants, *self.catalogue) for note in variant.notes)
         return [*dict.fromkeys(head for name, head, _ in every if name == choice)]
 
@@ -408,26 +410,26 @@ class Problem:
 
     @property
     def catalogues(self) -> tuple[int, ...]:
-        """Places of the choices whose options have an order, the least first."""
+        """Indices of the choices whose options are ordered, least first."""
         ranks = {variant.ranks for variant in self.catalogue}
         return tuple(place for place in range(len(self.choices)) if len({of[place] for of in ranks}) > 1)
 
     @property
     def every_constraint(self) -> tuple[Constraint, ...]:
-        """The constraints and those that come with choices."""
+        """The constraints, including those that come with choices."""
         return (*self.constraints, *(limit for variant in self.variants for limit in variant.limits))
 
     def reach_of(self, of: Quantity) -> QuantityBounds | None:
-        """Return the reach of a quantity if it holds for every machine of the problem."""
+        """Return the bounds of a quantity if they hold for every machine of the problem."""
         return of.bounds if all(of.bounds_for(machine) is not None for machine in self.machines) else None
 
     def without_gradient(self) -> list[str]:
-        """Return the names in objectives and constraints, those of choices too, that have no gradient."""
+        """Return the quantities without a gradient in objectives and constraints, including those of choices."""
         asked = {item.quantity for item in self.objectives} | {item.quantity for item in self.every_constraint}
         return [item.name for item in self.own if item.name in asked and not item.has_gradient]
 
     def slow_side(self) -> float | None:
-        """Sign of the offset (+1 or -1) that gives the slow stroke asked for; None where none is asked.
+        """Sign of the offset (+1 or -1) that gives the required slow stroke; None if none is required.
 
         The inward stroke is the slow one where e w s > 0, with s = +1 on the open branch and -1 on the crossed one.
         Also None along a speed profile: there a constraint replaces the sign, see
@@ -439,7 +441,7 @@ class Problem:
         return side if self.slow_stroke == "inward" else -side
 
     def part(self, variant: int) -> Problem:
-        """Return the problem of one variant, with nothing left to be chosen. Raises `InputError` for none of them."""
+        """Return the problem of one variant, without choices. Raises `InputError` for an unknown variant."""
         if not self.variants:
             return self
         if not isinstance(variant, Integral) or not -len(self.variants) <= variant < len(self.variants):
@@ -447,7 +449,7 @@ class Problem:
         return self.with_variant(self.variants[variant])
 
     def with_variant(self, chosen: Variant) -> Problem:
-        """Return the problem of a combination of choices. Raises `InputError` if its limits leave nothing."""
+        """Return the problem for a combination of choices. Raises `InputError` if its limits exclude every design."""
         amounts = dict(chosen.amounts)
         return replace(
             self,
@@ -465,7 +467,7 @@ class Problem:
         )
 
     def parts(self) -> tuple[Problem, ...]:
-        """Return the problem of every variant; itself if there is nothing to choose."""
+        """Return the problem of every variant; without choices, itself."""
         return tuple(self.part(index) for index in range(max(1, len(self.variants))))
 
 
@@ -476,7 +478,7 @@ def _in_words(of: Quantity, constraint: Constraint) -> str:
 
 
 def _common_stroke(stroke: SlowStroke | None, more: SlowStroke | None) -> SlowStroke | None:
-    """Return the slow stroke that both ask for. Raises `InputError` if they differ."""
+    """Return the slow stroke that both require. Raises `InputError` if they differ."""
     if stroke is not None and more is not None and stroke != more:
         raise InputError(
             f"the slow stroke must be either the outward or the inward one; got {stroke} and {more} of a choice"
@@ -485,7 +487,7 @@ def _common_stroke(stroke: SlowStroke | None, more: SlowStroke | None) -> SlowSt
 
 
 def require_problem(problem: object, what: str) -> None:
-    """Refuse what is no problem. what: takes one."""
+    """Raise `InputError` unless the argument is a problem. what: name of the function that takes one."""
     if not isinstance(problem, Problem):
         raise InputError(f"{what} needs a problem; got {type(problem).__name__}; make one with problem or load_job")
 

@@ -41,7 +41,7 @@ class DesignQuestion(Protocol):
 
 
 class FrontOrJobQuestion(Protocol):
-    """What a front or a job can be asked."""
+    """A question about a front or a job."""
 
     def answer_of(self, subject: Any, row: int | None, inputs: Mapping[str, object]) -> dict[str, Any]:
         """Return the answer as JSON has it, in metric units that its keys end with.

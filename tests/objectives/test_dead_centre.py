@@ -57,7 +57,10 @@ def test_speed_and_dwell_are_those_of_the_motion(dead_centre: DeadCentre, speed:
 
 
 def test_a_triangle_of_3_4_5_by_hand() -> None:
-    """Crank 3 is normal to rod 4 at x = 5: alpha = acos(3 / 5), |x'| = r / cos(phi) = 3 5 / 4."""
+    """Crank 3 normal to rod 4, at x = 5.
+
+    There alpha = acos(3 / 5) and |x'| = r / cos(phi) = 3 5 / 4.
+    """
     machine = Mechanism(speed=2.0, slider=SliderDistances(touch=2.0, dwell=2.0))
     design = np.array([[3.0, 4.0, 0.0]])
     assert TOUCH_SPEED.evaluate(machine, design).values[0] == pytest.approx(7.5, rel=1e-14)

@@ -1,7 +1,7 @@
-"""Works per cycle of engines, compressors and pumps of one and two turns, by an integral of p dV over the crank angle.
+"""Work per cycle of engines, compressors and pumps with one and two turns, by integrating p dV.
 
-Pressures, volumes and the integral are the tests' own. With friction alone between gas and crank, what the gas gives is
-what the crank delivers and what the joints lose, all over one cycle.
+Pressures, volumes and the integral over the crank angle are the tests' own. With friction alone between gas and crank,
+the work of the gas over one cycle equals the work that the crank delivers plus the losses in the joints.
 """
 
 from __future__ import annotations

@@ -82,7 +82,7 @@ def test_ripple_of_one_pump_in_line_is_its_greatest_speed_over_the_mean() -> Non
 
 
 def test_three_even_pumps_with_a_very_long_rod_ripple_as_sines_do() -> None:
-    """Of r sin the sum lies between 3 / 2 and sqrt(3); the rod's share falls with r / l squared."""
+    """The sum of |r sin| is between 3/2 and sqrt(3); the rod's part falls with r / l squared."""
     found = FLOW_RIPPLE.evaluate(Mechanism(loads=(PUMP,), arrangement=EVEN), np.array([[0.05, 0.5e6, 0.0]])).values
     assert found[0] == pytest.approx((math.pi / 3.0) * (1.0 - math.cos(math.pi / 6.0)), rel=1e-6)
 
@@ -108,7 +108,10 @@ def test_slopes_by_lengths_and_bores_are_those_of_differences() -> None:
 
 
 def test_flow_is_the_volume_taken_in_times_the_turns_of_a_minute() -> None:
-    """70 mm bore, 60 mm stroke in line, 1,200 rpm: 277.09 L/min swept, 0.95 + 0.05 less 0.05 8^(1 / 1.2) of it."""
+    """70 mm bore, 60 mm in-line stroke, 1,200 rpm: 277.09 L/min swept.
+
+    The fraction taken in is 0.95 + 0.05 less 0.05 8^(1 / 1.2).
+    """
     machine = Mechanism(speed=-40.0 * math.pi, loads=(AIR,))
     swept = 0.25 * math.pi * 0.7**2 * 0.6 * 1200.0  # L/min, in dm
     assert swept == pytest.approx(277.0884720, rel=1e-9)

@@ -202,7 +202,10 @@ AVERAGES = ("rms_torque", "mean_torque", "torque_fluctuation", "mean_power", "rm
 @pytest.mark.parametrize("seed", [1, 2, 3, 4, 10])  # harmonics, a table, several cylinders, two turns, friction
 @pytest.mark.parametrize("name", AVERAGES)
 def test_gradient_of_an_average_along_a_profile_is_that_of_extrapolated_differences(name: str, seed: int) -> None:
-    """Over time as over the crank angle; what jumps at a breakpoint that moves counts by the time that lasts there."""
+    """Averages over time as over the crank angle.
+
+    A jump at a breakpoint that moves counts by the time per angle there.
+    """
     quantity, case = QUANTITIES[name], random_case(seed)
     designs = random_designs(1, seed=10 + seed, least_margin=0.5)
     first = 0.3 * steps_to_the_nearest_edge(designs, kink_without_offset=True)

@@ -51,7 +51,10 @@ def test_it_is_the_greatest_product_of_force_and_lever(machine: Mechanism, frict
 
 
 def test_a_load_on_a_rod_without_mass_by_hand() -> None:
-    """In line N = F tan(phi), tan(phi) = r sin / sqrt(l^2 - r^2 sin^2); a far guide counts where N is greatest."""
+    """In line N = F tan(phi); a far guide counts where N is greatest.
+
+    Here tan(phi) = r sin / sqrt(l^2 - r^2 sin^2).
+    """
     r, l, force, far = 0.05, 0.13, 800.0, 1e6
     machine = Mechanism(loads=(StrokeForce(outward=-force, inward=-force),), slider=SliderDistances(guide=far))
     found = GUIDE_MOMENT.evaluate(machine, np.array([[r, l, 0.0]])).values[0]

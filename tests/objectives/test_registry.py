@@ -61,7 +61,7 @@ def test_a_changed_quantity_keeps_its_change_where_another_process_takes_it_up()
 
 
 def test_every_average_says_over_what_it_is_taken() -> None:
-    """What heats or shakes is over time, work over the crank angle. The mean effective pressure is work over volume."""
+    """Heating and shaking average over time, work over the crank angle. Mean effective pressure is work per volume."""
     told = {name for name, each in QUANTITIES.items() if isinstance(each, CycleAverage) or "mean of" in each.formula}
     told |= {name for name in QUANTITIES if name.startswith(("mean_", "rms_"))}
     for name in told - {"mean_effective_pressure", "delivered_work"}:

@@ -63,10 +63,10 @@ def ratio_of(profile: Harmonics | SpeedTable) -> Any:
 
 
 def times_by_integration(machine: Mechanism, design: Array, lead: float = 0.0) -> dict[str, float]:
-    """Return the time between the ends of the slider's travel, s, by integrating 1 / (speed p) over the shaft's angle.
+    """Return the times between the ends of the slider's travel, s, by integrating 1 / (speed p) over shaft angle.
 
-    The slider turns round where its velocity changes sign; the farther end is the outer one.
-    lead: of the crank of a cylinder over the shaft's angle, rad.
+    The slider reverses where its velocity changes sign; the farther end is the outer one.
+    lead: lead of a cylinder's crank over the shaft's angle, rad.
     """
     assert machine.speed_profile is not None
     (r, l, e), profile = design[0], machine.speed_profile
@@ -155,7 +155,10 @@ def test_both_strokes_take_the_time_of_a_turn_over_any_profile() -> None:
 
 
 def test_a_single_harmonic_takes_the_time_of_its_closed_form() -> None:
-    """The integral of 1 / (1 + a cos) is 2 atan(sqrt((1 - a) / (1 + a)) tan(theta / 2)) / sqrt(1 - a^2)."""
+    """Integral of 1 / (1 + a cos) by its closed form.
+
+    It is 2 atan(sqrt((1 - a) / (1 + a)) tan(theta / 2)) / sqrt(1 - a^2).
+    """
     for a in (0.3, -0.9, 0.999, 1.0 - 1e-6):
         elapsed = Harmonics(cosines=(a,)).elapsed_time
         theta = np.linspace(-3.1, 3.1, 200)

@@ -38,7 +38,7 @@ def weak(random: np.random.Generator) -> Strength:
 
 
 def test_pins_of_the_examples_bear_an_ordinary_load() -> None:
-    """5 kN on bars of the examples: their pins are half as thick as the bars are wide, and nothing is exceeded."""
+    """A load of 5 kN exceeds nothing on bars of the examples, with pins of half their width."""
     bar = {"width": "30 mm", "depth": "20 mm", "density": EXAMPLE["material"]["density"]}
     tables = {
         "name": "Pusher",

@@ -1,4 +1,4 @@
-"""What a catalogue has besides limits: prices that may be asked for, texts, and the least row that serves."""
+"""Contents of a catalogue besides limits: prices as quantities, texts, and the least row that serves."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ def problem(*load: dict[str, Any], **tables: Any) -> Problem:
 
 
 def integral(machine: Mechanism, design: Any, angles: Any) -> float:
-    """Return the work of the loads, J, over crank angles at the edges of small steps, in the order of motion."""
+    """Return the work of the loads, J, over small steps of crank angle, by their edges in order of motion."""
     theta, step = 0.5 * (angles[1:] + angles[:-1]), np.diff(angles)
     at = path(design, theta, 1.0 if machine.branch == "open" else -1.0)
     sign = 1.0 if machine.branch == "open" else -1.0
@@ -198,7 +198,7 @@ def test_a_cycle_of_two_turns_counts_both() -> None:
 
 
 def test_a_load_in_part_of_the_designs_is_said_to_be_in_part() -> None:
-    """Within 80 mm of the dead centre it resists with 350 N, beyond it helps as much: long strokes are helped."""
+    """The load of 350 N resists within 80 mm of the dead centre and helps beyond, in long strokes."""
     table = PUSH | {"positions": ["0 mm", "80 mm", "80 mm", "90 mm"], "forces": ["-350 N", "-350 N", "350 N", "350 N"]}
     (said,) = driven_by_loads(problem(table))
     assert said.startswith("in some sampled designs loads do more work")
@@ -247,7 +247,7 @@ CORNER = {
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_a_load_that_drives_the_longest_strokes_alone_is_questioned_for_these(sign: int) -> None:
-    """Up to a stroke of 130 mm the force is 100 N, beyond it -150 kN: the longest strokes reverse the sign."""
+    """The force is 100 N up to 130 mm and -150 kN beyond: the longest strokes reverse the sign."""
     forces = [f"{sign * force} N" for force in (100, 100, -150_000, -150_000)]
     load = PUSH | {"positions": ["0 mm", "130 mm", "130 mm", "200 mm"], "forces": forces}
     (said,) = driven_by_loads(problem(load, constraints={"stroke": {"min": "50 mm"}}, **CORNER))

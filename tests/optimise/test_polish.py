@@ -241,9 +241,9 @@ def test_a_direction_that_nothing_depends_on_stiffens_no_other() -> None:
 def test_a_design_that_is_best_in_an_objective_stays_so_where_its_slope_vanishes(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """At the minimum of c x**2 only curvature holds it: a weight K permits a loss of 1 / (4 K**2 c).
+    """At the minimum of c x**2 only curvature holds it: weight K permits a loss of 1/(4 K**2 c).
 
-    Each step may besides lose what counts as rounding, which some processors come to use.
+    Each step may also lose the amount that counts as rounding, and on some processors it does.
     """
     goals = Analytic([[lambda x, y: 0.1 * (x - 0.5) ** 2], [lambda x, y: -x]])
     given = (goals, np.array([[0.5, 0.0]]), np.ones(2))

@@ -46,7 +46,10 @@ def test_the_slow_stroke_is_the_loaded_one() -> None:
 
 
 def test_a_press_slowed_while_it_presses_needs_a_stronger_gearmotor() -> None:
-    """The torque stays, but lasts: over the crank angle both keep to 118 N m, the limit of a gearmotor of 0.37 kW."""
+    """The torque is the same but lasts longer.
+
+    Averaged over the crank angle, both stay within 118 N m, the limit of a 0.37 kW gearmotor.
+    """
     design, share = np.array([[*LENGTHS, 0.046, 0.053, 0.025]]), 0.5 * math.sqrt(0.5)
     limit = replace(next(c for c in PRESS.constraints if c.quantity == "rms_torque"), upper=118.0)
     profile = Harmonics(cosines=(-share,), sines=(-share,))  # half the speed at 45 deg

@@ -65,7 +65,7 @@ TOGETHER = {
 
 
 def numbers() -> list[tuple[str, str, Node]]:
-    """Return table, key and node of every number that has a bound; a load in a file is refused until that is read."""
+    """Return table, key and node of every number with a bound, except in load files: these are read first."""
     return [
         (table, key, one)
         for table, node in DEFS.items()

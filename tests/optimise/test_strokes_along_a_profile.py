@@ -31,9 +31,9 @@ def job(**changes: Any) -> dict[str, Any]:
 
 
 def outward_to_inward(problem: Problem, designs: Any, count: int = 200_001) -> list[float]:
-    """Return the time of the outward stroke over that of the inward one, counted at even steps of the crank angle.
+    """Return the ratio of outward to inward stroke time, counted in even steps of the crank angle.
 
-    A step takes 1 / p; it is of the outward stroke where the slider is farther out after it. Good to 1e-4.
+    A step takes 1 / p; it belongs to the outward stroke if the slider is farther out after it. Accurate to 1e-4.
     """
     profile = problem.mechanism.speed_profile
     assert profile is not None

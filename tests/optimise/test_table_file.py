@@ -1,4 +1,4 @@
-"""Tables in files of any dialect: read back to the bit, refused where a number could be a thousand times as much."""
+"""Tables in files of any dialect: read back bit for bit, refused if a number could be 1000 times larger."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def grouped(text: str, sign: str, group: str) -> str:
 
 
 def written(numbers: np.ndarray, dialect: tuple[str, str, str, str]) -> bytes:
-    """Return a table as a file in one of the dialects; its second head has a letter that no ASCII has."""
+    """Return a table as a file in one of the dialects; its second heading has a non-ASCII letter."""
     separator, sign, encoding, extra = dialect
     cells = [[repr(float(number)).replace(".", sign) for number in row] for row in numbers]
     if extra == "thousands" and separator != ",":

@@ -1,4 +1,4 @@
-"""Mistakes in the syntax of TOML: key, rule, the line as typed, and a line that can be read in its place."""
+"""Mistakes in TOML syntax: key, rule, the line as typed, and a readable line in its place."""
 
 from __future__ import annotations
 

@@ -133,7 +133,7 @@ def test_the_torque_of_a_table_that_steps_at_its_seam_is_enclosed_for_every_desi
 
 
 def test_a_peak_on_a_step_is_bounded_the_better_the_smaller_the_box() -> None:
-    """A shear load of 1 kN that drops to zero: its peak is at the step, whose crank angle varies with the design."""
+    """A shear load drops from 1 kN to zero: its peak is at this step, which depends on the design."""
     table = PositionTable(
         positions=(0.0, 0.02, 0.02), forces=(0.0, -1000.0, 0.0), datum="outer dead centre", during="outward stroke"
     )
