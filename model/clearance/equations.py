@@ -7,8 +7,8 @@ rod angle phi. With complex numbers for vectors in the plane, the loop of the id
 
 A crank pivot that is loose lets the crank translate while a coupling keeps turning it steadily: then the crank's
 origin is at C; the crank pin is at C + r exp(i theta). A loose crank pin is C away from the rod's end, a loose slider
-pin C away from the slider. So the contact does the same work in every case; only where the masses hang differs. The
-mass centre of each body is k (x + i e) + a exp(i phi) + b exp(i theta):
+pin C away from the slider. So the contact does the same work in every case; only the attachment of the masses differs.
+The mass centre of each body is k (x + i e) + a exp(i phi) + b exp(i theta):
 
     loose joint      crank                  rod                   slider
     crank pivot      k 1, a -l, b c - r     k 1, a s - l, b 0     k 1, a 0, b 0
@@ -18,7 +18,7 @@ mass centre of each body is k (x + i e) + a exp(i phi) + b exp(i theta):
 with c and s the mass centres of crank and rod in their own axes. Lagrange's equations follow from these sums.
 
 State of the integration: the gap and its velocity rather than x and phi, because the penetration is a millionth of
-x. Three integrals ride along: the work of the drive, the work of the loads on the slider, and the energy that the
+x. Three integrals are included: the work of the drive, the work of the loads on the slider, and the energy that the
 contact dissipates.
 """
 
@@ -84,7 +84,7 @@ class Place(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """The contact. force: on what carries the gap C, complex. normal, tangential: N, the latter on the journal.
+    """Contact. force: force on the body that carries gap C, complex. normal, tangential: N, the latter on the journal.
 
     on_crank, on_rod: moments of the friction about the pins, N m. penetration: m, negative if apart.
     elastic: stored energy, J. lost: dissipated power, W.
@@ -124,7 +124,7 @@ def touch(gap: complex, gap_t: complex, rod_t: float, rate: float, s: System) ->
     depth_t = normal.real * gap_t.real + normal.imag * gap_t.imag
     spring = s.stiffness * depth * math.sqrt(depth)
     press = max(0.0, spring * (1.0 + rate * depth_t))
-    # Both bodies touch at one point, at the bearing's radius, so that no moment appears out of nothing.
+    # Both bodies touch at one point, at the bearing's radius, so that no spurious moment appears.
     arm = s.bearing_radius - distance
     slide = normal.real * gap_t.imag - normal.imag * gap_t.real
     slide += arm * s.journal_turns * s.speed - s.bearing_radius * s.bearing_turns * rod_t
@@ -180,7 +180,7 @@ def load_along_x(
     m = Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, p.x, p.x_t, 0.0)
     force = load_on_slider(m, d, block, 0, theta, outward, loads, piece, shift)
     moving = d.branch * p.x_t > 0.0
-    if moving != outward:  # near a dead centre the loose slider lags: what opposes its motion turns with the motion
+    if moving != outward:  # near a dead centre the loose slider lags: loads that oppose its motion reverse with it
         force += with_formulas(0.0, m, d, block, 0, moving, loads) - with_formulas(0.0, m, d, block, 0, outward, loads)
     return float(d.branch * force)
 

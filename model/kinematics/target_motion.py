@@ -1,13 +1,13 @@
-"""Deviation of the slider's motion from a wanted one, given as points (crank angle, position).
+"""Deviation of the slider's motion from a desired one, given as points (crank angle, position).
 
 With x the slider's distance from the crank pivot along its line and (theta_i, t_i) the points, the deviations are
 
     d_i = x(theta_i + phase) + shift - t_i,
 
-and count by their greatest size or by their root mean square over the points. Phase and shift are zero, or chosen for
-the least deviation where they are free: a crank keyed to its shaft at another angle, a tool clamped elsewhere on the
-slider. The best shift is exact (mid-range, mean). The best phase is found all around: of the greatest deviation by
-branch and bound, of the root mean square, which is smooth, from the best stretches of a grid.
+judged by their greatest size or their root mean square over the points. Phase and shift are zero or, where free, chosen
+for the least deviation: a crank keyed to its shaft at another angle, a tool clamped elsewhere on the slider. The best
+shift is exact (mid-range, mean). The best phase is sought over the whole turn. Branch and bound minimises the greatest
+deviation; the smooth root mean square is minimised from the best stretches of a grid.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ _TURN = 2.0 * math.pi
 
 @dataclass(frozen=True, kw_only=True)
 class TargetMotion:
-    """A wanted slider motion.
+    """A desired slider motion.
 
     crank_angles: rad, increasing, within one turn. positions: of the slider, m, outward from the crank pivot.
-    phase: whether the crank may sit on its shaft at any angle. shift: whether positions may count from anywhere.
+    phase: whether the crank may sit on its shaft at any angle. shift: whether positions may be counted from any origin.
     """
 
     crank_angles: tuple[float, ...]
@@ -90,10 +90,10 @@ class Fit(NamedTuple):
 def _measure(
     phase: Any, rms: Any, shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any
 ) -> tuple[float, float]:
-    """Return the deviation at a phase and the shift that makes it least, zero where fixed; `d` gets each point's."""
+    """Return the deviation at a phase and the best shift, zero where fixed; `d` receives each point's deviation."""
     sines, cosines, at = points
     n = at.shape[0]
-    # Of sums of angles: no sine or cosine within the loop.
+    # Angle-sum formulas avoid a sine or cosine within the loop.
     p, q = r * math.sin(phase), r * math.cos(phase)
     high, low, total = -math.inf, math.inf, 0.0
     for i in range(n):
@@ -160,9 +160,9 @@ def _section(low: Any, high: Any, rms: Any, shifts: Any, r: Any, l: Any, e: Any,
 def _bound(
     phase: Any, half: Any, bend: Any, shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any, slope: Any
 ) -> Any:
-    """Return the greatest deviation at a phase, and what it cannot fall below within `half` of it.
+    """Return the greatest deviation at a phase, and its lower bound within `half` of that phase.
 
-    With the shift free what all deviations have in common does not count, neither of their slopes.
+    With the shift free, the common part of all deviations, and of their slopes, does not count.
     """
     sines, cosines, at = points
     p, q = r * math.sin(phase), r * math.cos(phase)
@@ -195,9 +195,9 @@ def _branch_and_bound(
 ) -> float:
     """Return the phase of the least greatest deviation.
 
-    A deviation bends by no more than the slider's greatest acceleration per turn, so that cells of the phase whose
-    bound exceeds the best value so far can be left out; the others are halved until what is in one is as good as
-    convex.
+    The curvature of a deviation is bounded by the slider's greatest acceleration over a turn. Cells of the phase whose
+    bound exceeds the best value so far are therefore left out. The others are halved until the function within one is
+    practically convex.
     """
     bend, half = 0.0, math.pi / _PHASES
     for j in range(_PHASES):
@@ -227,7 +227,7 @@ def _branch_and_bound(
 def _least_square(
     shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any, slope: Any, bend: Any, grid: Any
 ) -> float:
-    """Return the phase of the least root mean square deviation: the best of the grid's best stretches."""
+    """Return the phase of the least root mean square deviation, searched from the grid's best stretches."""
     for j in range(_PHASES):
         grid[j], _ = _measure(_TURN * j / _PHASES, True, shifts, r, l, e, b, points, d)
     best_phase, least, last, j = 0.0, math.inf, -math.inf, -1
@@ -247,7 +247,7 @@ def _least_square(
         for turn in range(_NEWTON + 1):
             value, _ = _measure(phase, True, shifts, r, l, e, b, points, d)
             step = _newton(phase, shifts, r, l, e, b, points, d, slope, bend)
-            if abs(step) > 1e-5 or turn == _NEWTON:  # golden section is not off by more where the square is convex
+            if abs(step) > 1e-5 or turn == _NEWTON:  # golden section errs by less where the square is convex
                 break
             phase += step
         if value < least:
@@ -271,7 +271,7 @@ def _fit(designs: Table, b: float, angles: Row, at: Row, rms: bool, turns: bool,
 
 
 def fit(target: TargetMotion, branch: float, measure: Measure, designs: Array) -> Fit:
-    """Return the least deviation for designs (n, 3): crank, rod, offset, m, each turning fully; branch +1 or -1."""
+    """Return the least deviation for designs (n, 3): crank, rod, offset, m, each rotating fully; branch +1 or -1."""
     designs = turning(designs)
     angles, at = np.array(target.crank_angles), np.array(target.positions)
     free = target.phase == "free", target.shift == "free"

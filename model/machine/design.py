@@ -32,11 +32,10 @@ class Design(NamedTuple):
     rod_across are per rod length, kg.
     outward_force, inward_force: sums of the stroke forces. stiffness, spring_force: sums of k and of k x_rest.
     viscous: sum of the coefficients. moving_mass: slider with all added masses, which resist its acceleration but have
-    no weight, kg. *_error: tolerance of crank, rod, offset, crank angle; that of the rod with the
-    clearances of the pins added to it, that of the offset with the clearance of the guide (see `position_error`).
-    rod_error_rss, offset_error_rss: the same added up as squares.
-    guide_friction: coefficient. *_circle: radius of a pin's friction circle, radius times coefficient, m.
-    guide_distance: of the guide's centre from the slider pin at its outer dead centre, outward, m.
+    no weight, kg. *_error: tolerance of crank, rod, offset, crank angle; the rod's includes the clearances of the pins,
+    the offset's the clearance of the guide (see `position_error`). rod_error_rss, offset_error_rss: the same summed as
+    squares. guide_friction: coefficient. *_circle: radius of a pin's friction circle, radius times coefficient, m.
+    guide_distance: distance of the guide's centre from the slider pin at its outer dead centre, outward, m.
     """
 
     r: Any
@@ -88,7 +87,7 @@ _MOVING_MASS = Design._fields.index("moving_mass")
 _RUBBING = Design._fields.index("guide_friction")
 _ROD_RSS, _OFFSET_RSS = Design._fields.index("rod_error_rss"), Design._fields.index("offset_error_rss")
 
-# Written out when the module is loaded: numba takes no column of an array for a tuple.
+# Written out when the module is loaded: numba does not accept an array column as a tuple.
 design_at: Any = analytic(eval(f"lambda block, j: Design({', '.join(f'block[{row}, j]' for row in range(DESIGN))})"))
 """Column j of a derived block as a `Design`; from Python `j` may be a slice."""
 
@@ -192,7 +191,7 @@ def _derive_offset(raw: Any, out: Any) -> None:
 def derive(raw: Any, kind: Any, datum: Any, out: Any, moved: Any = -1) -> None:
     """Fill `out` (DESIGN + LOAD_ROWS k, n) from raw numbers (END + LOAD_SLOTS k, n), real or complex.
 
-    moved: the one raw number that has changed since `out` was filled; where it is a dimension, less is done.
+    moved: the only raw number that has changed since `out` was filled; a dimension needs less work.
     """
     for i in range(9):
         for j in range(raw.shape[1]):
@@ -224,7 +223,7 @@ def derive(raw: Any, kind: Any, datum: Any, out: Any, moved: Any = -1) -> None:
         q = DESIGN + LOAD_ROWS * k
         for j in range(raw.shape[1]):
             if datum[k] == 0:
-                sign, origin = 1.0, 0.0 * raw[_CRANK, j]  # not of a dead centre, which a swing need not have
+                sign, origin = 1.0, 0.0 * raw[_CRANK, j]  # not from a dead centre, which a swing need not have
             elif datum[k] == 1:
                 sign, origin = 1.0, 1.0 * out[21, j]
             else:

@@ -2,11 +2,11 @@
 
 The cycle is cut into segments, on each of which the curve is smooth. Value and slope are sampled on panels of segments,
 halved until they are followed. Between two samples where the curve rises and falls again lies a local maximum, found as
-the root of the slope. A breakpoint between segments is one too where the curve has a kink or a jump. The derivative of
-a maximum by the design is the partial one where it lies (envelope theorem); one on a breakpoint moves with it. What is
-not exact is which of two maxima within one spacing is the higher.
+the root of the slope. A breakpoint between segments is also a maximum where the curve peaks in a kink or a jump. The
+derivative of a maximum by the design is the partial derivative at its place (envelope theorem); a maximum on a
+breakpoint moves with it. Only the choice between two maxima within one spacing is not exact.
 
-What the curve is followed over is up to the motion: the crank angle of a shaft, the time of a swing.
+The motion defines the independent variable (place): the crank angle of a shaft, or the time of a swing.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from ..arrays import Array, Mask, Whole
 from .cycle_segments import Segments
 from .panels import resolved_tail
 
-_ROUGH = 1e-6  # what may be left of the last coefficients on a panel, of the curve's greatest size
+_ROUGH = 1e-6  # greatest size of the last coefficients on a resolved panel, as a fraction of the curve's greatest size
 _DEEPEST = 8  # halvings of a panel
 _ITERATIONS = 80
 _SETTLED = 1e-15
@@ -35,7 +35,7 @@ class Curve(Protocol):
 
     @property
     def numbers(self) -> int:
-        """Numbers of a design by which it has derivatives, 0 for none."""
+        """Count of design numbers by which it has derivatives, 0 for none."""
         ...
 
     def evaluate(
@@ -44,12 +44,12 @@ class Curve(Protocol):
         """Return the curve (p, k, 2 + v) and its sizes (p, k) at places (p, k) in segments.
 
         row: (p,), the designs. Value, slope and, with `gradients`, derivatives by the numbers; NaN without a curve.
-        probe: (p,), a place within each segment. rate: (p, v), of the places by the numbers.
+        probe: (p,), a place within each segment. rate: (p, v), derivatives of the places by the numbers.
         """
         ...
 
     def rates(self, cuts: Whole, probe: Array) -> Array:
-        """Return the derivatives (c, v) of the places of breakpoints; probe: of the segments that begin there."""
+        """Return the derivatives (c, v) of breakpoint places; probe: places in the segments that begin there."""
         ...
 
 
@@ -57,7 +57,7 @@ class Curve(Protocol):
 class Maxima:
     """Local maxima of n designs, highest first: values (n, k), -inf beyond the last, and places (n, k), NaN there.
 
-    slopes: (n, k, v), by the design's numbers. size: (n,), the greatest that was met of the curve.
+    slopes: (n, k, v), by the design's numbers. size: (n,), greatest size of the curve that was sampled.
     """
 
     values: Array
@@ -85,7 +85,7 @@ def find_maxima(
 ) -> Maxima:
     """Return the highest local maxima of the size of a curve, or of its value if `signed`, for n designs.
 
-    fineness: (n,), panels of a unit of the place to begin with. limit: maxima a design; one alone is found sooner.
+    fineness: (n,), initial panels per unit of the place. limit: maxima per design; a single one is found faster.
     counted: (s,), segments that count.
     """
     search = _Search(curve, segments, np.ones(len(segments.row), bool) if counted is None else counted, signed)
@@ -105,7 +105,7 @@ def find_maxima(
 
 @dataclass(frozen=True)
 class _Search:
-    """A curve on segments, of which those that are live count. signed: whether its value counts, not its size."""
+    """A curve on segments; only live segments count. signed: whether its value counts, not its size."""
 
     curve: Curve
     segments: Segments
@@ -148,7 +148,7 @@ class _Search:
         bound = np.minimum(
             value[panel, at] + step * slope[panel, at], value[panel, at + 1] - step * slope[panel, at + 1]
         )
-        if limit == 1:  # a curve that rises and falls again once lies below both tangents; room for one that does not
+        if limit == 1:  # a curve that rises and falls only once lies below both tangents; margin for other curves
             bound_with_margin = bound + 0.5 * (bound - np.maximum(value[panel, at], value[panel, at + 1]))
             near = bound_with_margin >= highest[row[panel]]
             panel, at = panel[near], at[near]
@@ -169,7 +169,7 @@ class _Search:
     ) -> tuple[Array, Array]:
         """Return value and place of the maxima in brackets: roots of the slope by secants of Illinois.
 
-        begin, end: of the brackets, place and slope, of the former the value too.
+        begin, end: place and slope at both ends of the brackets; at the beginning also the value.
         """
         a, rise, value = (part.copy() for part in begin)
         b, fall = (part.copy() for part in end)
@@ -196,10 +196,10 @@ class _Search:
         return value, at
 
     def breakpoint_maxima(self) -> _Tops:
-        """Return the breakpoints that are maxima: kinks, jumps, and the ends of what does not go on."""
+        """Return the breakpoints that are maxima: kinks, jumps, and ends where the curve stops."""
         segments, live = self.segments, self.counted
         n = len(live)
-        edge = np.full((n + 1, 2, 2), -np.inf)  # the last one is that of no segment
+        edge = np.full((n + 1, 2, 2), -np.inf)  # the last one belongs to no segment
         ends = np.stack([segments.low[live], segments.high[live]], axis=1)
         edge[:-1][live] = self.judged(self.curve.evaluate(segments.row[live], segments.probe[live], ends)[0][..., :2])
         first = np.setdiff1d(np.arange(n), segments.next_segment)
@@ -239,7 +239,7 @@ class _Search:
 
 
 def _ranked(tops: _Tops) -> _Tops:
-    """Return maxima by design, highest first; of those at one place the first."""
+    """Return maxima by design, highest first; only the first of those at one place."""
     tops = tops.select(np.lexsort((-tops.value, tops.place, tops.row)))
     again = (tops.row[1:] == tops.row[:-1]) & (np.abs(np.diff(tops.place)) < _SAME) & (np.diff(tops.segment) == 0)
     tops = tops.select(np.concatenate([[True], ~again]) if len(tops.row) else np.zeros(0, dtype=bool))

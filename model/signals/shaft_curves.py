@@ -1,4 +1,4 @@
-"""Curves of a crankshaft: of all its cylinders or of one, at a constant speed or along a profile.
+"""Curves for a crankshaft: for all its cylinders or one, at constant speed or along a speed profile.
 
 Each cylinder is a single crank at the angle theta + lead, seen in axes that turn with its bank. Speed and acceleration
 of the shaft are w p and w^2 p p' of the profile p at the shaft's own angle, a constant acceleration added. Every curve
@@ -55,10 +55,10 @@ class Axes(NamedTuple):
 
 
 class Evaluations(NamedTuple):
-    """Arguments of p evaluations: design, shaft angle in the segment that is entered, angles, their rates, half.
+    """Arguments of p evaluations: design, shaft angle that identifies the segment, angles, their rates, half.
 
-    row, probe: (p,). angle: (p, k), rad. rate: (p, v), of the angle by each number of the design, where derivatives
-    are wanted. half: (p, m), of a cycle of two turns that each cylinder is in.
+    row, probe: (p,). angle: (p, k), rad. rate: (p, v), derivative of the angle by each number of the design, if
+    derivatives are needed. half: (p, m), half of a cycle of two turns in which each cylinder is.
     """
 
     row: Integers
@@ -69,7 +69,7 @@ class Evaluations(NamedTuple):
 
 
 class CurveArrays(NamedTuple):
-    """Answers. curve: (p, k, 2 + v), value, slope over the crank angle and, if wanted, derivatives by the design.
+    """Results. curve: (p, k, 2 + v), value, slope over the crank angle and, if needed, derivatives by the design.
 
     size: (p, k), sum of the cylinders' sizes. outward: (p, m), 1 where the slider moves outward.
     """
@@ -88,7 +88,7 @@ class Blocks(NamedTuple):
 
 @analytic
 def _components(kind: Any, s: Any, c: Any, m: Any, d: Any, load: Any, sides: Any, place: Any, rate: Any) -> Any:
-    """Return the components of a curve of one cylinder; rate: of the acceleration over the crank angle, rad/s^2."""
+    """Return one cylinder's components of a curve; rate: acceleration's slope over the crank angle, rad/s^2."""
     zero = 0.0 * d.r
     if kind == TOUCH:
         return touch(s, c, m, d, load, sides.turn, sides.swing), zero
@@ -149,7 +149,7 @@ def fill_curves(
 ) -> None:
     """Fill `out` with a curve of designs, added up over the cylinders `members`.
 
-    turns: halves of a cycle of two turns, with the loads `first` and `second`. vector: whether both components count.
+    turns: halves of a cycle of two turns, with loads `first` and `second`. vector: whether both components count.
     """
     rows, count = blocks.plain.shape[1], members.shape[0]
     numbers = blocks.stepped.shape[0] // max(1, blocks.plain.shape[0])

@@ -1,14 +1,15 @@
-"""Work on the load, and force of each joint times the speed of its rubbing, as means over crank angle.
+"""Work on the load, and each joint's force times its sliding speed, as means over crank angle.
 
-Of one turn, per radian and in the sense of rotation, with phi' = d phi / d theta:
+Over one turn, per radian and in the sense of rotation, with phi' = d phi / d theta:
 
 - load: -F dx/dtheta, the work done against the load on the slider;
 - guide: |N| |x'|; crank pivot: |P|; crank pin: |A| (1 - phi'); slider pin: |B| |phi'|.
 
-A coefficient of friction times the second, and the radius of a friction circle times the others, is friction heat; a
-pin's radius times its own is pressure times sliding. The sizes turn sharply where a force passes close to zero, with or
-without friction: panels are halved until the last Legendre coefficients of each curve and its derivatives have died
-out for the mean. Forces jump with the load, so cuts that move with the design add the jump times their own motion.
+Friction heat is the coefficient of friction times the guide's mean, and the radius of a friction circle times each
+pin's. A pin's radius times its own mean is pressure times sliding. The sizes turn sharply where a force passes close to
+zero, with or without friction: panels are halved until the last Legendre coefficients of each curve and its derivatives
+have died out for the mean. Forces jump with the load, so cuts that move with the design add the jump times their own
+motion.
 """
 
 from __future__ import annotations
@@ -55,7 +56,7 @@ LOAD, GUIDE, CRANK_PIVOT, CRANK_PIN, SLIDER_PIN = range(5)
 _CURVES, _POINTS = 5, 16
 _WATCH = CycleWindow(
     0, 0.0, 1.0, True, True
-)  # |x'| and |phi'| turn over at the dead centres and where the rod turns back
+)  # |x'| and |phi'| have kinks at the dead centres and where the rod turns back
 _TURN = 2.0 * math.pi
 _SHARE = 0.1
 """Of what may be left of a curve, what a panel may leave of its mean: the narrower a panel, the less its tail counts.
@@ -194,7 +195,7 @@ def _integrate(
 def turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool = False) -> TurnWork:
     """Return the means of fully turning designs (n, 3 + k): crank, rod, offset, m, then the machine's varying numbers.
 
-    Of a cycle of two turns they are over both, of several cylinders the sum.
+    For a cycle of two turns they cover both turns; for several cylinders they are sums.
     """
     designs = turning(designs)
     if is_shaft(mechanism):

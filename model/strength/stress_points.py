@@ -1,6 +1,6 @@
-"""Stress along crank and rod at many crank angles of many designs, with its derivatives: the one kernel of forces.
+"""Stress along crank and rod at many crank angles of many designs, with derivatives, in a single kernel for forces.
 
-What searches for the greatest stress (`stress_cycle`) needs no forces any more.
+The search for the greatest stress (`stress_cycle`) then needs no forces.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ _SLOTS = (*range(Raw.ROD_WIDTH, Raw.ROD_WIDTH + 3), *range(Raw.CRANK_WIDTH, Raw.
 
 
 class Points(NamedTuple):
-    """Crank angles of designs, p of them; all (p,).
+    """Crank angles of designs, p in total; all fields (p,).
 
-    design: number of the design. probe: an angle within the segment, which tells its pieces. angle: rad. column: of the
-    design's numbers, by which derivatives are wanted, -1 for those by the crank angle. cut: the breakpoint that the
-    angle is on, -1 for none.
+    design: number of the design. probe: an angle within the segment, which identifies its pieces. angle: rad. column:
+    column of the design number for the derivatives, -1 for those by the crank angle. cut: breakpoint on which the angle
+    lies, -1 for none.
     """
 
     design: Integers
@@ -55,8 +55,8 @@ class Points(NamedTuple):
 class Samples(NamedTuple):
     """Samples over the cycles of n designs, one design after the other.
 
-    start: (n + 1,), where each begins. theta: (s,), rad. begins_segment: (s,), whether a segment begins. segment: (s,).
-    stress: (s, 2 WIDE), of rod and crank.
+    start: (n + 1,), index at which each begins. theta: (s,), rad. begins_segment: (s,), whether a segment begins.
+    segment: (s,). stress: (s, 2 WIDE), of rod and crank.
     """
 
     start: Integers
@@ -139,7 +139,7 @@ def _sample_segments(
     segment: Integers,
     kappas: Row,
 ) -> int:
-    """Sample every segment at crowded angles; return how many samples there are."""
+    """Sample every segment at crowded angles; return the number of samples."""
     total = 0
     for n in range(designs.shape[0]):
         start[n] = total
@@ -164,9 +164,9 @@ def _sample_segments(
 
 @dataclass(frozen=True)
 class Field:
-    """Stress over the cycles of n designs: their samples, and what gives it at any crank angle.
+    """Stress over the cycles of n designs: their samples, and the data to evaluate it at any crank angle.
 
-    kappa: (n,), of the crowded angle. locked: (n,), whether friction locks the design.
+    kappa: (n,), parameter of the crowded angle. locked: (n,), whether friction locks the design.
     """
 
     mechanism: Mechanism
@@ -246,7 +246,7 @@ def _stress_at(
 
 
 def field_of(mechanism: Mechanism, designs: Array) -> Field:
-    """Return the `Field` of designs (n, 3 + k), each turning fully."""
+    """Return the `Field` of designs (n, 3 + k), each rotating fully."""
     raw, loads = signal_inputs(mechanism, Signal.CRANK_PIN_FORCE)
     numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=True)
     values, n = numbers.values, len(designs)

@@ -1,8 +1,8 @@
 """Greatest combinations of stress among samples over the cycle, by polynomials between neighbours.
 
-Between two samples each coefficient of `section_forces.Stress` is the cubic that has its values and slopes at both. The
-greatest p sigma(xi, theta) - q sigma(xi, phi) of these is found for both crank angles in closed form, along the bar by
-secants. The nearer the samples, the nearer it is to that of the stress itself: off by the fourth power of the distance.
+Between two samples each coefficient of `section_forces.Stress` is the cubic that matches values and slopes at both. The
+greatest value of p sigma(xi, theta) - q sigma(xi, phi) is found in closed form for both crank angles, by secants along
+the bar. Its error falls with the fourth power of the distance between samples.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ LISTED = 6
 _ITERATIONS = 60
 _SETTLED = 1e-11  # share of the length
 _TURN = 2.0 * math.pi
-_PLACE, _ANGLE = 1e-5, 1e-9  # share of the length, 1 - cosine of crank angles: maxima that near are one
+_PLACE, _ANGLE = 1e-5, 1e-9  # fraction of the length, 1 - cosine of crank angles: maxima this near are one
 
 
 class Candidates(NamedTuple):
@@ -58,7 +58,7 @@ def first_candidates(candidates: Candidates, count: int) -> Candidates:
 
 @analytic
 def _stress_at_share(row: Any, k: Any, base: Any, side: Any, xi: Any) -> Any:
-    """Stress of a sample at a place; with a base 7 further its slope over the crank angle."""
+    """Stress of a sample at a place; with base + 7, its slope over the crank angle."""
     axial = row[k, base] + xi * (row[k, base + 1] + xi * row[k, base + 2])
     bent = row[k, base + 4] + xi * (row[k, base + 5] + xi * row[k, base + 6])
     return axial + side * (row[k, base + 3] + xi * bent)
@@ -104,7 +104,7 @@ def propose(
     best: Cube,
     candidates: Candidates,
 ) -> int:
-    """List the samples next to maxima less than `margin` times the greatest below it; return how many.
+    """List the samples next to maxima that fall short of the greatest by at most `margin` of it; return their number.
 
     stress: (s, 2 WIDE). base: first column of the link. criteria: (m, 2), p and q. space: (STATIONS, samples of a
     design), listed: (2, LISTED), best: (sides, m, STATIONS), work space. candidates: with room for all possible ones.
@@ -141,7 +141,7 @@ def propose(
                         row[k] = _stress_at_share(stress, begin + k, base, sides[f], xi)
                     high_count = low_count = 1
                     ups[0] = downs[0] = 0
-                    for end in range(2):  # one place in the code: the compiler works out each anew
+                    for end in range(2):  # one call, as the compiler inlines each call separately
                         if end == 0 and p > 0.0:
                             high_count = _list_maxima(row, first, begin, count, 1.0, ups)
                         elif end == 1 and q > 0.0:
@@ -172,7 +172,7 @@ def climb(
 ) -> None:
     """Move candidates to the maxima that they are next to: values (c,), places and angles (c, 2) of them.
 
-    `candidates` is changed to them. Samples of other segments are not gone to.
+    `candidates` is updated in place. The search stays within the segment.
     """
     last = theta.shape[0] - 1
     for c in range(candidates.bar.shape[0]):
@@ -259,7 +259,7 @@ def climb(
 def choose(candidates: Candidates, criteria: Table, values: Row, angles: Table, chosen: IntegerTable) -> None:
     """Number the highest candidates of each design: kept (n, k), -1 beyond the last one.
 
-    Of those that are one the highest counts: next to a breakpoint there may be two so near, one of them on it.
+    Of coinciding candidates the highest counts: next to a breakpoint there may be two, one of them on it.
     """
     count = -1
     for n in range(chosen.shape[0]):

@@ -1,7 +1,7 @@
-"""Curves of one linkage over a swing: motion, forces, and what the driver has to bring.
+"""Curves of one linkage over a swing: motion, forces, and the drive required.
 
-Where the crank is driven, torque and forces are those of `dynamics`. Where the slider is, its driver brings a force P
-along the slider line and the crank's torque is zero:
+Where the crank is driven, torque and forces are those of `dynamics`. Where the slider is driven, its driver applies a
+force P along the slider line and the crank's torque is zero:
 
 - rod, moments about the crank pin: along B_y - across B_x + moment - rho_A s_A |A| + rho_B s_B |B| = 0;
 - crank, moments about the pivot: couple - M + r (cos(theta) A_y - sin(theta) A_x) + rho_A s_A |A| + rho_O s_O |P_O|
@@ -13,8 +13,8 @@ and s_A, s_B, s_O the senses of (1 - phi') w, phi' w and w. Without
 friction the first two are linear in B, their determinant is r l sin(theta - phi): zero at a dead point. Friction in
 the pins makes them nonlinear: it turns the rows of the Jacobian, of lengths l and r, by at most
 asin((rho_A + rho_B) / l) and asin((rho_A + rho_O) / r). Where the angle between rod and crank exceeds their sum, the
-determinant cannot vanish, there is one force whatever the load, and Newton's iteration from the frictionless force
-finds it. Elsewhere friction may lock the linkage, and the force is NaN.
+determinant cannot vanish. Exactly one force then exists for any load, and Newton's iteration from the frictionless
+force finds it. Elsewhere friction may lock the linkage, and the force is NaN.
 """
 
 from __future__ import annotations
@@ -49,12 +49,12 @@ _SETTLED = 1e-14
 class SwingCurves:
     """Curves over one way of a swing, each (n,), SI and radians; forces as components along x and y.
 
-    share: of the time of one way. crank_angle runs on beyond a turn where the swing does. drive: torque on the crank,
-    N m, counter-clockwise, or force on the slider along +x, N. power: of the drive, W, 0 where the swing is slow.
-    rate: derivative of the driver's place by `share`, rad or m. driven_angle: transmission angle of the driven side,
-    between the rod and the normal of the slider line where the crank drives, between rod and crank where the slider
-    does. driven_error: worst case of the driven side's position, m at the slider or rad at the crank. rod_rate: phi'.
-    The other fields are as in `Cycle`; load is without the drive.
+    share: fraction of the time of one way. crank_angle continues beyond a turn where the swing does. drive: torque on
+    the crank, N m, counter-clockwise, or force on the slider along +x, N. power: power of the drive, W, 0 for a slow
+    swing. rate: derivative of the driver's place by `share`, rad or m. driven_angle: transmission angle of the driven
+    side. It lies between the rod and the normal of the slider line where the crank drives, between rod and crank where
+    the slider drives. driven_error: worst case of the driven side's position, m at the slider or rad at the crank.
+    rod_rate: phi'. The other fields are as in `Cycle`; load is without the drive.
     """
 
     share: Array
@@ -98,13 +98,13 @@ class SwingCurves:
 def swing_curves(
     mechanism: Mechanism, linkage: Linkage, swing: Swing, share: Array, *, back: bool = False
 ) -> SwingCurves:
-    """Return the curves of a linkage that `require_swing` has let pass, at shares (n,) of the time of one way."""
+    """Return the curves of a linkage accepted by `require_swing`, at fractions (n,) of the time of one way."""
     share = np.atleast_1d(np.asarray(share, dtype=np.float64))
     s, s_1, s_2 = way_of(swing.law, share, swing.table)
-    s_1 = np.maximum(s_1, 0.0)  # at rest rounding may give a speed of the other sense, and turn friction over
+    s_1 = np.maximum(s_1, 0.0)  # at rest, rounding may give a speed of the opposite sign, and reverse friction
     s, s_1, s_2 = (1.0 - s, -s_1, -s_2) if back else (s, s_1, s_2)
     first, last = driver_ends(linkage, swing)
-    # Exact at the ends, where rounding might lie beyond a dead point or the reach of the rod.
+    # Exact at the ends, where a rounded angle might lie beyond a dead point or the reach of the rod.
     place = np.where(s == 1.0, last, first + (last - first) * s)
     rate = (last - first) * s_1
     time = swing.duration or np.inf
@@ -134,7 +134,7 @@ def swing_curves(
         power = drive * m.x_1 * speed
         angle = np.arcsin(np.clip(np.abs(bend(np.sin(theta), np.cos(theta), m)) / linkage.rod, 0.0, 1.0))
         error = _crank_error(theta, m, d, swing.actuator_tolerance)
-    # Without those of a crank that hardly moves.
+    # Drop values that only come from the negligible crank speed.
     load, drive, power = (np.where(np.abs(curve) < _NOTHING, 0.0, curve) for curve in (cycle_curves.load, drive, power))
     return SwingCurves(
         share=share,
@@ -159,7 +159,7 @@ JOINTS = ("pivot_x", "pivot_y", "crank_pin_x", "crank_pin_y", "slider_pin_x", "s
 
 
 def driver_ends(linkage: Linkage, swing: Swing) -> tuple[float, float]:
-    """Return where the driver is at start and end: crank angle, rad, or slider position, m."""
+    """Return the driver's place at start and end: crank angle, rad, or slider position, m."""
     if swing.driver == "crank":
         return swing.start, swing.end
     x = _motion(linkage, np.array([swing.start, swing.end])).x
@@ -180,7 +180,7 @@ def angles_at(linkage: Linkage, swing: Swing, x: Array) -> Array:
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     d = np.hypot(x, e)
     half = np.arccos(np.clip((r * r + d * d - l * l) / (2.0 * r * d), -1.0, 1.0))
-    # sin(theta - phi) tells the two solutions apart: it has one sign between dead points, that of the swing's middle.
+    # sin(theta - phi) distinguishes the two solutions: between dead points it keeps the sign of the swing's middle.
     middle = np.array([0.5 * (swing.start + swing.end)])
     side = float(bend(np.sin(middle), np.cos(middle), _motion(linkage, middle))[0])
     theta = np.arctan2(e, x) + (half if side > 0.0 else -half)
@@ -216,7 +216,7 @@ def _pushed(theta: Array, m: Motion, d: Design, load: Array, on_crank: Array) ->
 
 
 def _with_pins(bx: Array, by: Array, rows: Callable[[Array, Array], PinRows]) -> tuple[Array, Array]:
-    """Return B with friction in the pins, from that without."""
+    """Return B with friction in the pins, from B without it."""
     for _ in range(_ITERATIONS):
         step_x, step_y = newton_step(rows(bx, by))
         bx, by = bx + step_x, by + step_y

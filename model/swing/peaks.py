@@ -1,7 +1,7 @@
 """Peaks of a curve over a swing for many designs, to machine precision, with exact derivatives.
 
-The pieces of both ways are the segments that `peak_search` looks through; slopes over the time and derivatives by the
-design's numbers are by the complex step.
+`peak_search` searches the pieces of both ways as segments. The complex step gives slopes over time and derivatives by
+the design's numbers.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ _CHUNK = 128
 class SwingPeaks:
     """Local peaks of n designs, highest first.
 
-    values: (n, k), SI, -inf beyond the last peak; NaN for a design that cannot swing as asked, +inf where friction
-    locks it. places: (n, k), share of the time of the way, 1 more on the return stroke. gradients: (n, k, v), by the
-    design's numbers; None unless asked for.
+    values: (n, k), SI, -inf beyond the last peak; NaN for a design that cannot make the swing, +inf where friction
+    locks it. places: (n, k), fraction of the time of the stroke, plus 1 on the return stroke. gradients: (n, k, v), by
+    the design's numbers; None unless asked for.
     """
 
     values: Array
@@ -45,9 +45,9 @@ class SwingPeaks:
 
 @dataclass(frozen=True)
 class _Curve:
-    """A state over both ways, or over one: places are shares of the time, 1 more on the return stroke.
+    """A state over one or both strokes: places are fractions of the time, plus 1 on the return stroke.
 
-    toward: the sign (n,) that it is judged by; None for its size.
+    toward: the sign (n,) by which it is judged; None for its size.
     """
 
     many: SwingBatch
@@ -57,7 +57,7 @@ class _Curve:
     toward: Array | None = None
 
     def segments(self) -> Segments:
-        """Return the pieces of the ways, each way back after one forth."""
+        """Return the pieces of the strokes, each return stroke after a forward one."""
         parts = []
         for way, pieces in enumerate(self.ways):
             design, piece = np.nonzero(pieces.live)
@@ -105,7 +105,7 @@ def swing_peaks(
 ) -> SwingPeaks:
     """Return the greatest sizes of a state (`swing_states.DRIVE`, `POWER` or `ERROR`) for designs (n, 3 + k).
 
-    limit: peaks returned of a design.
+    limit: peaks returned per design.
     """
     find = partial(_peaks, state=state, limit=limit, gradients=gradients)
     return _peaks_of_passing(mechanism, swing, designs, limit, gradients, find, forces=state != ERROR)
@@ -116,7 +116,7 @@ def least_drives(
 ) -> SwingPeaks:
     """Return the least drives along the motion of one way, without inertia, negated: local peaks, highest first.
 
-    Where the least one is below zero, loads push the linkage on, and the drive holds it back.
+    Where the least drive is below zero, loads push the linkage along, and the drive holds it back.
     """
 
     def find(many: SwingBatch) -> Maxima:
@@ -179,7 +179,7 @@ def _peaks_of_passing(
 
 
 def _peaks(batch: SwingBatch, state: int, limit: int, gradients: bool) -> Maxima:
-    # A force on the slider has the guide's friction by its size: without slopes its kink needs no cut.
+    # The size of the guide's friction enters a force on the slider: without slopes, its kink needs no cut.
     contacts = gradients or batch.swing.driver == "crank"
     forces = state != ERROR
     ways = batch.ways() if forces else (False,)

@@ -1,6 +1,6 @@
 """A limited swing of the crank, driven at the crank or at the slider.
 
-The linkage need not turn through: it only has to close over the whole swing, l > |e - r sin(theta)|. Where the slider
+The linkage need not rotate fully: it only has to close over the whole swing, l > |e - r sin(theta)|. Where the slider
 drives, it must not pass a dead point either, sin(theta - phi) = 0, at which no force on the slider turns the crank.
 """
 
@@ -31,15 +31,15 @@ _LEAST, _MOST = 1e-6, 1e9  # s
 
 @dataclass(frozen=True, kw_only=True)
 class Swing:
-    """A swing forth from one crank angle to another, rad, and back; or from one slider position to another, m.
+    """A swing from one crank angle to another, rad, and back; or from one slider position to another, m.
 
     The crank turns from start towards end: clockwise where end is less. stated_for: "crank" where start and end are
     crank angles, "slider" where they are slider positions; then `side` says on which side of the line from crank pivot
-    to slider pin the crank pin is, and `placed` gives the crank angles. follows: whether the end keeps its distance
-    from a start that designs choose (`machine.start`).
-    driver: what moves the linkage, a torque on the crank or a force on the slider along its line. law: of the driver's
-    motion over time, each way. duration: of one way, s; none where it is slow. actuator_tolerance: how far the slider
-    may be off where it drives, m. points: of the law that is a table: shares of time and way, see `law.spline`.
+    to slider pin the crank pin is, and `placed` gives the crank angles. follows: whether the end moves along with a
+    start that designs choose (`machine.start`). driver: what moves the linkage, a torque on the crank or a force on the
+    slider along its line. law: law of the driver's motion over time, each way. duration: time of one way, s; none for
+    slow motion. actuator_tolerance: tolerance of the slider position where the slider drives, m. points: points of a
+    tabulated law: fractions of time and travel, see `law.spline`.
     """
 
     start: float
@@ -97,16 +97,16 @@ class Swing:
 
     @cached_property
     def table(self) -> Array:
-        """Pieces (k, 7) of the law that is a table, see `law.spline`; none of others."""
+        """Pieces (k, 7) of a tabulated law, see `law.spline`; empty for other laws."""
         return spline(self.points) if self.points else NO_TABLE
 
     @property
     def way(self) -> float:
-        """+1 where the crank turns counter-clockwise on its way forth, -1 otherwise."""
+        """+1 where the crank turns counter-clockwise on the forward stroke, -1 otherwise."""
         return math.copysign(1.0, self.end - self.start)
 
     def occurrences(self, angle: float) -> list[float]:
-        """Return the crank angles of the swing that equal an angle but for whole turns."""
+        """Return the crank angles within the swing that equal an angle up to whole turns."""
         low, high = sorted((self.start, self.end))
         occurrence = angle + _TURN * math.ceil((low - angle) / _TURN)
         return [occurrence] if occurrence <= high else []
@@ -132,7 +132,7 @@ def dead_points(linkage: Linkage) -> tuple[float, ...]:
 
 
 def started(mechanism: Mechanism, swing: Swing) -> Swing:
-    """Return the swing from the start that a machine of one design has, if it has one."""
+    """Return the swing from the start that a machine of one design sets, if any."""
     start = getattr(mechanism.start, "angle" if swing.stated_for == "crank" else "place")
     if start is None:
         return swing
@@ -171,7 +171,7 @@ def _missed(place: float, linkage: Linkage, swing: Swing) -> str:
 
 
 def require_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linkage:
-    """Return one linkage that can swing as asked, its dimensions as floats.
+    """Return one linkage that can make the swing, with dimensions as floats.
 
     Raises `InputError` for arrays, another branch than the mechanism's, a dead point where the slider drives, and loads
     counted from a dead centre that the linkage does not have; `AssemblyError` where it does not close.

@@ -31,7 +31,7 @@ _BISECTIONS = 55
 
 @dataclass(frozen=True)
 class SwingPoint:
-    """A value of a swing and its place: way, share of the time, crank angle, slider position; SI."""
+    """A value in a swing and its place: direction, fraction of the time, crank angle, slider position; SI."""
 
     value: float
     back: bool
@@ -49,13 +49,13 @@ class SwingCycle:
     swing: Swing
 
     def curves(self, share: Array, *, back: bool = False) -> SwingCurves:
-        """Return the curves at shares (n,) of the time of one way."""
+        """Return the curves at fractions (n,) of the time of one way."""
         return swing_curves(self.mechanism, self.linkage, self.swing, share, back=back)
 
     def greatest(self, name: str) -> SwingPoint:
         """Return the greatest size of a curve on both ways."""
         forward, back = (self._extreme(name, way, np.abs) for way in (False, True))
-        # The same on both ways but for rounding, as without friction: the first.
+        # Equal on both ways up to rounding, as without friction: take the first.
         return back if abs(back.value) > abs(forward.value) * (1.0 + _EQUAL) or np.isnan(forward.value) else forward
 
     def least(self, curve: str) -> SwingPoint:
@@ -63,11 +63,11 @@ class SwingCycle:
         return self._extreme(curve, False, np.negative)
 
     def value_range(self, curve: str) -> tuple[SwingPoint, SwingPoint]:
-        """Return the least and the greatest value of a curve over both ways; NaN where friction locks all over."""
+        """Return the least and the greatest value of a curve over both ways; NaN where friction locks throughout."""
         lows, highs = (
             [self._extreme(curve, way, rank, count=4) for way in (False, True)] for rank in (np.negative, np.positive)
         )
-        # The same on both ways but for rounding: the first.
+        # Equal on both ways up to rounding: take the first.
         span = max(point.value for point in highs) - min(point.value for point in lows)
         least = lows[1] if lows[1].value < lows[0].value - _EQUAL * span or np.isnan(lows[0].value) else lows[0]
         greatest = highs[1] if highs[1].value > highs[0].value + _EQUAL * span or np.isnan(highs[0].value) else highs[0]
@@ -75,17 +75,17 @@ class SwingCycle:
 
     @cached_property
     def _sampled_ways(self) -> tuple[SwingCurves, SwingCurves]:
-        """Curves of both ways at many shares of the time."""
+        """Curves of both ways at many fractions of the time."""
         share = np.linspace(0.0, 1.0, _SAMPLES)
         return self.curves(share), self.curves(share, back=True)
 
     @cached_property
     def _zoomed_curves(self) -> dict[tuple[bool, float, float], SwingCurves]:
-        """Curves between two shares, by way and shares; extremes of many curves lie in the same places."""
+        """Curves between two fractions of the time, cached by way and fractions; extremes of many curves coincide."""
         return {}
 
     def _extreme(self, name: str, back: bool, rank: np.ufunc, count: int = 1) -> SwingPoint:
-        """Return the extreme of one way. count: how many of the best local ones between the samples are followed."""
+        """Return the extreme of one way. count: number of the best local extremes to follow between samples."""
         curves = self._sampled_ways[back]
         ranks = _ranks(getattr(curves, name), rank)
         padded = np.concatenate([[-np.inf], ranks, [-np.inf]])
@@ -104,7 +104,7 @@ class SwingCycle:
         return _point_at(curves, best, back, float(getattr(curves, name)[best]))
 
     def first_locked(self) -> SwingPoint | None:
-        """Return the first place where friction may lock the linkage, to a bisection between many."""
+        """Return the first place where friction may lock the linkage, by bisection between many samples."""
         if not self.mechanism.friction.acts:
             return None
         for back in (False, True):
@@ -122,20 +122,21 @@ class SwingCycle:
         return None
 
     def friction_holds(self) -> bool:
-        """Return whether friction alone holds the linkage all over: no drive lies between those of both ways."""
+        """Return whether friction alone holds the linkage throughout: zero lies between the drives of both ways."""
         if not self.mechanism.friction.acts:
             return False
         forward, back = self._sampled_ways
-        # Forth is along the driver's way: what resists needs a drive that way, and back one the other way.
+        # The forward stroke is along the driver's direction: resistance needs a drive that way, and the opposite on
+        # return.
         first, last = driver_ends(self.linkage, self.swing)
         way = np.sign(last - first)
         return bool(np.all((way * forward.drive >= 0.0) & (way * back.drive[::-1] <= 0.0)))
 
     def energy(self, *, back: bool) -> float:
-        """Return the driver's work, J, zero where it is rounding.
+        """Return the driver's work, J; zero if it is only rounding error.
 
         Gauss's quadrature on panels between the places where the drive has kinks or jumps. Each stretch is graded
-        towards its ends, since near a dead point the drive grows as the inverse root of the way from it.
+        towards its ends, since near a dead point the drive grows as the inverse root of the distance from it.
         """
         cuts = self._cuts(back)
         edges = np.linspace(0.0, 1.0, _PANELS + 1)
@@ -165,7 +166,7 @@ class SwingCycle:
         angles = [*dead_points(linkage), 0.5 * np.pi, 1.5 * np.pi]
         if bool(linkage.rotates_fully):
             angles += kinks_of_loads(self.mechanism, linkage).tolist()
-        else:  # then none is counted from a dead centre
+        else:  # then no load is counted from a dead centre
             loads = load_structure(self.mechanism)
             for k, load in enumerate(self.mechanism.loads):
                 knots = loads.at[loads.start[k] : loads.start[k + 1]]
@@ -192,7 +193,7 @@ class SwingCycle:
         return shares
 
     def _friction_changes(self, back: bool) -> list[float]:
-        """Return the shares at which friction changes sides: of the guide, and of a crank pin that turns back."""
+        """Return the fractions of the time at which friction in the guide, or in the crank pin, changes sides."""
         if not self.mechanism.friction.acts:
             return []
         share = np.linspace(0.0, 1.0, _SIDES)
@@ -204,7 +205,7 @@ class SwingCycle:
         return shares
 
     def _share_of_change(self, low: float, high: float, side: Callable[[SwingCurves], Mask], back: bool) -> float:
-        """Return the share between two at which a side changes, on the side of the latter; bisection."""
+        """Return the fraction between two at which a side changes, just past the change; bisection."""
         after = side(self.curves(np.array([high]), back=back))[0]
         for _ in range(_BISECTIONS):
             middle = 0.5 * (low + high)

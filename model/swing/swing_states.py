@@ -1,4 +1,4 @@
-"""States of many swinging designs at many shares of the time: one kernel, complex throughout for its derivatives."""
+"""States of many swinging designs at many fractions of the time: one kernel, complex throughout for derivatives."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ DRIVE, POWER, ERROR, GUIDE, PLACE, PACE, ANGLE, RATE = range(8)
 """Columns of states: drive, power, error of the driven side, guide force, slider position and its derivative by crank
 angle, crank angle, derivative of the driver's place by the share."""
 _STATES = 8
-_STILL = 1e-200  # rad/s: says which way the crank turns, and has no inertia
+_STILL = 1e-200  # rad/s: gives the sense of rotation, with negligible inertia
 _NEWTON = 40
 _SETTLED = 1e-15
 _SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acceleration")
 
 
 class Path(NamedTuple):
-    """A swing as the kernel takes it. slider: whether the slider drives. law: code. per_time: 1 / s, 0 where slow."""
+    """A swing in the kernel's form. slider: whether the slider drives. law: code. per_time: 1 / s, 0 where slow."""
 
     slider: bool
     law: int
@@ -49,7 +49,7 @@ class Path(NamedTuple):
 
 
 def path_of(swing: Swing, *, rubbing: bool, forces: bool) -> Path:
-    """Return a swing for the kernel. rubbing: whether friction counts. forces: whether they are needed."""
+    """Return a swing for the kernel. rubbing: whether friction counts. forces: whether forces are needed."""
     per_time = 0.0 if swing.duration is None else 1.0 / swing.duration
     law = code_of(swing.law)
     return Path(swing.driver == "slider", law, per_time, swing.actuator_tolerance, rubbing, forces, swing.table)
@@ -84,7 +84,7 @@ def _crank_angle(x: Any, r: Any, l: Any, e: Any, branch: Any, start: float, end:
 def _pushed(sine: Any, cosine: Any, m: Any, d: Any, load: Any, on_crank: Any, rod_1: float, rubbing: bool) -> Any:
     """Return the force on the slider that turns a free crank, along +x or NaN, and that of the guide.
 
-    on_crank: minus the torque of the loads on the crank, N m. rod_1: phi' within the piece, whose side counts on a cut.
+    on_crank: negative torque of the loads on the crank, N m. rod_1: phi' within the piece, whose sign counts on a cut.
     """
     b = with_couple(balance(sine, cosine, m, d, load), on_crank)
     bx, by = free_pin(sine, cosine, m, d, b)
@@ -144,7 +144,7 @@ def _states(
         begin, ending = ends[stepped[p], 0], ends[stepped[p], 1]
         start, end = begin.real, ending.real
         turning = (1.0 if end > start else -1.0) * (1.0 - 2.0 * back[p])
-        # Where the piece lies: stroke, pieces of tables, side of the guide.
+        # Location of the piece: stroke, pieces of tables, side of the guide.
         d = design_at(block, 0)
         s, s_1, s_2, _ = way_at(path.law, path.table, probe[p], probe[p])
         if back[p] > 0.5:
@@ -187,7 +187,7 @@ def _states(
             rise = (acceleration - m.x_2 * speed * speed) * inverse(m.x_1)
         if speed.real == 0.0:
             speed = speed + turning * _STILL
-        # Sides are those within the piece: at its place, speed and acceleration.
+        # Signs are taken within the piece: at its place, speed and acceleration.
         fast, faster = speed.real, rise.real
         if not path.slider:
             fast = (end - start) * s_1 * path.per_time
@@ -234,8 +234,8 @@ def states(
     """Return states (p, 8) at points: numbers of block and stepped block, share and its imaginary part, piece, way.
 
     blocks: (n, rows, 1), of designs that close over the swing. steps: (k, rows, 1), of the same ones with imaginary
-    steps. ends: crank angles (k, 2) of both ends of the swing, with them. The piece is told by a share within it; way:
-    0 forth, 1 back. Shares count from the start of the way.
+    steps. ends: crank angles (k, 2) of both ends of the swing, with them. A fraction of the time within the piece
+    identifies it; way: 0 forward, 1 back. Fractions count from the start of each way.
     """
     designs, stepped, share, slip, probe, back = points
     out = np.empty((len(share), _STATES), np.complex128)

@@ -1,8 +1,8 @@
-"""Torque and heat of a crank that turns at any speed and acceleration, with friction in all joints.
+"""Torque and heat for a crank at any speed and acceleration, with friction in all joints.
 
-Joint forces hold inertia terms, so friction makes the torque T(a) of an acceleration a piecewise smooth instead of
-affine. Of the sizes |A|, |B|, |P| and |N| in the equations of `dynamics.rubbing` each has a slope of at most one. With
-their slopes at whatever values, y = B_y eliminated, and primes for the two derivatives,
+Joint forces contain inertia terms, so friction makes the torque T(a) of an acceleration a piecewise smooth instead of
+affine. Each of the sizes |A|, |B|, |P| and |N| in the equations of `dynamics.rubbing` has a slope of at most one. With
+these slopes arbitrary, y = B_y eliminated, and primes for the two derivatives,
 
     dT/da = T_a - T_y h_a / h_y,
 
@@ -12,10 +12,10 @@ their slopes at whatever values, y = B_y eliminated, and primes for the two deri
     T_a = couple_a + r (cos A_ay - sin A_ax) + rho_A |A_a| + rho_O |P_a|,
 
 where every rho stands for itself times a number from -1 to 1, nu for mu times such a number, and q = sqrt(1 + mu^2).
-T_y / h_y is monotone in nu, so its ends nu = mu and nu = -mu tell the least. Where that, with the inertia of the drive,
-is more than zero, exactly one acceleration belongs to every torque of the motor: the root of
-T_motor - J_drive a - T(a). Every a gives a bracket of it by that bound. Newton's iteration, halving the bracket where
-it would leave it, converges, also over the kinks where the guide's force changes sides.
+T_y / h_y is monotone in nu, so the least value is at nu = mu or nu = -mu. Where this value plus the drive's inertia is
+positive, every motor torque has exactly one acceleration: the root of T_motor - J_drive a - T(a). By that bound, every
+a gives a bracket of the root. Newton's iteration, halving the bracket where it would leave it, converges, even across
+the kinks where the guide's force changes sides.
 """
 
 from __future__ import annotations
@@ -59,8 +59,8 @@ class FrictionState(NamedTuple):
     """State of motion at crank angles (n,), with friction.
 
     torque: on the crank, N m, without the drive's inertia. by_acceleration: its derivative, kg m^2. by_speed: its
-    derivative, N m s, if asked for. least: bound of by_acceleration from below, whatever the acceleration. heat:
-    friction power of all joints, W. guides: forces of the guides on their sliders, N, (cylinders, n).
+    derivative, N m s, if requested. least: lower bound of by_acceleration at any acceleration. heat: friction power of
+    all joints, W. guides: forces of the guides on their sliders, N, (cylinders, n).
     """
 
     torque: Array
@@ -75,7 +75,8 @@ class FrictionState(NamedTuple):
 def least_inertia(sine: Any, cosine: Any, m: Motion, push: Design, mu: Any) -> Any:
     """Return the least dT/da, kg m^2, on one side of the guide, where friction does not lock.
 
-    push: the design at speed 0 and acceleration 1, without gravity. mu: the guide's coefficient, or minus that.
+    push: the design at speed 0 and acceleration 1, without gravity. mu: the guide's friction coefficient, or its
+    negative.
     """
     b = balance(sine, cosine, m, push, 0.0)
     ax, ay = b.pull + b.rod_x, b.rod_y
@@ -96,7 +97,7 @@ def least_inertia(sine: Any, cosine: Any, m: Motion, push: Design, mu: Any) -> A
 
 @analytic
 def has_converged(step: Any, last: Any) -> bool:
-    """Return whether the iteration ends with a step and the one before it, both as shares of the acceleration."""
+    """Return whether the iteration has converged. step, last: this step and the previous one over the acceleration."""
     return bool(step <= _SETTLED or (step <= _ROUNDING and step >= 0.5 * last))
 
 
@@ -104,7 +105,8 @@ def has_converged(step: Any, last: Any) -> bool:
 def next_acceleration(a: Any, excess: Any, slope: Any, least: Any, low: Any, high: Any) -> Any:
     """Return the next acceleration of Newton's iteration, and the bracket of its root.
 
-    excess: motor torque less what the motion takes at a, N m. slope, least: of what it takes, with the drive's inertia.
+    excess: motor torque less the torque that the motion takes at a, N m. slope, least: slope of the latter and its
+    lower bound, with the drive's inertia.
     """
     bound = a + excess / least
     low, high = np.maximum(low, np.minimum(a, bound)), np.minimum(high, np.maximum(a, bound))
@@ -135,8 +137,8 @@ def _fill_friction_states(
     """Fill the rows of `out` (6, n): those of `FrictionState`, in its order.
 
     stepped: the design, whose speed and acceleration are overwritten. block: its columns; push: the one at speed 0 and
-    acceleration 1, without gravity. Loads' pieces are those of the span. step_limit: steps by which accelerations are
-    solved for, in place, given the motor's torques and the drive's inertia; 0 leaves them.
+    acceleration 1, without gravity. Loads' pieces are those of the span. step_limit: greatest number of steps to solve
+    for accelerations, in place, given the motor's torques and the drive's inertia; 0 leaves them.
     """
     unit = design_at(block, push)
     mu = unit.guide_friction
@@ -188,8 +190,8 @@ def _fill_friction_states(
 class CylinderFriction:
     """Friction of one cylinder between two breakpoints.
 
-    block: columns of the design; push: the one at speed 0 and acceleration 1, without gravity. piece, shift: of the
-    loads there.
+    block: columns of the design; push: the one at speed 0 and acceleration 1, without gravity. piece, shift: pieces and
+    shifts of the loads there.
     """
 
     def __init__(
@@ -205,7 +207,7 @@ class CylinderFriction:
     def accelerate(
         self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool
     ) -> tuple[Array, FrictionState]:
-        """Return the accelerations under a torque of the motor, and torque and heat of the motion with them."""
+        """Return the accelerations under a motor torque, and torque and heat of the resulting motion."""
         accelerations = np.array(guess)
         state = self._fill(crank_angle, speed, accelerations, torque, inertia, ITERATIONS, by_speed=by_speed)
         require_inertia_left(crank_angle, state.least + inertia)
@@ -235,7 +237,7 @@ def require_inertia_left(angle: Array, inertia: Array) -> None:
 
 
 def jamming_error(angle: Array, inertia: Array) -> InputError:
-    """Return the error of a crank that friction may jam where least inertia is left; see `require_inertia_left`."""
+    """Return the error for a crank that friction may jam where least inertia remains; see `require_inertia_left`."""
     worst = int(np.argmin(np.where(np.isnan(inertia), -np.inf, inertia)))
     return InputError(
         "motion under a motor with friction needs more inertia at every crank angle than friction can give back, for "

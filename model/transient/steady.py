@@ -1,4 +1,4 @@
-"""Steady running: the speed repeats after a turn. Found as such, not by waiting for it."""
+"""Steady running: the speed repeats after a turn. Solved directly, not by simulating until it settles."""
 
 from __future__ import annotations
 
@@ -27,9 +27,10 @@ class SteadyRunning:
     """One cycle of steady running, arrays (n,) in order of time, SI and radians; extremes of speed included.
 
     crank_angle: from the first breakpoint on, falling if the crank turns clockwise. motor_torque: on the crank, N m,
-    counter-clockwise. torque: what the mechanism takes of it. mean_speed: 2 pi / period, with its sign. work: of the
-    motor per turn, J. inertia: of flywheel and motor at the crank, kg m^2. memory: what is left after a turn of a small
-    change of w^2 (below 1: stable; 1: any speed is kept, because nothing depends on it). turns: of the cycle.
+    counter-clockwise. torque: part that the mechanism takes. mean_speed: 2 pi / period, with its sign. work: work of
+    the motor per turn, J. inertia: inertia of flywheel and motor at the crank, kg m^2. memory: fraction of a small
+    change of w^2 that remains after a turn (below 1: stable; 1: any speed persists, because nothing depends on it).
+    turns: turns per cycle.
     """
 
     crank_angle: Array
@@ -88,8 +89,8 @@ class Runner:
     def constant(self, inertia: float) -> SteadyRunning:
         """Return the steady running under the constant torque that keeps the mechanism's speed as the mean one.
 
-        inertia: of flywheel and motor at the crank, kg m^2. The torque is `motor_torque[0]` of the result. Raises
-        `InputError` if the mechanism has no speed, or the crank all but stops (see `speeds`).
+        inertia: inertia of flywheel and motor at the crank, kg m^2. The torque is `motor_torque[0]` of the result.
+        Raises `InputError` if the mechanism has no speed, or the crank nearly stops (see `speeds`).
         """
         if not self.speed:
             raise InputError("a constant torque needs the mean speed that it shall keep; got none; give the speed")
@@ -113,14 +114,14 @@ class Runner:
                 f"{inertia:.6g} kg m^2 besides the mechanism; add a flywheel or turn faster"
             )
         turn, profile = solved
-        if not self.works:  # what cancels leaves rounding
+        if not self.works:  # cancelling terms leave rounding errors
             profile = replace(profile, added=0.0)
         return _result(turn, profile, _no_motor, inertia)
 
     def speeds(self, inertia: float) -> tuple[float, float]:
         """Return the least and the greatest speed, rad/s, under the constant torque that keeps the mean one.
 
-        The least is 0 where the crank all but stops: below a millionth of the greatest. inertia: see `constant`.
+        The least speed is 0 where the crank nearly stops: below a millionth of the greatest. inertia: see `constant`.
         Raises `InputError` if the inertia is zero at some crank angle, so that speeds are undefined, or if no steady
         running is found with viscous loads or friction.
         """
@@ -141,7 +142,7 @@ class Runner:
     def balanced_speed(self, drive: Drive) -> float:
         """Return the size of the constant speed, rad/s, at which motor and loads balance over a turn.
 
-        Only where it is stable: faster, the loads are stronger than the motor. Of several the nearest to the
+        Only a stable speed counts: at higher speed the loads exceed the motor. Of several, the nearest to the
         mechanism's speed, or the least if that is 0. Raises `InputError` where there is none.
         """
         return balanced_speed(self.turn, drive, self._motor(drive), self.speed)
@@ -156,7 +157,7 @@ class Runner:
         return change if change > rounding else 0.0
 
     def _motor(self, drive: Drive) -> Torque:
-        """Return the drive's torque; beyond a table it goes on as at the end, so that an iteration may stray."""
+        """Return the drive's torque; beyond a table it keeps the last value, so that an iteration may stray."""
         way, (slowest, fastest) = self.turn.way, speed_range(drive)
 
         def motor(speed: Array) -> tuple[Array, Array]:
@@ -219,9 +220,9 @@ def _points(turn: PeriodicTurn, profile: Profile, pace: Array, time: float, p: i
 
 
 def steady_running(mechanism: Mechanism, linkage: Linkage, drive: Drive | None = None) -> SteadyRunning:
-    """Return the steady running under a motor; the mechanism's own drive if None.
+    """Return the steady running under a motor, by default the mechanism's own drive.
 
-    Among several (a motor whose torque rises and falls with speed) the stable one nearest to the mechanism's speed.
+    Among several (a motor whose torque rises and falls with speed), the stable one nearest to the mechanism's speed.
     Raises `InputError` where there is none: the motor is too weak, nothing limits the speed, or the torque table ends
     too soon.
     """

@@ -20,8 +20,8 @@ _TYPED = 5e-6  # of a pressure that is written with six digits
 def burning_share(clearance: Any, low: Any, high: Any, exponent: Any, heat: Any, kappa: Any) -> Any:
     """Return the share of the stroke over which gas burns at its peak pressure, high.
 
-    Of the heat q per swept volume, (p_h - p_2) c / (kappa - 1) is taken at constant volume, from the pressure p_2 at
-    the end of compression. The rest widens the gas by its (kappa - 1) / (kappa p_h).
+    Of the heat q per swept volume, (p_h - p_2) c / (kappa - 1) is added at constant volume, from the pressure p_2 at
+    the end of compression. The rest expands the gas by (kappa - 1) / (kappa p_h) times that heat.
     """
     compressed = low * power((1.0 + clearance) * inverse(clearance), exponent)
     return (heat * (kappa - 1.0) - (high - compressed) * clearance) * inverse(kappa * high)
@@ -29,9 +29,9 @@ def burning_share(clearance: Any, low: Any, high: Any, exponent: Any, heat: Any,
 
 @dataclass(frozen=True, kw_only=True)
 class Engine(Cylinder):
-    """A cylinder that is filled at `low` pressure, compresses, and burns at its top at once to `high` pressure.
+    """A cylinder that fills at `low` pressure, compresses, and burns instantly at the top to `high` pressure.
 
-    The gas expands in the next stroke. At the other dead centre it is changed at once: two strokes make a cycle.
+    The gas expands in the next stroke. At the other dead centre it is exchanged instantly: two strokes form a cycle.
     """
 
     def __post_init__(self) -> None:
@@ -92,10 +92,10 @@ class Engine(Cylinder):
 
 @dataclass(frozen=True, kw_only=True)
 class LimitedPressure(Engine):
-    """An engine with a dual cycle: it burns at its top up to `high` pressure, then at that pressure.
+    """An engine with a dual cycle: it burns at the top up to `high` pressure, then at that pressure.
 
-    heat: released per swept volume, J/m^3. heat_capacity_ratio: of the burning gas. Without a rise of pressure at the
-    top it is the Diesel cycle.
+    heat: heat released per swept volume, J/m^3. heat_capacity_ratio: heat capacity ratio of the burning gas. Without a
+    pressure rise at the top, this is the Diesel cycle.
     """
 
     heat: float
@@ -162,10 +162,10 @@ class LimitedPressure(Engine):
 
 @dataclass(frozen=True, kw_only=True)
 class FourStroke(Engine):
-    """A cylinder that compresses and burns in one turn, as `Engine`, and changes its gas in the next.
+    """A cylinder that compresses and burns in one turn, as `Engine`, and exchanges its gas in the next.
 
     The piston pushes out at the `exhaust` pressure, Pa, and draws in at `low`. A turn begins at the dead centre away
-    from the head; compression and expansion are the first one.
+    from the head; compression and expansion are in the first turn.
     """
 
     exhaust: float
@@ -190,7 +190,7 @@ class FourStroke(Engine):
         return "inner dead centre" if self.head == "outer dead centre" else "outer dead centre"
 
     def on_turn(self, turn: int) -> Load:
-        """Return the two-stroke cycle of turn 1, or the change of gas of turn 2, each stroke at constant pressure."""
+        """Return the two-stroke cycle of turn 1, or the gas exchange of turn 2, each stroke at constant pressure."""
         if turn == 1:
             return self.working(**{field.name: getattr(self, field.name) for field in fields(self.working)})
         values = {field.name: getattr(self, field.name) for field in fields(Cylinder)}
