@@ -1,7 +1,7 @@
-"""Digest of everything that decides about the machine code of a kernel.
+"""Digest of everything that determines the machine code of a kernel.
 
-That is what the kernel and the formulas compiled into it do, not how their sources look: a comment or another formula
-changes no digest.
+It covers what the kernel and its compiled formulas do, not the look of their sources: a comment or another formula does
+not change the digest.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def codes(function: Callable[..., Any]) -> dict[int, int]:
 
 
 def _reached(function: Callable[..., Any]) -> Iterator[tuple[Any, bytes]]:
-    """Yield a function and all that it calls, each with what it is by itself."""
+    """Yield a function and every function it calls, each with its own digest data."""
     visited: set[int] = set()
     waiting: list[Any] = [function]
     while waiting:
@@ -51,7 +51,7 @@ def _reached(function: Callable[..., Any]) -> Iterator[tuple[Any, bytes]]:
 
 @cache
 def _surroundings() -> bytes:
-    """Return all that every kernel depends on: processor, versions, settings of numba, and the compiler here."""
+    """Return the data on which every kernel depends: processor, versions, settings of numba, and this compiler."""
     import llvmlite.binding as llvm
 
     settings = sorted(item for item in os.environ.items() if item[0].startswith("NUMBA_") and item[0] not in _ASIDE)
@@ -98,7 +98,7 @@ def _codes(code: CodeType) -> Iterator[CodeType]:
 
 
 def _fingerprint(value: Any) -> str:
-    """Return a text that tells a value of a formula, or the type of an example, from others."""
+    """Return a text that identifies a value in a formula, or the type of an example."""
     if isinstance(value, np.ndarray):
         return f"{value.dtype.str}{value.shape}{value.tobytes().hex()}"
     if isinstance(value, tuple):

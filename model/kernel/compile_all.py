@@ -36,22 +36,22 @@ class _Task(NamedTuple):
         return sum(self.codes.get(formula, 0) for formula in compiled) >= _MOSTLY * self.size()
 
     def follows(self, larger: _Task) -> bool:
-        """Whether it is left to who compiles the other one, which is larger."""
+        """Whether it is left to the process that compiles the other, larger one."""
         return self.size() < larger.size() and self.cheap_after(larger.codes)
 
     def urgency(self, tasks: list[_Task]) -> tuple[bool, int]:
-        """Return the less, the sooner it should be begun: long tasks first, with their followers, then small ones."""
+        """Return a rank, lowest first: long tasks with their followers, then small ones."""
         if 2 * self.size() < max(task.size() for task in tasks):
             return True, self.size()
         return False, -sum(task.size() for task in tasks if task is self or task.follows(self))
 
 
 def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) -> None:
-    """Compile the kernels of packages, or modules, that are missing and that no other process is at.
+    """Compile the missing kernels of packages or modules that no other process is compiling.
 
-    What somebody waits for comes first, then those of `modules` that many jobs need; of these what has mostly formulas
-    of kernels that this process has compiled, then what is urgent. How far it is stands in the file of `building`. Ends
-    where nothing can be kept.
+    Kernels that a process waits for come first, then those of `modules` that many jobs need. Among these, kernels with
+    mostly formulas that this process has already compiled come first, then urgent ones. The file of `building` holds
+    the progress. Ends if nothing can be stored.
     """
     names = wanted_files(folder)
     tasks_found = _tasks(folder, packages, modules)
@@ -82,7 +82,7 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
         with locked(task.file.with_suffix(".lock")) as lock:
             if lock is not None and read_any(task.file.name, folder) is None:
                 reported = [job for job in everything if job.file.name in awaited.union(names)]
-                if task in reported:  # what is compiled for later is nobody's wait
+                if task in reported:  # nobody waits for kernels compiled in advance
                     number, name = sum(job.file.exists() for job in reported), task.source.name.rpartition(".")[2]
                     with contextlib.suppress(OSError):
                         building(folder, packages).write_text(f"{number} of {len(reported)} done, now {name}")
@@ -92,14 +92,14 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
 
 
 def end_with(parent: int) -> None:
-    """End this process, also in the middle of a kernel, once the one that has started it is gone."""
+    """End this process, even in the middle of a kernel, once its parent has ended."""
     while os.getppid() == parent:
         time.sleep(0.5)
-    os._exit(1)  # what is kept is whole
+    os._exit(1)  # stored files are complete
 
 
 def _modules(package: str) -> list[str]:
-    """Return the names of a package and of all that is in it."""
+    """Return the names of a package and of everything in it."""
     parts = getattr(import_module(package), "__path__", [])
     return [package, *(module.name for module in pkgutil.walk_packages(parts, f"{package}."))]
 
@@ -120,7 +120,7 @@ def _task(kernel: Kernel, folder: Path) -> _Task:
 if __name__ == "__main__":
     if sys.argv[1:2] == [INTO]:
         Thread(target=end_with, args=(os.getppid(),), daemon=True).start()
-        gc.set_threshold(50_000, 1000, 1000)  # a fifth sooner, for 80 MB
+        gc.set_threshold(50_000, 1000, 1000)  # a fifth faster, for 80 MB
         compile_missing(Path(sys.argv[2]), sys.argv[3], sys.argv[4:])
     elif (place := kernel_folder()) is not None:
         compile_beside(place, " ".join(sys.argv[1:]) or MODEL)

@@ -1,6 +1,6 @@
-"""Machine code of kernels, by numba: what is marked `analytic` is compiled into them.
+"""Machine code of kernels, by numba: functions marked `analytic` are compiled into them.
 
-Nothing imports this module before a kernel has to be compiled: numba takes as long to import as a job takes to run.
+This module is imported only when a kernel has to be compiled: importing numba takes as long as running a job.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from .machine_code import MachineCode
 _OPTIONS: Any = {
     "fastmath": {"reassoc", "contract", "arcp", "nsz"},
     "error_model": "numpy",
-    "no_cpython_wrapper": True,  # nobody calls them from outside
+    "no_cpython_wrapper": True,  # not called from outside
     "no_cfunc_wrapper": True,
 }
 _NEEDLESS = (InlineClosureLikes, InlineInlinables, InlineOverloads, NopythonRewrites, IRLegalization)
@@ -46,7 +46,7 @@ class _FormulaCompiler(CompilerBase):
         return [manager]
 
 
-# Formulas neither make arrays nor return any: counting who refers to one would be half of their code.
+# Formulas neither create nor return arrays: reference counting would be half of their code.
 _FORMULA: Any = _OPTIONS | {"forceinline": True, "_nrt": False, "pipeline_class": _FormulaCompiler}
 _KERNEL: Any = _OPTIONS | {"nogil": True}
 
@@ -67,8 +67,8 @@ def know_formulas() -> None:
 def _resolved_once() -> Iterator[None]:
     """Resolve each call once for the same types of arguments.
 
-    Else numba tries all that + may stand for at every +, and compiles a formula again for a call from a kernel, and for
-    one with a number instead of a variable.
+    Otherwise numba tries every meaning of + at every +. It also compiles a formula again for a call from a kernel, and
+    for a call with a number instead of a variable.
     """
     contexts = cast(Any, BaseContext)
     original, thread = contexts.resolve_function_type, get_ident()
@@ -92,10 +92,10 @@ def _resolved_once() -> Iterator[None]:
 
 @contextmanager
 def _linked(kernel: str) -> Iterator[None]:
-    """Compile formulas no further than to what is linked into the kernel: nobody calls them by themselves.
+    """Compile formulas only as far as linking into the kernel requires: nothing calls them alone.
 
-    Else each is optimised as the kernel is, and made machine code of: a fifth of the time. Without any optimisation
-    the kernel of the peaks would be half as fast.
+    Otherwise each is optimised like the kernel and turned into machine code, which takes a fifth of the time. Without
+    any optimisation the peak kernel would be half as fast.
     """
     libraries, engine = cast(Any, JITCodeLibrary), cast(Any, JITCPUCodegen)
     finalize_original, set_env, thread = libraries.finalize, engine.set_env, get_ident()
@@ -114,7 +114,7 @@ def _linked(kernel: str) -> Iterator[None]:
 
     if numba.__version__.startswith(_TRIED):
         libraries.finalize = finalize
-        # No formula is at an address in this process.
+        # No formula has an address in this process.
         engine.set_env = lambda *given: None if get_ident() == thread else set_env(*given)
     try:
         yield
@@ -123,10 +123,10 @@ def _linked(kernel: str) -> Iterator[None]:
 
 
 class _NoArrays(event.Listener):
-    """Refuses formulas that return arrays: as nobody counts who refers to them, they would be gone too soon."""
+    """Rejects formulas that return arrays: without reference counting they would be freed too soon."""
 
     def on_start(self, event: Any) -> None:
-        """Look at what a function returns, before it is compiled."""
+        """Check the return type of a function before it is compiled."""
         data = event.data
         is_own_formula = data["name"].startswith("native_lowering") and not data["module"].startswith("numba")
         if is_own_formula and "array(" in data["return_type"]:
@@ -137,7 +137,7 @@ class _NoArrays(event.Listener):
 
 
 def compile_kernel(function: Callable[..., Any], examples: tuple[Any, ...]) -> MachineCode:
-    """Return the machine code of a function for arguments like the examples, which decide about their types."""
+    """Return the machine code of a function for arguments of the examples' types."""
     know_formulas()
     signature = tuple(map(typeof, examples))
     dispatcher: Any = njit(**_KERNEL)(function)
@@ -156,9 +156,9 @@ def compile_kernel(function: Callable[..., Any], examples: tuple[Any, ...]) -> M
     return MachineCode(symbol, arguments[2:], calls, code)
 
 
-# Python keeps its frames in pieces of 16 kB, and fetches and returns a piece at every call that crosses from one to the
-# next: a quarter of a million times a kernel, an eighth of the time. A frame that takes a megabyte for itself has all
-# others within the rest of its piece of two.
+# Python keeps its frames in chunks of 16 kB, and allocates and frees a chunk at every call that crosses into the next
+# one: a quarter of a million times per kernel, an eighth of the time. A frame that takes a megabyte leaves the rest of
+# its two-megabyte chunk for all others.
 compile_kernel.__code__ = compile_kernel.__code__.replace(co_stacksize=1 << 17)
 
 

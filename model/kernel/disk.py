@@ -1,4 +1,4 @@
-"""Machine code of kernels on disk; what is missing there is compiled, all at once and side by side."""
+"""Machine code of kernels on disk; missing kernels are compiled together, in parallel."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _log = logging.getLogger(__name__)
 MODEL = __name__.split(".kernel.")[0]
 INTO = "--into"
 """Option of the compiling processes, before their folder."""
-_PATIENCE = 300.0  # s; who compiles for longer is stopped, or gone wrong
+_PATIENCE = 300.0  # s; a process that compiles for longer has stopped or failed
 _TICK = 0.05  # s
 _TELL = 3.0  # s
 _SIDE_BY_SIDE = 4
@@ -38,7 +38,7 @@ _STATES = 8
 
 
 class KernelSource(NamedTuple):
-    """A kernel to be compiled: its name, its function, and example arguments that decide about their types."""
+    """A kernel to be compiled: its name, its function, and example arguments that determine the types."""
 
     name: str
     function: Callable[..., Any]
@@ -50,7 +50,7 @@ class KernelSource(NamedTuple):
         return self.function.__module__
 
     def file(self, folder: Path) -> Path:
-        """Return where its machine code is kept."""
+        """Return the file of its machine code."""
         return folder / f"{self.name}.{digest(self.function, self.examples)}"
 
     def compile(self) -> MachineCode:
@@ -61,10 +61,10 @@ class KernelSource(NamedTuple):
 
 
 def machine_code(source: KernelSource, modules: Iterable[str] = ()) -> MachineCode:
-    """Return the machine code of a kernel, compiled and kept if need be.
+    """Return the machine code of a kernel, compiled and stored if necessary.
 
-    What is missing of its package is compiled too, in other processes, as long as this one lives; and of its sister
-    packages among those of other kernels' modules, the last ones first: of both what is in these modules before the
+    Other processes also compile the missing kernels of its package while this process lives. So they do for its sister
+    packages among those of other kernels' modules, last ones first. In both, kernels of these modules come before the
     rest.
     """
     folder, name = kernel_folder(), source.file(Path()).name
@@ -80,7 +80,7 @@ def machine_code(source: KernelSource, modules: Iterable[str] = ()) -> MachineCo
     if folder not in _refusing:
         compile_beside(folder, " ".join(packages), folder / name, dict.fromkeys([*related, source.module]))
         code = read(folder / name)
-    if code is None:  # no process could be started, or nothing be kept
+    if code is None:  # no process could be started, or nothing could be stored
         if folder in _refusing:
             _log.warning(f"slidercrank compiles its formulas, now {source.name.rpartition('.')[2]}")
         code = source.compile()
@@ -100,7 +100,7 @@ def read_any(name: str, folder: Path | None) -> MachineCode | None:
 
 
 def read(file: Path) -> MachineCode | None:
-    """Return the machine code that is kept, None where there is nothing whole."""
+    """Return the stored machine code; None if there is no complete file."""
     try:
         head, code = file.read_bytes().split(b"\n", 1)
         header = json.loads(head)
@@ -116,7 +116,7 @@ _refusing: set[Path] = set()
 
 
 def keep(file: Path, code: MachineCode) -> bool:
-    """Keep machine code, and of earlier ones the last few; whether it is kept. Where there is no room, say so."""
+    """Store machine code, keep a few earlier versions, and return whether it was stored. Reports a full disk."""
     head = code._asdict() | {"code": None, "sha256": sha256(code.code).hexdigest()}
     unfinished = file.with_name(f"{uuid.uuid4().hex}.unfinished")
     is_kept = False
@@ -143,10 +143,10 @@ def _tell_unkept(folder: Path, reason: str) -> None:
 
 
 def compile_beside(folder: Path, packages: str, file: Path | None = None, modules: Iterable[str] = ()) -> None:
-    """Have the missing kernels of packages compiled by other processes; return when there is a file, or they ended.
+    """Have other processes compile the missing kernels of packages; return when a file exists, or they have ended.
 
-    packages: names with blanks between. They do that file's next, and those of modules before the others. Processes
-    that are at it already are waited for. `interruption` ends the wait.
+    packages: names separated by blanks. They compile that file's kernel next, and those of modules before the others.
+    Waits for processes that are already compiling. `interruption` ends the wait.
     """
     if file is not None:
         with contextlib.suppress(OSError), (folder / "wanted").open("a") as queue:
@@ -176,7 +176,7 @@ def compile_beside(folder: Path, packages: str, file: Path | None = None, module
 
 
 def compile_ahead(packages: str, modules: Iterable[str]) -> None:
-    """Begin to compile the kernels of modules, if none is compiled yet; who waits for them says so."""
+    """Compile the kernels of modules ahead if none is compiled yet; processes that wait for them register the wait."""
     folder = kernel_folder() if os.environ.get("NUMBA_DISABLE_JIT", "0") == "0" else None
     begins = f"{packages.partition('.')[0]}.*.*"
     if folder is not None and not any(any(place.glob(begins)) for place in (folder, *other_folders())):
@@ -197,13 +197,13 @@ _ahead: dict[str, list[subprocess.Popen[bytes]]] = {}
 
 
 def _start(folder: Path, packages: str, modules: Iterable[str], lock: int) -> list[subprocess.Popen[bytes]]:
-    """Start a process for each processor; they hold the lock as long as they live, and end with this one."""
+    """Start a process for each processor; they hold the lock as long as they live, and end with this process."""
     if not sys.executable:
         return []
     started: list[subprocess.Popen[bytes]] = []
     atexit.register(_end, started, os.getpid())
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "NUMBA_DISABLE_JIT": "0"}
-    # numba makes messages of every formula that it tries in vain.
+    # numba composes messages for every formula that it tries in vain.
     environment |= {"NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1"}
     command = [sys.executable, "-m", f"{MODEL}.kernel.compile_all", INTO, str(folder), packages, *modules]
     options: dict[str, Any] = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
@@ -211,17 +211,17 @@ def _start(folder: Path, packages: str, modules: Iterable[str], lock: int) -> li
     with contextlib.suppress(OSError):
         for _ in range(1 if lock == _NO_LOCK else min(os.cpu_count() or 1, _SIDE_BY_SIDE)):
             started.append(subprocess.Popen(command, env=environment, **options))
-            Thread(target=started[-1].wait, daemon=True).start()  # so that it is gone when it has ended
+            Thread(target=started[-1].wait, daemon=True).start()  # so that it disappears when it has ended
     return started
 
 
 def building(folder: Path, packages: str) -> Path:
-    """Return the file that is locked while kernels of packages are compiled, and that says how far that is."""
+    """Return the file that is locked while kernels of packages are compiled, and that holds the progress."""
     return folder / f"{packages.replace(' ', '+')}.building"
 
 
 def wanted_files(folder: Path) -> list[str]:
-    """Return the names of the files that somebody waits for, or waited for, in that order."""
+    """Return the names of the files that processes wait for, or waited for, in that order."""
     try:
         return (folder / "wanted").read_text().split()
     except OSError:
@@ -240,7 +240,7 @@ def _end(started: list[subprocess.Popen[bytes]], owner: int) -> None:
 
 @contextlib.contextmanager
 def locked(file: Path) -> Iterator[int | None]:
-    """Take the lock of a file, and give its descriptor; None where another process has it. -1: no locks here."""
+    """Lock a file and yield its descriptor; None if another process has the lock, -1 if locks are unavailable."""
     try:
         import fcntl
 

@@ -1,6 +1,7 @@
 """The folder of compiled kernels.
 
-None is kept beside the sources: there they would outlive the software, and keep its empty folders importable.
+Kernels are never stored next to the sources: there they would outlive the software, and keep its empty folders
+importable.
 """
 
 from __future__ import annotations
@@ -23,8 +24,8 @@ _REMEDY = "name a folder that can be written in NUMBA_CACHE_DIR"
 class Chosen(NamedTuple):
     """Choice of a folder for kernels.
 
-    folder: None if no place can be written. empty: whether it has no kernels yet. refused: why other places were
-    refused. readable: folders that came first but are read-only.
+    folder: None if no place is writable. empty: whether it has no kernels yet. refused: reasons why other places were
+    refused. readable: earlier choices that are read-only.
     """
 
     folder: Path | None
@@ -34,7 +35,7 @@ class Chosen(NamedTuple):
 
 
 def kernel_folder() -> Path | None:
-    """Return the folder of kernels of this process, None where no place can be written."""
+    """Return this process's folder of kernels, None if no place is writable."""
     return _chosen().folder
 
 
@@ -45,7 +46,7 @@ def other_folders() -> tuple[Path, ...]:
 
 @cache
 def tell_refusals() -> None:
-    """Log once which places were refused, where the folder is empty or there is none. For who has to compile."""
+    """Log once which places were refused, if the folder is empty or missing. For processes that have to compile."""
     folder, empty, refused, _ = _chosen()
     if folder is None:
         _log.warning(f"slidercrank compiles for a minute at every start: {refused}; {_REMEDY}")
@@ -56,7 +57,7 @@ def tell_refusals() -> None:
 
 
 def choose_folder() -> Chosen:
-    """Return the folder in the first place that can be written, made if need be.
+    """Return the folder in the first writable place, created if necessary.
 
     Places are NUMBA_CACHE_DIR, the user's folder of caches, and one of this user alone among temporary files.
     """
@@ -99,7 +100,7 @@ def _temporary() -> Path:
 
 
 def _refusal(folder: Path) -> str | None:
-    """Return why kernels cannot be kept in a folder: it cannot be written, or strangers could put theirs there."""
+    """Return why kernels cannot be stored in a folder: it is not writable, or strangers could put theirs there."""
     place = folder.parent
     try:
         place.mkdir(mode=0o700, parents=True, exist_ok=True)

@@ -44,7 +44,7 @@ Flat = tuple[Any, ...]
 
 
 def kernel(function: Function) -> Function:
-    """Compile a function that Python calls, when it is called first; the machine code is kept on disk.
+    """Compile a function called from Python at its first call; the machine code is stored on disk.
 
     Its arguments are contiguous arrays (`Row` to `Flags`), numbers, and named or plain tuples of them, as annotated. It
     returns a number or nothing.
@@ -53,7 +53,7 @@ def kernel(function: Function) -> Function:
 
 
 def seldom_kernel(function: Function) -> Function:
-    """Compile a function as `kernel` does, after all others: few jobs need it, and it takes long."""
+    """Compile a function like `kernel`, but after all others: few jobs need it, and compilation is slow."""
     return _register(function, seldom=True)
 
 
@@ -67,14 +67,14 @@ class Kernel:
     """A function that runs as machine code."""
 
     def __init__(self, function: Callable[..., Any], *, seldom: bool = False) -> None:
-        """Take a function, that is not yet compiled. seldom: whether others are compiled before it."""
+        """Take a function without compiling it. seldom: whether others are compiled before it."""
         self.function, self.seldom = function, seldom
         self.__doc__ = function.__doc__
         self._flat: list[Callable[[Any], Flat]] = []
         self._loaded: tuple[Callable[[bytes, int], int], Callable[..., bytes], Any] | None = None
 
     def __call__(self, *values: Any) -> Any:
-        """Run it. Raises `TypeError` for an argument of another type, `MemoryError` where memory is short."""
+        """Run it. Raises `TypeError` for an argument of another type, `MemoryError` if there is not enough memory."""
         if _AS_PYTHON:
             return self.function(*values)
         run, pack, kind = self._loaded or self._load()
@@ -95,7 +95,7 @@ class Kernel:
         return get_type_hints(self.function, include_extras=True)
 
     def _load(self) -> tuple[Callable[[bytes, int], int], Callable[..., bytes], Any]:
-        """Return the machine code, what packs its arguments, and the type of its result."""
+        """Return the machine code, the function that packs its arguments, and the type of its result."""
         with _loading:
             if self._loaded is None:
                 source, hints = self.source(), self._hints()
@@ -109,7 +109,7 @@ class Kernel:
 
 
 def _members(kind: Any) -> list[Any] | None:
-    """Return the types of a tuple's members, None for what is no tuple."""
+    """Return the types of a tuple's members, None for other types."""
     if get_origin(kind) is tuple:
         return list(get_args(kind))
     if isinstance(kind, type) and issubclass(kind, tuple):
@@ -136,7 +136,7 @@ def _item(array: Any) -> np.dtype[Any]:
 
 
 def _flattener(name: str, kind: Any) -> Callable[[Any], Flat]:
-    """Return the function that makes the machine's arguments of a value."""
+    """Return the function that converts a value to the machine's arguments."""
     members = _members(kind)
     if members is not None:
         return _flat_tuple([_flattener(name, member) for member in members])
@@ -149,7 +149,7 @@ def _flattener(name: str, kind: Any) -> Callable[[Any], Flat]:
 
 
 def _flat_tuple(members: list[Callable[[Any], Flat]]) -> Callable[[Any], Flat]:
-    last: tuple[Any, Flat] = (None, ())  # the same tuple often comes many times in turn
+    last: tuple[Any, Flat] = (None, ())  # the same tuple often comes many times in succession
 
     def flat(value: Any) -> Flat:
         nonlocal last
@@ -175,7 +175,7 @@ def _flat_array(name: str, item: np.dtype[Any], dimensions: int) -> Callable[[An
 
 
 def _leaves(example: Any) -> list[Leaf]:
-    """Return the types that a value has for the machine."""
+    """Return the machine types of a value."""
     if isinstance(example, tuple):
         return [leaf for member in example for leaf in _leaves(member)]
     if isinstance(example, np.ndarray):

@@ -4,8 +4,8 @@ A compiled function takes the address for its result, the address for an error, 
 (nothing, nothing, size, bytes of an item, address, shape, strides), a tuple as its members one after the other. The
 arrays that a kernel allocates come from numba's runtime, a small library that needs none of the rest of numba.
 
-Python calls an entry that is made beside it. It takes all arguments in one block of 8 bytes each, of an array the
-object itself, and reads address, shape and strides from there (`PyArrayObject` of NumPy's C interface).
+Python calls an entry created next to it. The entry takes all arguments in one block, 8 bytes each; for an array it
+takes the object itself, and reads address, shape and strides from it (`PyArrayObject` of NumPy's C interface).
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Leaf(NamedTuple):
 
 
 def load(code: MachineCode, leaves: list[Leaf]) -> Callable[[bytes, int], int]:
-    """Return the entry: given arguments and the address for a result it gives 0, else memory was short.
+    """Return the entry: called with arguments and a result address, it returns 0, or nonzero if memory is insufficient.
 
     It releases the interpreter lock.
     """
@@ -49,7 +49,7 @@ def load(code: MachineCode, leaves: list[Leaf]) -> Callable[[bytes, int], int]:
 
     _prepare()
     missing = [name for name in code.calls if not llvm.address_of_symbol(name)]
-    if missing:  # the engine would jump to nowhere
+    if missing:  # otherwise the engine would jump to an invalid address
         raise SlidercrankError(
             f"compiled formulas must find all functions that they call; {', '.join(missing)} is not in this process; "
             "install the versions of numba and llvmlite anew"
@@ -112,12 +112,12 @@ def _machine() -> Any:
     return llvm.Target.from_default_triple().create_target_machine(jit=True, codemodel="jitdefault")
 
 
-_engines: list[Any] = []  # which own the code
+_engines: list[Any] = []  # these own the code
 
 
 @cache
 def _prepare() -> None:
-    """Name what kernels call outside themselves: mathematical functions, and numba's memory for arrays."""
+    """Register the symbols that kernels call: mathematical functions, and numba's memory for arrays."""
     import llvmlite.binding as llvm
 
     llvm.initialize_native_target()
