@@ -38,16 +38,16 @@ _PAUSES = (0.1, 1.0)  # s between two looks at a job that is waited for: at firs
 class Client(Designs):
     """A service. Threads may share it. Also a context manager, which closes it.
 
-    Every method raises `NotFound` for a job, design or figure that is not there, `InputError` for what is wrong in what
-    was asked, `RunError` for what a job cannot do or give as it stands, and `ServiceError` where the service refuses or
-    does not answer, all in the words of the service. What is safe to send twice is tried again while the service does
-    not answer.
+    Every method raises `NotFound` for a missing job, design or figure, `InputError` for an invalid request, and
+    `RunError` for a request that the state of a job does not allow. It raises `ServiceError` if the service refuses or
+    does not answer. All errors have the words of the service. Requests that are safe to send twice are retried while
+    the service does not answer.
     """
 
     def __init__(self, url: str, token: str | None = None, *, patience: float = 30.0) -> None:
         """Prepare; nothing is sent yet.
 
-        url: where the service is, also as it prints it, with the token. patience: for how long, s, to try again.
+        url: address of the service, also with the token, as the service prints it. patience: time to keep retrying, s.
         """
         super().__init__(Connection(url, token, patience))
 
@@ -71,9 +71,9 @@ class Client(Designs):
     ) -> Record:
         """Queue a job and return it.
 
-        limits: seconds, evaluations, memory_bytes. key: of this submission; with one that was used before, nothing is
-        queued and the job of that time is returned. Without one it is made up, so that tries after a lost answer do not
-        make a second job. Raises `InputError` for a job that is not valid.
+        limits: seconds, evaluations, memory_bytes. key: key of this submission; a key used before queues nothing and
+        returns the earlier job. By default a key is generated, so that retries after a lost answer do not create a
+        second job. Raises `InputError` for an invalid job.
         """
         body = {"job": tables_of(job), "priority": priority, "limits": dict(limits or {})}
         return self._connection.post("jobs", body, key=key or uuid.uuid4().hex)
@@ -87,7 +87,7 @@ class Client(Designs):
         limits: Mapping[str, float] | None = None,
         key: str | None = None,
     ) -> Record:
-        """Queue a copy of a job and return it. changes: to its tables, as a merge patch; None takes a key away."""
+        """Queue a copy of a job and return it. changes: changes to its tables, as a merge patch; None removes a key."""
         body = without_none(priority=priority, limits=None if limits is None else dict(limits))
         body["changes"] = dict(changes or {})
         return self._connection.post(f"jobs/{number}/clone", body, key=key or uuid.uuid4().hex)
@@ -97,21 +97,21 @@ class Client(Designs):
     ) -> list[Record]:
         """Return jobs, latest first. states: of these; all if empty. name: contains this. before: older than this.
 
-        Each has what a list shows; `job` gives all of one, `front_points` some designs of several.
+        Each has the fields of a list; `job` gives all fields of one job, `front_points` some designs of several.
         """
         query = {"state": list(states), "name": name, "limit": limit, **without_none(before=before)}
         listed: list[Record] = self._connection.ask("jobs", query)["jobs"]
         return listed
 
     def job(self, number: int) -> Record:
-        """Return where a job stands."""
+        """Return the state of a job."""
         return self._connection.ask(f"jobs/{number}")
 
     def front_points(self, numbers: Collection[int]) -> list[Record]:
-        """Return some designs of the fronts of at most 100 jobs, or of their fronts so far: job, columns, points.
+        """Return some designs of the fronts (so far) of at most 100 jobs: job, columns, points.
 
-        At most 64 designs of each, in the first two objectives; in the order of their numbers, without jobs that are
-        gone.
+        At most 64 designs of each, in the first two objectives. Jobs are in the order of their numbers; deleted jobs
+        are omitted.
         """
         fronts: list[Record] = self._connection.ask("front-points", {"job": list(numbers)})["fronts"]
         return fronts
@@ -121,26 +121,26 @@ class Client(Designs):
         return self._connection.ask(f"jobs/{number}/job")
 
     def cancel(self, number: int) -> Record:
-        """Cancel a job and return it; it keeps what it found, and can go on."""
+        """Cancel a job and return it; it keeps its result so far, and can continue."""
         return self._connection.post(f"jobs/{number}/cancel")
 
     def resume(self, number: int) -> Record:
-        """Queue a cancelled or failed job again, to go on from where it was, and return it."""
+        """Queue a cancelled or failed job again, to continue where it stopped, and return it."""
         return self._connection.post(f"jobs/{number}/resume", again=False)
 
     def delete(self, number: int) -> None:
-        """Delete a job that has ended, and everything of it."""
+        """Delete an ended job and all its data."""
         self._connection.delete(f"jobs/{number}")
 
     def events(self, number: int, *, after: int = 0) -> Iterator[Record]:
-        """Yield what happens to a job, as it happens, until it has ended: number, at, kind, data of each event.
+        """Yield the events of a job as they happen, until it has ended: number, at, kind and data of each.
 
-        after: only those after the event of this number. When the connection breaks, it goes on with the next event.
+        after: number of an event; only later events. After a broken connection it continues with the next event.
         """
         return follow_events(self._connection, number, after)
 
     def wait(self, number: int, *, seconds: float | None = None) -> Record:
-        """Wait until a job has ended, and return it. Raises `ServiceError` after so many seconds."""
+        """Wait until a job has ended, and return it. Raises `ServiceError` after a time limit, s."""
         end = None if seconds is None else time.monotonic() + seconds
         pause, longest = _PAUSES
         while (job := self.job(number))["state"] not in _ENDED:
@@ -170,7 +170,7 @@ class Client(Designs):
         """Return designs of a front as a table, by their numbers in it.
 
         where: conditions such as "transmission_angle >= 45 deg". sort: a quantity or column, best or smallest first.
-        columns: names, separated by commas; all if None.
+        columns: names, separated by commas, all if None.
         """
         import pandas as pd
 
@@ -202,7 +202,7 @@ class Client(Designs):
         lexicographic: str | None = None,
         where: Collection[str] = (),
     ) -> Record:
-        """Return one design as `number` and `design`, chosen among those that meet conditions, as `front` does it.
+        """Return one design as `number` and `design`, chosen among those that meet conditions, as in `front`.
 
         topsis: weights, "peak_torque=2, transmission_angle=1". lexicographic: a ranking, "peak_torque: 5 %, crank".
         """
@@ -214,11 +214,11 @@ class Client(Designs):
         return [figure["name"] for figure in self._connection.ask(f"jobs/{number}/figures")["figures"]]
 
     def figure(self, number: int, name: str, path: str | PathLike[str]) -> Path:
-        """Write a figure into a file, PNG or SVG by its ending, and return the file."""
+        """Write a figure to a PNG or SVG file, by its ending, and return the file."""
         return self._save(f"jobs/{number}/figures/{name}", Path(path), ("png", "svg"))
 
     def export(self, number: int, path: str | PathLike[str]) -> Path:
-        """Write all designs of a front into a file, CSV, JSON or Parquet by its ending, and return the file."""
+        """Write all designs of a front to a CSV, JSON or Parquet file, by its ending, and return the file."""
         return self._save(f"jobs/{number}/export", Path(path), ("csv", "json", "parquet"))
 
     def _save(self, path: str, file: Path, kinds: tuple[str, ...]) -> Path:
@@ -235,7 +235,7 @@ class Client(Designs):
         return self._connection.ask("schema")
 
     def check(self, job: JobSource) -> Record:
-        """Return a job in words, as it is understood; nothing is queued. Raises `InputError` for a wrong one."""
+        """Return a job in words, as understood; nothing is queued. Raises `InputError` for an invalid job."""
         return self._connection.post("check", {"job": tables_of(job)})
 
     def analyse(
@@ -247,14 +247,14 @@ class Client(Designs):
         offset: str | None = None,
         show: Collection[str] = (),
     ) -> Record:
-        """Return all numbers of any design for a job. Lengths as "40 mm"; those that the job fixes may be left out."""
+        """Return all numbers of any design for a job. Lengths as "40 mm"; lengths fixed by the job may be omitted."""
         body = {"job": tables_of(job), "crank": crank, "rod": rod, "offset": offset, "show": list(show)}
         numbers: Record = self._connection.post("analyse", body)["analysis"]
         return numbers
 
 
 def tables_of(job: JobSource) -> Record:
-    """Return the tables of a job file, with the content of files beside it in them. Raises `JobError`."""
+    """Return the tables of a job file, including the content of files beside it. Raises `JobError`."""
     from ...optimise.job import with_files
     from ...optimise.job.file import read, toml_tables
 

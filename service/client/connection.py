@@ -1,4 +1,4 @@
-"""Requests to a service, and events of a job: tried again where safe, refused in the service's words."""
+"""Requests to a service, and events of a job: retried if safe; refusals in the words of the service."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Event = Record
 
 
 class Away(ServiceError):
-    """The service answers that it cannot do it now, but later."""
+    """Answer of the service that it cannot do it now, but later."""
 
 
 class Connection:
@@ -36,8 +36,8 @@ class Connection:
     def __init__(self, url: str, token: str | None, patience: float) -> None:
         """Prepare a connection; nothing is sent yet.
 
-        url: "http://host:port", also with "?token=...", as the service prints it. patience: for how long, s, a request
-        is tried again. Raises `InputError` for an address of another kind.
+        url: "http://host:port", also with "?token=...", as the service prints it. patience: time to keep retrying a
+        request, s. Raises `InputError` for an address of another kind.
         """
         parts = urlsplit(url)
         if parts.scheme not in ("http", "https") or not parts.hostname:
@@ -45,7 +45,7 @@ class Connection:
                 f"the address of a service must be http://host:port or https://host; got {url[:200]!r}; correct it"
             )
         token = token or next(iter(parse_qs(parts.query).get("token", [])), None)
-        # Without the token: it is shown in errors.
+        # Without the token: errors show this address.
         self.url = f"{parts.scheme}://{parts.netloc}{parts.path.rstrip('/')}"
         self.patience = patience
         self._http = httpx.Client(
@@ -61,9 +61,9 @@ class Connection:
         self._http.close()
 
     def request(self, method: str, path: str, *, again: bool, **content: Any) -> httpx.Response:
-        """Return the answer to a request. Raises as `refusal` says, `ServiceError` if there is no answer.
+        """Return the answer to a request. Raises the errors of `refusal`, and `ServiceError` without an answer.
 
-        again: whether the request may be sent twice. One that the service cannot have seen is tried again anyway.
+        again: whether the request may be sent twice. A request that the service cannot have seen is retried anyway.
         """
         tries = Tries(self)
         while True:
@@ -84,24 +84,24 @@ class Connection:
                 raise refusal(response)
 
     def post(self, path: str, body: Record | None = None, *, again: bool = True, key: str | None = None) -> Record:
-        """Return the JSON that answers a body. key: of a submission."""
+        """Return the JSON answer to a body. key: key of a submission."""
         headers = None if key is None else {"Idempotency-Key": key}
         record: Record = self.request("POST", path, again=again, json=body, headers=headers).json()
         return record
 
     def ask(self, path: str, query: Record | None = None, body: Record | None = None) -> Record:
-        """Return the JSON at a path, or what answers a body there."""
+        """Return the JSON at a path, or the answer to a body sent there."""
         method = "GET" if body is None else "POST"
         record: Record = self.request(method, path, again=True, params=query, json=body).json()
         return record
 
     def delete(self, path: str) -> None:
-        """Delete what is at a path."""
+        """Delete the resource at a path."""
         self.request("DELETE", path, again=True)
 
     @contextmanager
     def stream(self, path: str, headers: Mapping[str, str]) -> Iterator[httpx.Response]:
-        """Enter the answer to a GET before its content has come; raises httpx's errors, and as `refusal` says."""
+        """Enter the answer to a GET before its content arrives; raises the errors of httpx and of `refusal`."""
         with self._http.stream("GET", path, headers=dict(headers)) as response:
             if not response.is_success:
                 response.read()
@@ -109,7 +109,7 @@ class Connection:
             yield response
 
     def unreachable(self, error: Exception) -> ServiceError:
-        """Return the error of a service that does not answer."""
+        """Return the error for a service that does not answer."""
         return ServiceError(
             f"the service must answer; {self.url} gave: {str(error) or type(error).__name__}; "
             "see that `slidercrank serve` runs there"
@@ -117,7 +117,7 @@ class Connection:
 
 
 class Tries:
-    """The tries of one request: pauses that grow, until the patience is used up."""
+    """Attempts of one request, with growing pauses, until the patience is used up."""
 
     def __init__(self, connection: Connection) -> None:
         self.made = 0
@@ -126,27 +126,27 @@ class Tries:
 
     @property
     def has_patience(self) -> bool:
-        """Whether there is patience for another one."""
+        """Whether there is patience for another attempt."""
         return time.monotonic() < self._end
 
     def pause(self) -> None:
-        """Wait before the next one."""
+        """Wait before the next attempt."""
         time.sleep(min(_LONGEST_PAUSE, _FIRST_PAUSE * 2.0**self.made, max(0.0, self._end - time.monotonic())))
         self.made += 1
 
     def wait(self, error: Exception) -> None:
-        """Wait before the next one after an error. Raises `ServiceError` if there is no patience left."""
+        """Wait before the next attempt after an error. Raises `ServiceError` if there is no patience left."""
         if not self.has_patience:
             raise error if isinstance(error, Away) else self._connection.unreachable(error) from error
         self.pause()
 
 
 def refusal(response: httpx.Response) -> SlidercrankError:
-    """Return the exception for a refusal of a service, with its sentence.
+    """Return the exception for a refusal by a service, with its sentence.
 
     `NotFound` for 404, `InputError` for an invalid request, `InfeasibleError` for a valid one that no design can
-    meet, `RunError` for what a job cannot do or give as
-    it stands, `ServiceError` for all others, of which `Away` may pass.
+    meet, `RunError` for a request that the state of a job does not allow, `ServiceError` for all others, of which
+    `Away` is temporary.
     """
     kind = None
     try:
@@ -164,7 +164,7 @@ def refusal(response: httpx.Response) -> SlidercrankError:
 def follow_events(connection: Connection, number: int, after: int) -> Iterator[Event]:
     """Yield the events of a job after a given one as they happen, until the service has no more.
 
-    Every connection says which event came last, so none is missed and none comes twice.
+    Every connection names the last event received, so none is missed or repeated.
     """
     tries = Tries(connection)
     while True:
@@ -187,7 +187,7 @@ def follow_events(connection: Connection, number: int, after: int) -> Iterator[E
 
 
 def _events(lines: Iterator[str]) -> Iterator[Event | None]:
-    """Yield the data of server-sent events, None for a sign of life; leave out an event cut off.
+    """Yield the data of server-sent events, None for a sign of life; omit a truncated event.
 
     WHATWG, HTML standard, 9.2.6.
     """

@@ -1,4 +1,4 @@
-"""Single designs for a client: their numbers, questions about them, and those that people keep."""
+"""Single designs for a client: their numbers, questions about them, and bookmarks."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ class Designs:
         self._connection = connection
 
     def analysis(self, number: int, design: int, *, show: Collection[str] = ()) -> Record:
-        """Return all numbers of a design, and of each topic of `show` an object: what `analyse --json` prints."""
+        """Return all numbers of a design, and an object for each topic of `show`, as `analyse --json` prints them."""
         return self._ask_design(number, design, "analysis", {"show": list(show)})
 
     def ask(self, number: int, design: int | None, question: str, /, **inputs: object) -> Record:
-        """Return the answer to a question as `--json` prints it: a topic of `analyse --show`, or a command.
+        """Return the answer to a question, a topic of `analyse --show` or a command, as `--json` prints it.
 
-        design: that is asked; None for the whole front: `client.ask(7, None, "certify", epsilon=0.02)`. inputs: those
-        of the question by their names in the API, which end with their metric unit, touch_distance_mm=12.
+        design: number of the design, None for the whole front: `client.ask(7, None, "certify", epsilon=0.02)`. inputs:
+        inputs of the question by their names in the API, which end with their metric unit: touch_distance_mm=12.
         """
         if question in FRONT_OR_JOB_QUESTIONS:
             if not FRONT_OR_JOB_QUESTIONS[question].path:
@@ -63,25 +63,26 @@ class Designs:
     def swing(self, number: int, design: int, **asked: float | str | None) -> Record:
         """Return the numbers of a swing of a design, as `slidercrank swing --json` prints them.
 
-        asked: as the API asks for it, start_deg=30, end_deg=90, driver="slider". What is left out is as the job has it.
+        asked: inputs by their names in the API, start_deg=30, end_deg=90, driver="slider". Omitted ones come from the
+        job.
         """
         return self.ask(number, design, "swing", **asked)
 
     def wish(self, number: int, at: Mapping[str, str], *, design: int | None = None) -> Record:
-        """Return the optimal design that comes nearest to wishes, as `slidercrank wish --json` prints it.
+        """Return the optimal design nearest to wishes, as `slidercrank wish --json` prints it.
 
-        at: by objective a value, "110 N m", or "improve", "keep", "may worsen to 120 N m" or "free". design: that these
-        speak of, by its number.
+        at: for each objective a value, "110 N m", or "improve", "keep", "may worsen to 120 N m" or "free". design:
+        number of the design that these classes refer to.
         """
         return self.ask(number, design, "wish", at=dict(at))
 
     def wishes(self, number: int) -> list[Record]:
-        """Return the wishes made of the front of a job, the latest first, with design and time."""
+        """Return the wishes made on the front of a job, the latest first, with design and time."""
         made: list[Record] = self._connection.ask(f"jobs/{number}/wishes")["made"]
         return made
 
     def kept(self, number: int) -> list[Record]:
-        """Return the kept designs of a job: name, note, star, decision and all numbers of each."""
+        """Return the bookmarks of a job: name, note, star, decision and all numbers of each."""
         bookmarks: list[Record] = self._connection.ask(f"jobs/{number}/kept")["designs"]
         return bookmarks
 
@@ -95,24 +96,24 @@ class Designs:
         note: str = "",
         star: bool = False,
     ) -> Record:
-        """Keep a design of a front, or one with other dimensions such as {"rod_mm": 330}, and return it."""
+        """Bookmark a design of a front, or one with other dimensions such as {"rod_mm": 330}, and return it."""
         body = {"design": design, "dimensions": dict(dimensions or {}), "name": name, "note": note, "star": star}
         return self._connection.post(f"jobs/{number}/kept", body, again=False)
 
     def change_kept(self, number: int, kept: int, **changes: Any) -> Record:
-        """Change name, note, star, decided or reason of a kept design and return it."""
+        """Change name, note, star, decided or reason of a bookmark and return it."""
         path = f"jobs/{number}/kept/{kept}"
         bookmark: Record = self._connection.request("PATCH", path, again=True, json=changes).json()
         return bookmark
 
     def drop_kept(self, number: int, kept: int) -> None:
-        """Delete a kept design."""
+        """Delete a bookmark."""
         self._connection.delete(f"jobs/{number}/kept/{kept}")
 
     def measured(self, number: int, design: int, csv: str | PathLike[str]) -> Record:
-        """Return how measured curves deviate from those of a design, as `analyse --measured --json` prints it.
+        """Return the deviation of measured curves from those of a design, as `analyse --measured --json` prints it.
 
-        csv: the path of a CSV file, or its text, which has more than one line.
+        csv: path of a CSV file, or its text, which has more than one line.
         """
         from ..designs.measured_file import measured_text
 
@@ -131,15 +132,15 @@ class Designs:
     ) -> Record:
         """Return the best rounded neighbours of a design, as `slidercrank round --json` prints them.
 
-        to: a step of all lengths, "0.5 mm", or steps, also by name: ["0.5 mm", "rod=1 mm"]. allow: by how much designs
-        may miss requirements, "stroke=0.1 mm".
+        to: step for all lengths, "0.5 mm", or steps, also by name: ["0.5 mm", "rod=1 mm"]. allow: amounts by which
+        designs may miss requirements, "stroke=0.1 mm".
         """
         return self._ask_wider(
             FRONT_OR_JOB_QUESTIONS["round"], number, design, {"to": to, "allow": allow, "count": count}, units
         )
 
     def curves(self, number: int, design: int, *, angles: int = 360) -> pd.DataFrame:
-        """Return slider motion, torque, transmission angle and joint forces of a design over a turn of the crank."""
+        """Return slider motion, torque, transmission angle and joint forces of a design over a crank revolution."""
         import pandas as pd
 
         columns = self._ask_design(number, design, "curves", {"angles": angles})
@@ -148,7 +149,7 @@ class Designs:
     def _ask_wider(
         self, question: FrontOrJobQuestion, number: int, design: int | None, inputs: Record, units: System = "metric"
     ) -> Record:
-        """Return the answer of a front, or of what it knows of one of its designs."""
+        """Return the answer for a front, or for one of its designs."""
         query = question.read(inputs, design) | (without_none(design=design) if question.row == "may" else {})
         path = question.path.format(number=number, design=design)
         record = self._connection.ask(path, *(({"units": units}, query) if question.posted else (query,)))

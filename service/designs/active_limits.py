@@ -1,4 +1,4 @@
-"""Limits of a job on which designs of its front rest, and the job with wider ones."""
+"""Active constraints of the designs of a front, and the job with wider limits."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ _WORDS: dict[Side, str] = {"lower": "at least", "upper": "at most"}
 
 @dataclass(frozen=True, kw_only=True)
 class Limit:
-    """A limit that a job sets, in its unit. of: its place in the job, such as "variables.rod".
+    """Limit that a job sets, in its unit. of: its place in the job, such as "variables.rod".
 
-    designs: numbers of those of the front that rest on it, from 1. wider: a wider value to try; None where the job says
-    the limit in a way that another number cannot take the place of. size: what the distance from it is a share of.
+    designs: numbers of the designs of the front that lie on it, from 1. wider: wider value to try; None if the job
+    states the limit in a way that a number cannot replace. size: reference value for relative distances from it.
     """
 
     of: str
@@ -51,9 +51,9 @@ class Limit:
 
 
 def active_limits(problem: Problem, result: Result, tables: Mapping[str, Any]) -> list[Limit]:
-    """Return the limits on which designs of a front rest, those with most designs first. tables: of the job.
+    """Return the limits on which designs of a front lie, those with most designs first. tables: tables of the job.
 
-    Values that the job fixes, or requires exactly, are no limits: every design rests on them.
+    Values that the job fixes, or requires exactly, are not limits: every design lies on them.
     """
     variants = range(max(1, len(problem.variants)))
     limits = {variant: _limits(problem.part(variant), tables) for variant in variants}
@@ -78,7 +78,7 @@ def widen_limits(
 ) -> dict[str, Any]:
     """Return the tables of a job with other limits, each by its place, side and value in its unit.
 
-    Raises `InputError` for a limit that the job does not have, or that another number cannot take the place of.
+    Raises `InputError` for a limit that the job does not have, or that a number cannot replace.
     """
     limits = {(limit.of, limit.side): limit for part in problem.parts() for limit in _limits(part, tables)}
     job = deepcopy(dict(tables))
@@ -169,7 +169,7 @@ def _sides(lower: float | None, upper: float | None) -> list[tuple[Side, float]]
 
 
 def _place(table: Any, path: str) -> tuple[Any, str]:
-    """Return the table that a path leads into, and the key there; a key may be in quotes."""
+    """Return the table that a path leads to, and the key there; a key may be in quotes."""
     while path not in table and "." in path:
         step, _, rest = path.partition(".")
         table, path = table.get(step, {}), rest

@@ -1,4 +1,4 @@
-"""Columns of the table of designs by the names that people use, with their units."""
+"""Columns of the table of designs, by the names that people use, with their units."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ _MOST = 12  # keys of a message
 
 @dataclass(frozen=True)
 class Column:
-    """A column. key: as in JSON and CSV. title: for people. factor: what one SI unit is in its unit.
+    """A column. key: key in JSON and CSV. title: title for people. factor: one SI unit in its unit.
 
-    plain: what a number without a unit is multiplied by for the column's unit: 25.4 for `crank_mm` called `crank_in`,
-    None for a column with a unit that was called by a name without. group: that it is shown in.
+    plain: factor from a number without a unit to the column's unit: 25.4 for `crank_mm` called `crank_in`; None for a
+    column with a unit called by a name without one. group: group in which it is shown.
     """
 
     key: str
@@ -37,9 +37,9 @@ class Column:
 
 
 def find_column(name: str, keys: Collection[str]) -> Column:
-    """Return the column that a name means: a key of the table, or a quantity as in job files ("peak_torque").
+    """Return the column for a name: a key of the table, or a quantity as in job files ("peak_torque").
 
-    A key of any system of units is one of the table: `crank_in` is `crank_mm`.
+    Keys of every system of units are accepted: `crank_in` is `crank_mm`.
     Raises `InputError` with the nearest names.
     """
     name = name.strip()
@@ -80,7 +80,7 @@ def _group(key: str) -> Group:
 
 
 def chosen_columns(keys: Iterable[str]) -> list[str]:
-    """Return the columns of what was chosen besides the dimensions: those between the offset and the quantities."""
+    """Return the columns of choices besides the dimensions: those between the offset and the quantities."""
     from_offset = itertools.dropwhile(lambda key: metric_key(key) != "offset_mm", keys)
     return list(
         itertools.takewhile(lambda key: metric_key(key) not in _titles(), itertools.islice(from_offset, 1, None))
@@ -96,7 +96,7 @@ def _titles() -> dict[str, str]:
 
 
 def _key_of_name(name: str, keys: Collection[str]) -> str:
-    """Return the key that a name without unit means. Raises `InputError` with the nearest names."""
+    """Return the key for a name without a unit. Raises `InputError` with the nearest names."""
     from ...objectives.registry import QUANTITIES
 
     system: System = "metric" if "crank_mm" in keys or "crank_in" not in keys else "inch"
@@ -112,7 +112,7 @@ def _key_of_name(name: str, keys: Collection[str]) -> str:
     names = {alias: key for alias, key in aliases.items() if key in keys}
     if name in names:
         return names[name]
-    # An own quantity's key has its unit after its name.
+    # The key of a custom quantity has its unit after its name.
     longer = [key for key in keys if name and key.startswith(f"{name}_") and metric_key(key) not in _titles()]
     if len(longer) == 1:
         return longer[0]
@@ -135,5 +135,5 @@ def all_columns(keys: Collection[str]) -> list[Column]:
 
 
 def find_columns(text: str, keys: Collection[str]) -> list[Column]:
-    """Return the columns of a list of names, separated by commas."""
+    """Return the columns for a comma-separated list of names."""
     return [find_column(name, keys) for name in re.split(r"[,\s]+", text.strip(" ,"))]

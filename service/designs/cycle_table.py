@@ -1,4 +1,4 @@
-"""The curves of one design over a turn of the crank: as CSV and as JSON."""
+"""Curves of one design over a crank revolution, as CSV and as JSON."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _LEFT_OUT = ("slider_jerk", "rod_angle", "power")
 
 @dataclass(frozen=True)
 class CurveColumn:
-    """A curve. key: as in JSON. values: over the crank angles; NaN where friction leaves it undetermined."""
+    """A curve. key: key in JSON. values: values over the crank angles; NaN where friction leaves it undetermined."""
 
     key: str
     title: str
@@ -33,9 +33,9 @@ class CurveColumn:
 
 
 def cycle_table(mechanism: Mechanism, linkage: Linkage, *, angles: int = 360, turns: int = 1) -> list[CurveColumn]:
-    """Return the curves of one fully turning linkage at evenly spaced crank angles from 0 deg, in metric units.
+    """Return the curves of one fully rotating linkage at evenly spaced crank angles from 0 deg, in metric units.
 
-    turns: of the crank, that the angles are spread over. The curves are those of `objectives.tables.cycle_curves`;
+    turns: crank revolutions that the angles span. The curves are those of `objectives.tables.cycle_curves`;
     raises `InputError` for too few or too many angles.
     """
     from ...objectives.tables.cycle_curves import cycle_curves, even_angles
@@ -49,9 +49,9 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, *, angles: int = 360, tu
 
 
 def cycle_csv(mechanism: Mechanism, linkage: Linkage, system: System = "metric", *, machine: bool = True) -> str:
-    """Return a row for each degree of a cycle, a column for each curve of `cycle_curves`; empty where not defined.
+    """Return a row for each degree of a cycle, a column for each curve of `cycle_curves`; empty where undefined.
 
-    machine: whether masses, loads and tolerances are known; else only the motion is given.
+    machine: whether masses, loads and tolerances are known; else only the motion is returned.
     """
     from ...model.machine.two_turns import cycle_turns
     from ...objectives.tables.cycle_curves import cycle_curves, even_angles

@@ -1,4 +1,4 @@
-"""The curves of a design, which turns through or swings: as CSV, and at even places of its cycle."""
+"""Curves of a design that rotates fully or swings: as CSV, and at evenly spaced points of its cycle."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from .swing_curves import curves_at_even_times, force_components, has_position_e
 
 @dataclass(frozen=True)
 class DesignCurves:
-    """Curves of a design at even places of its cycle. turns: of the crank in it; 0 of a swing forth and back.
+    """Curves of a design at evenly spaced points of its cycle. turns: crank revolutions per cycle; 0 for a swing.
 
-    seconds: that the cycle takes; None without a speed, and of a slow swing. centres: crank angles of the inner and the
-    outer dead centre, deg; None of a swing. slider_ends: slider positions there, or at both ends of a swing, mm.
+    seconds: duration of the cycle; None without a speed, and for a slow swing. centres: crank angles of the inner and
+    the outer dead centre, deg; None for a swing. slider_ends: slider positions there, or at both ends of a swing, mm.
     """
 
     turns: int
@@ -35,10 +35,10 @@ class DesignCurves:
 
 
 def design_curves(design: StoredDesign, count: int) -> DesignCurves:
-    """Return the curves at so many places: crank angles from 0 deg on, or even times forth and back.
+    """Return the curves at a number of points: crank angles from 0 deg, or even times of a swing back and forth.
 
-    A cycle of 720 deg has both turns. Of a swing the first place is its start, the middle one its end, and the number
-    is even. Raises `InputError` for too few or too many places, and what the design's motion raises.
+    A cycle of 720 deg has both revolutions. For a swing the first point is its start, the middle one its end, and the
+    number is even. Raises `InputError` for too few or too many points, and the errors of the design's motion.
     """
     if design.part.motion is None:
         turns = cycle_turns(design.mechanism)
@@ -75,7 +75,7 @@ def design_curves(design: StoredDesign, count: int) -> DesignCurves:
 
 
 def design_csv(design: StoredDesign, system: System = "metric") -> str:
-    """Return the curves as CSV: those of `cycle_csv`, or of both ways of a swing."""
+    """Return the curves as CSV: those of `cycle_csv`, or those of both strokes of a swing."""
     if design.part.motion is None:
         return cycle_csv(design.mechanism, design.linkage, system)
     return csv_text(rows_in(swing_rows(design.mechanism, design.linkage, design.part.motion), system))

@@ -1,6 +1,6 @@
-"""Results in a system of units: keys, values and sentences together.
+"""Results in a system of units: keys, values and sentences.
 
-All that is stored is metric. What is shown in inches is made from it here, at the edge, and nowhere else.
+All stored data are metric. They are converted to inches here, at the edge, and nowhere else.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def rows_in(rows: Sequence[Row], system: System) -> list[Row]:
 def record_in(record: Any, system: System) -> Any:
     """Return a JSON record with keys and values of a system of units, at any depth.
 
-    Numbers and lists of numbers take the unit that their key ends with, and the key that of the system.
+    Numbers and lists of numbers are converted from the unit in their key, and the key is renamed to the new unit.
     """
     if system == "metric":
         return record
@@ -45,9 +45,10 @@ def record_in(record: Any, system: System) -> Any:
 
 
 def result_in(result: Result, system: System, problem: Problem | None = None) -> Result:
-    """Return the result of a run in the units of a system. The order of the designs and all choices among them stay.
+    """Return the result of a run in the units of a system. The order of designs and all choices among them stay.
 
-    problem: of the run; what the knee costs is stored in metric units and computed anew with it, left out without it.
+    problem: problem of the run; the trade-offs at the knee, stored in metric units, are recomputed with it and omitted
+    without it.
     """
     if system == "metric":
         return result

@@ -1,4 +1,4 @@
-"""Several fronts in words: who reaches most, who beats whom, and where."""
+"""Comparison of several fronts in words: which reaches farthest, which beats which, and where."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ _TO = f"to {100 * NEAR:g} % of each range"
 def comparison_sentences(names: Sequence[str], results: Sequence[Result], system: System = "metric") -> list[str]:
     """Compare fronts with each other in sentences.
 
-    names: of the runs. results: with designs. Only objectives that all runs have, in the same sense, are compared.
+    names: names of the runs. results: results with designs. Only objectives that all runs share, in the same sense, are
+    compared.
     """
     shared = _shared(results)
     if not shared:
@@ -52,7 +53,7 @@ def _shared(results: Sequence[Result]) -> list[Wanted]:
 
 
 def _values(result: Result, shared: Sequence[Wanted]) -> Array:
-    """Return the shared objectives of a result (n, m), as they are minimised; infinite where one is not defined."""
+    """Return the shared objectives of a result (n, m), as they are minimised; infinite if undefined."""
     order = [item.quantity for item in result.objectives]
     values = minimised_values(result)[:, [order.index(item.quantity) for item in shared]]
     return np.asarray(np.where(np.isfinite(values), values, np.inf))
@@ -67,7 +68,7 @@ def _best(
     span: Array,
     system: System,
 ) -> str:
-    """Return who comes farthest in one objective, and how far the others come."""
+    """Return the front with the best value of one objective, and the best values of the others."""
     rows = [int(np.argmin(front[:, index])) for front in fronts]
     least = np.array([front[row, index] for front, row in zip(fronts, rows, strict=True)])
     values = [
@@ -91,7 +92,7 @@ def _unmatched_sentence(
     other_front: Array,
     system: System,
 ) -> list[str]:
-    """Return how many designs of one front the other one does not match, and where these are."""
+    """Return the number of designs of one front that the other does not match, and where they lie."""
     free = unmatched(front, other_front)
     count, total = int(free.sum()), len(front)
     if count == 0:
@@ -108,12 +109,12 @@ def _unmatched_sentence(
 
 
 def unmatched(front: Array, other_front: Array) -> NDArray[np.bool_]:
-    """Return which designs (n, m) no other one (k, m) matches or beats; scaled objectives, as they are minimised."""
+    """Return the designs (n, m) that no other one (k, m) matches or beats; scaled objectives, as they are minimised."""
     return np.array([not bool((other_front <= point + NEAR).all(axis=1).any()) for point in front])
 
 
 def _range_in_words(result: Result, free: NDArray[np.bool_], objective: Wanted, values: Array, system: System) -> str:
-    """Return in which part of an objective's range the chosen designs are; empty if in most of it."""
+    """Return the part of an objective's range where the chosen designs lie; empty if they cover most of it."""
     low, high = values[free].min(), values[free].max()
     is_between = (values >= low) & (values <= high)
     if is_between.mean() > 0.7:

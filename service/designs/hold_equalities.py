@@ -1,4 +1,4 @@
-"""Adjustment of lengths after one was moved, so that the equality constraints still hold."""
+"""Adjustment of lengths after one was changed, so that the equality constraints still hold."""
 
 from __future__ import annotations
 
@@ -25,11 +25,10 @@ Lengths = tuple[float, float, float]
 
 
 def hold_equalities(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
-    """Return lengths, m, near the given ones, the moved one as given, that meet every equality of the job.
+    """Return lengths, m, near the given ones that meet every equality of the job; the changed length stays as given.
 
-    Newton's method in the other lengths that the job leaves free, each step the shortest that meets the linearised
-    equalities, halved while the linkage would not turn fully, or not swing as asked. Raises `InputError` where it finds
-    none.
+    Newton's method in the other free lengths. Each step is the shortest that meets the linearised equalities, halved
+    while the linkage would not rotate fully, or not swing as required. Raises `InputError` if it finds none.
     """
     part = design.part
     equal = [constraint for constraint in part.constraints if constraint.equality]
@@ -62,13 +61,13 @@ def _misses(design: StoredDesign, equal: list[Constraint], values: Array) -> tup
     """Return the residuals of the equalities (m,), their slopes (m, 3 + k), and the sizes of the targets (m,)."""
     targets = np.array([constraint.lower or 0.0 for constraint in equal])
     part, names = design.part, [constraint.quantity for constraint in equal]
-    # Not `Problem.evaluate`, which warns of lengths that people give: these are on the way to others.
+    # Not `Problem.evaluate`, which warns about lengths given by people: these are intermediate.
     reached, slopes = evaluated(part.mechanism, values[None], names, gradients=True, own=part.own, swing=part.motion)
     return reached[0] - targets, slopes[0], np.maximum(np.abs(targets), 1e-6)
 
 
 def _moves(part: Problem, values: Array) -> bool:
-    """Return whether a design turns fully, or swings as far as its job asks."""
+    """Return whether a design rotates fully, or swings as far as its job requires."""
     if part.motion is not None:
         return bool(passes(part.mechanism, part.motion, values[None])[0])
     crank, rod, offset = values[:3]

@@ -1,4 +1,4 @@
-"""Measured curves in a file, as loggers and spreadsheets write them."""
+"""Measured curves in a file, as written by loggers and spreadsheets."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ _NAME = "a measured file"
 
 
 def measured_text(path: Path) -> str:
-    """Return the text of a file. Raises `InputError` for one that cannot be read, is large or is no text."""
+    """Return the text of a file. Raises `InputError` if it cannot be read, is too large or is not text."""
     return text_of(bytes_of(path, f"{_NAME}, {path},", _LARGEST), _NAME)
 
 
 def read_measured(text: str, mechanism: Mechanism, linkage: Linkage) -> Measured:
-    """Return the samples of a file's text. Raises `InputError` for what is no table, and for what cannot be."""
+    """Return the samples of a file's text. Raises `InputError` if it is not a table, or has impossible values."""
     from ...objectives.tables.measured import columns_of, measured_from
 
     table = read_table(text, _NAME, ragged=True)
@@ -40,7 +40,7 @@ def read_measured(text: str, mechanism: Mechanism, linkage: Linkage) -> Measured
 
 
 def _any_unit(text: str, kind: Kind) -> float | None:
-    """Return the value in SI of any unit that jobs know; None for what is no unit of a kind."""
+    """Return the size of a unit in SI, for any unit known to jobs; None if it is not a unit of the kind."""
     from ...objectives.units import symbol_in, to_si
 
     symbol = symbol_in(text.replace("_", " "), kind)

@@ -1,4 +1,4 @@
-"""The job of a search near a design: ranges around its lengths, also outside of the job."""
+"""Job for a search near a design: ranges around its lengths, also outside the job's ranges."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _LONGEST_NAME = 80  # of a job
 def job_near_lengths(
     problem: Problem, tables: Mapping[str, Any], lengths: tuple[float, float, float], *, share: float = SHARE
 ) -> dict[str, Any]:
-    """Return the tables of a job whose crank, rod and offset vary around lengths, mm. What the job fixes stays so.
+    """Return the tables of a job whose crank, rod and offset vary around lengths, mm. Lengths that the job fixes stay.
 
-    share: of each length, on either side; of the offset at least that share of the crank. Raises `InputError` where
-    the job fixes all three.
+    share: fraction of each length, on either side; for the offset at least that fraction of the crank. Raises
+    `InputError` if the job fixes all three.
     """
     part = problem.parts()[0]
     free = [name for name in DIMENSIONS if (bounds := getattr(part, name)).lower < bounds.upper]

@@ -20,7 +20,7 @@ _LEXICOGRAPHIC = '"peak_torque: 5 %, transmission_angle"'
 
 
 def require_single_choice(design: int, result: Result, *, has_other_choice: bool) -> None:
-    """Raise `InputError` for a number that the run does not have, and for one given with another way of choosing."""
+    """Raise `InputError` for a number that the run does not have, or one combined with another way of choosing."""
     if has_other_choice:
         raise InputError("a design must be chosen in one way; got its number and another way; keep one of them")
     if not 1 <= design <= len(result.designs):
@@ -31,7 +31,7 @@ def require_single_choice(design: int, result: Result, *, has_other_choice: bool
 def picked_row(
     result: Result, rows: Sequence[int], *, knee: bool, topsis: str | None, lexicographic: str | None
 ) -> int | None:
-    """Return which of the rows the options choose, None without such an option. Raises `InputError` for two."""
+    """Return the index of the row that the options choose, None without such an option. Raises `InputError` for two."""
     from ...optimise.front import picking
 
     ways = [
@@ -56,7 +56,7 @@ def picked_row(
 
 
 def minimised_values(result: Result) -> Array:
-    """Return the objectives (n, m) of a stored run as they are minimised, in shown units."""
+    """Return the objectives (n, m) of a stored run as they are minimised, in display units."""
     import numpy as np
 
     values = [[objective.rank(row) for objective in result.objectives] for row in result.designs]
@@ -64,12 +64,12 @@ def minimised_values(result: Result) -> Array:
 
 
 def target_sizes(result: Result) -> list[float]:
-    """Return the targets of objectives, in shown units, 0 without: what distances from them are rounded against."""
+    """Return the targets of objectives, in display units, 0 without one: the scale for rounding distances from them."""
     return [abs(objective.target or 0.0) for objective in result.objectives]
 
 
 def _weights(text: str, objectives: Sequence[Wanted]) -> list[float]:
-    """Return a weight for each objective, zero for those not named."""
+    """Return a weight for each objective, zero for omitted ones."""
     weights = dict.fromkeys(range(len(objectives)), 0.0)
     named: set[int] = set()
     for part in _parts(text, _TOPSIS):
@@ -87,7 +87,7 @@ def _weights(text: str, objectives: Sequence[Wanted]) -> list[float]:
 
 
 def _order(text: str, objectives: Sequence[Wanted]) -> list[tuple[int, float, float]]:
-    """Return objectives in order as column, absolute tolerance (shown unit) and tolerance as share of the range."""
+    """Return objectives in order: column, absolute tolerance (display unit) and tolerance relative to the range."""
     order = []
     for part in _parts(text, _LEXICOGRAPHIC):
         name, colon, value = part.partition(":")
@@ -119,7 +119,7 @@ def _parts(text: str, example: str) -> list[str]:
 
 
 def _column(name: str, objectives: Sequence[Wanted]) -> int:
-    """Return the position of an objective called by its name, or by its column."""
+    """Return the position of an objective by its name or its column."""
     name = name.strip()
     for column, objective in enumerate(objectives):
         if name == objective.column or "".join(name.split()) == "".join(objective.quantity.split()):

@@ -1,4 +1,4 @@
-"""Facts of the dimensions and of quantities, for forms and agents: meaning, formula, unit, source."""
+"""Facts on dimensions and quantities, for forms and agents: meaning, formula, unit, source."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _STATED = ("name", "title", "sentence", "advice", "formula", "section", "source"
 
 
 def facts_of_all() -> list[dict[str, Any]]:
-    """Return the facts of the dimensions and of every quantity, in the order in which they are shown."""
+    """Return the facts on the dimensions and on every quantity, in display order."""
     from ...objectives.registry import FACTS
 
     return [*map(_dimension, _DIMENSIONS), *map(_quantity, FACTS.values())]

@@ -1,4 +1,4 @@
-"""Requirements of a job on a design: ranges of the dimensions, constraints, and by how much each is missed."""
+"""Requirements of a job on a design: ranges of the dimensions, constraints, and the amount by which each is missed."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MET = 1e-8
 
 @dataclass(frozen=True)
 class Requirement:
-    """A quantity that must lie between two values, in its unit; None leaves a side open."""
+    """Quantity that must lie between two values, in its unit; None leaves a side open."""
 
     quantity: str
     column: str
@@ -34,11 +34,11 @@ class Requirement:
 
     @property
     def slack(self) -> str:
-        """The column of the distance to the nearer bound."""
+        """Column of the distance to the nearer bound."""
         return f"slack_{self.column}"
 
     def missed_by(self, row: Row) -> float | None:
-        """Return by how much a design misses it, zero where it is met; None for a design without the number."""
+        """Return the amount by which a design misses it, zero if it is met; None for a design without the number."""
         value = _number(row.get(self.column))
         if value is None:
             return None
@@ -50,10 +50,10 @@ class Requirement:
 
 @dataclass(frozen=True, kw_only=True)
 class JudgedRule:
-    """A rule of a job at one design, in the unit that is shown for its quantity.
+    """A rule of a job at one design, in the display unit of its quantity.
 
-    lower, upper: None leaves a side open. value: None where the design does not have the quantity. missed_by: zero
-    where the rule is met, None without a value.
+    lower, upper: None leaves a side open. value: None if the design does not have the quantity. missed_by: zero if the
+    rule is met, None without a value.
     """
 
     quantity: str
@@ -68,14 +68,14 @@ class JudgedRule:
 
 @dataclass(frozen=True, kw_only=True)
 class JudgedChoice:
-    """A combination of a job's choices at one design. labels: what is chosen. missed: rules that fail with it."""
+    """A combination of a job's choices at one design. labels: chosen options. missed: rules that fail with it."""
 
     labels: tuple[str, ...]
     missed: tuple[JudgedRule, ...]
 
 
 def requirements_of(part: Problem) -> list[Requirement]:
-    """Return the constraints of a problem without choices, with the floors that hold where it sets none."""
+    """Return the constraints of a problem without choices, with the default floors where it sets none."""
     from ...optimise.problem.violation import constraints_of
 
     requirements = []
@@ -87,7 +87,7 @@ def requirements_of(part: Problem) -> list[Requirement]:
 
 
 def ranges_of(part: Problem) -> list[Requirement]:
-    """Return the ranges of crank, rod, offset and the numbers that vary besides, in their units."""
+    """Return the ranges of crank, rod, offset and the extra variables, in their units."""
     from ...objectives.tables.varying_column import columns_of_numbers
 
     columns = columns_of_numbers(part.mechanism.varying)
@@ -102,7 +102,7 @@ def ranges_of(part: Problem) -> list[Requirement]:
 
 
 def quantity_names(part: Problem) -> dict[str, str]:
-    """Return the names of all quantities of a problem, its own ones included, by column."""
+    """Return the names of all quantities of a problem, custom ones included, by column."""
     from ...objectives.registry import QUANTITIES
 
     return {quantity.field: quantity.name for quantity in (*QUANTITIES.values(), *part.own)}
@@ -121,7 +121,7 @@ def speed_rpm(mechanism: Mechanism) -> float:
 def judge_rules(problem: Problem, row: Row, system: System = "metric") -> list[JudgedRule]:
     """Return the ranges of crank, rod and offset and the constraints of a job, judged at a design's metric row.
 
-    system: of the units of the answer.
+    system: system of units of the answer.
     """
     lengths = ([rule for rule in ranges_of(part) if rule.quantity in DIMENSIONS] for part in problem.parts())
     alternatives = zip(*lengths, strict=True)  # of several, where it is chosen

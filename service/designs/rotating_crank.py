@@ -1,4 +1,4 @@
-"""Requirement of a rotating crank, for analyses of a full turn."""
+"""Requirement of a rotating crank, for analyses over a full revolution."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def require_rotating_crank(swing: Swing | None, subject: str) -> None:
-    """Refuse a crank that swings. subject: it is of a full turn, as the subject of the sentence."""
+    """Raise an error for a swinging crank. subject: analysis over a full revolution, the subject of the sentence."""
     if swing is not None:
         raise InputError(
             f"{subject} needs a rotating crank; the crank of this job swings; use swing to analyse its designs"

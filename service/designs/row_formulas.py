@@ -1,4 +1,4 @@
-"""Formulas over the columns of stored designs, for conditions and for their order."""
+"""Formulas over the columns of stored designs, for conditions and sorting."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from .columns import Column, find_column
 
 @dataclass(frozen=True)
 class RowFormula:
-    """A formula over columns. node: the formula; columns: what its names mean. kind: of its value."""
+    """A formula over columns. node: parsed formula. columns: columns of its names. kind: kind of its value."""
 
     text: str
     node: Node
@@ -34,7 +34,7 @@ class RowFormula:
     kind: Kind
 
     def evaluate(self, row: Row) -> float:
-        """Return its value at a design, SI; NaN where that is not defined, as where it divides by zero."""
+        """Return its value at a design, SI; NaN if undefined, such as a division by zero."""
         leaves = {name: Values(_si(row, column), None) for name, column in self.columns}
         with np.errstate(all="ignore"):
             value = float(fold(self.node, Slopes(leaves, 1, 0, False)).values[0])
@@ -43,9 +43,9 @@ class RowFormula:
 
 
 def find_formula(text: str, keys: Collection[str]) -> Column | RowFormula:
-    """Return the column that a formula has in a table already, or the formula to compute.
+    """Return the existing column of a formula in a table, or the formula to compute.
 
-    Raises `InputError`, with rule, value and remedy, for a wrong formula and for names that are no columns.
+    Raises `InputError`, with rule, value and remedy, for an invalid formula and for names that are not columns.
     """
     node = parse(text, Units(frozenset(split_unit(key)[0] for key in keys)))
     written = text_of(node)
@@ -68,7 +68,7 @@ def find_formula(text: str, keys: Collection[str]) -> Column | RowFormula:
 
 
 def _column(name: str, keys: Collection[str]) -> Column:
-    """Return the column of a name in a formula; a varying number is known by its path, too."""
+    """Return the column of a name in a formula; an extra variable may also be named by its path."""
     if "." not in name:
         return find_column(name, keys)
     plain = re.sub("[^a-z0-9]+", "_", name.removeprefix("mechanism.").lower()).strip("_")

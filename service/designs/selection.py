@@ -1,4 +1,4 @@
-"""Selection of designs: conditions as people write them, "transmission_angle >= 40 deg", order, part of a front."""
+"""Selection of designs: conditions such as "transmission_angle >= 40 deg", order, part of a front."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ _EXAMPLE = '"transmission_angle >= 40 deg"'
 
 @dataclass(frozen=True)
 class Condition:
-    """A column or a formula, a comparison and a value in its unit, or a word for columns of words.
+    """Comparison of a column or a formula with a value in its unit, or with a word for columns of words.
 
-    column: of the table, or a column that the table does not have, whose values the formula gives, SI.
+    column: column of the table, or a new column whose values the formula gives, SI.
     """
 
     column: Column
@@ -49,11 +49,11 @@ class Condition:
     formula: RowFormula | None = None
 
     def cell(self, row: Row) -> Cell:
-        """Return the cell or value of a design that the condition compares."""
+        """Return the cell or value that the condition compares for a design."""
         return row[self.column.key] if self.formula is None else self.formula.evaluate(row)
 
     def holds(self, row: Row) -> bool:
-        """Return whether a design meets it; one without a value does not. Equal means equal to 1e-8 relative."""
+        """Return whether a design meets it; a design without a value does not. Equality holds to 1e-8 relative."""
         cell = self.cell(row)
         if isinstance(self.value, str) or isinstance(cell, str) or cell is None:
             return _OPERATORS[self.comparison](cell, self.value)
@@ -64,9 +64,9 @@ class Condition:
 
 
 def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition:
-    """Return the condition of a text: quantity, column or formula of these, comparison, value with unit.
+    """Return the condition in a text: quantity, column or formula of these, comparison, value with unit.
 
-    keys: of the table. example: one of its rows, to tell columns of words from columns of numbers.
+    keys: keys of the table. example: one of its rows, to distinguish columns of words from columns of numbers.
     Raises `InputError` for anything else.
     """
     match = _FORM.fullmatch(text)
@@ -91,7 +91,7 @@ def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition
 
 
 def _require_order(text: str, name: str, comparison: str, value: str) -> None:
-    """Refuse a condition that begins with its value, or compares twice."""
+    """Raise an error for a condition that begins with its value, or compares twice."""
     from ...objectives.units import is_value
 
     if re.search("[<>=]", value):
@@ -104,7 +104,7 @@ def _require_order(text: str, name: str, comparison: str, value: str) -> None:
 
 
 def _column_and_formula(name: str, keys: Collection[str]) -> tuple[Column, RowFormula | None]:
-    """Return the column of a name, or of a formula one that the table does not have, with the formula."""
+    """Return the column for a name, or a new column for a formula, with the formula."""
     if not _SIGN.search(name.strip()):
         return find_column(name, keys), None
 
@@ -118,7 +118,7 @@ def _column_and_formula(name: str, keys: Collection[str]) -> tuple[Column, RowFo
 
 
 def plain_number(text: str) -> float | None:
-    """Return the number that a text is, None if it is none or has a unit."""
+    """Return the number in a text, None if it is not a number or has a unit."""
     try:
         return float(text)
     except ValueError:
@@ -142,7 +142,7 @@ def parse_value(key: str, value: object, kind: Kind, *, sign: Any = "any") -> fl
 
 
 def _number(match: re.Match[str], column: Column) -> float:
-    """Return the value in the column's unit; without a unit only where the column's name has it."""
+    """Return the value in the column's unit; a missing unit is allowed only if the column's name has it."""
     from ...objectives.amount import kind_of_amount
     from ...objectives.formula.formulas import is_formula
     from ...objectives.units import to_si
@@ -163,7 +163,7 @@ def _number(match: re.Match[str], column: Column) -> float:
 
 
 def select(rows: list[Row], conditions: Collection[str]) -> list[int]:
-    """Return the positions of the designs that meet all conditions. Raises `InputError` for a wrong condition."""
+    """Return the positions of the designs that meet all conditions. Raises `InputError` for an invalid condition."""
     if not rows:
         return []
     parsed = [parse_condition(text, list(rows[0]), rows[0]) for text in conditions]
@@ -174,7 +174,7 @@ def select(rows: list[Row], conditions: Collection[str]) -> list[int]:
 
 
 def order_key(cell: Cell) -> tuple[bool, float, str]:
-    """Return a key that sorts numbers by size, words by letters, and what is not defined last."""
+    """Return a key that sorts numbers by size, words alphabetically, and undefined values last."""
     if cell is None or (isinstance(cell, float) and math.isnan(cell)):
         return True, 0.0, ""
     return (False, 0.0, cell) if isinstance(cell, str) else (False, float(cell), "")
@@ -186,7 +186,8 @@ def chosen_rows(
     """Return the positions of the designs that meet all conditions.
 
     sort: a quantity, column or formula of these: best first for an objective, else smallest first; None for the order
-    of the front. reverse: turn the order round. Raises `InputError` for a wrong condition and for an unknown column.
+    of the front. reverse: whether to reverse the order. Raises `InputError` for an invalid condition and for an unknown
+    column.
     """
     chosen = select(result.designs, conditions)
     if sort is not None and result.designs:
@@ -203,12 +204,12 @@ def chosen_rows(
 
 
 def numbered_rows(rows: Sequence[Row], chosen: Sequence[int] | None = None) -> list[Row]:
-    """Return the rows, each with the number of its design first, counted from 1; of all, or of those chosen."""
+    """Return all rows, or the chosen ones, each with the number of its design first, counted from 1."""
     return [{"number": row + 1, **rows[row]} for row in (range(len(rows)) if chosen is None else chosen)]
 
 
 def result_part(result: Result, rows: Sequence[int]) -> Result:
-    """Return the result with only these designs, and only those marks that are among them."""
+    """Return the result with only these designs, and only the marks among them."""
     place = {row: index for index, row in enumerate(rows)}
     knee = place.get(result.knee) if result.knee is not None else None
     return replace(
@@ -232,7 +233,7 @@ def no_match_message(result: Result, texts: Collection[str]) -> str:
 
 
 def _never(condition: Condition, rows: Sequence[Row]) -> str | None:
-    """Return why a condition holds for no design whatever its value; None where another value may serve."""
+    """Return why a condition cannot hold for any design, whatever its value; None if another value may help."""
     name, cells = condition.column.key, [condition.cell(row) for row in rows]
     if all(order_key(cell)[0] for cell in cells):
         return f"{name} has no value for any of them"

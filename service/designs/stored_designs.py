@@ -1,4 +1,4 @@
-"""Designs of a stored front as the machines and linkages that they are."""
+"""Designs of a stored front as machines and linkages."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ _MILLIMETRES = {"crank_mm": 1e3, "rod_mm": 1e3, "offset_mm": 1e3}
 
 @dataclass(frozen=True)
 class StoredDesign:
-    """A design of a stored front. values: crank, rod, offset, m, and of each varying number, SI.
+    """A design of a stored front. values: crank, rod, offset, m, and each extra variable, SI.
 
-    part: the problem that it answers, with the choices that it made in place. variant: of these, counted from 0.
+    part: problem that it solves, with its choices applied. variant: index of these choices, counted from 0.
     """
 
     part: Problem
@@ -39,7 +39,7 @@ class StoredDesign:
 
     @cached_property
     def mechanism(self) -> Mechanism:
-        """The machine, with the varying numbers of the design."""
+        """The machine, with the extra variables of the design."""
         return self.part.mechanism.at(self.values[3:])
 
     @cached_property
@@ -60,7 +60,7 @@ def design_of(problem: Problem, row: Row) -> StoredDesign:
 
 
 def stored_design(problem: Problem, result: Result, number: int) -> StoredDesign:
-    """Return a design of a result by its number, counted from 1: exactly where that is kept, else as `design_of`."""
+    """Return a design of a result by its number, counted from 1: exact if stored so, else as in `design_of`."""
     if result.exact is None:
         return design_of(problem, result.designs[number - 1])
     variants, values = result.exact.variants, tuple(result.exact.dimensions[number - 1].tolist())
@@ -69,7 +69,7 @@ def stored_design(problem: Problem, result: Result, number: int) -> StoredDesign
 
 
 def front_of(problem: Problem, result: Result) -> ParetoFront:
-    """Return a stored front with its problem; without `Result.exact`, of the slopes at the designs nothing is known."""
+    """Return a stored front with its problem; without `Result.exact`, the slopes at the designs are unknown."""
     from ...optimise.front.front import ParetoFront
     from .picking_options import minimised_values
 
@@ -95,7 +95,7 @@ def front_of(problem: Problem, result: Result) -> ParetoFront:
 
 
 def _reconstructed(problem: Problem, rows: Sequence[Row]) -> Exact:
-    """Return the designs as their shown rows tell them: everything but slopes, which have no piece and no unknown."""
+    """Reconstruct the designs from their shown rows: everything but slopes, which have no piece and no unknown."""
     sizes = _factors(problem.mechanism)
     dimensions = [_values(row, sizes) for row in rows]
     variants = [_variant(problem, *row_and_values) for row_and_values in zip(rows, dimensions, strict=True)]
@@ -109,7 +109,7 @@ def _reconstructed(problem: Problem, rows: Sequence[Row]) -> Exact:
 
 
 def _variant(problem: Problem, row: Row, values: Sequence[float]) -> int:
-    """Return the index of the variant with a design's labels; of several, the one whose ranges fit best."""
+    """Return the index of the variant with a design's labels; if several match, the one whose ranges fit best."""
     if not problem.variants:
         return 0
     labels = tuple(_cell(row, choice_field(name)) for name in problem.choices)
@@ -120,7 +120,7 @@ def _variant(problem: Problem, row: Row, values: Sequence[float]) -> int:
 
 
 def _outside(variant: Variant, values: Sequence[float]) -> float:
-    """Return how far values are out of the ranges of a variant, as a share of each."""
+    """Return how far values lie outside the ranges of a variant, as a fraction of each range."""
     ranges: tuple[Range | Varying, ...] = (variant.crank, variant.rod, variant.offset, *variant.mechanism.varying)
     return max(
         max(bounds.lower - value, value - bounds.upper, 0.0) / max(abs(bounds.lower), abs(bounds.upper), 1e-300)
@@ -129,7 +129,7 @@ def _outside(variant: Variant, values: Sequence[float]) -> float:
 
 
 def _factors(mechanism: Mechanism) -> dict[str, float]:
-    """Return the columns of a design's free numbers, each with the factor from SI to its unit."""
+    """Return the columns of a design's variables, each with the factor from SI to its unit."""
     varying = (varying_column(item) for item in mechanism.varying)
     return {**_MILLIMETRES, **{key: unit.factor for key, unit in varying}}
 
@@ -139,7 +139,7 @@ def _values(row: Row, factors: Mapping[str, float]) -> tuple[float, ...]:
 
 
 def _si(row: Row, key: str, factor: float) -> float:
-    """Return the number that, times the factor, is exactly what the table shows."""
+    """Return the number whose product with the factor is exactly the shown value."""
     displayed = _cell(row, key)
     if not isinstance(displayed, float) or not math.isfinite(displayed):
         raise _foreign(f"its {key} is {displayed}")

@@ -1,4 +1,4 @@
-"""Curves of a swing of one design, both ways, and the kinds of what they show."""
+"""Curves of a swing of one design, both strokes, and the kinds of their values."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class SwingCurve:
 
 
 def motion_and_drive(swing: Swing) -> tuple[SwingCurve, ...]:
-    """Return the curves of a swing but the forces of the joints; without time, none that needs it."""
+    """Return the curves of a swing except the joint forces; without time, none that needs it."""
     drive = "force on the slider" if swing.driver == "slider" else "torque on the crank"
     angle_title = "transmission angle" if swing.driver == "crank" else "angle between rod and crank"
     error = "slider position error" if swing.driver == "crank" else "crank angle error"
@@ -72,7 +72,7 @@ def motion_and_drive(swing: Swing) -> tuple[SwingCurve, ...]:
 
 
 def force_components() -> tuple[SwingCurve, ...]:
-    """Return the curves of the joint forces along x and y, and of the guide."""
+    """Return the curves of the joint forces along x and y, and of the guide force."""
     titles = {"pivot": "crank pivot force", "crank_pin": "crank pin force", "slider_pin": "slider pin force"}
     components = (
         SwingCurve(f"{name}_{axis}", f"{name}_{axis}", f"{title}, {axis}", FORCE)
@@ -83,7 +83,7 @@ def force_components() -> tuple[SwingCurve, ...]:
 
 
 def force_magnitudes() -> tuple[SwingCurve, ...]:
-    """Return the curves of the sizes of the joint forces, and of the guide's force with its sign."""
+    """Return the curves of the joint force magnitudes, and of the signed guide force."""
     return (
         SwingCurve("pivot", "pivot", "crank pivot force", FORCE),
         SwingCurve("crank_pin", "crank_pin", "crank pin force", FORCE),
@@ -93,22 +93,22 @@ def force_magnitudes() -> tuple[SwingCurve, ...]:
 
 
 def drive_kind(swing: Swing) -> Kind:
-    """Return the kind of what the driver brings: a torque or a force."""
+    """Return the kind of the driver's effort: a torque or a force."""
     return TORQUE if swing.driver == "crank" else FORCE
 
 
 def error_kind(swing: Swing) -> Kind:
-    """Return the kind of the driven side's error: of the slider's place or of the crank's angle."""
+    """Return the kind of the driven side's error: in slider position or in crank angle."""
     return LENGTH if swing.driver == "crank" else ANGLE
 
 
 def driven_side(swing: Swing) -> str:
-    """Return the side that is not the driver's."""
+    """Return the driven side."""
     return "slider" if swing.driver == "crank" else "crank"
 
 
 def curves_of_both_strokes(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> tuple[SwingCurves, SwingCurves]:
-    """Return the curves of the way forth and of the way back, at even shares of the time."""
+    """Return the curves of the forward and the return stroke, at evenly spaced times."""
     checked, share = require_swing(mechanism, linkage, swing), np.linspace(0.0, 1.0, POINTS)
     swing = placed(mechanism, checked, swing)
     return (
@@ -120,10 +120,10 @@ def curves_of_both_strokes(mechanism: Mechanism, linkage: Linkage, swing: Swing)
 def curves_at_even_times(
     mechanism: Mechanism, linkage: Linkage, swing: Swing, count: int
 ) -> tuple[SwingCurves, SwingCurves]:
-    """Return the curves at even times of a swing, of the way forth and of the way back.
+    """Return the curves at evenly spaced times of a swing, for the forward and the return stroke.
 
-    swing: between two crank angles, of a linkage that can make it. count: of all times, an even number; the first one
-    is the start, the middle one the end, which is of the way forth.
+    swing: swing between two crank angles, of a linkage that can make it. count: number of all times, even; the first
+    one is the start, the middle one the end, which belongs to the forward stroke.
     """
     place: Array = np.arange(count, dtype=np.float64) * (2.0 / count)
     return (
@@ -138,7 +138,7 @@ def has_position_error(mechanism: Mechanism, swing: Swing) -> bool:
 
 
 def swing_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> list[dict[str, Any]]:
-    """Return a row for each place of both ways, metric: time, motion, drive, power, joint forces, errors."""
+    """Return a row for each point of both strokes, metric: time, motion, drive, power, joint forces, errors."""
     all_curves = (*motion_and_drive(swing), *force_components())
     rows = []
     for way, curves in zip(("forth", "back"), curves_of_both_strokes(mechanism, linkage, swing), strict=True):

@@ -1,4 +1,4 @@
-"""Lengths with the digits that their tolerances make sensible: 73.33 ± 0.05 of 73.33253 mm."""
+"""Lengths with the digits that their tolerances justify: 73.33 ± 0.05 for 73.33253 mm."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ _DIGITS = 2
 
 
 def tolerances_of(mechanism: Mechanism, linkage: Linkage) -> dict[str, float]:
-    """Return the tolerance of each dimension that has one, mm, shares of a length included."""
+    """Return the tolerance of each dimension that has one, mm, including relative tolerances."""
     limits = {name: getattr(mechanism.tolerances, name).limit(float(getattr(linkage, name))) for name in DIMENSIONS}
     return {name: 1e3 * limit for name, limit in limits.items() if limit > 0.0}
 
 
 def decimals_of(tolerance: float) -> int:
-    """Return the decimals of a tolerance of two digits at most: 2 of 0.05, 3 of 0.025, none of 12."""
+    """Return the decimals of a tolerance with at most two digits: 2 for 0.05, 3 for 0.025, none for 12."""
     exponent = Decimal(f"{tolerance:.{_DIGITS}g}").normalize().as_tuple().exponent
     return max(0, -exponent) if isinstance(exponent, int) else 0
 
 
 def format_toleranced(length: float, tolerance: float) -> str:
-    """Return a length with as many decimals as its tolerance, and that."""
+    """Return a length with as many decimals as its tolerance, and the tolerance."""
     decimals = decimals_of(tolerance)
     text = f"{length:.{decimals}f}"
     text = text if float(text) else f"{0.0:.{decimals}f}"  # no minus before zero

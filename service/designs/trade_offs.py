@@ -1,4 +1,4 @@
-"""Trade-off rates at any design of a stored front: from its slopes; where these are not stored, computed anew."""
+"""Trade-off rates at any design of a stored front, from its slopes, which are recomputed if not stored."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ _NEAR = 1e-9  # relative: how well a point of the unit box must give the design 
 def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: System = "metric") -> list[str]:
     """Return the cost of one objective in the others at a design, in words, the active constraints held.
 
-    front: of `front_of`. row: of the design in it. system: of the units that they are told in.
+    front: front from `front_of`. row: row of the design in it. system: system of units of the sentences.
 
-    Raises `InputError` where there are no such rates: a single
-    objective, an objective without gradient, a design that does not meet its constraints.
+    Raises `InputError` if there are no such rates: a single objective, an objective without gradient, a design that
+    does not meet its constraints.
     """
     from ...optimise.front.hypervolume import scaling
     from ...optimise.search.elimination import elimination_branches
@@ -60,7 +60,7 @@ def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: Sy
 
 
 def _point(branch: EliminationBranch, values: Array) -> Array | None:
-    """Return the point of the unit box that gives a design, None if no point of the branch does."""
+    """Return the point of the unit box for a design, None if no point of the branch gives it."""
     if values[2] * branch.sign < 0.0:
         return None
     sizes = np.abs(values)

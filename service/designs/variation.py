@@ -1,4 +1,4 @@
-"""A design of a stored front with other numbers: numbers, broken requirements, and its place against the front."""
+"""A design of a stored front with other numbers: quantities, broken requirements, comparison with the front."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ _SAME = 1e-9  # of an objective's range over the front, or of a number: a differ
 class Variation:
     """A design with other numbers, judged against its job and front. row: every quantity and the slacks.
 
-    broken: columns of constraints that are not met. outside: of ranges left. dominated_by, dominates: positions in the
-    front of designs that are as good in every objective and better in one, and of those that this one beats so, those
-    of the greatest difference first.
+    broken: columns of constraints that are not met. outside: columns of ranges left. dominated_by: positions in the
+    front of designs at least as good in every objective and better in one. dominates: positions of designs that this
+    one beats in the same sense. Both list the greatest difference first.
     """
 
     row: Row
@@ -40,9 +40,9 @@ class Variation:
 def with_numbers(
     design: StoredDesign, lengths: Sequence[float], values: Mapping[str, float] | None = None
 ) -> StoredDesign:
-    """Return a design with other lengths, m, and other varying numbers, by column in its unit; the rest stays.
+    """Return a design with other lengths, m, and other extra variables, by column in its unit; the rest stays.
 
-    Raises `InputError` for lengths that do not turn, and for a number that does not vary or leaves its range.
+    Raises `InputError` for lengths that do not rotate fully, and for a number that does not vary or leaves its range.
     """
     numbers = list(design.values[3:])
     columns = [varying_column(item) for item in design.part.mechanism.varying]
@@ -68,9 +68,9 @@ def with_numbers(
 
 
 def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Variation:
-    """Return all about a design that need not be in the front.
+    """Return the variation of a design that need not be in the front.
 
-    minimised: of `minimised_values(result)`, so that it is made once for many.
+    minimised: objectives from `minimised_values(result)`, computed once for many designs.
     """
     from ...optimise.search.assemble import columns_of
 

@@ -1,4 +1,4 @@
-"""Allowable values that designs go beyond: by how much, and in words."""
+"""Excess of designs over allowable values, as numbers and in words."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 
 def violated_by(mechanism: Mechanism, row: Row) -> dict[str, float]:
-    """Return by how much a design goes beyond each allowable value that it violates, by the quantity's column.
+    """Return the excess of a design over each allowable value that it violates, by the quantity's column.
 
-    row: metric, as what is returned.
+    row: metric row of the design; the returned values are metric too.
     """
     from ...objectives.registry import QUANTITIES
     from ...objectives.tables.violations import violations
@@ -30,7 +30,7 @@ def violated_by(mechanism: Mechanism, row: Row) -> dict[str, float]:
 
 
 def violations_in_words(violated: Mapping[str, float], row: Row) -> list[str]:
-    """Return a sentence on each allowable value that a design violates. Both are of one system of units."""
+    """Return a sentence on each allowable value that a design violates. Row and sentences share a system of units."""
     return [_sentence(key, row, excess, "is") for key, excess in violated.items()]
 
 

@@ -9,9 +9,9 @@ _LEFT_OUT = ("name", "description")
 
 
 def differences(jobs: Sequence[Mapping[str, Any]]) -> list[tuple[str, tuple[str | None, ...]]]:
-    """Return the places at which the tables of jobs differ, such as "load.1.force", with what each job has there.
+    """Return the places where the tables of jobs differ, such as "load.1.force", with the value in each job.
 
-    None where a job has nothing. Names and descriptions are left out.
+    The value is None if a job has nothing there. Names and descriptions are omitted.
     """
     flat = [dict(_leaves(job, "")) for job in jobs]
     places = dict.fromkeys(place for leaves in flat for place in leaves)

@@ -1,4 +1,4 @@
-"""Finding a run: a folder on the disk, or a stored job, whose folder is written on demand."""
+"""Search for a run: a folder on the disk, or a stored job, whose folder is written on demand."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ _FOUND: tuple[State, ...] = ("done", "infeasible", "cancelled")
 def find_run(text: str, place: Path) -> Path:
     """Return the folder of a run: a path, a name or its unique start among the runs, or "latest".
 
-    The number of a job in the store will do, too; a job that has no folder yet gets it. Raises `InputError` when
-    nothing, or more than one run, answers to it, `RunError` for a job that has found nothing yet.
+    The number of a job in the store is accepted too; its folder is written if missing. Raises `InputError` if no run,
+    or more than one, matches, `RunError` for a job without a result yet.
     """
     if (text == "latest" or not Path(text).exists()) and has_store(None, place):
         with open_store(None, place) as store:
@@ -33,7 +33,7 @@ def find_run(text: str, place: Path) -> Path:
 
 
 def export_job(store: Store, job: Job, place: Path) -> Path:
-    """Write the run folder of a job that has a result, unless it is there, and return it."""
+    """Write the run folder of a job that has a result, unless it exists, and return it."""
     path = place / job.run
     if path.is_dir():
         return path
@@ -48,7 +48,7 @@ def export_job(store: Store, job: Job, place: Path) -> Path:
 
 
 def _stored_job(store: Store, text: str, place: Path) -> Job | None:
-    """Return the job that is meant, None if a folder is."""
+    """Return the job that a text refers to, None if it refers to a folder."""
     if text.isdecimal():
         try:
             return store.job(int(text))
@@ -62,9 +62,9 @@ def _stored_job(store: Store, text: str, place: Path) -> Job | None:
 
 
 def find_folder(text: str, place: Path) -> Path:
-    """Return the folder of a run that is on the disk, see `find_run`.
+    """Return the folder of a run on the disk, see `find_run`.
 
-    Raises `InputError` when nothing, or more than one run, answers to it.
+    Raises `InputError` if no run, or more than one, matches.
     """
     names = sorted(
         (run.name for run in run_folders(place)), key=lambda name: (name[:15], (place / name).stat().st_mtime_ns)
@@ -91,7 +91,7 @@ def find_folder(text: str, place: Path) -> Path:
 
 
 def run_folders(place: Path) -> list[Path]:
-    """Return the folders of runs in a place, in no order."""
+    """Return the run folders in a place, unordered."""
     if not place.is_dir():
         return []
     return [

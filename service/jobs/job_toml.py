@@ -1,4 +1,4 @@
-"""Jobs as TOML: the tables of a job written so that reading them gives the same again."""
+"""Jobs as TOML: tables of a job written so that reading them gives the same tables."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ _WIDEST = 100
 def job_toml(tables: Mapping[str, Any]) -> str:
     """Return the tables of a job as the text of a job file.
 
-    Tables get a heading, what is within them stays in braces, as in the shipped jobs. Raises `JobError` for what TOML
-    has no word for: null, and numbers that are not finite.
+    Tables get a heading, nested tables stay in braces, as in the shipped jobs. Raises `JobError` for values that TOML
+    cannot express: null, and numbers that are not finite.
     """
     plain = [f"{_key(key)} = {_value(value)}" for key, value in tables.items() if not _is_table(value)]
     parts = ["\n".join(plain)] if plain else []
@@ -60,12 +60,12 @@ def _value(value: Any) -> str:
     if isinstance(value, list):
         items = [_value(item) for item in value]
         line = "[" + ", ".join(items) + "]"
-        # Only a list may go on over several lines.
+        # Only a list may span several lines.
         return line if len(line) <= _WIDEST else "[\n" + "".join(f"    {item},\n" for item in items) + "]"
     word = "null" if value is None else str(value)[:60]
     raise JobError(f"a job may only contain texts, finite numbers, lists and tables; got {word}; leave the key out")
 
 
 def _text(text: str) -> str:
-    # JSON escapes are TOML's, but for characters beyond 16 bits, which stay as they are, and DEL.
+    # JSON escapes are valid in TOML, except for characters beyond 16 bits, which stay unescaped, and DEL.
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -1,4 +1,4 @@
-"""A job that the command line solves itself: claimed in the store, and exported to its run folder meanwhile."""
+"""Job that the command line solves itself: claimed in the store, and exported to its run folder meanwhile."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def _is_patient(waited: float) -> bool:
 
 
 def files_of(job: Path, attached: Sequence[Path]) -> list[Artefact]:
-    """Return a job file and the files beside it that it names, as they are kept in the store."""
+    """Return a job file and the files beside it that it names, as stored."""
     files = {
         f"job{job.suffix.lower()}": job,
         **{path_text(file.relative_to(job.parent).as_posix()): file for file in attached},
@@ -40,7 +40,7 @@ def files_of(job: Path, attached: Sequence[Path]) -> list[Artefact]:
 
 
 def begin(store: Store, folder: RunFolder, tables: Mapping[str, Any], name: str, files: Sequence[Artefact]) -> Claim:
-    """Put the job of a new folder into the store, rename the folder as there, and return the claim."""
+    """Add the job of a new folder to the store, rename the folder to match, and return the claim."""
     worker = _worker()
     claim = store.begin(tables, name=name, run=folder.path.name, worker=worker, lease=LEASE, files=files)
     claim.patient = _is_patient
@@ -50,7 +50,7 @@ def begin(store: Store, folder: RunFolder, tables: Mapping[str, Any], name: str,
 
 
 def stopped_job(store: Store, text: str, place: Path) -> Job:
-    """Return the job of a run to be resumed, given by its number or as `find_run` takes it.
+    """Return the job of a run to be resumed, given by its number or in a form that `find_run` accepts.
 
     Raises `InputError` for a run that is not in the store, or that cannot be resumed.
     """
@@ -82,7 +82,7 @@ def folder_of(store: Store, job: Job, place: Path) -> RunFolder:
 
 
 def take_up(store: Store, job: Job) -> Claim:
-    """Claim a job again that was stopped. Its folder is open, so no other process of the command line has it.
+    """Claim a stopped job again. Its folder is open, so no other command-line process has it.
 
     Raises `InputError` for a job that cannot be resumed.
     """
@@ -105,9 +105,9 @@ def _refused(job: Job) -> InputError:
 
 @contextlib.contextmanager
 def end_job_on_error(claim: Claim, *, again: str = "") -> Iterator[None]:
-    """While entered, an error ends the job in the store too, so that it can be resumed at once.
+    """While entered, an error ends the job in the store too, so that it can be resumed immediately.
 
-    again: the command that goes on with the run; none where its store lasts no longer than the run.
+    again: command that continues the run; empty if its store lasts no longer than the run.
     """
     try:
         yield

@@ -1,4 +1,4 @@
-"""Store that the command line uses, and jobs in it by number or as "latest"."""
+"""Store of the command line, and jobs in it by number or as "latest"."""
 
 from __future__ import annotations
 
@@ -33,26 +33,26 @@ Name = Annotated[str, typer.Argument(metavar="JOB", help='The job: its number, o
 
 
 def store_address(option: str | None, runs: Path | None = None) -> str:
-    """Return the address of the store: the option, else SLIDERCRANK_STORE, else a file where runs are kept."""
+    """Return the address of the store: the option, else SLIDERCRANK_STORE, else a file in the folder of runs."""
     return option or os.environ.get(STORE_VARIABLE) or str(runs_place(runs) / FILE)
 
 
 def shown_store(option: str | None, runs: Path | None = None) -> str:
-    """Return the address of the store as it may be printed."""
+    """Return the address of the store, fit to be printed."""
     from ..store.address import without_secrets
 
     return without_secrets(store_address(option, runs))
 
 
 def is_named(option: str | None) -> bool:
-    """Whether somebody says where the store is; else it is in its usual place."""
+    """Whether the place of the store is specified; else it is the usual place."""
     return bool(option or os.environ.get(STORE_VARIABLE))
 
 
 def open_store(option: str | None, runs: Path | None = None) -> Store:
-    """Open the store, and create it where it is a file that is not there yet.
+    """Open the store; create its file if missing.
 
-    Raises `StoreError` where that is not possible, `InputError` for an address that is none.
+    Raises `StoreError` if that is not possible, `InputError` for an invalid address.
     """
     from ..store import Store
 
@@ -64,9 +64,9 @@ def open_store(option: str | None, runs: Path | None = None) -> Store:
 
 
 def has_store(option: str | None, runs: Path | None = None) -> bool:
-    """Whether there is a store to look into, without making one.
+    """Whether there is a store to inspect; does not create one.
 
-    Raises `InputError` for an address that is none, `StoreError` for a file that can be none, see `has_content`.
+    Raises `InputError` for an invalid address, `StoreError` for a file that cannot be a store, see `has_content`.
     """
     address = store_address(option, runs)
     with disk(Path(address).parent):
@@ -79,14 +79,14 @@ def has_store(option: str | None, runs: Path | None = None) -> bool:
 
 
 def tell_idle(store: Store) -> None:
-    """Say that jobs wait if no worker is there to solve them."""
+    """Report that jobs wait if no worker is there to solve them."""
     if not store.workers_at_work():
         print_message("slidercrank: no worker is running, so jobs wait; start one with: slidercrank serve")
 
 
 @contextmanager
 def store_that_is_there(option: str | None) -> Iterator[Store]:
-    """Give the store, closed at the end. Raises `NotFound` for a file that is not there: looking makes none."""
+    """Yield the store, closed at the end. Raises `NotFound` for a missing file, which is not created."""
     if not has_store(option):
         raise NotFound(f"there is no store at {shown_store(option)}; submit a job first, or name another with --store")
     with open_store(option) as store:
@@ -94,7 +94,7 @@ def store_that_is_there(option: str | None) -> Iterator[Store]:
 
 
 def find_job(store: Store, name: str) -> Job:
-    """Return the job of a name. Raises `NotFound` if there is none, `InputError` for what is no name."""
+    """Return the job with a name. Raises `NotFound` if there is none, `InputError` for an invalid name."""
     if name == "latest":
         latest = store.jobs(limit=1)
         if not latest:

@@ -1,7 +1,7 @@
-"""A job on its way into the store and out of it: read, and checked with its functions.
+"""Submission of a job to the store: its tables and functions are read and checked.
 
-These functions run where a job is solved, so whoever starts the workers allows them, by `serve` and `worker
---allow-quantity`. The API refuses others at once; `submit` cannot know which workers there are, and leaves it to them.
+These functions run where a job is solved, so whoever starts the workers allows them, with `serve` and `worker
+--allow-quantity`. The API rejects others immediately; `submit` cannot know the workers, and leaves the check to them.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ def parse_allowed(
     *,
     require_feasible: bool = True,
 ) -> Problem:
-    """Return the problem that a job states whose functions, "module:function", are all of `allowed`; none is called.
+    """Return the problem of a job whose functions, "module:function", are all in `allowed`; none is called.
 
-    values: numbers to put in place of those that it gives, by their paths. require_feasible: whether a job that no
-    design can meet is refused. Raises `JobError`.
+    values: numbers that replace those in the job, by their paths. require_feasible: whether a job that no design can
+    meet is rejected. Raises `JobError`.
     """
     from ...optimise.job import parse_job
     from ...optimise.job.file import require_plain
@@ -87,7 +87,7 @@ def _refused(name: str, function: str, allowed: Collection[str]) -> JobError:
 
 
 def bounded(problem: Problem, seconds: float) -> Problem:
-    """Return a problem whose functions of its own are not called for longer than so many s at a time."""
+    """Return a problem whose custom functions are limited to a time per call, s."""
     from ...objectives.own.quantity import bounded
 
     return (
@@ -97,9 +97,9 @@ def bounded(problem: Problem, seconds: float) -> Problem:
 
 @contextlib.contextmanager
 def ending_own(problem: Problem, engine: Engine | None = None) -> Iterator[None]:
-    """End the processes of a problem's own functions on leaving: they idle, or worse, until the problem is forgotten.
+    """End the custom function processes of a problem on leaving: otherwise they run until the problem is freed.
 
-    engine: where they may have been called, too; it ends its processes, and starts others when it is next needed.
+    engine: engine that may have called them too; it ends its processes, and starts others when next needed.
     """
     from ...objectives.own.quantity import close_own, runs_own
 
@@ -123,10 +123,10 @@ def submit(
 ) -> Job:
     """Queue a job given as the tables of a job file, and return it; see `Store.submit` for the rest.
 
-    source: the job file as it was given, "job.toml" or "job.json"; without one it is made from the tables.
+    source: original job file, "job.toml" or "job.json"; without one it is made from the tables.
     allowed_quantities: functions, "module:function", that the job may name as quantities.
 
-    Raises `JobError` for a job that is not valid, or that names other functions.
+    Raises `JobError` for an invalid job, or one that names other functions.
     """
     return store.submit(
         tables,

@@ -1,7 +1,8 @@
-"""Values that a job's ranges allow, from samples: rotation, stroke, time ratio, transmission angle, feasible share.
+"""Values that a job's ranges allow, from samples: rotation, stroke, time ratio, transmission angle, feasible fraction.
 
-A few hundred designs, on faces and edges of the box too. Requirements that are equalities are met exactly, so that the
-samples lie where the search looks. Extremes are looked for around the best samples and polished: a design has each.
+The samples are a few hundred designs, on faces and edges of the box too. Equality requirements are met exactly, so that
+the samples lie where the search looks. Extremes are searched around the best samples and polished: each belongs to a
+design.
 """
 
 from __future__ import annotations
@@ -54,15 +55,15 @@ _ONE = threading.Lock()
 
 @dataclass(frozen=True, kw_only=True)
 class Possible:
-    """Values that the ranges of a job allow. turning: share of the designs in the box that turn fully.
+    """Values that the ranges of a job allow. turning: fraction of the designs in the box that rotate fully.
 
-    stroke (m), time_ratio, transmission_angle (rad): their ends while all other requirements on the dimensions hold,
-    the floor of the transmission angle too where nothing else is asked of it; None where no sample meets these.
-    slow_strokes: which strokes are the slow ones of the designs that meet every requirement that was checked, else of
-    those that rotate fully fully; "equal" only if neither is in any of them. feasible: share of the `sampled` designs
-    that meet every requirement that was checked. hardest: the requirement that the fewest designs meet which turn
-    fully, and that share. example: crank, rod and offset, m, near the middle of what is feasible, else the nearest to
-    it; None if nothing turns. unchecked: requirements that would have taken longer than a moment.
+    stroke (m), time_ratio, transmission_angle (rad): ends of their ranges while all other requirements on the
+    dimensions hold, including the floor of the transmission angle if it has no other requirement; None if no sample
+    meets these. slow_strokes: slow strokes of the designs that meet every checked requirement, else of those that
+    rotate fully; "equal" only if no design has a slow stroke. feasible: fraction of the `sampled` designs that meet
+    every checked requirement. hardest: requirement that the fewest fully rotating designs meet, and their fraction.
+    example: crank, rod and offset, m, near the middle of the feasible designs, else the nearest to it; None if no
+    design rotates fully. unchecked: requirements too slow to check.
     """
 
     turning: float
@@ -115,9 +116,9 @@ def _light(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
 
 
 def designs_of(problem: Problem, count: int) -> Array:
-    """Return designs (n, 3) of the box that meet the equalities which can be eliminated; some may be no linkage.
+    """Return designs (n, 3) in the box that meet the eliminable equalities; some may not be linkages.
 
-    Those of a swing whose start varies have it as a fourth number.
+    Designs of a swing with a variable start have the start as a fourth number.
     """
     parts = []
     for index, branch in enumerate(elimination_branches(problem)):
@@ -126,7 +127,7 @@ def designs_of(problem: Problem, count: int) -> Array:
 
 
 def _shown_columns(problem: Problem) -> list[int]:
-    """Return the columns of designs that are shown: the three lengths, and where a swing starts if they choose it."""
+    """Return the shown columns of designs: the three lengths, and the start of a swing if it varies."""
     column = start_column(problem.mechanism)
     return [0, 1, 2, *([] if column is None else [column])]
 
@@ -148,7 +149,7 @@ def _turns(designs: Array) -> NDArray[np.bool_]:
 
 
 def screened(problem: Problem) -> tuple[Array, Array]:
-    """Return designs as `designs_of` and their greatest relative violation (n,), as many as a moment allows."""
+    """Return designs as in `designs_of` and their greatest relative violation (n,), as many as a short time allows."""
     end = time.monotonic() + _MOMENT
     columns = _shown_columns(problem)
     designs, violations = [np.zeros((0, len(columns)))], [np.zeros(0)]
@@ -166,7 +167,7 @@ def screened(problem: Problem) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=48)  # most of what is typed between two looks leaves ranges and requirements as they are
 def _possible_ends(problem: Problem, name: str) -> Ends | None:
-    """Return the ends of a closed form while the other requirements on the dimensions hold."""
+    """Return the ends of the range of a closed-form quantity while the other requirements on the dimensions hold."""
     constraints = tuple(c for c in constraints_of(problem) if is_closed(c.quantity) and c.quantity != name)
     if name == "transmission_angle":
         constraints = (*constraints, Constraint(quantity=name, lower=_FLATTEST))
@@ -177,7 +178,7 @@ def _possible_ends(problem: Problem, name: str) -> Ends | None:
 
 
 def _ends(problem: Problem, name: str, branch: EliminationBranch, index: int) -> Ends | None:
-    """Return the least and the greatest value on a branch, sampled, then nearer and nearer around the best."""
+    """Return the least and the greatest value on a branch, sampled ever more closely around the best."""
     points = np.concatenate([first_samples(_SAMPLES, len(branch.free), 1, index), *_on_edges(problem, branch)])
     values = _values(problem, name, branch.dimensions(points)[:, :3])
     if not np.isfinite(values).any():
@@ -202,9 +203,9 @@ def _ends(problem: Problem, name: str, branch: EliminationBranch, index: int) ->
 
 
 def _polished(problem: Problem, name: str, branch: EliminationBranch, sign: float, start: Array) -> float:
-    """Return the greatest of `sign` times a closed form near points (n, k) of a branch; -inf if none.
+    """Return the greatest `sign` times a closed-form quantity near points (n, k) of a branch; -inf if there is none.
 
-    Its own requirement apart, all others of the problem hold.
+    All requirements of the problem hold except its own.
     """
     objective = Objective(quantity=name, sense="maximise" if sign > 0.0 else "minimise")
     evaluator = Evaluator(replace(problem, objectives=(objective,)), branch)
@@ -245,7 +246,7 @@ def _values(problem: Problem, name: str, designs: Array) -> Array:
 
 
 def _is_within_ranges(problem: Problem, designs: Array) -> NDArray[np.bool_]:
-    """Whether dimensions that were computed from equalities lie in their ranges."""
+    """Whether dimensions computed from equalities lie in their ranges."""
     good = np.ones(len(designs), dtype=bool)
     for column, name in enumerate(DIMENSIONS):
         ends = getattr(problem, name)
@@ -265,7 +266,7 @@ def _meets(constraint: Constraint, values: Array) -> NDArray[np.bool_]:
 
 
 def _hardest(problem: Problem, designs: Array) -> tuple[str, float] | None:
-    """Return the requirement, equalities aside, that the fewest designs meet, and their share."""
+    """Return the requirement, equalities aside, that the fewest designs meet, and their fraction."""
     shares = {
         constraint.quantity: float(
             _meets(constraint, QUANTITIES[constraint.quantity].evaluate(problem.mechanism, designs).values).mean()
@@ -277,7 +278,7 @@ def _hardest(problem: Problem, designs: Array) -> tuple[str, float] | None:
 
 
 def example_of(designs: Array, violation: Array, fallback: Array) -> Array | None:
-    """Return the design in the middle of those that meet everything, else the nearest to that, else of others."""
+    """Return the design in the middle of the feasible ones, else the design nearest to feasibility, else any other."""
     if (feasible := violation <= FEASIBLE).any():
         return _middle_of(designs[feasible])
     if np.isfinite(violation).any():
@@ -291,14 +292,14 @@ def lengths_of(design: Array | None) -> tuple[float, float, float] | None:
 
 
 def _middle_of(designs: Array) -> Array:
-    """Return the design nearest to the middle of some, in each of its numbers on its own scale."""
+    """Return the design nearest to the middle of some designs, with each number on its own scale."""
     size = np.abs(designs).max(axis=0) + 1e-300
     scaled = designs / size
     return np.asarray(designs[int(np.argmin(((scaled - np.median(scaled, axis=0)) ** 2).sum(axis=1)))])
 
 
 def run_within(seconds: float, work: Callable[[], T]) -> T | None:
-    """Return the result of the work, or None if it takes longer, or while earlier work still goes on, aside."""
+    """Return the result of the work, or None if it takes longer or earlier work is still running in the background."""
     results: list[T] = []
     failed: list[Exception] = []
 

@@ -26,12 +26,12 @@ _MOST_POINTS = 100
 
 
 def geometry(tables: Mapping[str, Any], full_problem: Problem | None) -> Problem | None:
-    """Return the problem of crank, rod and offset that a job states; None while there is none.
+    """Return the problem in crank, rod and offset that a job states; None while there is none.
 
-    None while their ranges cannot be read, and of a swing.
+    None while their ranges cannot be read, and for a swing.
 
-    full_problem: that of the whole job, if it is valid; of several options the first counts. Requirements that need
-    the machine are left out without it, and those that only a search can afford always.
+    full_problem: problem of the whole job, if it is valid; the first of several options counts. Requirements that need
+    the machine are omitted without it; those that only a search can afford are always omitted.
     """
     ranges, motion = ranges_of(tables.get("variables")), tables.get("motion")
     if ranges is None or (isinstance(motion, Mapping) and motion.get("kind") == "swing"):
@@ -54,14 +54,14 @@ def geometry(tables: Mapping[str, Any], full_problem: Problem | None) -> Problem
 
 
 def left_out(tables: Mapping[str, Any], problem: Problem) -> list[str]:
-    """Return the requirements of a job that its geometry does not have, by their names."""
+    """Return the names of a job's requirements that its geometry does not have."""
     stated = tables.get("constraints")
     used = {constraint.quantity for constraint in problem.constraints} | {"slow_stroke"}
     return [str(name)[:60] for name in stated if name not in used][:40] if isinstance(stated, Mapping) else []
 
 
 def _with_slow_stroke(problem: Problem, part: object) -> Problem:
-    """Return the problem with the slow stroke that a job asks for, if its ranges have one."""
+    """Return the problem with the slow stroke that a job requires, if its ranges allow one."""
     stroke = part.get("slow_stroke") if isinstance(part, Mapping) else None
     if stroke not in ("outward", "inward"):
         return problem
@@ -79,7 +79,7 @@ def is_closed(name: str) -> bool:
 
 
 def _turning(part: object) -> Mechanism:
-    """Return a machine that turns as a job says, if it does, and weighs nothing."""
+    """Return a massless machine with the crank speed that a job states, else 1 rad/s."""
     mechanism = part if isinstance(part, Mapping) else {}
     branch: Branch = "crossed" if mechanism.get("branch") == "crossed" else "open"
     for keys in ((*SPEED_KEYS, "direction", "speed_profile"), (*SPEED_KEYS, "direction")):

@@ -1,4 +1,4 @@
-"""A look at a job while it is being written: its mistakes, and sentences on requirements beyond its ranges."""
+"""Preview of a job while it is being written: its mistakes, and sentences on requirements beyond its ranges."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _REST = "all other requirements on the dimensions"
 
 @dataclass(frozen=True)
 class Wrong:
-    """Something that is wrong. path: the key, as "mechanism.slider.mass" or "load #2.force"; "" for the whole job.
+    """A mistake. path: its key, such as "mechanism.slider.mass" or "load #2.force"; "" for the whole job.
 
     infeasible: whether the input is valid but no design can meet it.
     """
@@ -42,11 +42,12 @@ class Wrong:
 
 @dataclass(frozen=True)
 class Look:
-    """Preview of a job. wrong: its mistakes, none if it can be solved. problem: of the whole job, if it is valid.
+    """Preview of a job. wrong: its mistakes, none if it can be solved. problem: problem of the whole job, if valid.
 
-    stated, possible: what its dimensions state and allow; None while their ranges cannot be read. unchecked:
-    requirements that were not looked at. sentences: on what cannot be had. formulas: of the job, in their order.
-    names: that formulas of this job alone may have. swing: what the ranges of a job of a swing allow.
+    stated, possible: values that its dimensions state and allow; None while their ranges cannot be read. unchecked:
+    requirements that were not checked. sentences: sentences on unattainable requirements. formulas: formulas of the
+    job, in their order. names: names available only to formulas of this job. swing: values that the ranges of a swing
+    job allow.
     """
 
     wrong: list[Wrong]
@@ -61,7 +62,7 @@ class Look:
 
 
 def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> Look:
-    """Return the findings about a job. read: gives its problem, or raises what is wrong with it."""
+    """Return the findings about a job. read: function that returns its problem, or raises its mistakes."""
     try:
         require_few(tables)
     except InputError as error:
@@ -76,7 +77,7 @@ def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
 def _with_formulas(wrong: list[Wrong], formulas: list[StatedFormula]) -> list[Wrong]:
     """Return mistakes with those of formulas, which the others hide: a job is read before its formulas are.
 
-    What is said of the formula itself comes instead of what is said of its place, unless it is a key of another table.
+    A message on the formula itself replaces the message on its place, unless that is a key of another table.
     """
     schema = schema_of(Job)
     wrong_by_key = {
@@ -91,7 +92,7 @@ def _with_formulas(wrong: list[Wrong], formulas: list[StatedFormula]) -> list[Wr
 
 
 def _findings(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> Look:
-    """Return the findings about a job, its formulas aside."""
+    """Return the findings about a job except its formulas."""
     try:
         stated = geometry(tables, None)
     except InputError:
@@ -145,7 +146,7 @@ def _places(error: InputError) -> list[Wrong]:
 def reach_sentences(problem: Problem, possible_values: Possible, fixed_names: Sequence[str]) -> list[str]:
     """Return a sentence for each requirement that is out of reach, and one if no sample meets everything.
 
-    fixed_names: names of the numbers that the search varies besides the lengths, which have one value in the samples.
+    fixed_names: names of the extra variables, which have one value in the samples.
     """
     sentences = []
     constraints = {constraint.quantity: constraint for constraint in problem.constraints}

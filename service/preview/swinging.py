@@ -1,4 +1,4 @@
-"""Values that the ranges of a job of a swing allow, from samples: closing, travel, feasible share, an example."""
+"""Values that the ranges of a swing job allow, from samples: closing, travel, feasible fraction, an example."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ _SAMPLES = 512
 
 @dataclass(frozen=True, kw_only=True)
 class PossibleSwing:
-    """Values that the ranges of a job of a swing allow. closing: share of the designs in the box that make the swing.
+    """Values that the ranges of a swing job allow. closing: fraction of the designs in the box that make the swing.
 
-    travel (m): its ends, of designs that keep the margin and whatever else was checked, where some do; None where no
-    design makes the swing. feasible: share of the `sampled` designs that meet every requirement that was checked.
-    example: crank, rod and offset, m; None if nothing makes the swing. shown_swing: its swing, between crank angles.
-    unchecked: requirements that would have taken longer than a moment, or that wait for the rest of the job.
+    travel (m): ends of its range, for designs that keep the margin and the other checked requirements, if any do; None
+    if no design makes the swing. feasible: fraction of the `sampled` designs that meet every checked requirement.
+    example: crank, rod and offset, m; None if no design makes the swing. shown_swing: its swing, between crank angles.
+    unchecked: requirements too slow to check, or that need the rest of the job.
     """
 
     swing: Swing
@@ -52,9 +52,9 @@ class PossibleSwing:
 
 
 def possible_swing(tables: Mapping[str, Any], full_problem: Problem | None) -> PossibleSwing | None:
-    """Return the values that the ranges of a job allow; None of a turn, and while something cannot be read.
+    """Return the values that the ranges of a job allow; None for full rotation, and while something cannot be read.
 
-    full_problem: the problem of the whole job, if it is valid. Of several options the first one counts.
+    full_problem: the problem of the whole job, if it is valid. The first of several options counts.
     """
     try:
         part = MotionPart.model_validate(tables.get("motion", {}))
@@ -125,7 +125,7 @@ def _possible(
 
 
 def positions(angle: float | Array, sign: float, designs: Array) -> Array:
-    """Return the slider's place (n,), m, of designs (n, 3) at a crank angle; NaN where one does not close."""
+    """Return the slider position (n,), m, of designs (n, 3) at a crank angle; NaN if one does not close."""
     r, l, e = designs[:, 0], designs[:, 1], designs[:, 2]
     with np.errstate(invalid="ignore", divide="ignore"):
         closes = np.abs(e - r * np.sin(angle)) < l

@@ -1,4 +1,4 @@
-"""Sentences and tables as data. Their numbers keep their kind, so that whoever renders them chooses the units."""
+"""Sentences and tables as data. Their numbers keep their kind, so that the renderer chooses the units."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 class Value:
     """A number with its kind.
 
-    number: in SI; None where it is not defined. digits: significant ones that are shown. decimals: digits after the
-    point instead, in metric units. sign: whether a positive number gets a plus. bare: without its unit. missing: text
-    for None and NaN.
+    number: number in SI; None if undefined. digits: number of significant digits shown. decimals: digits after the
+    point instead, in metric units. sign: whether a positive number gets a plus. bare: whether the unit is omitted.
+    missing: text for None and NaN.
     """
 
     number: float | None
@@ -35,14 +35,14 @@ class Value:
 
 @dataclass(frozen=True)
 class Unit:
-    """The unit of a kind, alone in a cell: that of the numbers in its row."""
+    """The unit of a kind, alone in a cell, for the numbers in its row."""
 
     kind: Kind
 
 
 @dataclass(frozen=True)
 class Phrase:
-    """Words that choose their units themselves, as a search writes them: in each system."""
+    """Text with its own units, as a search writes it, in each system of units."""
 
     metric: str
     inch: str
@@ -73,9 +73,10 @@ class Column:
 
 @dataclass(frozen=True)
 class Table:
-    """A table. rows: cells by column. ruled: with a line below the heads. dim: positions of columns with remarks.
+    """A table. rows: cells by column. ruled: whether a line is below the heads. dim: positions of columns with remarks.
 
-    indented: below its heading. apart: whether a space precedes it, and columns are wide. bold: positions of rows.
+    indented: whether it is indented below its heading. apart: whether a space precedes it, and columns are wide. bold:
+    positions of bold rows.
     """
 
     columns: tuple[Column, ...]
@@ -117,7 +118,7 @@ def note(template: str, **values: Text) -> Sentence:
 
 
 def joined(texts: Sequence[Text], separator: str = ", ") -> Text:
-    """Return texts one after the other; empty ones are left out."""
+    """Return texts in sequence, without empty ones."""
     parts: list[Part] = []
     for text in texts:
         if text not in ("", ()):
@@ -132,12 +133,12 @@ def column(title: Text = "", kind: Kind | None = None, *, left: bool = False) ->
 
 
 def recorded(record: Mapping[str, Any], key: str, **look: Any) -> Value:
-    """Return a number of a metric record, whose key says its unit. look: further fields of `Value`."""
+    """Return a number from a metric record, whose key names its unit. look: further fields of `Value`."""
     return recorded_all({key: [record[key]]}, key, **look)[0]
 
 
 def recorded_all(record: Mapping[str, Any], key: str, **look: Any) -> list[Value]:
-    """Return a list of numbers of a metric record; see `recorded`."""
+    """Return a list of numbers from a metric record; see `recorded`."""
     _, kind = kind_of_key(key)
     return [Value(None if number is None else number / kind.metric.factor, kind, **look) for number in record[key]]
 
@@ -147,7 +148,7 @@ NamedNumber = tuple[str, Text, Text]
 
 
 def named_number(record: Mapping[str, Any], key: str, remark: Text = "") -> NamedNumber:
-    """Return a number of a metric record with its name, the crank angle of a peak, and a remark."""
+    """Return a number from a metric record with its name, the crank angle of a peak, and a remark."""
     name, _ = kind_of_key(key)
     angle = f"{name}_angle_deg"
     at = words("at {angle}", angle=recorded(record, angle, decimals=2)) if record.get(angle) is not None else ""
@@ -165,7 +166,7 @@ def number_list(title: Text, numbers: Sequence[NamedNumber]) -> list[Block]:
 
 
 def compared(record: Mapping[str, Any], key: str, remark: str) -> Text:
-    """Return a remark on a number of a metric record: "12.5 N m without friction"; nothing where there is none."""
+    """Return a remark with a number from a metric record: "12.5 N m without friction"; empty without the number."""
     value = recorded(record, key)
     return "" if value.number is None else words("{value} {remark}", value=value, remark=remark)
 

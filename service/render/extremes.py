@@ -1,4 +1,4 @@
-"""Least and greatest value of curves, and where, as a table."""
+"""Table of the least and greatest values of curves and their positions."""
 
 from __future__ import annotations
 

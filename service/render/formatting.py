@@ -1,4 +1,4 @@
-"""Formatting of values and blocks in a system of units; only here do numbers of answers become text."""
+"""Formatting of values and blocks in a system of units, the only place where numbers of answers become text."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _LEAST_DIGITS = 4  # of a number in a unit of the inch system: 0.7 mm is 0.02756
 
 @dataclass(frozen=True)
 class PlainBlock:
-    """A sentence, or a table where there are rows, as text in one system of units.
+    """A sentence, or a table if there are rows, as text in one system of units.
 
-    heading: whether the sentence heads what follows. heads: of the columns, empty ones where they have none. right:
-    whether a column is aligned to the right, as numbers are. rows: the texts of the cells.
+    heading: whether the sentence is a heading. heads: heads of the columns, empty texts for columns without one. right:
+    whether each column is aligned to the right, as numbers are. rows: texts of the cells.
     """
 
     sentence: str = ""
@@ -45,14 +45,14 @@ def format_value(value: Value, system: System = "metric", *, bare: bool = False,
 
 
 def digits_of(value: Value, system: System) -> tuple[int, int | None]:
-    """Return how many significant digits of a value are shown in a system, and how many after the point instead."""
+    """Return the number of significant digits of a value in a system, and the number of decimals that replaces it."""
     if value.kind.display_unit(system) is value.kind.metric:
         return value.digits, value.decimals
     return max(value.digits, _LEAST_DIGITS), None
 
 
 def format_text(text: Text, system: System = "metric", *, bare: bool = False, printed: bool = False) -> str:
-    """Return a text with its values in a system. bare: a value that is all of it has no unit. See `format_value`."""
+    """Return a text with its values in a system. bare: whether a value that is the whole text omits its unit."""
     if isinstance(text, str):
         return text
     if isinstance(text, Value):

@@ -1,4 +1,4 @@
-"""Numbers and units as figures and reports write them."""
+"""Numbers and units in the style of figures and reports."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from ..runs.result import Cell
 
 
 def format_number(value: float, digits: int = 4, *, zeros: bool = False) -> str:
-    """Return a number for people: that many significant digits, no exponent where avoidable, a real minus sign.
+    """Return a number for people: given significant digits, no exponent if avoidable, a real minus sign.
 
-    zeros: keep those at the end, so that numbers below one another have the same precision.
+    zeros: whether to keep trailing zeros, so that numbers in a column have the same precision.
     """
     if not math.isfinite(value):
         return "∞" if value > 0.0 else "−∞" if value < 0.0 else "–"
@@ -22,25 +22,25 @@ def format_number(value: float, digits: int = 4, *, zeros: bool = False) -> str:
 
 
 def on_scale(value: float, low: float, high: float, *, digits: int = 4) -> str:
-    """Return a number as text for an axis from low to high; less than a millionth of it is zero."""
+    """Return a number as text for an axis from low to high; less than a millionth of the range is zero."""
     return format_number(0.0 if abs(value) < 1e-6 * abs(high - low) else value, digits)
 
 
 def with_unit(title: str, symbol: str, target: float | None = None) -> str:
-    """Return an axis title with its unit, and the target that is to be met, if there is one."""
+    """Return an axis title with its unit and the target, if any."""
     named = f"{title}, {unit_text(symbol)}" if symbol else title
     return named if target is None else f"{named} (target {f'{target:g} {unit_text(symbol)}'.rstrip()})"
 
 
 def rounded(cell: Cell) -> str:
-    """Return a value for people, six digits of it."""
+    """Return a value for people, with six digits."""
     if cell is None:
         return "–"
     return cell if isinstance(cell, str) else format_number(cell, 6)
 
 
 def as_stored(cell: Cell) -> str:
-    """Return a value as CSV has it, every digit; nothing for what is not defined, and for words."""
+    """Return a value as in CSV, with every digit; empty for undefined values and words."""
     if cell is None or isinstance(cell, str) or math.isnan(cell):
         return ""
     return repr(cell)

@@ -17,7 +17,7 @@ _STYLES = {"heading": "bold", "plain": None, "note": "dim"}
 
 
 def print_blocks(screen: Console, blocks: Sequence[Block], system: System = "metric") -> None:
-    """Write blocks in a system of units; what follows a table and the notes on it stands apart."""
+    """Write blocks in a system of units; a space follows a table and its notes."""
     for before, block in zip((None, *blocks), blocks, strict=False):
         if block.space_before or ((isinstance(before, Table) or _is_note(before)) and not _is_note(block)):
             screen.print()
@@ -63,7 +63,7 @@ def table(*columns: str, ruled: bool = False, **look: Any) -> Drawn:
 
 
 def print_table(screen: Console, table: Drawn) -> None:
-    """Write a table at its own width: a narrow terminal breaks its lines, but no number is cut."""
+    """Write a table at its full width: a narrow terminal breaks its lines, but no number is cut."""
     natural = screen.measure(table, options=screen.options.update(width=1000)).maximum
     before = screen.width
     try:

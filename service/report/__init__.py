@@ -1,4 +1,4 @@
-"""The report of a design for a review: job, front, design, evidence, as HTML and as PDF."""
+"""Report of a design for a review: job, front, design, evidence, as HTML and PDF."""
 
 from ...model.extras import required
 

@@ -1,4 +1,4 @@
-"""The decision: for which design, why, and why not for the others."""
+"""Section on the decision: the chosen design, the reason, and the reasons against the others."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _SAME = 1e-9  # of a length
 
 
 def decision_section(subject: Subject) -> Section | None:
-    """Return which design was decided for, and the others with the reasons against them; None before a decision."""
+    """Return the chosen design, and the others with the reasons against them; None before a decision."""
     chosen = next((alternative for alternative in subject.alternatives if alternative.decided), None)
     if chosen is None:
         return None
@@ -54,7 +54,7 @@ def decision_section(subject: Subject) -> Section | None:
 
 
 def _words(alternative: Alternative, subject: Subject) -> str:
-    """Return the reason, the note, and what a design misses."""
+    """Return the reason, the note, and the requirements that a design misses."""
     titles = {**{f"{name}_mm": name for name in DIMENSIONS}, "slow_stroke": "slow stroke"}
     missed = [
         find_column(key, list(alternative.row)).title if key not in titles else titles[key]

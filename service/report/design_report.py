@@ -1,4 +1,4 @@
-"""The report of one design, from its summary to the versions of what computed it."""
+"""Report of one design, from its summary to the versions of the software that computed it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from .swing_section import SwingOfSubject
 
 
 def design_report(subject: Subject, *, created: float | None = None) -> Report:
-    """Return the report of a design. created: when, seconds since 1970; now if None."""
+    """Return the report of a design. created: time of the report, s since 1970; now if None."""
     when = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime(created))
     motion, decision = subject.design.part.motion, decision_section(subject)
     swing = None if motion is None else SwingOfSubject(subject, motion)
@@ -80,7 +80,7 @@ def _format_choice(subject: Subject, key: str) -> str:
 
 
 def _machine(subject: Subject) -> list[str]:
-    """Return lines on a design's machine that differ from the job's: what varies or a choice sets."""
+    """Return the lines on a design's machine that differ from the job's, due to variables or choices."""
     stated = machine_in_words(subject.problem, subject.problem.mechanism)
     lines = machine_in_words(subject.problem, subject.design.mechanism)
     return [unit_text(line) for line in lines if line not in stated]
@@ -96,7 +96,7 @@ def _best_objectives(subject: Subject) -> list[str]:
 
 
 def _change_sentences(subject: Subject, changed: Variation) -> list[str]:
-    """Return sentences on the changes to a design of the front, and on where they leave it."""
+    """Return sentences on the changes to a design of the front, and on the result."""
     before = subject.result.designs[subject.number - 1]
     changes = [
         f"{name} {measured(subject.row[column.key], column.unit)} instead of "

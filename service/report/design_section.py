@@ -1,4 +1,4 @@
-"""The chosen design in a report: drawing, requirements, stationarity, trade-offs, and every number of it."""
+"""Chosen design in a report: drawing, requirements, stationarity, trade-offs, and all its numbers."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def design_section(subject: Subject) -> Section:
 
 
 def numbers_section(subject: Subject) -> Section:
-    """Return every column of the design that its machine has, rounded and as it is stored."""
+    """Return every column of the design that its machine has, rounded and as stored."""
     columns, absent = _columns_of_machine(subject)
     lengths = _dimensions_with_tolerance(subject)
     at_bound = {column.key for column in columns if column.key.startswith("slack_") and _active(subject, column)}
@@ -84,9 +84,9 @@ def numbers_section(subject: Subject) -> Section:
 
 
 def _columns_of_machine(subject: Subject) -> tuple[list[Column], list[str]]:
-    """Return the columns that a design's machine has, and titles of the others: a loss where nothing rubs, say.
+    """Return the columns that a design's machine has, and titles of the others, such as a loss without friction.
 
-    What the job asks for is never left out.
+    Quantities that the job uses are never omitted.
     """
     part, mechanism = subject.design.part, subject.design.mechanism
     quantity_of_column = {
@@ -109,7 +109,7 @@ def _columns_of_machine(subject: Subject) -> tuple[list[Column], list[str]]:
 
 
 def _dimensions_with_tolerance(subject: Subject) -> dict[str, str]:
-    """Return the dimensions that have a tolerance, with the digits that it makes sensible, by their columns."""
+    """Return the dimensions with a tolerance, with the digits that it justifies, by column."""
     texts = {}
     for key, tolerance in subject.tolerances.items():
         value = subject.row.get(key)
@@ -147,7 +147,7 @@ def _rules(subject: Subject) -> list[Block]:
 
 
 def _bounds_by_slack(subject: Subject) -> dict[str, str]:
-    """Return the bounds of each requirement of the design, those of what was chosen included, by its slack's column."""
+    """Return the bounds of each requirement of the design, including those of its choices, by slack column."""
     bounds = {}
     for item in requirements_of(subject.design.part):
         key, factor = key_in(item.slack, subject.system)

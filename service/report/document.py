@@ -1,4 +1,4 @@
-"""A report as a document: what it says, before it is HTML or PDF."""
+"""A report as a document: its content before rendering to HTML or PDF."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Tone = Literal["plain", "note", "good", "bad"]
 
 @dataclass(frozen=True)
 class Paragraph:
-    """Text. tone: plain; note, in small; good or bad, for what was checked."""
+    """Text. tone: "plain"; "note" in small print; "good" or "bad" for checks."""
 
     text: str
     tone: Tone = "plain"
@@ -21,16 +21,16 @@ class Paragraph:
 
 @dataclass(frozen=True)
 class Facts:
-    """Names with what there is to say of each, one or more lines."""
+    """Names with one or more lines on each."""
 
     rows: Mapping[str, Sequence[str]]
 
 
 @dataclass(frozen=True)
 class Table:
-    """A table. heads: of the columns. right: which of them are aligned to the right. bold: rows, counted from 0.
+    """A table. heads: heads of the columns. right: positions of right-aligned columns. bold: bold rows, from 0.
 
-    wide: shares of the width of the columns.
+    wide: relative widths of the columns.
     """
 
     title: str
@@ -44,9 +44,9 @@ class Table:
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure that is drawn when it is needed.
+    """A figure, drawn when needed.
 
-    raster: as points instead of lines, for thousands of marks. tallest: on paper, inches.
+    raster: whether to use pixels instead of vectors, for thousands of marks. tallest: maximum height on paper, inches.
     """
 
     title: str
@@ -68,7 +68,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Report:
-    """A report. made: when, in words. signatures: who signs."""
+    """A report. made: date in words. signatures: roles of the people who sign."""
 
     title: str
     subtitle: str

@@ -1,4 +1,4 @@
-"""Reaction of the design: to its dimensions, and to the tolerances of the job."""
+"""Sensitivity of the design to its dimensions and to the tolerances of the job."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _MOST = 24
 
 
 def sensitivity_section(subject: Subject) -> Section:
-    """Return by how much every quantity changes with every dimension."""
+    """Return the change of every quantity with every dimension."""
     design = subject.design
     rows = tornado_rows(design.mechanism, design.linkage, design.part.motion)
     draw = partial(tornado_figure, rows, subject.system, width=7.4, limit=_MOST)

@@ -1,4 +1,4 @@
-"""The front, and where the design lies on it."""
+"""Section on the front, and the position of the design on it."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ _DREW = ("slidercrank", "numpy", "matplotlib", "pandas")
 
 
 def job_section(subject: Subject) -> Section:
-    """Return the section on the job in words, as `slidercrank check` gives it."""
+    """Return the section on the job in words, as `slidercrank check` prints it."""
     words = summarise(subject.problem)
     parts = {
         **{"Given": words["given"], "Tolerances": words["tolerances"], "Costs": words["costs"]},

@@ -1,4 +1,4 @@
-"""Measured curves beside the computed ones of the design."""
+"""Measured curves next to the computed curves of the design."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _ADDED = "Shifts that, added to the measured curves, give the best fit; not appl
 
 
 def measured_section(subject: Subject, measured: Measured) -> Section:
-    """Return the deviation of each measured curve, the shifts that fit best, and the figure."""
+    """Return the deviation of each measured curve, the best-fitting shifts, and the figure."""
     mechanism, linkage = subject.design.mechanism, subject.design.linkage
     deviations_found = numbers(mechanism, linkage, measured=measured)
     deviations, shifts = [], []
@@ -54,7 +54,7 @@ def measured_section(subject: Subject, measured: Measured) -> Section:
 
 
 def _pictures(panel_figure: PanelFigure, system: System) -> list[Picture]:
-    """Return the panels, as many in a picture as a page shows well."""
+    """Return pictures with as many panels as a page shows well."""
     parts = [panel_figure.panels[start : start + _PANELS] for start in range(0, len(panel_figure.panels), _PANELS)]
     return [
         Picture(

@@ -1,4 +1,4 @@
-"""A report as tagged PDF on A4 pages, set by typst, with searchable text and vector figures."""
+"""A report as tagged PDF on A4 pages, typeset by typst, with searchable text and vector figures."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def pdf_file(report: Report) -> bytes:
 
 
 def _template_blocks(blocks: Sequence[Block], folder: Path, section: int) -> list[dict[str, Any]]:
-    """Return the blocks of a section as the template takes them; pictures are drawn into the folder."""
+    """Return the blocks of a section in the form of the template; pictures are drawn into the folder."""
     contents = []
     for number, (block, after) in enumerate(zip(blocks, (*blocks, None)[1:], strict=True)):
         if isinstance(block, Picture):
@@ -81,5 +81,5 @@ def _drawn(picture: Picture, file: Path) -> dict[str, Any]:
 
 
 def _unbreakable_text(text: str) -> str:
-    """Return a text with no break within a unit, nor before one of a number."""
+    """Return a text without breaks within a unit, or between a number and its unit."""
     return _OF_NUMBER.sub(lambda found: found[0].replace(" ", _KEPT), text)

@@ -1,4 +1,4 @@
-"""Report of a design of a run that is on the disk."""
+"""Report of a design of a run on the disk."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def run_report(
 ) -> bytes:
     """Return the report of a design of a run, by its number, counted from 1: HTML, or PDF.
 
-    measured: CSV of measured curves to compare.
+    measured: CSV text of measured curves to compare.
     """
     versions, certificate = _load_json(folder / "versions.json") or {}, _load_json(folder / "certificate.json")
     records: dict[str, Any] = {"versions": versions, "certificate": certificate, "system": units}
@@ -42,7 +42,7 @@ def run_report(
 
 
 def _load_json(file: Path) -> dict[str, Any] | None:
-    """Return the content of a JSON file of a run, None if there is none. Raises `RunError` for a damaged one."""
+    """Return the content of a JSON file of a run, None if there is none. Raises `RunError` for a damaged file."""
     if not file.is_file():
         return None
     try:

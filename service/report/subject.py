@@ -1,4 +1,4 @@
-"""Subject of a report: one design of the result of a run, with all that is known of both."""
+"""Subject of a report: one design of the result of a run, with all that is known about both."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from ..runs.result import Cell, Result, Row
 
 @dataclass(frozen=True, kw_only=True)
 class Alternative:
-    """A design that was kept, and perhaps decided for. row: metric. reason: why, or why not.
+    """A bookmarked design, perhaps the chosen one. row: metric row. reason: reason for or against it.
 
-    broken, outside: columns of requirements that it misses, and of ranges that it leaves.
+    broken: columns of requirements that it misses. outside: columns of ranges that it leaves.
     """
 
     name: str
@@ -39,12 +39,12 @@ class Alternative:
 
 @dataclass(frozen=True)
 class Subject:
-    """One design of a run. metric: the result as it is kept. number: of the design, from 1. run: what it is called.
+    """One design of a run. metric: stored result. number: number of the design, from 1. run: name of the run.
 
-    versions: of what computed the front. certificate: what `slidercrank certify` found, as its JSON has it, if it ran.
-    known: the front of the result, where there is one already. changed: the design with other lengths than it has in
-    the front; None for the design as it is. system: of the units of the report. measured: curves to put beside those of
-    the design. alternatives: the designs that were kept of the run.
+    versions: versions of the software that computed the front. certificate: JSON answer of `slidercrank certify`, if it
+    ran. known: front of the result, if already available. changed: the design with lengths other than in the front;
+    None for the unchanged design. system: system of units of the report. measured: measured curves to compare with
+    those of the design. alternatives: bookmarked designs of the run.
     """
 
     problem: Problem
@@ -83,7 +83,7 @@ class Subject:
         return {key: factor * tolerances_mm[name] for name, (key, factor) in keys.items()}
 
     def sensible(self, key: str, cell: Cell) -> str:
-        """Return a cell for people: of a dimension with a tolerance the decimals of that, else six digits."""
+        """Return a cell for people: a dimension with the decimals of its tolerance, otherwise six digits."""
         if key not in self.tolerances or not isinstance(cell, float):
             return rounded(cell)
         return format_toleranced(cell, self.tolerances[key]).partition(" ")[0].replace("-", "−")

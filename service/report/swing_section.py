@@ -1,4 +1,4 @@
-"""Sections of a report on a design that swings: its numbers, its curves' extremes, where its errors come from."""
+"""Sections of a report on a swinging design: its numbers, extremes of its curves, origins of its errors."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class SwingOfSubject:
         return Section("The swing", tuple(blocks))
 
     def tolerances(self) -> Section | None:
-        """Return where the error of the driven side comes from; None for a job without tolerances."""
+        """Return the origins of the error on the driven side; None for a job without tolerances."""
         worst, design, system = self.summary.position_error, self._subject.design, self._subject.system
         if worst is None:
             return None

@@ -5,7 +5,7 @@
         front.csv       every design with all its quantities, full precision
         front.json      the same with how it was found: what `slidercrank optimise --json` prints
         figures/        PNG files
-        versions.json versions of this software and of the libraries that computed the numbers
+        versions.json   versions of this software and of the libraries that computed the numbers
         log.txt         what happened when
         UNFINISHED      only until everything else is on the disk
 

@@ -187,7 +187,7 @@ class Database:
         return text
 
     def _use_write_ahead_log(self) -> None:
-        """Switch SQLite's log to WAL, which stays with the file; several processes may try at the same moment."""
+        """Switch SQLite to a write-ahead log, a lasting setting of the file; several processes may try it together."""
         end = time.monotonic() + _PATIENCE
         while True:
             try:

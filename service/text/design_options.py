@@ -1,4 +1,4 @@
-"""Options that take a part of a run's designs, or choose one; and settings of the search that finds them."""
+"""Options that select some designs of a run, or choose one, and settings of the search."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from .options import DesignOfRun
 
 @dataclass(frozen=True)
 class SettingOptions:
-    """Settings of the optimiser in place of the job's."""
+    """Optimiser settings that replace those of the job."""
 
     designs: Annotated[int | None, typer.Option(min=1, max=10_000), "Return at most N designs."] = None
     seed: Annotated[int | None, typer.Option(min=0), "Random seed."] = None
 
     @property
     def overrides(self) -> dict[str, Any]:
-        """Those that are given."""
+        """The settings that are given."""
         return {name: value for name, value in vars(self).items() if value is not None}
 
 
 @dataclass(frozen=True)
 class Selection:
-    """Options that take a part of a run's designs and sort them."""
+    """Options that select some designs of a run and sort them."""
 
     where: Annotated[
         list[str] | None,
@@ -46,7 +46,7 @@ class Selection:
 
     @property
     def sorts(self) -> bool:
-        """Whether the order is other than the run's."""
+        """Whether the order differs from that of the run."""
         return self.sort is not None or self.reverse
 
     def rows(self, result: Result) -> list[int]:
@@ -78,5 +78,5 @@ class Pick:
         return self.knee or self.topsis is not None or self.lexicographic is not None
 
     def row(self, result: Result, rows: Sequence[int]) -> int | None:
-        """Return which of the rows is chosen by its values, None without such an option, and of no rows."""
+        """Return the index of the row chosen by its values, None without such an option or without rows."""
         return picked_row(result, rows, knee=self.knee, topsis=self.topsis, lexicographic=self.lexicographic)

@@ -1,4 +1,4 @@
-"""Options of the command line that several commands have, and those that are quantities: a number with its unit."""
+"""Command-line options that several commands share, and options that are quantities: a number with its unit."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def drawable(folder: Path | None) -> Path | None:
-    """Refuse to draw before anything is computed, where figures cannot be drawn."""
+    """Raise an error before anything is computed if figures cannot be drawn."""
     if folder is not None:
         required("matplotlib", "figures need")
     return folder
@@ -72,10 +72,10 @@ AllowQuantity = Annotated[
 
 
 def for_typer(command: Callable[..., None]) -> Callable[..., None]:
-    """Return a command for typer, whose parameters have their help as a text in `Annotated`.
+    """Return a command for typer from a function whose parameters have their help as text in `Annotated`.
 
-    A parameter of a dataclass of options stands for the fields of that, one of `inspect.Parameter`s in `Annotated` for
-    these: it gets a dict. A flag is off unless it is given.
+    A parameter whose type is a dataclass of options stands for the fields of the dataclass. One with
+    `inspect.Parameter`s in `Annotated` stands for these and gets a dict. A flag is off unless it is given.
     """
     hints = get_type_hints(command, include_extras=True)
     groups: dict[str, Any] = {name: hint for name, hint in hints.items() if is_dataclass(hint)}
@@ -108,7 +108,7 @@ def for_typer(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def _helped(name: str, hint: Any) -> Any:
-    """Return the annotation of an option as typer reads it, its help in the option."""
+    """Return the annotation of an option for typer, with its help in the option."""
     kind, *options = get_args(hint)
     if not isinstance(options[-1], str):
         return hint
@@ -125,18 +125,18 @@ def _flag(name: str) -> str:
 
 @dataclass(frozen=True)
 class Dimensions:
-    """Crank, rod and offset as they are given."""
+    """Crank, rod and offset as given."""
 
     crank: Annotated[Length, 'Crank length, such as "40 mm", unless JOB fixes it.'] = None
     rod: Annotated[Length, "Length of the connecting rod, unless JOB fixes it."] = None
     offset: Annotated[Length, 'Offset of the slider line, such as "-20 mm", unless JOB fixes it.'] = None
 
     def lengths(self, problem: Problem | None, word: Callable[[str], str] = _flag) -> list[float]:
-        """Return crank, rod and offset, m, each as `length_option` gives it."""
+        """Return crank, rod and offset, m, each from `length_option`."""
         return [length_option(name, getattr(self, name), problem, word) for name in DIMENSIONS]
 
     def linkage(self, problem: Problem, word: Callable[[str], str] = _flag) -> Linkage:
-        """Return the linkage of a job's branch. word: gives what the door calls a dimension."""
+        """Return the linkage on a job's branch. word: function that returns the interface's name for a dimension."""
         from ...model.linkage.linkage import Linkage
 
         crank, rod, offset = self.lengths(problem, word)
@@ -146,7 +146,7 @@ class Dimensions:
 def length_option(name: str, text: str | None, problem: Problem | None, word: Callable[[str], str] = _flag) -> float:
     """Return a dimension, m: as given, else what the job fixes, else (offset, without a job) zero.
 
-    word: gives what the door calls it.
+    word: function that returns the interface's name for it.
     """
     if text is not None:
         return parse_value(word(name), text, LENGTH, sign="any" if name == "offset" else "positive")
@@ -159,14 +159,14 @@ def length_option(name: str, text: str | None, problem: Problem | None, word: Ca
 
 
 def speed_option(text: str, word: str = "--speed") -> float:
-    """Return the crank speed, rad/s. word: what the door calls it."""
+    """Return the crank speed, rad/s. word: the interface's name for it."""
     return parse_value(word, text, ANGULAR_SPEED)
 
 
 def require_ending(option: str, file: Path | None, *endings: str) -> None:
-    """Refuse a file to write that ends as other content does, a directory, and standard output.
+    """Raise an error for an output file with a wrong ending, a directory, or standard output.
 
-    endings: of its names, with their points; a name may have none.
+    endings: allowed endings of its name, with their points; a name may have none.
     """
     if file is None:
         return
@@ -178,5 +178,5 @@ def require_ending(option: str, file: Path | None, *endings: str) -> None:
 
 
 def option_value(option: str, text: str | None, kind: Kind, *, sign: Any = "any") -> float | None:
-    """Return an option's value as `value_of` does, None without one."""
+    """Return an option's value as in `value_of`, None without one."""
     return None if text is None else parse_value(option, text, kind, sign=sign)

@@ -23,12 +23,12 @@ if TYPE_CHECKING:
 
 
 def console() -> Console:
-    """Return the console of standard output; 100 columns wide where it is no terminal."""
+    """Return the console for standard output; 100 columns wide if it is not a terminal."""
     return _console(sys.stdout)
 
 
 def error_console() -> Console:
-    """Return the console of standard error."""
+    """Return the console for standard error."""
     return _console(sys.stderr)
 
 
@@ -40,13 +40,13 @@ def _console(stream: TextIO) -> Console:
 
 
 def print_message(message: str) -> None:
-    """Write a message to standard error; where nothing can be written there, it is lost."""
+    """Write a message to standard error; if nothing can be written there, it is lost."""
     with contextlib.suppress(OSError):
         sys.stderr.write(f"{path_text(message)}\n")
 
 
 def print_output(text: str) -> None:
-    """Write a result to standard output as it is."""
+    """Write a result to standard output unchanged."""
     sys.stdout.write(text)
     sys.stdout.flush()
 
@@ -60,13 +60,13 @@ def print_answer(json: bool, record: Any, show: Callable[[Console], None]) -> No
 
 
 def show_activity(text: str) -> contextlib.AbstractContextManager[Status | None]:
-    """Return a context that shows an activity while entered; nothing where standard error is no terminal."""
+    """Return a context that shows an activity while entered; nothing if standard error is not a terminal."""
     screen = error_console()
     return screen.status(text) if screen.is_terminal else contextlib.nullcontext()
 
 
 def write_figure(file: Path, draw: Callable[[], FigureSource], units: System = "metric") -> None:
-    """Write a figure as PNG, its folder made if it is not there, and say where it is."""
+    """Write a figure as PNG, create its folder if missing, and print its path."""
     from ..figures.panels import save_figure
 
     with disk(file.parent), show_activity("drawing the figure"):
@@ -76,7 +76,7 @@ def write_figure(file: Path, draw: Callable[[], FigureSource], units: System = "
 
 
 def progress_bar() -> contextlib.AbstractContextManager[Callable[[Progress], None]]:
-    """Return a context with a live bar on a terminal, and the callback for each round."""
+    """Return a context with a progress bar on a terminal, and the callback for each round."""
     from ...optimise.front.progress import progress_bar as bar
 
     return bar() if sys.stderr.isatty() else contextlib.nullcontext(lambda _: None)

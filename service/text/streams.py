@@ -17,9 +17,9 @@ _AS_SHOWN = "slidercrank.shown"
 
 
 class Output(io.TextIOWrapper):
-    """Standard output; raises `OutputLost` where it cannot be written.
+    """Standard output; raises `OutputLost` if it cannot be written.
 
-    Where nobody reads on (`| head -1`), what follows goes nowhere, and the command ends with an exit code of its own.
+    If the reader stops (`| head -1`), further output is discarded, and the command ends with a special exit code.
     """
 
     left = False
@@ -34,7 +34,7 @@ class Output(io.TextIOWrapper):
             return len(text)
 
     def flush(self) -> None:
-        """Write what is kept back."""
+        """Write the buffered text."""
         try:
             super().flush()
         except OSError as error:
@@ -50,12 +50,12 @@ class Output(io.TextIOWrapper):
 
 
 def reader_left() -> bool:
-    """Return whether nobody reads standard output on."""
+    """Return whether the reader of standard output has stopped."""
     return isinstance(sys.stdout, Output) and sys.stdout.left
 
 
 def guard_streams() -> None:
-    """Make standard streams that say why they fail, and show "?" for characters that the terminal does not have."""
+    """Set up standard streams that report why they fail, and show "?" for characters missing in the terminal."""
     codecs.register_error(_AS_SHOWN, _replacement_text)
     if sys.stderr is None:
         sys.stderr = open(os.devnull, "w")  # noqa: SIM115, PTH123 - as long as this process
@@ -84,5 +84,5 @@ def _replacement_text(error: UnicodeError) -> tuple[bytes, int]:
 
 
 def give_up_output() -> None:
-    """Send what is still kept back to nowhere: the end of the process would try again, and fail aloud."""
+    """Discard text that is still buffered: the end of the process would write it again, and fail with a message."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -1,4 +1,4 @@
-"""A job in words and as data, as it was understood."""
+"""A job in words and as data, as understood."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _MOST_VALUES = 6  # of a variable that are all told
 def summarise(problem: Problem) -> dict[str, Any]:
     """Return a job in words: name, given, loads, tolerances, costs, variables, rules, objectives, warnings, search.
 
-    Each is a list of lines except name, search, the numbers of the freedom, and the floors, see `_floors`.
+    Each is a list of lines except name, search, the degrees of freedom, and the floors, see `_floors`.
     """
     branch = elimination_branches(problem)[0]
     settings = problem.settings
@@ -77,7 +77,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
 
 
 def job_in_words(problem: Problem, tables: Mapping[str, Any]) -> dict[str, Any]:
-    """Return `summarise` of a problem, with what was read from files, and notes on the tables that state it."""
+    """Return `summarise` of a problem, with the content of files, and notes on the tables that state it."""
     from ...optimise.job.notes import notes_of, sources_of
 
     return summarise(problem) | {"files": sources_of(tables), "notes": notes_of(tables)}
@@ -110,7 +110,7 @@ def _degrees_of_freedom(branch: EliminationBranch) -> int:
 
 
 def _machine(problem: Problem) -> list[str]:
-    """Return the machine of a problem line by line, with the ranges of its varying numbers."""
+    """Return the machine of a problem line by line, with the ranges of its variables."""
     low, high = (machine_in_words(problem, end) for end in problem.mechanism.ends)
     if len(low) != len(high):  # a number that is zero at one end leaves its line out
         return machine_in_words(problem, problem.mechanism)
@@ -118,7 +118,7 @@ def _machine(problem: Problem) -> list[str]:
 
 
 def machine_in_words(problem: Problem, mechanism: Mechanism) -> list[str]:
-    """Return a machine of a problem line by line: the one that is stated, or that of a design."""
+    """Return a machine of a problem line by line: the stated machine, or that of a design."""
     return [*_speed(problem, mechanism), *_mechanism_lines(mechanism)]
 
 
@@ -228,7 +228,7 @@ def _friction(friction: Friction) -> list[str]:
 
 
 def _strength(strength: Strength | None) -> list[str]:
-    """Return material, pins, and how stresses are judged; nothing for a machine without [sections]."""
+    """Return material, pins, and assessment of stresses; empty for a machine without [sections]."""
     if strength is None:
         return []
     names = ("elasticity", "yield_strength", "ultimate_strength", "endurance", "bearing_pressure")
@@ -281,7 +281,7 @@ def _cost(name: str, cost: Cost) -> str:
 
 
 def _lengths(problem: Problem, name: str) -> str:
-    """Return where a dimension may lie; of choices all that there are."""
+    """Return the range of a dimension, or all its choices."""
     ranges = sorted({(getattr(part, name).lower, getattr(part, name).upper) for part in problem.variants})
     if len(ranges) < 2:
         return _range(getattr(problem, name))
@@ -317,7 +317,7 @@ def _choices(problem: Problem) -> list[str]:
 
 
 def _option(name: str, label: str, speed: float) -> str:
-    """Return an option as the job states it, a speed in rpm too. speed: of the crank, rad/s."""
+    """Return an option as the job states it, a speed in rpm too. speed: crank speed, rad/s."""
     rpm = f"{speed * 30.0 / math.pi:.6g} rpm"
     return f"{label} ({rpm})" if name == "speed" and label != rpm else label
 
@@ -326,7 +326,7 @@ _MOST_LISTED = 12  # combinations whose limits are told one by one
 
 
 def _limits(problem: Problem) -> list[str]:
-    """Return the limits that come with each combination of choices, such as what a gearmotor can take."""
+    """Return the limits for each combination of choices, such as the limits of a gearmotor."""
     limited = [variant for variant in problem.variants if variant.limits]
     if len(limited) > _MOST_LISTED:
         return [f"limits set by {len(limited)} combinations of choices"]
@@ -344,7 +344,7 @@ def _range(bounds: Range) -> str:
 
 
 def _rule(constraint: Constraint, problem: Problem, *, is_stated: bool = False) -> str:
-    """Return a constraint in words. is_stated: whether it is the job's for certain."""
+    """Return a constraint in words. is_stated: whether it certainly comes from the job."""
     quantity = problem.quantity(constraint.quantity)
     is_stated = is_stated or constraint in problem.constraints
 

@@ -30,7 +30,7 @@ _CHOICES = 6  # named
 
 
 def show_result(screen: Console, result: Result) -> None:
-    """Write what a run found: the front as a table, and what the knee costs."""
+    """Write the result of a run: the front as a table, and the trade-offs at the knee."""
     screen.print(f"{result.name}: {result.message}, in {result.seconds:.1f} s", style="bold", soft_wrap=True)
     if len(result.designs) == 1:
         show_design(screen, result.designs[0])
@@ -53,9 +53,9 @@ def show_front(
     columns: Sequence[Column] | None = None,
     limit: int = ROWS,
 ) -> None:
-    """Write designs of a front, given by their positions, as a table; at most `limit`, spread over them.
+    """Write designs of a front, given by their positions, as a table; at most `limit`, evenly spread.
 
-    columns: dimensions, stroke and objectives if None; what is the same in all designs is then said once above.
+    columns: dimensions, stroke and objectives if None; values shared by all designs then appear once above the table.
     """
     chosen = spread_rows(result, rows, limit)
     if columns is None:
@@ -78,9 +78,9 @@ def show_front(
 def show_design(
     screen: Console, row: Row, *, only: Sequence[str] | None = None, custom: Sequence[Quantity] = ()
 ) -> None:
-    """Write all quantities of one design, one a line; those without a value are left out.
+    """Write all quantities of one design, one per line, without undefined ones.
 
-    custom: quantities of its job, whose titles and units say more than their columns' keys.
+    custom: custom quantities of its job, whose titles and units say more than their column keys.
     """
     custom_by_column = {quantity.field: quantity for quantity in custom}
     rows = table("", ">", "")
@@ -97,7 +97,7 @@ def show_design(
 
 
 def show_undefined(screen: Console, reasons: Mapping[str, str], custom: Sequence[Quantity] = ()) -> None:
-    """Write why quantities of a design have no value, those of one rule together. reasons: by the columns."""
+    """Write why quantities of a design have no value, grouped by rule. reasons: reasons by column."""
     custom_titles = {quantity.field: quantity.title for quantity in custom}
     together: dict[str, list[str]] = {}
     for key, reason in reasons.items():
@@ -111,13 +111,13 @@ def show_undefined(screen: Console, reasons: Mapping[str, str], custom: Sequence
 
 
 def finite_or_none(value: Any) -> float | None:
-    """Return a number that JSON can have: None for what is not finite."""
+    """Return a number that JSON allows: None if it is not finite."""
     number = float(value)
     return number if math.isfinite(number) else None
 
 
 def usual_keys(result: Result) -> list[str]:
-    """Return the columns of dimensions, what else varied, stroke and objectives."""
+    """Return the columns of dimensions, extra variables, stroke and objectives."""
     from ...objectives.proportions import STROKE
 
     names = list(result.designs[0])
@@ -128,7 +128,7 @@ def usual_keys(result: Result) -> list[str]:
 
 
 def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
-    """Return the columns of `usual_keys` that differ between designs; in words the others."""
+    """Return the columns of `usual_keys` that differ between designs, and the others in words."""
     from ...optimise.front.constant import is_constant
 
     objectives = {objective.column for objective in result.objectives}
@@ -178,7 +178,7 @@ def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column])
 
 
 def _aligned(values: Sequence[Cell]) -> list[str]:
-    """Return numbers with the same decimals: four significant digits of the greatest."""
+    """Return numbers with the same decimals: four significant digits for the greatest."""
     sizes = [abs(value) for value in values if isinstance(value, float) and math.isfinite(value)]
     top = max(sizes, default=0.0)
     decimals = max(0, min(9, _DIGITS - 1 - math.floor(math.log10(top)))) if top > 0.0 else 0
@@ -193,7 +193,7 @@ def _aligned(values: Sequence[Cell]) -> list[str]:
 
 
 def spread_rows(result: Result, rows: Sequence[int], limit: int) -> list[int]:
-    """Return up to `limit` of the positions, in their order: the marked ones and others spread evenly; all for 0."""
+    """Return up to `limit` positions, in order: the marked ones and others evenly spread; all for 0."""
     if limit <= 0 or len(rows) <= limit:
         return list(rows)
     marked = {*result.extremes.values(), result.knee} & set(rows)
@@ -205,7 +205,7 @@ def spread_rows(result: Result, rows: Sequence[int], limit: int) -> list[int]:
 
 
 def show_violated(screen: Console, violated: Mapping[str, float], row: Row) -> None:
-    """Print which allowable values a design violates, and by how much."""
+    """Print the allowable values that a design violates, and the excess."""
     if violated:
         screen.print()
     for sentence in violations_in_words(violated, row):
@@ -213,7 +213,7 @@ def show_violated(screen: Console, violated: Mapping[str, float], row: Row) -> N
 
 
 def show_rules(screen: Console, rules: Sequence[JudgedRule], choices: Sequence[JudgedChoice] = ()) -> None:
-    """Print whether a design meets each requirement of its job, with which choices, those that it misses first."""
+    """Print whether a design meets each requirement of its job, and with which choices; missed ones come first."""
     if not rules:
         return
     broken = [rule for rule in rules if not rule.met]
