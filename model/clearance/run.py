@@ -1,4 +1,4 @@
-"""The linkage with a loose joint over many turns of the crank: its motion in time."""
+"""Motion in time of the linkage with a loose joint, over many turns of the crank."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Status = Literal["done", "cancelled"]
 
 @dataclass(frozen=True)
 class ClearanceProgress:
-    """A turn of the crank is done. cycle, cycles: this one, and all. impacts: so far. seconds: since the start."""
+    """Progress after a turn of the crank. cycle, cycles: number of this turn, and of all. impacts, seconds: so far."""
 
     cycle: int
     cycles: int
@@ -45,8 +45,8 @@ class ClearanceRun:
     journal_x, journal_y: centre of the journal relative to that of the bearing, m. in_contact: whether they touch.
     torque: on the crank, N m. input_work, load_work, dissipated: from the start, J, by the drive, by the loads on
     the slider, in the contact. stored: kinetic, potential and elastic energy, J.
-    impact_times, impact_speeds: of every beginning of a contact, (k,). cycles: turns that are complete; status says
-    whether these are all. discard: turns at the beginning that the statistics leave out.
+    impact_times, impact_speeds: at every start of a contact, (k,). cycles: complete turns; status says whether these
+    are all. discard: initial turns that the statistics leave out.
     """
 
     mechanism: Mechanism
@@ -84,7 +84,7 @@ class ClearanceRun:
 
     @property
     def energy_residual(self) -> Array:
-        """Energy stored since the start, less work of drive and loads, plus what was dissipated, J: zero if exact."""
+        """Energy stored since the start, less work of drive and loads, plus dissipated energy, J: zero if exact."""
         residual: Array = (self.stored - self.stored[0]) - self.input_work - self.load_work + self.dissipated
         return residual
 
@@ -102,15 +102,15 @@ def simulate(
 ) -> ClearanceRun:
     """Return the motion over some turns of the crank, which turns steadily at the mechanism's speed.
 
-    It starts at crank angle zero from the motion of the ideal linkage, the journal in the middle of its bearing: in
-    flight, so that the first turns, `discard` of them, show how the start dies out. A crank whose pivot is loose is
-    turned by a coupling that gives way sideways only. Loads act at the actual position and velocity of the slider;
-    which stroke it is, is told by the crank angle, so that a load opposing the motion is a force given in advance and
-    not friction. The counterweight is the mechanism's.
+    It starts at crank angle zero from the motion of the ideal linkage, with the journal in the middle of its bearing.
+    As this is in flight, the first turns (`discard`) show how the initial transient dies out. A crank with a loose
+    pivot is turned by a coupling that yields sideways only. Loads act at the actual position and velocity of the
+    slider. The crank angle determines the stroke, so a load that opposes the motion is a prescribed force and not
+    friction. The counterweight is the mechanism's.
 
-    tolerance: relative, of a step of the integration (see `Integrator`). progress: called after every turn. cancelled:
-    asked every few steps; when it says so, what there is so far is returned with status "cancelled".
-    Raises as `system.build` does, `InputError` for a crank at rest or a number of turns that leaves none, and
+    tolerance: relative tolerance of an integration step (see `Integrator`). progress: function called after every turn.
+    cancelled: function called every few steps; if true, the motion so far is returned with status "cancelled". Raises
+    as `system.build` does, `InputError` for a crank at rest or if no turns remain, and
     `SlidercrankError` for a contact that is too soft to hold the journal.
     """
     if not mechanism.speed:
@@ -127,7 +127,7 @@ def simulate(
     linkage = single(mechanism, linkage)
     integrator = _start(mechanism, linkage, clearance, tolerance)
     period = 2.0 * math.pi / abs(mechanism.speed)
-    # Shares of a turn at which the dead centres are passed.
+    # Fractions of a turn at which the crank passes the dead centres.
     turn, way = 2.0 * math.pi, math.copysign(1.0, mechanism.speed)
     dead_centres = sorted(float(angle * way % turn) / turn for angle in linkage.dead_centre_angles)
     turns_made = 0
@@ -149,7 +149,7 @@ def simulate(
 
 
 def _start(mechanism: Mechanism, linkage: Linkage, clearance: Clearance, tolerance: float) -> Integrator:
-    """Return the integrator at the motion of the ideal linkage: no gap, and none that opens."""
+    """Return the integrator at the motion of the ideal linkage: zero gap and zero gap velocity."""
     return Integrator(
         *build(mechanism, linkage, clearance),
         hysteresis=clearance.hysteresis,
@@ -215,7 +215,7 @@ def _collect(
 
 
 def _still(integrator: Integrator) -> Trace:
-    """Return the start alone: of a run that was cancelled at once."""
+    """Return only the start, for a run cancelled immediately."""
     trace = Trace()
     trace.add(np.zeros(1), integrator.state.reshape(-1, 1), FLIGHT, False)
     return trace

@@ -1,11 +1,11 @@
-"""The deviation from a wanted motion (`target_motion`) as the greatest of smooth pieces, with exact gradients.
+"""The deviation from a desired motion (`target_motion`) as the maximum of smooth pieces, with exact gradients.
 
 Derivatives are at fixed phase and shift (envelope theorem). The least of the greatest over the phase lies where the
 highest deviation turns, or where a rising and a falling one, a_m and a_n with slopes b_m < 0 < b_n, cross; there
 
     lambda_m a_m + lambda_n a_n,    lambda_m = b_n / (b_n - b_m),    lambda_n = -b_m / (b_n - b_m),
 
-is to first order the value whichever way the design moves, so that the deviation is locally the greatest of such pairs
+is the value to first order for any change of the design. The deviation is therefore locally the maximum over such pairs
 (duality of the linear programme in the phase).
 """
 
@@ -27,12 +27,12 @@ _PEAKS = 6  # local peaks over the points, of either sign, that make pieces
 _BESIDE = 3  # the highest of the other points
 _CROSSED = 8  # candidates that are paired where the phase is free
 _PIECES = 10
-_SETTLED = 1e-6  # rad; a deviation that turns within it of the phase turns there, but for rounding
-_MIX = 0.5 * (math.sqrt(5.0) - 1.0)  # any irrational: labels of pairs that are not the same hardly coincide
+_SETTLED = 1e-6  # rad; a deviation whose turning point is this near to the phase turns there, up to rounding
+_MIX = 0.5 * (math.sqrt(5.0) - 1.0)  # any irrational: labels of different pairs hardly ever coincide
 
 
 class FitPieces(NamedTuple):
-    """The deviation as the greatest of smooth pieces, highest first: (n, k), gradients (n, k, 3), labels (n, k)."""
+    """The deviation as the maximum of smooth pieces, highest first: (n, k), gradients (n, k, 3), labels (n, k)."""
 
     values: Array
     gradients: Array
@@ -57,9 +57,9 @@ def _slopes(target: TargetMotion, branch: float, phase: Array, designs: Array) -
 
 
 def fit_pieces(target: TargetMotion, branch: float, measure: Measure, designs: Array) -> FitPieces:
-    """Return the least deviation of designs (n, 3) as the greatest of smooth pieces.
+    """Return the least deviation of designs (n, 3) as the maximum of smooth pieces.
 
-    One piece for the root mean square; its gradient is zero where it is nothing but rounding.
+    The root mean square has one piece; its gradient is zero where it is only rounding error.
     """
     designs = turning(designs)
     fitted = fit(target, branch, measure, designs)
@@ -67,7 +67,7 @@ def fit_pieces(target: TargetMotion, branch: float, measure: Measure, designs: A
         d = branch * _points(target, branch, fitted.phase, designs).x - np.array(target.positions)
         d = d + fitted.shift[:, None]
         slopes = _slopes(target, branch, fitted.phase, designs)
-        # With the shift free the deviations have no mean, so that those of the derivatives need not be taken off.
+        # With the shift free the deviations have zero mean, so the means of the derivatives need not be subtracted.
         noise = fitted.values <= 1e-14 * (designs[:, 0] + designs[:, 1])
         per = np.where(noise, 0.0, 1.0 / np.where(noise, 1.0, fitted.values * d.shape[1]))
         gradients = np.einsum("ni,niv->nv", d, slopes) * per[:, None]
@@ -75,7 +75,7 @@ def fit_pieces(target: TargetMotion, branch: float, measure: Measure, designs: A
     phase = fitted.phase.copy()
     sides = _Sides.from_points(target, branch, phase, designs)
     if target.phase == "free":
-        # Golden section places the turn of a smooth deviation to the root of rounding only: one step of Newton's.
+        # Golden section locates a smooth turning point only to the square root of rounding: add a Newton step.
         step = sides.settling()
         if np.any(step != 0.0):
             phase = phase + step

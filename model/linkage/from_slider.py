@@ -27,8 +27,9 @@ class CrankSolution:
     """Crank motion that gives a slider motion.
 
     crank_angle: rad in [0, 2 pi). speed: rad/s; None without a slider velocity, and at a dead centre, where any crank
-    speed goes with a slider at rest. acceleration: rad/s^2; None where the speed is, and without a slider acceleration.
-    stroke: that the slider makes there when the crank turns counter-clockwise; None at a dead centre.
+    speed leaves the slider at rest. acceleration: rad/s^2; None where the speed is None, and without a slider
+    acceleration. stroke: stroke that the slider makes there when the crank turns counter-clockwise; None at a dead
+    centre.
     """
 
     crank_angle: float
@@ -51,7 +52,7 @@ def crank_solutions(
 ) -> tuple[CrankSolution, ...]:
     """Return the crank motions of one linkage for a slider motion, SI, as `Linkage.from_slider` describes it.
 
-    Where the rod is all but normal to the slider line, a rounding of the angle moves the slider by some 1e-8 cranks.
+    Where the rod is nearly normal to the slider line, rounding of the angle moves the slider by some 1e-8 cranks.
     """
     crank, rod, offset = _real_lengths(linkage)
     motion_asked = _SliderMotion(
@@ -94,7 +95,7 @@ def slider_ranges(linkage: Dimensions) -> tuple[tuple[float, float], ...]:
     crank, rod, offset = _real_lengths(linkage)
     sines = ((offset - rod) / crank, (offset + rod) / crank)
     normal = [crank * math.sqrt((1.0 - sine) * (1.0 + sine)) for sine in sines if abs(sine) < 1.0]
-    right, left = list(normal), [-x for x in normal]  # by the side of the pivot on which the crank pin is
+    right, left = list(normal), [-x for x in normal]  # by the side of the pivot on which the crank pin lies
     stretched_side, folded_side = (right, left) if linkage.sign > 0.0 else (left, right)
     longest, shortest = rod + crank, rod - crank
     stretched_side.append(linkage.sign * math.sqrt((longest - offset) * (longest + offset)))
@@ -111,7 +112,7 @@ def _crank_solutions(linkage: Dimensions, stroke: Solution, target: _SliderMotio
         angle = float(crank_angle_at(linkage, target.position, solution=stroke))
     except AssemblyError:
         return []
-    if abs(linkage.offset - linkage.crank * math.sin(angle)) >= linkage.rod:  # locked, but for rounding
+    if abs(linkage.offset - linkage.crank * math.sin(angle)) >= linkage.rod:  # locked, up to rounding
         return []
     if target.velocity is None:
         return [CrankSolution(angle, None, None, stroke)]
@@ -134,7 +135,7 @@ def _crank_solutions(linkage: Dimensions, stroke: Solution, target: _SliderMotio
 
 
 def _at_dead_centre(linkage: Dimensions, angle: float, target: _SliderMotion) -> CrankSolution:
-    """Return the solution at a dead centre. Raises `InputError` for a slider motion that no crank gives there."""
+    """Return the solution at a dead centre. Raises `InputError` for a slider motion that is impossible there."""
     crank, rod, offset = _real_lengths(linkage)
     if linkage.sign * (target.position - crank * math.cos(angle)) <= 0.0:
         raise _out_of_reach(linkage, target.position)
@@ -159,7 +160,7 @@ def _at_dead_centre(linkage: Dimensions, angle: float, target: _SliderMotion) ->
 
 def _out_of_reach(linkage: Dimensions, position: float) -> AssemblyError:
     crank, rod, offset = _real_lengths(linkage)
-    # Rounded inward, and off the ends where the linkage locks: who gives an end as it is told is in reach.
+    # Rounded inward, and away from ends where the linkage locks: an end entered as reported is within reach.
     inward = 0.0 if rod > crank + abs(offset) else _LOCKED * rod
     up, down = Context(_DIGITS, ROUND_CEILING), Context(_DIGITS, ROUND_FLOOR)
     ends = (

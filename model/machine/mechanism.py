@@ -1,4 +1,4 @@
-"""Everything about a machine but its three dimensions: speed, masses, gravity, loads, tolerances."""
+"""All data of a machine except its three dimensions: speed, masses, gravity, loads, tolerances."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Tolerance:
         require_numbers(self, "absolute", "fraction", phrase="the {} part of a tolerance", least=0.0)
 
     def limit(self, length: float) -> float:
-        """Return how far a length, m, may be off, m."""
+        """Return the greatest deviation of a length, m, from its nominal value, m."""
         return self.absolute + self.fraction * abs(length)
 
 
@@ -44,7 +44,7 @@ class Tolerance:
 class Window:
     """The part of the cycle over which the position error counts.
 
-    during: which stroke. start, end: fractions of the stroke counted outward from the inner dead centre, 0 to 1.
+    during: counted stroke. start, end: fractions of the stroke, outward from the inner dead centre, 0 to 1.
     """
 
     during: During = "cycle"
@@ -64,8 +64,8 @@ class Window:
 class Clearances:
     """Radial clearances of the joints, m: half the difference of the diameters of bearing and pin.
 
-    crank_pivot, crank_pin, slider_pin: of the three pins. guide: how far the slider can move to either side of its line
-    (its tilt within the guide is not considered). What they do to the slider position: `position_error`.
+    crank_pivot, crank_pin, slider_pin: clearances of the three pins. guide: play of the slider to either side of its
+    line (its tilt within the guide is not considered). `position_error` describes their effect on the slider position.
     """
 
     crank_pivot: float = 0.0
@@ -95,7 +95,7 @@ class Tolerances:
 
     @property
     def are_stated(self) -> bool:
-        """Whether anything may be off: without tolerance and clearance a position error is not defined."""
+        """Whether there is any tolerance or clearance: without one, a position error is not defined."""
         sizes = (self.crank, self.rod, self.offset, self.crank_angle)
         return any(size.absolute or size.fraction for size in sizes) or self.clearances != Clearances()
 
@@ -113,19 +113,18 @@ _KINDS = {
 class Mechanism:
     """A slider-crank but for crank, rod and offset.
 
-    That of the tables of a job is `problem({...}).mechanism`.
+    `problem({...}).mechanism` gives the mechanism of a job's tables.
 
-    speed: of the crank, rad/s, positive counter-clockwise. acceleration: of the crank, rad/s^2, the same at every
-    crank angle. crank, rod: `Bar` or `RigidLink`. slider_mass: kg. gravity: components along x and y, m/s^2.
-    drive: motor and flywheel, for what needs a motion that is not prescribed; speed then says which way it turns.
-    speed_profile: how the speed goes over the crank angle; what moves under a motor finds its own.
-    arrangement: identical cylinders on one crankshaft; `signals.shaft_statistics` says what adds up and what is of one.
-    clearance: a joint that is loose, for `clearance.run.simulate`; everything else takes all joints as ideal.
-    strength: material and pins, for what judges the strength of bars; nothing else depends on it.
-    start: of a swing, where designs choose it; nothing else depends on it.
-    slider: distances from a dead centre, for what is asked of the slider there; nothing else depends on them.
-    varying: numbers that differ from design to design: such a machine is evaluated for designs (n, 3 + k), crank, rod,
-    offset and the value of each; what takes one machine takes `at(values)`, or `nominal`.
+    speed: crank speed, rad/s, positive counter-clockwise. acceleration: crank acceleration, rad/s^2, the same at every
+    crank angle. crank, rod: `Bar` or `RigidLink`. slider_mass: kg. gravity: components along x and y, m/s^2. drive:
+    motor and flywheel, for analyses of a free motion; the speed then only gives the direction. speed_profile: speed
+    over the crank angle; a motion under a motor has its own. arrangement: identical cylinders on one crankshaft;
+    `signals.shaft_statistics` says which signals add up and which belong to one cylinder. clearance: a loose joint, for
+    `clearance.run.simulate`; all other analyses take every joint as ideal. strength: material and pins, used only to
+    judge the strength of bars. start: start of a swing, where designs choose it; used only for that. slider: distances
+    from a dead centre, used only by quantities of the slider there. varying: numbers that differ from design to design.
+    Such a machine is evaluated for designs (n, 3 + k): crank, rod, offset and the value of each. Analyses of one
+    machine take `at(values)` or `nominal`.
     """
 
     speed: float = 0.0
@@ -177,7 +176,7 @@ class Mechanism:
 
     @cached_property
     def nominal(self) -> Mechanism:
-        """The machine as it is given, with nothing varying."""
+        """The machine as stated, with nothing varying."""
         return replace(self, varying=()) if self.varying else self
 
     @property
@@ -189,18 +188,18 @@ class Mechanism:
     def direction(self) -> float:
         """Sense of rotation: +1 counter-clockwise, -1 clockwise; +1 at rest, as for loads that change with the stroke.
 
-        A speed that varies has one sign; it is that of the designs, whatever other speed is given.
+        A varying speed has one sign, which counts whatever nominal speed is stated.
         """
         return -1.0 if self.fullest.speed < 0.0 else 1.0
 
     @cached_property
     def fullest(self) -> Mechanism:
-        """The machine with every varying number at its end of greatest size: it has all that some design has."""
+        """The machine with all varying numbers at their bounds of greatest size: it has all features of any design."""
         return self.at([item.fullest for item in self.varying]) if self.varying else self
 
     @property
     def ends(self) -> tuple[Mechanism, Mechanism]:
-        """The machines with the lower and with the upper ends of all varying numbers."""
+        """The machines with the lower and with the upper bounds of all varying numbers."""
         return self.at([item.lower for item in self.varying]), self.at([item.upper for item in self.varying])
 
     @property

@@ -1,9 +1,9 @@
 """Raw numbers that the designs of a machine set, and their derivation from a design.
 
-A design of a machine with k varying numbers has 3 + k: crank, rod, offset and the value of each. What a kernel
-overwrites are raw numbers (`raw.Raw`). Most are a factor times one value; the counterweight's mass centre is
-given by radius and angle, but raw by its components. Kernels differentiate by the raw numbers; `Numbers.chain` turns
-that into derivatives by the design's own numbers. With k = 0 all of it is the identity, and costs nothing.
+A design of a machine with k varying numbers has 3 + k: crank, rod, offset and the value of each. Kernels overwrite raw
+numbers (`raw.Raw`). Most are a factor times one value; the counterweight's mass centre is stated by radius and angle,
+but its raw numbers are components. Kernels differentiate by the raw numbers; `Numbers.chain` converts that to
+derivatives by the design's own numbers. With k = 0 this is the identity and costs nothing.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ for _index, _name in enumerate(("crank_pivot", "crank_pin", "slider_pin", "guide
 PINS = {"crank_pivot": 10**8, "crank_pin": 10**8 + 1, "slider_pin": 10**8 + 2}
 """Slots of the pins' diameters: behind all that kernels take, so that no kernel differentiates by them."""
 _SLOTS |= {f"strength.{name}": (slot, "m") for name, slot in PINS.items()}
-_SLOTS |= {"start.angle": (10**8 + 3, "rad"), "start.place": (10**8 + 4, "m")}  # of a swing, which takes its own
+_SLOTS |= {"start.angle": (10**8 + 3, "rad"), "start.place": (10**8 + 4, "m")}  # for a swing, which reads its own
 _POLAR = {"counterweight.radius": "m", "counterweight.angle": "rad"}
 
 
@@ -84,8 +84,8 @@ def _slot_of(path: str) -> tuple[int, str]:
 class Numbers:
     """Raw numbers of n designs.
 
-    columns: (c,), which ones; crank, rod and offset first. values: (n, c). slopes: (n, c, 3 + k), their derivatives by
-    the design's numbers; None where that is the identity.
+    columns: indices (c,) of the raw numbers; crank, rod and offset first. values: (n, c). slopes: (n, c, 3 + k), their
+    derivatives by the design's numbers; None where that is the identity.
     """
 
     columns: Whole
@@ -106,7 +106,7 @@ _THREE = np.arange(3)
 def numbers_of(mechanism: Mechanism, designs: Array, *, limit: int, gradients: bool) -> Numbers:
     """Return the raw numbers that designs (n, 3 + k) of a machine with k varying numbers set.
 
-    limit: raw numbers that there are; a signal that no load matters for has fewer. gradients: whether to give slopes.
+    limit: count of raw numbers; a signal independent of loads has fewer. gradients: whether to return slopes.
     """
     require_width(mechanism, designs)
     if not mechanism.varying:
@@ -131,7 +131,7 @@ def numbers_of(mechanism: Mechanism, designs: Array, *, limit: int, gradients: b
 def number_of(mechanism: Mechanism, slot: int, designs: Array, *, otherwise: float) -> tuple[Array, Array]:
     """Return one raw number (n,) of designs (n, 3 + k) and its derivatives (n, 3 + k).
 
-    `otherwise`: unless designs set it.
+    `otherwise`: value if designs do not set it.
     """
     numbers = numbers_of(mechanism, designs, limit=10**9, gradients=True)
     place = np.flatnonzero(numbers.columns == slot)
@@ -145,8 +145,8 @@ def formula_of_numbers(
 ) -> tuple[Array, Array | None]:
     """Return a formula of designs (n, 3 + k), (n,), and its derivatives (n, 3 + k) by complex steps.
 
-    formula: of a function that gives the raw number of a slot (`Raw`, `PINS`), each (n,) or one for all designs. It is
-    smooth, and takes complex numbers too.
+    formula: smooth formula, for real or complex numbers. Its argument is a function that returns the raw number of a
+    slot (`Raw`, `PINS`), (n,) or one for all designs.
     """
     numbers = numbers_of(mechanism, designs, limit=10**9, gradients=gradients)
     base = _nominal(mechanism)
@@ -178,7 +178,7 @@ def _nominal(mechanism: Mechanism) -> Array:
 
 
 def require_width(mechanism: Mechanism, designs: Array) -> None:
-    """Raise `InputError` unless designs (n, 3 + k) have as many numbers as the machine asks for."""
+    """Raise `InputError` unless designs (n, 3 + k) have as many numbers as the machine requires."""
     if designs.shape[1] != 3 + len(mechanism.varying):
         names = "".join(f", {item.name}" for item in mechanism.varying)
         raise InputError(
@@ -195,7 +195,7 @@ def _rates(varying: tuple[Varying, ...]) -> dict[int, tuple[float, ...]] | None:
         for path, factor in item.sets:
             if path in _POLAR:
                 return None
-            rates[_slot_of(path)[0]] = {3 + column: factor * STEP / STEP}  # to the rounding of a complex step
+            rates[_slot_of(path)[0]] = {3 + column: factor * STEP / STEP}  # rounded as by a complex step
     count = 3 + len(varying)
     return {slot: tuple(row.get(column, 0.0) for column in range(count)) for slot, row in rates.items()}
 

@@ -1,13 +1,13 @@
-"""Places whose stress over the cycle is searched together: all along crank and rod, and the net sections of eyes.
+"""Places searched together for stress over the cycle: all along crank and rod, and the net sections of eyes.
 
 With axial force N and moment M of the section through a pin's centre, width w, depth d, the pin's diameter D, and K the
 stress concentration of the eye, the stress of its net section is at the bore and at the outer edge
 
     K N / ((w - D) d) +- min(K, 2) 6 M D / (d (w^3 - D^3))      and      N / ((w - D) d) +- 6 M w / (d (w^3 - D^3)):
 
-what is left of area and second moment when the hole is taken out. A hole in a bent bar at most doubles the stress that
-this gives at the bore (W. D. Pilkey, "Peterson's Stress Concentration Factors", 3rd ed., sec. 4.6). Here the factor
-1 / (w - D) of both is left out, so that a pin as wide as its bar is nothing special: stress times w - D, N/m.
+from the area and second moment that remain without the hole. A hole in a bent bar at most doubles this stress at the
+bore (W. D. Pilkey, "Peterson's Stress Concentration Factors", 3rd ed., sec. 4.6). Here the factor 1 / (w - D) of both
+is left out, so that a pin as wide as its bar needs no special case: stress times w - D, N/m.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _MANY = WIDE // 2
 
 
 class WholeBar(NamedTuple):
-    """All along a link. part: `ROD` or `CRANK`. bent: whether moments count."""
+    """A whole link. part: `ROD` or `CRANK`. bent: whether moments count."""
 
     part: int
     bent: bool = True
@@ -38,7 +38,7 @@ class WholeBar(NamedTuple):
 class Eye(NamedTuple):
     """An edge of the net section of an eye.
 
-    part: `ROD` or `CRANK`. far: whether at the other end than the crank pin. width, pin: slots of the raw numbers.
+    part: `ROD` or `CRANK`. far: whether at the end opposite the crank pin. width, pin: slots of the raw numbers.
     bent: whether moments count. outer: whether the outer edge, else the bore.
     """
 
@@ -57,10 +57,10 @@ StressLocation = WholeBar | Eye
 class StressLocations:
     """Stress over the cycle at m locations of n designs, stated as m n bars, first location first.
 
-    An eye is a bar whose stress falls linearly from that of the eye to zero at the other end, so the greatest along it
-    is the eye's. Without bending, half of the axial stress counts as bending: all of it on one side, none on the other.
-    samples: their stress (m s, WIDE). factors: (m n, 2), of axial stress and bending; rates: (m n, 3 + k, 2), their
-    derivatives by the numbers of the design.
+    An eye is a bar whose stress falls linearly from the eye's value to zero at the other end, so the greatest value
+    along it is the eye's. Without bending, half of the axial stress counts as bending: all of it on one side, none on
+    the other. samples: their stress (m s, WIDE). factors: (m n, 2), of axial stress and bending; rates: (m n, 3 + k,
+    2), their derivatives by the numbers of the design.
     """
 
     field: Field
@@ -71,7 +71,7 @@ class StressLocations:
 
     @property
     def rows(self) -> int:
-        """Return how many bars there are, m n."""
+        """Return the number of bars, m n."""
         return len(self.factors)
 
     @property
@@ -80,7 +80,7 @@ class StressLocations:
         return np.tile(self.field.locked, len(self.places))
 
     def segment_counts(self, bars: Whole) -> Whole:
-        """Return how many segments the cycle of bars (p,) has."""
+        """Return the number of segments in the cycle of bars (p,)."""
         counts: Whole = self.field.cuts.many[self._design(bars)]
         return counts
 
@@ -138,7 +138,7 @@ def _spread(places: Sequence[StressLocation], stress: Array, row: Whole, place: 
 
 @seldom_kernel
 def _fill(stress: Table, row: Integers, place: Integers, codes: IntegerTable, factors: Table, out: Table) -> None:
-    """codes: (m, 4) of places: first column of the link, whether an eye, whether far, whether bent. factors: (p, 2)."""
+    """Fill stresses. codes: (m, 4), link's first column, whether an eye, whether far, whether bent. factors: (p, 2)."""
     for i in range(row.shape[0]):
         base, eye = codes[place[i], 0], codes[place[i], 1] == 1
         far, bent = codes[place[i], 2] == 1, codes[place[i], 3] == 1

@@ -1,4 +1,4 @@
-"""A crank whose motion is prescribed: what its drive must do at every instant.
+"""A crank with prescribed motion: the drive required at every instant.
 
 The motion is given over crank angle, for a crank that always turns one way, or over time, for any motion. Tables are
 interpolated by cubic splines, so that the acceleration is continuous; periodic over crank angle, not-a-knot over time.
@@ -31,9 +31,10 @@ _STEP = 1e-4
 
 @dataclass(frozen=True, kw_only=True)
 class PrescribedMotion:
-    """The crank's motion at n instants and what it needs, SI and radians.
+    """The crank's motion at n instants and the drive it needs, SI and radians.
 
-    time: (n,), s. power: of the drive torque, W. curves: slider motion, load, drive torque and reactions (n,) each.
+    time: (n,), s. power: power of the drive torque, W. curves: slider motion, load, drive torque and reactions (n,)
+    each.
     """
 
     time: Array
@@ -96,7 +97,7 @@ def over_angle(
     start: float = 0.0,
     samples: int = 720,
 ) -> PrescribedMotion:
-    """Return the motion over crank angle, from `start` on, rad; time is counted from there.
+    """Return the motion over crank angle, counting time from the angle `start`, rad.
 
     dt = d(theta) / w, acceleration = w dw/d(theta). The sign of the speed, which must not change, is the direction.
     samples: points of each turn. Raises `InputError` for a speed that is not finite, is zero or changes its sign.
@@ -124,9 +125,9 @@ def over_angle(
 def over_time(mechanism: Mechanism, linkage: Linkage, motion: SpeedOverTime, times: ArrayLike) -> PrescribedMotion:
     """Return the motion at increasing times (n,), s.
 
-    The loads follow the sign of the speed; where it is exactly zero, the way in which the crank moves on, by the sign
-    of the acceleration. Raises `InputError` for values that are not finite, and for an acceleration that is not the
-    slope of the speed.
+    The loads follow the sign of the speed. Where the speed is exactly zero, they follow the direction in which the
+    crank starts, given by the sign of the acceleration. Raises `InputError` for values that are not finite, and for an
+    acceleration that is not the slope of the speed.
     """
     time = np.atleast_1d(np.asarray(times, dtype=np.float64))
     if time.ndim != 1 or not np.all(np.isfinite(time)) or np.any(np.diff(time) <= 0.0):
@@ -139,7 +140,7 @@ def over_time(mechanism: Mechanism, linkage: Linkage, motion: SpeedOverTime, tim
     else:
         angle = _values("angle", motion.angle, time)
         _require_slope(motion.angle, motion.speed, time)
-    # Zero to every formula, but with the sign that says which way the loads act.
+    # Numerically zero, but with the sign that determines the direction of the loads.
     moving = np.where(speed == 0.0, np.copysign(1e-300, acceleration), speed)
     return _motion(mechanism, linkage, time, angle, moving, acceleration)
 
@@ -172,7 +173,7 @@ def _turned(speed: Function, time: Array) -> Array:
 
 
 def _table(quantity: str, at: Sequence[float], speeds: Sequence[float]) -> tuple[Array, Array]:
-    """Return a table as arrays. Raises `InputError` unless it is one."""
+    """Return a table as arrays. Raises `InputError` if it is not a valid table."""
     if len(at) != len(speeds) or len(at) < 4:
         raise InputError(
             f"a table of speeds needs as many speeds as {quantity}, four at least; "
@@ -187,7 +188,7 @@ def _table(quantity: str, at: Sequence[float], speeds: Sequence[float]) -> tuple
 
 
 def _bounded_spline(spline: Any, at: Array) -> Function:
-    """Return a spline that refuses what lies beyond its table."""
+    """Return a spline that raises an error beyond its table."""
 
     def bounded(time: Array) -> Array:
         # Differences that check a slope reach beyond the ends by a millionth of the span.
@@ -211,12 +212,12 @@ def _values(name: str, function: Function, at: Array) -> Array:
 
 
 def _require_slope(function: Function, slope: Function, at: Array) -> None:
-    """Raise `InputError` if a function's derivative is not what is given as such."""
+    """Raise `InputError` if a function's derivative differs from the stated slope."""
     step = _STEP * ((float(np.ptp(at)) or 1.0) / len(at))
     middle, slopes = _values("speed", function, at), _values("slope", slope, at)
     after = (_values("speed", function, at + step) - middle) / step
     before = (middle - _values("speed", function, at - step)) / step
-    # On a kink either side's slope will do, and what lies between.
+    # On a kink, the slope of either side is accepted, and any value in between.
     off = np.maximum(slopes - np.maximum(before, after), np.minimum(before, after) - slopes)
     if float(off.max()) > _CLOSE * max(float(np.abs(slopes).max()), float(np.abs(after).max()), 1e-6):
         worst = int(np.argmax(off))

@@ -41,11 +41,11 @@ _TURN = 2.0 * math.pi
 class AngleTable(Load):
     """A force tabulated over crank angle, interpolated linearly and periodically.
 
-    angles: increasing, two equal ones where the force steps, rad. The first point follows the last one a cycle later; a
-    last one that is there itself has the force before the first, from which that steps. forces: N, positive outward.
-    during: the force acts in these strokes. datum: what the angles are counted from: zero, counter-clockwise, or a dead
-    centre, in the sense in which the crank turns. cycle: one turn or two. turn: 0, or the one of the two turns that the
-    load is of (`two_turns`). drives: see `Load`.
+    angles: increasing, two equal ones where the force steps, rad. The first point follows the last one a cycle later. A
+    last point exactly a cycle later gives the force before a step at the first point. forces: N, positive outward.
+    during: strokes in which the force acts. datum: origin of the angles: zero, counted counter-clockwise, or a dead
+    centre, counted in the sense of rotation. cycle: one turn or two. turn: 0, or the only one of two turns in which the
+    load acts (`two_turns`). drives: see `Load`.
     """
 
     angles: tuple[float, ...]
@@ -95,7 +95,7 @@ class AngleTable(Load):
         return 2 if self.cycle == "720 deg" and not self.turn else 1
 
     def on_turn(self, turn: int) -> Load:
-        """Return the table of turn 1 or 2 alone, which need not close; itself where every turn is the same."""
+        """Return the table of turn 1 or 2 alone, which need not close; the table itself where all turns are alike."""
         return replace(self, turn=turn) if self.cycle_turns > 1 else self
 
     def numbers(self) -> tuple[float, float, float, float]:
@@ -103,21 +103,21 @@ class AngleTable(Load):
         return (float(self.during != "inward stroke"), float(self.during != "outward stroke"), 0.0, 0.0)
 
     def knots(self) -> tuple[Sequence[float], Sequence[float]]:
-        """Return angles and forces, closed: the first knot comes again a cycle later. Of one turn both its ends."""
+        """Return angles and forces, closed: the first knot repeats a cycle later. One of two turns has both its ends."""
         inner = len(self.angles) - self._closed
         at = (*self.angles[:inner], self.angles[0] + self._period)
         forces = (*self.forces[:inner], self.forces[-1 if self._closed else 0])
         return self._of_turn(np.array(at), np.array(forces)) if self.turn else (at, forces)
 
     def _of_turn(self, at: Array, forces: Array) -> tuple[Sequence[float], Sequence[float]]:
-        """Return the knots of one turn of two, from 0 to a turn: its ends have the forces within."""
+        """Return the knots of one of two turns, from 0 to a turn; its ends have the forces on the inside."""
         begin = _TURN * (self.turn - 1)
         shift = self._period * math.floor((begin - at[0]) / self._period) - begin
         if forces[-1] == forces[0]:
             at, forces = at[:-1], forces[:-1]
         else:  # both sides of the step at the seam, exactly at one angle
             at, forces = np.r_[at[0], at[:-1]], np.r_[forces[-1], forces[:-1]]
-        at = np.concatenate([at + (shift + n * self._period) for n in (-1, 0, 1, 2)])  # also where one turn has no knot
+        at = np.concatenate([at + (shift + n * self._period) for n in (-1, 0, 1, 2)])  # even if one turn has no knot
         forces = np.tile(forces, 4)
         is_inner = (at > _ROUNDING) & (at < _TURN - _ROUNDING)
         low, high = (int(np.searchsorted(at, end)) for end in (_ROUNDING, _TURN - _ROUNDING))
@@ -140,7 +140,7 @@ class AngleTable(Load):
         return self.datum != "zero crank angle"
 
     def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
-        """Return one, unless the force is the same all over the cycle."""
+        """Return one, unless the force is constant over the cycle."""
         forces = set(self.knots()[1])
         constant = forces == {0.0} or (self.during == "cycle" and len(forces) == 1)
         return {} if constant else {AngleTable: (1.0,)}
@@ -154,7 +154,7 @@ class AngleTable(Load):
             step = angle[:, 1:2] - angle[:, :1]
             starts = (self.datum == "inner dead centre") == passage.outward
             angle = np.sign(step) * (angle - (angle[:, :1] - 0.5 * step if starts else angle[:, -1:] + 0.5 * step))
-        if self.cycle_turns > 1:  # of a turn, the mean of both
+        if self.cycle_turns > 1:  # work per turn, the mean of both
             return 0.5 * passage.work(self._force(angle) + self._force(angle + _TURN))
         return passage.work(self._force(angle))
 
@@ -165,7 +165,7 @@ class AngleTable(Load):
 
     @property
     def push(self) -> tuple[Sequence[float], Sequence[float]] | None:
-        """The forces in the stroke in which they act; None over the cycle, whose strokes no angle tells."""
+        """The forces in the stroke in which they act; None over the cycle, as angles do not identify strokes."""
         if self.during == "cycle":
             return None
         return (self.forces, (0.0,)) if self.during == "outward stroke" else ((0.0,), self.forces)
