@@ -103,7 +103,7 @@ class AngleTable(Load):
         return (float(self.during != "inward stroke"), float(self.during != "outward stroke"), 0.0, 0.0)
 
     def knots(self) -> tuple[Sequence[float], Sequence[float]]:
-        """Return angles and forces, closed: the first knot repeats a cycle later. One of two turns has both its ends."""
+        """Return angles and forces, closed: the first knot repeats a cycle later. One of two turns has both ends."""
         inner = len(self.angles) - self._closed
         at = (*self.angles[:inner], self.angles[0] + self._period)
         forces = (*self.forces[:inner], self.forces[-1 if self._closed else 0])
