@@ -1,4 +1,4 @@
-"""Every curve of one design over the cycle: what figures, tables and tests read."""
+"""All curves of one design over the cycle, for figures, tables and tests."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acc
 class Cycle:
     """Curves of one design, each (n,), SI and radians; forces as components along x and y.
 
-    load: on the slider, N, positive outward. torque: drive torque, N m, counter-clockwise.
+    load: load on the slider, N, positive outward. torque: drive torque, N m, counter-clockwise.
     pivot: force of the frame on the crank; crank_pin: of the crank on the rod; slider_pin: of the rod on the slider;
     guide: of the guide on the slider, along +y. crank_load: torque of the loads on the crank, N m, counter-clockwise.
     """
@@ -114,11 +114,11 @@ def cycle(
 ) -> Cycle:
     """Return all curves of one fully turning linkage at crank angles (n,), rad.
 
-    speed, acceleration: of the crank at each angle, rad/s and rad/s^2, (n,) or one; if None those of the mechanism,
-    along its profile if it has one. Several cylinders: the curves are those of one; see `multi_cylinder`.
-    Where a load or friction jumps (exactly at a dead centre, or where the rod turns back), the value is that of one
-    side: of the inward stroke at a dead centre, of counter-clockwise motion where the speed is zero. Torque and
-    forces are NaN where friction locks the linkage (`rubbing`: where they are not determined). Raises `InputError`
+    speed, acceleration: crank speed and acceleration at each angle, rad/s and rad/s^2, (n,) or one value; by default
+    those of the mechanism, along its profile if it has one. For several cylinders the curves are those of one; see
+    `multi_cylinder`. Where a load or friction jumps (exactly at a dead centre, or where the rod turns back), the value
+    is one-sided: that of the inward stroke at a dead centre, of counter-clockwise motion at zero speed. Torque and
+    forces are NaN where friction locks the linkage (see `rubbing` for where they are undetermined). Raises `InputError`
     for arrays of linkages and for a linkage on another branch than the mechanism's.
     """
     linkage = single(mechanism, linkage)
@@ -134,7 +134,7 @@ def cycle(
 
 
 def curves_of(mechanism: Mechanism, linkage: Linkage, angles: Array, speeds: Array, accelerations: Array) -> Cycle:
-    """Return the curves of one linkage, which need not turn fully but closes at all of the crank angles (n,)."""
+    """Return the curves of one linkage, which need not rotate fully but closes at all crank angles (n,)."""
     if cycle_turns(mechanism) > 1:
         return _of_two_turns(mechanism, linkage, angles, speeds, accelerations)
     out = np.empty((_COLUMNS, len(angles)))
@@ -153,7 +153,7 @@ def _of_two_turns(mechanism: Mechanism, linkage: Linkage, angles: Array, speeds:
 
 
 def design_of(mechanism: Mechanism, linkage: Linkage) -> Design:
-    """Return the numbers of one linkage for the equations of motion; dead centres that it lacks are NaN."""
+    """Return the numbers of one linkage for the equations of motion; missing dead centres are NaN."""
     design: Design = design_at(_block(mechanism, linkage), 0)
     return design
 
@@ -172,7 +172,7 @@ def _block(mechanism: Mechanism, linkage: Linkage) -> Table:
     return _blocks(mechanism, np.array([[linkage.crank, linkage.rod, linkage.offset]], dtype=np.float64))
 
 
-@memoise_by_batch  # searches along the curves of one linkage ask a thousand times
+@memoise_by_batch  # searches along the curves of one linkage call this a thousand times
 def _blocks(mechanism: Mechanism, design: Array) -> Table:
     raw = raw_vector(mechanism)
     raw[:3] = design[0]

@@ -1,6 +1,6 @@
 """Work and volumes of the gas in a machine's cylinders over a cycle, in closed form.
 
-With L the logarithm of the ratio of volumes that the gas expands by, p V^n = const does the work
+With L the logarithm of the volume ratio of an expansion, p V^n = const does the work
 
     p_1 V_1 L f((n - 1) L),    f(x) = (1 - exp(-x)) / x,
 
@@ -40,8 +40,8 @@ class GasCycle(NamedTuple):
 
     swept, clearance: volumes, m^3. work: of the gas on the pistons over a cycle of the machine, one turn or two, J.
     cycle_work: the same over one cycle of each cylinder, two turns for four strokes, J. delivers: for compressors only,
-    the intake volume divided by the swept volume; zero or less where nothing is delivered. delivered: their intake
-    volume in a turn, m^3, without those that deliver nothing.
+    intake volume divided by swept volume; zero or less where nothing is delivered. delivered: their intake volume per
+    turn, m^3, without those that deliver nothing.
     """
 
     swept: Any
@@ -67,7 +67,7 @@ def compressors(mechanism: Mechanism) -> tuple[Compressor, ...]:
 
 
 def may_deliver_nothing(mechanism: Mechanism) -> bool:
-    """Return whether it depends on the design that a compressor delivers: else the compressor has been checked."""
+    """Return whether delivery of a compressor depends on the design; otherwise it has been checked beforehand."""
     gas = {k: load for k, load in cylinders(mechanism.fullest) if isinstance(load, Compressor)}
     varied = {path.split(".")[1] for item in mechanism.varying for path in item.paths if path.startswith("loads.")}
     return any(str(k) in varied or load.clearance_volume > 0.0 for k, load in gas.items() if load.compression_exponent)
@@ -78,7 +78,7 @@ def gas_cycle(
 ) -> tuple[Array, Array | None]:
     """Return a number (n,) of the `GasCycle` of designs (n, 3 + k), and its derivatives (n, 3 + k).
 
-    Of several cylinders on one crankshaft volumes and works are those of all.
+    For several cylinders on one crankshaft, volumes and works are totals.
     """
     designs = turning(designs)
     count = cylinder_count(mechanism)
@@ -127,7 +127,7 @@ def _differentiated(number: Callable[[GasCycle], Any], values: GasCycle, slopes:
 
 
 def _gas(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()) -> GasCycle:
-    """Return the sums for derived blocks (n, rows). four: of a half of two turns, which loads have a cycle of both."""
+    """Return the sums for derived blocks (n, rows). four: for half of two turns, which loads have a cycle of both."""
     swept = clearance = work = cycles = intake = pumped = delivered = 0.0 * blocks[:, 0]
     stroke = blocks[:, _OUTER] - blocks[:, _INNER]
     for k, load in cylinders(mechanism):
@@ -151,7 +151,7 @@ def _gas(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()) -> GasCyc
 
 
 def _strokes(stroke: Any, h: Any, low: Any, high: Any, compression: Any, expansion: Any) -> Any:
-    """Return work of expansion and of compression per piston area, J/m^2, and the share of the stroke that takes in."""
+    """Return work of expansion and of compression per piston area, J/m^2, and the intake fraction of the stroke."""
     expanded, compressed = expanded_at(h, high / low, expansion), compressed_at(stroke, h, high / low, compression)
     with np.errstate(divide="ignore", invalid="ignore"):  # without clearance the gas has always expanded
         full_stroke, ratio = np.log((h + stroke) / h), np.log(high / low)

@@ -1,9 +1,9 @@
-"""Several identical cylinders on one crankshaft: torque, shaking force, moment and rocking couple of the whole.
+"""Several identical cylinders on one crankshaft: total torque, shaking force, moment and rocking couple.
 
-Each cylinder is a single machine at its own crank angle, seen in axes that turn with its bank (`arrangement`): gravity
-is turned back into them, and what it gives is turned out of them. What acts on the shaft or the frame adds up. With z
-the place of a cylinder along the shaft, its shaking force F gives the rocking couple (-z F_y, z F_x) about the plane
-z = 0.
+Each cylinder is a single machine at its own crank angle, seen in axes that turn with its bank (`arrangement`). Gravity
+is rotated into these axes, and the results are rotated out of them. Actions on the shaft or the frame add up. With z
+the place of a cylinder along the shaft, its shaking force F gives the rocking couple (-z F_y, z F_x) about the plane z
+= 0.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ from .crank_speed import crank_speed, speed_knots
 from .cycle import breakpoints, cycle
 from .shaking import shaking_curves
 
-_PIECES = 12  # panels of a turn at least
+_PIECES = 12  # least number of panels in a turn
 _SAMPLES = 256
-_ROUNDING = 1e-14  # of forces that cancel, as a share of their sizes
+_ROUNDING = 1e-14  # remainder of forces that cancel, as a fraction of their sizes
 _NOTHING = 1e-12
 """Share of what the cylinders do one by one below which the whole does nothing: they cancel but for rounding."""
 _TORQUE, _X, _Y, _FORCE, _MOMENT, _COUPLE, _TIME = range(7)
@@ -40,8 +40,8 @@ _TORQUE, _X, _Y, _FORCE, _MOMENT, _COUPLE, _TIME = range(7)
 class MultiCylinderCurves:
     """Curves of all cylinders together at crank angles of the shaft, each (n,), SI, axes as those of zero bank.
 
-    torque: of the drive, N m, counter-clockwise. force_x, force_y, moment: shaking force, N, and moment about the
-    shaft, N m, on the frame. couple_x, couple_y: rocking couple, N m. torques: (k, n), of each cylinder.
+    torque: drive torque, N m, counter-clockwise. force_x, force_y, moment: shaking force, N, and moment about the
+    shaft, N m, on the frame. couple_x, couple_y: rocking couple, N m. torques: torque of each cylinder, (k, n).
     """
 
     crank_angle: Array
@@ -58,11 +58,10 @@ class MultiCylinderCurves:
 class MultiCylinderCycle:
     """Numbers of all cylinders together over a turn; SI.
 
-    least, greatest: torque. peak: the torque of greatest magnitude. mean: of the torque, over the crank angle. rms: of
-    the torque, over time. fluctuation: RMS deviation of the torque from its mean, over the crank angle. energy_change:
-    range of the integral of torque minus mean, J, which a flywheel absorbs. shaking_force, shaking_moment, couple:
-    greatest magnitudes.
-    rms_shaking_force, rms_shaking_moment: over time.
+    least, greatest: torque. peak: torque of greatest magnitude. mean: mean torque over the crank angle. rms: RMS torque
+    over time. fluctuation: RMS deviation of the torque from its mean, over the crank angle. energy_change: range of the
+    integral of torque minus mean, J, which a flywheel absorbs. shaking_force, shaking_moment, couple: greatest
+    magnitudes. rms_shaking_force, rms_shaking_moment: over time.
     """
 
     least: Extreme
@@ -146,7 +145,7 @@ def _curve_rows(mechanism: Mechanism, curves: MultiCylinderCurves) -> Array:
 
 
 def _sizes(mechanism: Mechanism, linkage: Linkage) -> Array:
-    """Return the sizes of the curves that are followed, if the cylinders did not cancel."""
+    """Return the sizes that the curves would have if the cylinders did not cancel."""
     theta = np.linspace(0.0, cycle_turns(mechanism) * TURN, _SAMPLES, endpoint=False)
     profile, sizes = mechanism.speed_profile, np.zeros(7)
     sizes[_TIME] = 1.0 if profile is None else time_per_angle(profile, theta).max()
@@ -160,14 +159,14 @@ def _sizes(mechanism: Mechanism, linkage: Linkage) -> Array:
 
 
 def _unless_cancelled(extreme: Extreme, size: float, period: float) -> Extreme:
-    """Return an extreme; none where cylinders cancel but for rounding."""
+    """Return an extreme; zero where cylinders cancel up to rounding."""
     if not abs(extreme.value) > _NOTHING * size:
         return Extreme(0.0, math.nan)
     return Extreme(extreme.value, angle_in_cycle(extreme.angle, period))
 
 
 def _force_extreme(panels: Panels, curve: int, sizes: Array, period: float) -> Extreme:
-    """Return the greatest size of a force whose square is followed."""
+    """Return the greatest size of a force from its square."""
     greatest = panels.extremes(curve)[1]
     return _unless_cancelled(
         Extreme(math.sqrt(max(0.0, greatest.value)), greatest.angle), math.sqrt(sizes[curve]), period

@@ -1,4 +1,4 @@
-"""Crank motion from slider motion: angle, speed and acceleration of the crank that move the slider as given.
+"""Crank motion from slider motion: angle, speed and acceleration of the crank for a given slider motion.
 
 Crank pivot O, crank pin A and slider pin B are a triangle with the sides r, l and d = sqrt(x^2 + e^2). Mirroring A at
 the line O-B gives the second crank angle for the same slider position:
@@ -6,7 +6,7 @@ the line O-B gives the second crank angle for the same slider position:
     theta = atan2(e, x) -+ beta,   tan(beta) = sqrt((r + l + d)(r + l - d)(d + l - r)(d - l + r)) / (r^2 + d^2 - l^2).
 
 Where the crank turns counter-clockwise, the slider moves outward on the upper sign and inward on the lower one: these
-are the two *solutions*. The law of cosines is taken with the tangent: an arc cosine loses half of the digits near the
+are the two *solutions*. The law of cosines is used in tangent form: an arc cosine loses half of the digits near the
 dead centres.
 """
 
@@ -38,7 +38,7 @@ the dead centre, some 1e-7 rad, is known to a tenth at best.
 
 
 class Dimensions(Protocol):
-    """Dimensions, m, and branch of one linkage or an array of them: what is needed here of `linkage.Linkage`.
+    """Dimensions, m, and branch of one linkage or an array: the part of `linkage.Linkage` needed here.
 
     That class is not imported: its `from_slider` needs this module.
     """
@@ -76,11 +76,11 @@ class CrankMotion:
 def crank_angle_at(linkage: Dimensions, slider_position: ArrayLike, *, solution: Solution) -> Array:
     """Return the crank angle, rad in [0, 2 pi), for slider positions, m, signed as x; broadcasts with the dimensions.
 
-    solution: "outward" or "inward", which way the slider goes there when the crank turns counter-clockwise. At a dead
+    solution: "outward" or "inward", direction of the slider there when the crank turns counter-clockwise. At a dead
     centre both coincide.
 
-    Linkages that do not turn fully are accepted: each solution is that of the linkage's own branch. Raises
-    `AssemblyError` for a position out of reach, and for one that the solution reaches on the other branch only.
+    Linkages that do not rotate fully are accepted: each solution is on the linkage's own branch. Raises
+    `AssemblyError` for a position out of reach, and for one that the solution reaches only on the other branch.
     """
     x, dimensions, d = _triangle(linkage, slider_position)
     r, l, e = dimensions
@@ -115,7 +115,7 @@ def crank_motion(
     speed = v / x', acceleration = (a - x'' speed^2) / x', with x' and x'' at the angle of `crank_angle_at`.
     All arguments broadcast with the dimensions. The rod's motion follows from `Linkage.at`.
 
-    Raises `InputError` at a dead centre, where x' = 0 and any crank speed goes with a slider at rest, and
+    Raises `InputError` at a dead centre, where x' = 0 and any crank speed leaves the slider at rest, and
     `AssemblyError` as `crank_angle_at` does.
     """
     v, a = (finite(name, value) for name, value in (("velocity", velocity), ("acceleration", acceleration)))
@@ -145,7 +145,7 @@ def _triangle(linkage: Dimensions, slider_position: ArrayLike) -> tuple[Array, t
     )
     d = np.hypot(x, e)
     excess = np.maximum(d - (r + l), np.abs(l - r) - d)
-    # A position that was computed for a dead centre lies a rounding error beyond it.
+    # A position computed for a dead centre may lie a rounding error beyond it.
     _refuse(
         (excess > ROUNDING * (r + l)) | (d == 0.0),
         x,
@@ -183,9 +183,10 @@ def _refuse(
 
 
 def crank_from_stroke(stroke: ArrayLike, *, rod: ArrayLike, offset: ArrayLike = 0.0) -> Array:
-    """Return the crank, m, that gives a stroke with a rod and an offset, m; arrays broadcast.
+    """Return the crank, m, for a stroke, a rod and an offset, m; arrays broadcast.
 
-    r^2 = S^2 (l^2 - e^2 - S^2/4) / (4 l^2 - S^2). Raises `AssemblyError` where no fully turning linkage gives it.
+    r^2 = S^2 (l^2 - e^2 - S^2/4) / (4 l^2 - S^2). Raises `AssemblyError` where no fully rotating linkage has this
+    stroke.
     """
     arguments = (("stroke", stroke), ("rod", rod), ("offset", offset))
     s, l, e = np.broadcast_arrays(*(numbers(value, name) for name, value in arguments))

@@ -23,7 +23,7 @@ _RPM = 30.0 / math.pi
 _TURN = 2.0 * math.pi
 _MOST = 100  # harmonics
 _LEAST = 4  # points of a table
-_SAMPLES = 64  # of the highest harmonic's period
+_SAMPLES = 64  # fraction of the highest harmonic's period
 _CLOSED = 1e-9  # rad
 
 
@@ -31,7 +31,7 @@ _CLOSED = 1e-9  # rad
 class Harmonics:
     """A speed by harmonics: p = 1 + sum over k = 1, 2, ... of a_k cos(k theta) + b_k sin(k theta).
 
-    cosines, sines: a_k and b_k, shares of the mean.
+    cosines, sines: a_k and b_k, fractions of the mean.
     """
 
     cosines: tuple[float, ...] = ()
@@ -104,7 +104,7 @@ class Harmonics:
 class SpeedTable:
     """p as the periodic cubic spline through speeds at crank angles, over its mean.
 
-    angles: increasing, rad, spanning less than a turn. speeds: of one sign, of any unit.
+    angles: increasing, rad, spanning less than a turn. speeds: of one sign, in any unit.
     """
 
     angles: tuple[float, ...]
@@ -131,12 +131,12 @@ class SpeedTable:
                     "a speed over the crank angle must not be zero or change its sign, for the crank would never get "
                     f"past; got {_RPM * speed:.6g} rpm at {math.degrees(angle):.6g} deg; correct it"
                 )
-        turns = self._spline.derivative().roots()  # with NaN for a stretch of one speed
+        turns = self._spline.derivative().roots()  # gives NaN for a stretch of constant speed
         ends = np.concatenate([turns[np.isfinite(turns)], self.angles])
         _require_positive(ends, self.ratio(ends))
 
     def _require_open(self) -> None:
-        """Refuse a table of a turn or more."""
+        """Raise an error for a table that spans a turn or more."""
         span = self.angles[-1] - self.angles[0]
         if span >= _TURN - _CLOSED:
             step = self.speeds[-1] - self.speeds[0]

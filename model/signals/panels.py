@@ -23,9 +23,9 @@ Curves = Callable[[Array], Array]
 _DEGREE = 15
 _PRODUCT = 24  # nodes that integrate the product of three polynomials exactly
 _TAIL = 3  # coefficients that tell whether a panel is resolved ...
-_RESOLVED = 1e-12  # ... and what is left of them then, of the curve's size
+_RESOLVED = 1e-12  # ... and their remaining size then, relative to the curve's size
 _DEEPEST = 24  # halvings of a panel
-_MOST = 20_000  # panels that halving may add: beyond that only the rounding of the curves remains
+_MOST = 20_000  # panels that halving may add: beyond that, only rounding of the curves remains
 _THIN = 1e-12  # rad
 _NODES, _WEIGHTS = legendre.leggauss(_DEGREE + 1)
 _PRODUCT_NODES, _PRODUCT_WEIGHTS = legendre.leggauss(_PRODUCT)
@@ -35,7 +35,7 @@ _FIT = (np.arange(_DEGREE + 1) + 0.5)[:, None] * (_WEIGHTS[:, None] * legendre.l
 
 @dataclass(frozen=True)
 class Extreme:
-    """An extreme value of a curve and the crank angle where it is, rad."""
+    """An extreme value of a curve and its crank angle, rad."""
 
     value: float
     angle: float
@@ -120,7 +120,8 @@ class Panels:
 def panels_of(curves: Curves, ends: Array, sizes: Array) -> Panels:
     """Return curves (m,) on panels between ascending ends, rad.
 
-    curves: of crank angles (n,), (m, n), smooth between the ends. sizes: (m,), against which what is left counts.
+    curves: function of crank angles (n,), returns (m, n), smooth between the ends. sizes: reference sizes (m,) for what
+    is negligible.
     """
     low, width = ends[:-1], np.diff(ends)
     low, width = low[width > _THIN], width[width > _THIN]

@@ -1,8 +1,8 @@
-"""Peaks and averages of a machine that is followed as a shaft: of sums, and of one cylinder.
+"""Peaks and averages of a machine treated as a shaft: of sums, and of one cylinder.
 
-Torque and power, moving inertia, shaking force, moment and rocking couple are of all cylinders together. Forces of the
-joints and the slider's motion are of the cylinder that has the most, its crank angle counted from its own slider line;
-without a profile cylinders that gravity pulls alike have the same. Geometry knows nothing of either.
+Torque and power, moving inertia, shaking force, moment and rocking couple are totals of all cylinders. Joint forces and
+slider motion are those of the cylinder with the greatest value, its crank angle counted from its own slider line.
+Without a profile, cylinders with equal gravity have equal values. Geometry depends on neither cylinders nor profile.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def shaft_signal_peaks(
 ) -> PeakArrays:
     """Return values, angles (n, kept) and derivatives of the highest local peaks of a signal; see `find_peaks`.
 
-    Over one stroke several cylinders together have none, nor is there a rocking couple in one plane: NaN.
+    NaN for several cylinders over one stroke, and for a rocking couple of cylinders in one plane.
     """
     cylinders = cylinder_count(mechanism)
     if (during != "cycle" and cylinders > 1) or (kind is Signal.ROCKING_COUPLE and not has_rocking_couple(mechanism)):
@@ -102,14 +102,14 @@ def shaft_signal_averages(
 ) -> tuple[Array, Array | None]:
     """Return `Averages` (3, n) of a signal that adds up, and their derivatives (3, n, 3 + k); see `average`.
 
-    The mean of a signal that counts by its size is NaN, but for the reflected inertia.
+    The mean of a signal judged by its size is NaN, except for the reflected inertia.
     """
     members = tuple(range(cylinder_count(mechanism)))
     averages, slopes = _averages(mechanism, [int(kind)], designs, members, gradients)
     values, slopes = averages[:, :, 0], None if slopes is None else slopes[:, :, 0]
     locks = np.isnan(values[1])
     values[1:, locks] = np.inf
-    if kind is Signal.TORQUE and not works_over_a_turn(mechanism):  # exactly, without rounding error
+    if kind is Signal.TORQUE and not works_over_a_turn(mechanism):  # exact, without rounding error
         values[0] = np.where(locks, np.nan, 0.0)
         if slopes is not None:
             slopes[0] = 0.0
@@ -161,5 +161,5 @@ def shaft_turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool) ->
 
 
 def mean_speed_ratio(mechanism: Mechanism) -> float:
-    """Return the mean speed over time as a share of that over the crank angle; 1 without a profile."""
+    """Return the mean speed over time divided by that over the crank angle; 1 without a profile."""
     return 1.0 if mechanism.speed_profile is None else mechanism.speed_profile.over_time

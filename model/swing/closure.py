@@ -1,10 +1,10 @@
-"""Closing of many linkages over a swing, and the transmission angle of the driven side, with derivatives.
+"""Closure of many linkages over a swing, and the transmission angle of the driven side, with derivatives.
 
-Where the crank drives, the linkage opens as |e - r sin(theta)| reaches l; the transmission angle is that between the
-rod and the normal of the slider line, cos(mu) = |e - r sin(theta)| / l. It is least at an end of the swing or where
-the crank is normal to the slider line. Where the slider drives, it is the angle between rod and crank, sin(mu) =
-sin(theta - phi) with the sign that it has in the middle of the swing: below zero beyond a dead point. It is least at an
-end, or where the rod turns as fast as the crank, x = 0.
+Where the crank drives, the linkage ceases to close when |e - r sin(theta)| reaches l. The transmission angle lies
+between the rod and the normal of the slider line, cos(mu) = |e - r sin(theta)| / l. It is least at an end of the swing
+or where the crank is normal to the slider line. Where the slider drives, it is the angle between rod and crank, sin(mu)
+= sin(theta - phi) with the sign that it has in the middle of the swing: below zero beyond a dead point. It is least at
+an end, or where the rod turns as fast as the crank, x = 0.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _TURN = 2.0 * np.pi
 
 @dataclass(frozen=True)
 class DrivenAngles:
-    """Angles at the places where the least one may be, rad.
+    """Angles at the places where the least angle may be, rad.
 
     values: (n, m), inf where absent. slopes: (n, m, 3 + k), by the numbers of the designs.
     """
@@ -43,7 +43,7 @@ def closes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
 
 
 def passes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
-    """Return which designs (n, 3 + k) close and pass no dead point where the slider drives."""
+    """Return which designs (n, 3 + k) close and, where the slider drives, pass no dead point."""
     ends = ends_of(mechanism, swing, designs)
     passing = _closing(designs, ends)
     if swing.driver == "slider" and passing.any():
@@ -60,7 +60,7 @@ def driven_angles(mechanism: Mechanism, swing: Swing, designs: Array) -> DrivenA
 
 
 def travels(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Array, Array]:
-    """Return the way (n,) of the slider between the ends, m, and its slopes (n, 3 + k)."""
+    """Return the travel (n,) of the slider between the ends, m, and its slopes (n, 3 + k)."""
     ends, sign = ends_of(mechanism, swing, designs, slopes=True), _sign(mechanism)
 
     def way(sizes: Any, first: Any, last: Any) -> Any:
@@ -144,8 +144,8 @@ def _with_slopes(
 ) -> tuple[Array, Array]:
     """Return a function (n,) of sizes and crank angles, and its derivatives (n, 3 + k) by complex steps.
 
-    angles: each (n,) with the end, 0 or 1, of the swing that it moves with; None where it stays. slopes: whether the
-    derivatives are asked for; else they are zero.
+    angles: each (n,), with the end of the swing (0 or 1) with which it moves; None if it does not move. slopes: whether
+    derivatives are needed; otherwise they are zero.
     """
     sizes = designs[:, :3].astype(np.complex128)
     values = function(sizes, *(angle for angle, _ in angles)).real

@@ -1,7 +1,7 @@
 """Monte Carlo simulation of the slider position: many machines, each with errors drawn at random.
 
-Nothing is linearised: every machine's own slider position is compared with that of the linkage that is meant. A
-machine keeps its errors, also that of the crank angle and where its pins touch, over the whole cycle.
+Nothing is linearised: every machine's own slider position is compared with that of the nominal linkage. Over the whole
+cycle a machine keeps its errors, including those of the crank angle and the contact points of its pins.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ from .spreads import Draw, Spreads
 
 CHUNK = 1024
 """Machines at a time: each chunk has its own random stream, so that any number of them begins alike."""
-_MOST = 100_000_000  # errors kept: 0.8 GB
+_MOST = 100_000_000  # greatest number of stored errors: 0.8 GB
 
 
 @dataclass(frozen=True)
 class Simulation:
     """Errors of n simulated machines.
 
-    crank_angle: (m,), rad. errors: (n, m), m: slider position less the one meant, along +x.
+    crank_angle: (m,), rad. errors: (n, m), m: slider position less the nominal one, along +x.
     greatest: (n,), m: size of the greatest error over the counted part of the cycle, at sampled angles.
-    A machine whose linkage does not turn fully has NaN in all; `stuck` counts them.
+    A machine whose linkage does not rotate fully has NaN throughout; `stuck` counts such machines.
     """
 
     crank_angle: Array
@@ -54,7 +54,7 @@ class Summary:
 
 @dataclass(frozen=True)
 class Yield:
-    """The share of machines within a limit, and the interval that holds the true share at the given confidence."""
+    """Fraction of machines within a limit, and its interval at the given confidence."""
 
     share: float
     low: float
@@ -76,12 +76,12 @@ def simulate(
     progress: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Simulation:
-    """Return the errors of `samples` machines at crank angles (m,), rad, and the greatest of each over the cycle.
+    """Return the errors of `samples` machines at crank angles (m,), rad, and each one's greatest error over the cycle.
 
-    angles: samples a turn for the greatest, concentrated near locking: of a smooth curve they miss at most
-    (pi / angles)^2 / 2, 3e-4 of it, less than the simulation scatters. progress: called with machines done and all.
-    cancelled: asked between chunks; if it says so, the machines so far are returned. The same seed gives the same
-    machines. Raises `InputError` for arguments out of range.
+    angles: samples per turn for the greatest error, concentrated near locking. They miss at most (pi / angles)^2 / 2, a
+    fraction 3e-4, of a smooth curve, less than the scatter of the simulation. progress: function called with the counts
+    of finished and all machines. cancelled: function called between chunks; if true, the machines so far are returned.
+    The same seed gives the same machines. Raises `InputError` for arguments out of range.
     """
     linkage = single(mechanism, linkage)
     spreads = Spreads() if spreads is None else spreads
@@ -123,7 +123,7 @@ def _require_integer(name: str, value: object, *, least: int) -> None:
 
 
 def _positions(linkage: Linkage, drawn: Draw, angles: Array) -> Array:
-    """Return the slider positions (n, m) of machines; NaN for those that do not turn fully."""
+    """Return the slider positions (n, m) of machines; NaN for those that do not rotate fully."""
     r, l = (linkage.crank + drawn.crank)[:, None], (linkage.rod + drawn.rod)[:, None]
     e = (linkage.offset + drawn.offset)[:, None]
     x, y = drawn.pin_x[:, None], drawn.pin_y[:, None]
@@ -138,10 +138,10 @@ def _positions(linkage: Linkage, drawn: Draw, angles: Array) -> Array:
 
 
 def summarise(values: ArrayLike, *, percents: Sequence[float] = (0.135, 5.0, 50.0, 95.0, 99.865)) -> Summary:
-    """Return mean, standard deviation and percentiles of a sample (n,) without the NaN of machines that are stuck.
+    """Return mean, standard deviation and percentiles of a sample (n,), ignoring stuck machines (NaN).
 
-    0.135 and 99.865 %: three standard deviations of a normal distribution. Raises `InputError` if fewer than two
-    machines are left.
+    Percentiles 0.135 and 99.865 % are three standard deviations of a normal distribution. Raises `InputError` if fewer
+    than two machines are left.
     """
     sample = np.asarray(values, dtype=np.float64)
     turning = sample[np.isfinite(sample)]
@@ -155,7 +155,7 @@ def summarise(values: ArrayLike, *, percents: Sequence[float] = (0.135, 5.0, 50.
 def yield_within(
     errors: ArrayLike, limit: float, *, confidence: float = 0.95, method: Literal["exact", "wilson"] = "exact"
 ) -> Yield:
-    """Return the share of errors (n,) whose size is at most the limit, m, with its confidence interval.
+    """Return the fraction of errors (n,) of at most the limit in size, m, with its confidence interval.
 
     method: "exact" (Clopper and Pearson, Biometrika 26, 1934, pp. 404-413) or "wilson" (Wilson's score interval, JASA
     22, 1927, pp. 209-212), by `scipy.stats.binomtest`. A machine that is stuck (NaN) is not within the limit.

@@ -31,11 +31,11 @@ assert set(_SAID) == set(get_args(Verdict))
 class Transient:
     """Motion of the crank over time, arrays (n,), SI and radians; closest where the crank turns fast.
 
-    verdict: why it ended. turned_back: times at which the crank reversed, s.
-    angle: of the crank, turns counted. motor_torque: on the crank, N m, counter-clockwise. torque: what the mechanism
-    takes of it; flywheel and rotor take the rest. power: of the motor, W.
-    kinetic, potential: energies of mechanism and drive, and of gravity, J. motor_work, load_work: done since the start
-    by the motor and on the loads, springs among them, J. friction_work: heat of the joints since the start, J.
+    verdict: reason for the end. turned_back: times at which the crank reversed, s. angle: crank angle including full
+    turns, rad. motor_torque: on the crank, N m, counter-clockwise. torque: part that the mechanism takes; flywheel and
+    rotor take the rest. power: motor power, W. kinetic, potential: energies of mechanism and drive, and of gravity, J.
+    motor_work, load_work: work since the start by the motor and on the loads, springs included, J. friction_work: heat
+    of the joints since the start, J.
     """
 
     verdict: Verdict
@@ -58,7 +58,7 @@ class Transient:
 
     @property
     def message(self) -> str:
-        """The verdict in words, with the time at which it came."""
+        """The verdict in words, with its time."""
         return f"after {self.time[-1]:.4g} s and {self.turns:.4g} turns: {_SAID[self.verdict]}"
 
     @property
@@ -68,7 +68,7 @@ class Transient:
 
     @property
     def imbalance(self) -> float:
-        """Greatest energy balance error, as a share of the greatest energy or work; 0 if all are 0.
+        """Greatest energy balance error, as a fraction of the greatest energy or work; 0 if all are 0.
 
         Kinetic energy gained + potential gained - (work of the motor - work done on the loads - heat of friction).
         """
@@ -90,7 +90,7 @@ class Transient:
     def fluctuation(self) -> float | None:
         """Return (greatest - least speed) / mean speed over the last whole turn; None if there is none.
 
-        The mean is that over time, 2 pi / period. Extremes are those of the points: ask for more samples for more.
+        The mean is over time, 2 pi / period. Extremes are those of the points: more samples are more accurate.
         """
         turn = self.last_turn()
         if turn is None:
@@ -109,7 +109,7 @@ class Recorder:
         self._parts: list[Array] = []
 
     def add(self, stretch: Span, turn: int, solution: Any) -> None:
-        """Take in the solution within a stretch; its first point only if it is the first of all."""
+        """Add the solution within a stretch; add its first point only if it is the first of all."""
         count = np.ceil(np.abs(np.diff(solution.y[0])) * (self._samples / TURN)).astype(int)
         times = [
             np.linspace(start, end, max(1, inner), endpoint=False)
@@ -119,7 +119,7 @@ class Recorder:
         self._take(stretch, turn, time, solution.sol(time))
 
     def add_single_state(self, stretch: Span, turn: int, time: float, y: Array) -> None:
-        """Take in a single state, if there is no other."""
+        """Add a single state, if there is no other."""
         if not self._parts:
             self._take(stretch, turn, np.array([time]), y[:, None], moving=0.0)
 

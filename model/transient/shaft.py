@@ -1,6 +1,6 @@
-"""The equation of motion of a crankshaft: of several cylinders, or of a cycle of two turns.
+"""The equation of motion of a crankshaft, for several cylinders or a cycle of two turns.
 
-Each cylinder is a machine of its own at its crank angle, and a cycle of two turns two machines (`machine.two_turns`).
+Each cylinder is a separate machine at its crank angle, and a cycle of two turns is two machines (`machine.two_turns`).
 Moving inertia, and every term of the torque, add up.
 """
 
@@ -30,7 +30,7 @@ from .friction_torque import (
 class ShaftStretch(Span):
     """The shaft turning one way between two breakpoints, `low` and `high`, rad: a stretch of each cylinder.
 
-    parts: each with the angle of its crank over the shaft's, rad.
+    parts: stretches, each with the lead of its crank angle over the shaft's, rad.
     """
 
     def __init__(self, low: float, high: float, way: float, parts: list[tuple[Stretch, float]]) -> None:
@@ -72,8 +72,8 @@ class ShaftStretch(Span):
 class ShaftEquation(Equation):
     """The equation of motion of all cylinders of one linkage each, over a turn or two.
 
-    marks: further angles of the shaft, rad, that shall be breakpoints.
-    Raises AssemblyError if the linkage does not turn fully, InputError where friction locks it.
+    marks: further shaft angles to use as breakpoints, rad.
+    Raises AssemblyError if the linkage does not rotate fully, InputError where friction locks it.
     """
 
     def __init__(self, mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> None:
@@ -107,7 +107,7 @@ class ShaftEquation(Equation):
         self._stretches: dict[tuple[int, float], ShaftStretch] = {}
 
     def stretch(self, index: int, way: float) -> Span:
-        """Return the stretch from breakpoint `index` to the next, the last one reaching beyond the cycle."""
+        """Return the stretch from breakpoint `index` to the next, the last stretch reaching beyond the cycle."""
         if (index, way) not in self._stretches:
             ends = [*self.breakpoints.tolist(), float(self.breakpoints[0]) + self.period]
             self._stretches[index, way] = self._stretch(ends[index], ends[index + 1], way)
@@ -145,7 +145,7 @@ class ShaftEquation(Equation):
 def equation_of(mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> Equation:
     """Return the equation of motion of a machine: of its crank, or of a shaft with cylinders or two turns.
 
-    marks: further crank angles, rad, that shall be breakpoints.
+    marks: further crank angles to use as breakpoints, rad.
     """
     cylinders = 1 if mechanism.arrangement is None else len(mechanism.arrangement.phases)
     several = cylinders > 1 or cycle_turns(mechanism) > 1

@@ -21,7 +21,7 @@ _LEAST_EXPONENT = 0.2
 
 
 def piston_area(bore: float, piston_rod: float) -> float:
-    """Return the area of a piston, m^2, with a rod through its side. Raises `InputError` for a rod as thick as it."""
+    """Return the area of a piston, m^2, with a rod on one side. Raises `InputError` for a rod of that size."""
     if piston_rod >= bore:
         raise InputError(
             f"the piston rod must be thinner than the bore; got {1e3 * piston_rod:g} mm in a bore of "
@@ -34,12 +34,12 @@ def piston_area(bore: float, piston_rod: float) -> float:
 class Cylinder(Load):
     """A cylinder with a cycle of two strokes: compression towards its head, expansion away from it. SI, absolute.
 
-    bore, piston_rod: diameters, m; the piston's area is that of the bore less that of the rod. head: the dead centre at
-    which the volume is least: gas behind the outer one pushes inward. clearance: the least volume over the swept one;
-    clearance_volume: m^3, added to it. low: pressure at the start of compression, and least of expansion. high:
-    pressure at the start of expansion, and greatest of compression. compression_exponent, expansion_exponent: n of
-    p V^n = const; both zero for a liquid, whose pressure jumps at the dead centres. back_pressure: on the other side of
-    the piston.
+    bore, piston_rod: diameters, m; the piston's area is that of the bore less that of the rod. head: dead centre at
+    which the volume is least: gas beyond the outer one pushes inward. clearance: least volume over swept volume;
+    clearance_volume: additional volume, m^3. low: pressure at the start of compression, and least pressure of
+    expansion. high: pressure at the start of expansion, and greatest pressure of compression. compression_exponent,
+    expansion_exponent: n of p V^n = const; both zero for a liquid, whose pressure jumps at the dead centres.
+    back_pressure: pressure on the other side of the piston.
     """
 
     bore: float
@@ -90,7 +90,7 @@ class Cylinder(Load):
 
     @property
     def datum(self) -> Head:
-        """The dead centre that the piston's distance from its top is counted from."""
+        """Dead centre from which the piston's distance from its top is counted."""
         return self.head
 
     @property
@@ -188,7 +188,7 @@ def piston_forces(
 ) -> tuple[float, ...]:
     """Return the forces, N outward, of pressures on a piston, less the back pressure on its other side.
 
-    places: of the pressures, as many. Raises `InputError` for more or fewer, and as `piston_area` does.
+    places: one place for each pressure. Raises `InputError` for more or fewer, and as `piston_area` does.
     """
     if len(places) != len(pressures):
         raise InputError(
