@@ -1,8 +1,8 @@
-"""Integration through flight and contact: each phase is smooth, and ends at an event that is found exactly.
+"""Integration through flight and contact: each phase is smooth and ends at an exactly located event.
 
-scipy's DOP853 takes the steps. Within a phase the right-hand side never changes its form: in flight there is no
-contact force, in contact the speed of the impact that began it stays what it was. After every step the interpolant is
-looked at in between, so that no short touch is stepped over; where it crosses the clearance the phase ends.
+scipy's DOP853 takes the steps. Within a phase the right-hand side keeps its form: in flight there is no contact force;
+in contact the speed of the initial impact is fixed. After every step the interpolant is checked at intermediate points,
+so that no short contact is missed. Where it crosses the clearance, the phase ends.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _ASK = 64
 class Trace:
     """Pieces of an integration: times, states (7, n), damping rates, strokes; times and speeds of impacts.
 
-    A time comes twice where a phase ends and the next one begins.
+    A time appears twice where one phase ends and the next begins.
     """
 
     times: list[Array] = field(default_factory=list)
@@ -50,11 +50,11 @@ class Trace:
 
 @dataclass
 class Integrator:
-    """One linkage on its way through time.
+    """Integration of one linkage over time.
 
     system, block, loads: from `system.build`. hysteresis, slow_impact: of the clearance. tolerance: relative error of a
-    step in gap and gap velocity; smallness counts against the clearance and the speed of a slow impact.
-    time, state (7,), rate: where it is. trace: where it was.
+    step in gap and gap velocity; absolute tolerance relates to the clearance and the speed of a slow impact. time,
+    state (7,), rate: current values. trace: past values.
     """
 
     system: System
@@ -71,8 +71,8 @@ class Integrator:
     def advance(self, end: float, *, outward: bool, cancelled: Callable[[], bool] | None = None) -> bool:
         """Integrate to a time; return whether it was reached: False if cancelled on the way.
 
-        outward: the stroke, which fixes the loads. Raises `SlidercrankError` if the integrator finds no step that is
-        small enough, or if the contact is so soft that it does not hold the journal.
+        outward: whether it is the outward stroke, which determines the loads. Raises `SlidercrankError` if the
+        integrator finds no sufficiently small step, or if the contact is too soft to hold the journal.
         """
         while self.time < end:
             if not self._phase(end, outward, cancelled):
@@ -85,7 +85,7 @@ class Integrator:
         fixed = (self.system, self.block, self.loads)
         rate, sign = self.rate, 1.0 if self.rate == FLIGHT else -1.0
         turn = 2.0 * math.pi / abs(self.system.speed) if self.system.speed else math.inf
-        # The integrals follow the motion, they do not steer the steps.
+        # The integrals follow the motion; they do not control the steps.
         allowed = np.full(STATES, math.inf)
         allowed[:2] = self.tolerance * self.system.clearance
         allowed[2:4] = self.tolerance * self.slow_impact
@@ -135,7 +135,7 @@ class Integrator:
         return depth
 
     def _switch(self, interpolate: Callable[[float], Array], before: float, after: float, sign: float) -> None:
-        """Go to where the journal crosses the clearance between two times, and on to the other phase."""
+        """Integrate to the crossing of the clearance between two times, then switch to the other phase."""
         from scipy.optimize import brentq
 
         def excess_depth(time: float) -> float:
@@ -146,7 +146,7 @@ class Integrator:
             if excess_depth(before) < 0.0
             else before
         )
-        # Past it by rounding at least: the next phase begins on its own side.
+        # Beyond it by at least rounding, so that the next phase begins on its own side.
         step = float(np.spacing(time))
         while time < after and excess_depth(time) <= 0.0:
             time = min(time + step, after)

@@ -1,4 +1,4 @@
-"""At which crank angles friction locks a linkage, and whether its loads let it move there (`self_locking`)."""
+"""Crank angles at which friction locks a linkage, and whether its loads let it move there (`self_locking`)."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ..machine.raw import load_structure, raw_vector
 from .cycle import cycle
 from .self_locking import locking_margin
 
-_SAMPLES = 256  # of a quarter or so of the cycle
+_SAMPLES = 256  # samples in about a quarter of the cycle
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Verdict:
     """Whether friction locks a linkage. margin: rad, -inf if the pins alone lock it.
 
     locked: crank angles (from, to), rad, where it locks or may jam, the second up to a turn ahead of the first.
-    holds: the part of `locked` angles, 0 to 1, where this machine's loads let no torque drive it; elsewhere in them it
+    holds: fraction of the `locked` angles, 0 to 1, where no torque drives the machine under its loads; at the others it
     may jam. None if nothing is locked.
     """
 
@@ -61,7 +61,7 @@ def verdict(mechanism: Mechanism, linkage: Linkage) -> Verdict:
 
 
 def states_at(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> NDArray[np.str_]:
-    """Return for crank angles (n,), rad, of one linkage whether it "drives", "locks" or "may jam" under its loads."""
+    """Return whether one linkage "drives", "locks" or "may jam" under its loads at crank angles (n,), rad."""
     linkage = single(mechanism, linkage)
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     design = _design(mechanism, linkage)
@@ -99,7 +99,7 @@ def _excess(friction: Friction, linkage: Linkage, theta: Any, probe: Any = None)
 
 
 def _spans(friction: Friction, linkage: Linkage, a: float, b: float) -> list[tuple[float, float]]:
-    """Return where within a segment |D| >= |along|."""
+    """Return the spans within a segment where |D| >= |along|."""
     middle = a + 0.382 * (b - a)
 
     def excess(theta: Any) -> Any:
@@ -118,7 +118,7 @@ def _spans(friction: Friction, linkage: Linkage, a: float, b: float) -> list[tup
 
 
 def _joined(spans: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
-    """Return spans in ascending order with those that touch made one, also across the end of the turn."""
+    """Return spans in ascending order, merging those that touch, also across the end of the turn."""
     joined: list[tuple[float, float]] = []
     for a, b in spans:
         if joined and a - joined[-1][1] < 1e-12:
@@ -132,7 +132,7 @@ def _joined(spans: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]
 
 
 def _balances(d: Design, theta: float, load: float) -> bool:
-    """Return whether h has a root although its two ends point the same way: whether it crosses zero between."""
+    """Return whether h crosses zero in between, although both its ends point the same way."""
     sine, cosine = np.sin(theta), np.cos(theta)
     m = motion(sine, cosine, d.r, d.l, d.e, d.branch)
     b: Balance = balance(sine, cosine, m, d, load)

@@ -16,12 +16,12 @@ most |(mu, 1)|. Hence, with q = sqrt(1 + mu^2),
 
     |along| > mu |across| + q (rho_A + rho_B)                                                             (*)
 
-makes h monotone: there is one solution, and it lies on the side of -W that the sign of h(-W) tells. Divided by l q, (*)
-says that the transmission angle exceeds arctan(mu) + asin((rho_A + rho_B) / l). Where it fails nothing is returned.
+makes h monotone: there is one solution, and the sign of h(-W) shows on which side of -W it lies. Divided by l q, (*)
+says that the transmission angle exceeds arctan(mu) + asin((rho_A + rho_B) / l). Where it fails, no forces are returned.
 
 On the known side h is smooth. Every slope between two points lies within the bounds above, so a point gives a bracket
-of the root; Newton's iteration, halving the bracket where it would leave it, converges. One step more, in the
-arithmetic of the design, carries an imaginary part along: implicit function theorem.
+of the root; Newton's iteration, halving the bracket where it would leave it, converges. One further step, in the
+design's arithmetic, propagates an imaginary part: implicit function theorem.
 """
 
 from __future__ import annotations
@@ -39,10 +39,11 @@ _SETTLED = 1e-15
 
 
 class Sides(NamedTuple):
-    """Signs, each +1 or -1, that stay the same within a segment of the cycle; all 0 without friction.
+    """Signs, each +1 or -1, constant within a segment of the cycle; all 0 without friction.
 
-    turn: of the crank speed (+1 at rest). slide: of the slider's velocity along x. swing: of the rod's angular
-    velocity. press: of B_y + W, minus that of the guide's force. grip: of the crank's angular velocity against the rod.
+    turn: sign of the crank speed (+1 at rest). slide: sign of the slider's velocity along x. swing: sign of the rod's
+    angular velocity. press: sign of B_y + W, opposite to the guide's force. grip: sign of the crank's angular velocity
+    relative to the rod.
     """
 
     turn: float
@@ -54,14 +55,14 @@ class Sides(NamedTuple):
 
 @analytic
 def drives(l_cos: Any, l_sin: Any, d: Design) -> Any:
-    """Return by how much condition (*) is met, m: more than zero where the forces are determined, whatever the load."""
+    """Return the margin of condition (*), m: positive where the forces are determined for any load."""
     mu = d.guide_friction
     return abs(l_cos) - mu * abs(l_sin) - root(1.0 + mu * mu) * (d.crank_pin_circle + d.slider_pin_circle)
 
 
 @analytic
 def always_drives(d: Design) -> Any:
-    """Return `drives` where it is least over the cycle: sin(theta) = -sgn(e)."""
+    """Return the least `drives` over the cycle, at sin(theta) = -sgn(e)."""
     pin_distance = d.r + abs(d.e)
     return drives(root(d.l * d.l - pin_distance * pin_distance), pin_distance, d)
 

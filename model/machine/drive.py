@@ -1,7 +1,7 @@
 """Drive of the crank: the torque law of a motor over speed, a gear, and the inertias turning with it.
 
-Motor speed and motor torque are counted positive in the direction in which the motor is meant to turn; a `Drive` turns
-that into the crank's, which is the direction of the mechanism's speed.
+Motor speed and motor torque are positive in the motor's intended direction. A `Drive` converts this to the crank's
+direction, which is that of the mechanism's speed.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from ..errors import InputError
 
 @dataclass(frozen=True, kw_only=True)
 class ConstantTorque:
-    """A motor torque that is the same at every speed, N m. It limits no speed; zero lets the machine coast."""
+    """A constant motor torque, N m. It does not limit the speed; zero lets the machine coast."""
 
     torque: float
 
@@ -42,8 +42,8 @@ class ConstantTorque:
 class LinearMotor:
     """A motor whose torque falls linearly with speed: torque = stall_torque (1 - speed / no_load_speed).
 
-    A direct-current motor, or an induction motor near its synchronous speed (see `through`). The line goes on beyond
-    both ends: above the no-load speed the motor brakes, and driven backwards it holds with more than the stall torque.
+    A direct-current motor, or an induction motor near its synchronous speed (see `through`). The line continues beyond
+    both ends: above the no-load speed the motor brakes; driven backwards it resists with more than the stall torque.
 
     stall_torque: N m. no_load_speed: rad/s.
     """
@@ -78,8 +78,8 @@ class LinearMotor:
 class TorqueTable:
     """A motor torque tabulated over speed, interpolated by a monotone cubic (Fritsch and Carlson, 1980).
 
-    The curve has no kinks and no overshoot. Beyond the table it is not defined (NaN), and a simulation that gets there
-    stops and says so. speeds: increasing, rad/s, the first zero or negative. torques: N m.
+    The curve has no kinks and no overshoot. Beyond the table it is undefined (NaN), and a simulation that gets there
+    stops with a message. speeds: increasing, rad/s, the first zero or negative. torques: N m.
     """
 
     speeds: tuple[float, ...]
@@ -125,11 +125,11 @@ Motor = ConstantTorque | LinearMotor | TorqueTable
 
 @dataclass(frozen=True, kw_only=True)
 class Drive:
-    """A motor, a lossless gear, and what turns with them.
+    """A motor, a lossless gear, and the parts that turn with them.
 
-    flywheel: inertia on the crankshaft, kg m^2. motor_inertia: of rotor and whatever turns at motor speed, kg m^2.
-    gear_ratio: turns of the motor for one of the crank; the motor's torque acts on the crank times the ratio, its
-    inertia times the square of it.
+    flywheel: inertia on the crankshaft, kg m^2. motor_inertia: inertia of the rotor and all parts at motor speed, kg
+    m^2. gear_ratio: turns of the motor per crank turn; at the crank the motor's torque is multiplied by the ratio, its
+    inertia by the square of the ratio.
     """
 
     motor: Motor
@@ -151,7 +151,7 @@ class Drive:
     def torque(self, crank_speed: ArrayLike, direction: float) -> Array:
         """Return the torque on the crank, N m, counter-clockwise, at crank speeds, rad/s.
 
-        direction: +1 or -1, the way the motor is meant to turn the crank.
+        direction: +1 or -1, direction in which the motor is meant to turn the crank.
         """
         speed = direction * self.gear_ratio * np.asarray(crank_speed)
         return np.asarray(direction * self.gear_ratio * self.motor.torque_at(speed))

@@ -1,7 +1,7 @@
-"""The raw numbers of a machine as one vector, and the fixed structure of its loads.
+"""Raw numbers of a machine as one vector, and the fixed structure of its loads.
 
-A kernel takes the vector (`Raw` names its entries; loads follow, `LOAD_SLOTS` each), overwrites the entries that vary
-from design to design, and derives from it what the equations of motion use (`design`).
+A kernel takes the vector (`Raw` names its entries; loads follow, `LOAD_SLOTS` each) and overwrites the entries that
+vary from design to design. It then derives the numbers for the equations of motion (`design`).
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ class Loads(NamedTuple):
     """The loads' fixed structure.
 
     kind: (k,), see `loads.registry.code_of`. datum: (k,). factor: (k, 3), whether a table acts in the outward
-    stroke, in the inward stroke, and as a torque on the crank. start: (k + 1,), where a load's table begins. at, force:
-    its knots.
+    stroke, in the inward stroke, and as a torque on the crank. start: (k + 1,), index at which a load's table begins.
+    at, force: knots of the tables.
     """
 
     kind: Integers
@@ -63,12 +63,12 @@ class Loads(NamedTuple):
 def raw_vector(mechanism: Mechanism) -> Array:
     """Return the raw numbers of a mechanism; the three dimensions are zero, to be overwritten.
 
-    Raises `InputError` for one with varying numbers: it has none before a design says which.
+    Raises `InputError` for a mechanism with varying numbers: only a design determines their values.
     """
     if mechanism.varying:
         names = ", ".join(item.name for item in mechanism.varying)
         raise InputError(f"this takes one machine; got one in which {names} varies; give mechanism.at(values) instead")
-    raw = [0.0] * (Raw.END + LOAD_SLOTS * len(mechanism.loads))  # takes parts sooner than an array
+    raw = [0.0] * (Raw.END + LOAD_SLOTS * len(mechanism.loads))  # faster to slice than an array
     raw[Raw.BRANCH] = mechanism.sign
     raw[Raw.SPEED] = mechanism.speed
     raw[Raw.ACCELERATION] = mechanism.acceleration
@@ -106,7 +106,7 @@ def raw_vector(mechanism: Mechanism) -> Array:
 
 @memoise_by_machine
 def fullest_inputs(mechanism: Mechanism) -> tuple[Array, Loads]:
-    """Return the raw numbers, read-only, and the loads of a machine with all that some design of it has."""
+    """Return the raw numbers, read-only, and the loads of a machine with all features of any of its designs."""
     raw = raw_vector(mechanism.fullest)
     raw.flags.writeable = False
     return raw, load_structure(mechanism)
@@ -129,7 +129,7 @@ def _factors(load: Load) -> tuple[float, float, float]:
 
 @memoise_by_machine
 def knot_count(mechanism: Mechanism) -> int:
-    """Return how many knots the tables of a mechanism's loads have."""
+    """Return the number of knots in the tables of a mechanism's loads."""
     return sum(len(load.knots()[0]) for load in mechanism.loads)
 
 
@@ -158,7 +158,7 @@ def load_structure(mechanism: Mechanism) -> Loads:
 
 @memoise_by_machine
 def inertial_inputs(mechanism: Mechanism) -> tuple[Array, Loads]:
-    """Return raw numbers and loads of which only added masses act: loads without effect make no breakpoints."""
+    """Return raw numbers and loads with only added masses acting: loads without effect create no breakpoints."""
     raw, _ = fullest_inputs(mechanism)
     if not any(load.inertial for load in mechanism.loads):
         return raw[: int(Raw.END)], load_structure(Mechanism())

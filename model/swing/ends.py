@@ -1,8 +1,8 @@
 """Crank angles at which the swings of many designs start and end.
 
-A swing is stated by two crank angles, or by two slider positions. Of these the linkage with the crank pin on a given
-side of the line from crank pivot to slider pin gives the crank angles, theta = atan2(e, x) +- acos((r^2 + d^2 - l^2) /
-(2 r d)), d^2 = x^2 + e^2. Where the start varies, the designs have it among their numbers.
+A swing is stated by two crank angles, or by two slider positions. For slider positions, the linkage with its crank pin
+on a given side of the line from crank pivot to slider pin gives the crank angles, theta = atan2(e, x) +- acos((r^2 +
+d^2 - l^2) / (2 r d)), d^2 = x^2 + e^2. Where the start varies, the designs have it among their numbers.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class Ends:
     slopes: Array | None = None
 
     def select(self, rows: Any) -> Ends:
-        """Return those of some designs."""
+        """Return the ends for a selection of designs."""
         return Ends(self.start[rows], self.end[rows], self.columns, None if self.slopes is None else self.slopes[rows])
 
     @property
@@ -60,11 +60,11 @@ class Ends:
 
     @property
     def direction(self) -> Array:
-        """+1 where the crank turns counter-clockwise on its way forth, -1 otherwise."""
+        """+1 where the crank turns counter-clockwise on the forward stroke, -1 otherwise."""
         return np.where(self.end > self.start, 1.0, -1.0)
 
     def turned_into(self, angle: Any) -> Array:
-        """Return crank angles (n,), or one, turned by whole turns into the swings; NaN where they do not reach it."""
+        """Return crank angles (n,), or one, shifted by whole turns into the swings; NaN where impossible."""
         with np.errstate(invalid="ignore"):
             turned = angle + _TURN * np.ceil((self.low - angle) / _TURN)
             return np.where(turned <= self.high, turned, np.nan)
@@ -89,9 +89,9 @@ class Ends:
 def with_start(
     numbers: Numbers, plain: Complexes, steps: Complexes, designs: Array, column: int
 ) -> tuple[Numbers, Complexes]:
-    """Return numbers and stepped blocks with the start of the swing behind them, a number that no kernel takes.
+    """Return numbers and stepped blocks followed by the start of the swing, a number that no kernel uses.
 
-    plain: blocks (n, rows, 1). steps: (n c, rows, 1); none where no derivatives are asked for.
+    plain: blocks (n, rows, 1). steps: (n c, rows, 1); none where no derivatives are requested.
     """
     n, rows = plain.shape[:2]
     if len(steps):
@@ -114,7 +114,7 @@ def greatest_pin_distance(designs: Array, angles: Iterable[Array]) -> Array:
 
 
 def start_column(mechanism: Mechanism) -> int | None:
-    """Return the column of designs that has the start of their swing; None where it is the same for all."""
+    """Return the column of designs with the start of their swing; None where all have the same."""
     for place, item in enumerate(mechanism.varying):
         if item.paths[0] in STARTS.values():
             return 3 + place
@@ -122,7 +122,7 @@ def start_column(mechanism: Mechanism) -> int | None:
 
 
 def ends_of(mechanism: Mechanism, swing: Swing, designs: Array, *, slopes: bool = False) -> Ends:
-    """Return both ends of the swings of designs (n, 3 + k). slopes: whether derivatives are asked for."""
+    """Return both ends of the swings of designs (n, 3 + k). slopes: whether derivatives are needed."""
     sign = mechanism.sign
     column = start_column(mechanism)
     plain = _ends(swing, sign, designs, column)

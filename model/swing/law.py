@@ -1,4 +1,4 @@
-"""Laws of motion between two rests: the share of the way over the share of the time."""
+"""Laws of motion between two rests: fraction of the travel over fraction of the time."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ def code_of(law: Law) -> int:
 
 @analytic
 def way_at(code: int, table: Any, t: Any, probe: Any) -> tuple[Any, Any, Any, Any]:
-    """Return s, ds/dt, d2s/dt2 and d3s/dt3 of a law at shares t of the time, from 0 to 1.
+    """Return s, ds/dt, d2s/dt2 and d3s/dt3 of a law at fractions t of the time, from 0 to 1.
 
-    table: of `spline`, for the law that is one. probe: a share that tells on which side of a corner t lies.
+    table: pieces from `spline`, for a tabulated law. probe: a fraction on the same side of a corner as t.
 
     Harmonic: s = (1 - cos(pi t)) / 2. Cycloidal: s = t - sin(2 pi t) / (2 pi). Polynomial: s = 10 t^3 - 15 t^4 + 6 t^5.
     Source: R. L. Norton, Design of Machinery, chapter 8, Cam design (double-dwell functions).
@@ -75,11 +75,11 @@ NO_TABLE = np.zeros((0, 7))
 
 
 def spline(points: tuple[tuple[float, float], ...]) -> Array:
-    """Return the cubic pieces (k, 7) through points of shares of time and way, at rest at both ends.
+    """Return the cubic pieces (k, 7) through points of fractions of time and travel, at rest at both ends.
 
-    Speed and acceleration are continuous. Of each piece: from which share and up to which it counts, where it begins,
-    and its four coefficients. Raises `InputError` for points that are out of order, or whose way turns back between
-    them. Source: C. de Boor, A Practical Guide to Splines, chapter IV, complete cubic spline.
+    Speed and acceleration are continuous. Each piece has the fractions from and up to which it counts, its origin, and
+    its four coefficients. Raises `InputError` for points that are out of order, or if the motion reverses between them.
+    Source: C. de Boor, A Practical Guide to Splines, chapter IV, complete cubic spline.
     """
     table = np.asarray(points, dtype=np.float64).reshape(-1, 2)
     t, s = table.T
@@ -107,7 +107,7 @@ def spline(points: tuple[tuple[float, float], ...]) -> Array:
 
 
 def mirrored(points: tuple[tuple[float, float], ...]) -> Array:
-    """Return the pieces of the motion that is the one of points backwards, from its end to its start."""
+    """Return the pieces of the reversed motion, from its end to its start."""
     return spline(tuple((1.0 - t, 1.0 - s) for t, s in reversed(points))) if points else NO_TABLE
 
 
@@ -123,12 +123,12 @@ def _require_points(t: Array, s: Array) -> None:
 
 
 def way(law: Law, share: Array, table: Array = NO_TABLE) -> tuple[Array, Array, Array]:
-    """Return s, ds/dt and d2s/dt2 at shares of the time, from 0 to 1; see `way_at`."""
+    """Return s, ds/dt and d2s/dt2 at fractions of the time, from 0 to 1; see `way_at`."""
     return way_at(code_of(law), table, share, share)[:3]
 
 
 def shares_of(law: Law, s: Array, table: Array = NO_TABLE) -> Array:
-    """Return the shares of the time at which shares of the way are made; bisection, as s rises."""
+    """Return the fractions of the time at which fractions of the travel are reached; bisection, as s rises."""
     if law in ("slow", "constant"):
         return np.asarray(s, dtype=np.float64)
     low, high = np.zeros(np.shape(s)), np.ones(np.shape(s))
@@ -140,7 +140,7 @@ def shares_of(law: Law, s: Array, table: Array = NO_TABLE) -> Array:
 
 
 def corners(law: Law, table: Array = NO_TABLE) -> tuple[float, ...]:
-    """Return the shares of the time at which the acceleration jumps or bends between the ends."""
+    """Return the fractions of the time between the ends at which the acceleration jumps or has a kink."""
     if len(table):
         return tuple(table[1:, 2].tolist())
     return (_RAMP, 1.0 - _RAMP) if law == "trapezoid" else ()

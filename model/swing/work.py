@@ -1,7 +1,8 @@
 """Work of the drive over a swing, and efficiency, for many designs with exact derivatives.
 
-Gauss's quadrature on the pieces between cuts, graded towards their ends: next to a dead point the drive grows as the
-inverse root of the way from it. The nodes move with the cuts, so that the complex step differentiates the quadrature.
+Gauss's quadrature on the pieces between cuts, graded towards their ends: near a dead point the drive grows as the
+inverse root of the distance from it. The nodes move with the cuts, so that the complex step differentiates the
+quadrature.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ _EVEN = 1e-9
 
 @dataclass(frozen=True)
 class Work:
-    """A number of n designs. values: (n,), NaN where a design cannot swing, inf where friction locks it.
+    """A result for n designs. values: (n,), NaN where a design cannot swing, inf where friction locks it.
 
     gradients: (n, v); None unless asked for.
     """
@@ -57,7 +58,7 @@ def swing_work(mechanism: Mechanism, swing: Swing, designs: Array, *, gradients:
 
 
 def work_of_loads(mechanism: Mechanism, swing: Swing, designs: Array) -> Array:
-    """Return the net work (n,), J, of the loads on designs over a swing and back.
+    """Return the net work (n,), J, of the loads over a swing and back.
 
     A drive without friction absorbs it. NaN where a design cannot swing.
     """
@@ -72,9 +73,9 @@ def work_of_loads(mechanism: Mechanism, swing: Swing, designs: Array) -> Array:
 
 
 def swing_efficiency(mechanism: Mechanism, swing: Swing, designs: Array, *, gradients: bool = False) -> Work:
-    """Return the work without friction over the work of the slow way forth, (n,).
+    """Return the work without friction over the work of the slow forward stroke, (n,).
 
-    Of the way back where only that is driven; NaN where neither is.
+    Uses the return stroke where only that is driven; NaN where neither is.
     """
     return _for_passing_designs(
         mechanism, swing, designs, gradients, lambda rows: _efficiency(mechanism, swing, rows, gradients)
@@ -112,7 +113,7 @@ def _efficiency(mechanism: Mechanism, swing: Swing, designs: Array, gradients: b
     rubbing, free = (
         SwingBatch(mechanism, swing, designs, slopes=gradients, slow=True, free=is_free) for is_free in (False, True)
     )
-    for back in (True, False):  # forth has the last word
+    for back in (True, False):  # the forward stroke takes precedence
         spent, by_spent = _work(rubbing, rubbing.pieces(back=back), gradients)
         least, by_least = _work(free, free.pieces(back=back), gradients)
         driven = (least > 0.0) & (spent > 0.0)

@@ -1,4 +1,4 @@
-"""The exact worst case: the greatest and the least slider position that the tolerances allow.
+"""Exact worst case: the greatest and the least slider position that the tolerances allow.
 
 On the open branch, with the crank pin at (a, b) = r (cos theta, sin theta),
 
@@ -13,14 +13,14 @@ exactly: see `position_error`). The crossed branch is its mirror image, x(theta)
    - Greatest x: possibly within. dx/de = 0 where the rod lies along the line, e = r sin(theta), and
      dx/dr = 0 where the crank is normal to the rod, r = e / sin(theta) + l cos(theta) / |sin(theta)|.
      Both together need cos(theta) = 0; x = l is then the same all along e = r sin(theta), also on an edge.
-3. dx/dtheta = 0 at the dead centres only, of a linkage that turns fully: at the outer one, theta = asin(e / (l + r)),
+3. dx/dtheta = 0 only at the dead centres of a linkage that rotates fully: at the outer one, theta = asin(e / (l + r)),
    x is greatest over the turn; at the inner one, theta = pi + asin(e / (l - r)), least.
    - At a dead centre crank and rod are in line, so dx/dr is not 0. With dx/de = 0 as well, e = 0 and theta = 0.
 
 So the greatest x is at one of 8 corners in (r, e, theta), 4 points with only e within its range, 4 with only r, 4 with
 only theta, and one with e and theta; the least x at one of 8 corners, or 4 points with only theta within. All are
-evaluated, moved into the box where they lie outside: then each is a position that does occur, and the extreme one is
-among them.
+evaluated; those outside are moved into the box. Each is then a position that does occur, and the extreme one is among
+them.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Extremes:
 
     @property
     def size(self) -> Array:
-        """The greater of the two sizes, (m,), m: the exact worst case."""
+        """Greater of the two sizes, (m,), m: the exact worst case."""
         return np.maximum(-self.least, self.greatest)
 
 
@@ -68,8 +68,8 @@ class Worst:
 def extremes(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Extremes:
     """Return the exact extremes of the slider's deviation at crank angles (m,), rad, for one linkage.
 
-    Along +x, from the position of the linkage that is meant at the angle that is meant. Raises `AssemblyError` unless
-    every linkage within the tolerances turns fully.
+    Along +x, from the position of the nominal linkage at the nominal angle. Raises `AssemblyError` unless every linkage
+    within the tolerances rotates fully.
     """
     linkage = single(mechanism, linkage)
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
@@ -149,6 +149,6 @@ def _least(r: Array, l: float, e: Array, middle: Array, turn: Array) -> Array:
 
 
 def _clip_angle(angle: float, middle: Array, turn: Array) -> Array:
-    """Return a crank angle moved into middle + turn, whole turns left out."""
+    """Return a crank angle clipped into middle + turn, up to whole turns."""
     away = angle - middle
     return middle + np.clip(away - _TURN * np.round(away / _TURN), *turn)
