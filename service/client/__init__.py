@@ -95,7 +95,7 @@ class Client(Designs):
     def jobs(
         self, *, states: Collection[str] = (), name: str = "", before: int | None = None, limit: int = 100
     ) -> list[Record]:
-        """Return jobs, latest first. states: of these; all if empty. name: contains this. before: older than this.
+        """Return jobs, latest first. states: all if empty. name: part of the name. before: number of a newer job.
 
         Each has the fields of a list; `job` gives all fields of one job, `front_points` some designs of several.
         """

@@ -32,7 +32,7 @@ POINTS = 181
 
 @dataclass(frozen=True)
 class SwingCurve:
-    """A curve over a swing. name: its key without a unit. attribute: of `SwingCurves`. timed: not of a slow swing."""
+    """A curve over a swing. name: key without unit. attribute: name in `SwingCurves`. timed: not for a slow swing."""
 
     name: str
     attribute: str

@@ -53,7 +53,7 @@ def require_allowed(tables: Mapping[str, Any], allowed: Collection[str]) -> None
 
 
 def functions_of(tables: Mapping[str, Any]) -> dict[str, str]:
-    """Return the functions that a job names, by the names of their quantities. Raises `JobError` for what is none."""
+    """Return the functions that a job names, by quantity name. Raises `JobError` for an invalid function name."""
     from ...objectives.own.quantity import FUNCTION
     from ...objectives.units import quote
 

@@ -235,7 +235,7 @@ def _on_edges(problem: Problem, branch: EliminationBranch) -> Iterator[Array]:
 
 
 def _values(problem: Problem, name: str, designs: Array) -> Array:
-    """Return a closed form of designs (n, 3); NaN where one does not turn or breaks a dimensional requirement."""
+    """Return a closed-form quantity of designs (n, 3); NaN without rotation or beyond a dimensional requirement."""
     values = np.full(len(designs), np.nan)
     rows = np.flatnonzero(_turns(designs) & _is_within_ranges(problem, designs))
     for constraint in problem.constraints:
@@ -278,7 +278,7 @@ def _hardest(problem: Problem, designs: Array) -> tuple[str, float] | None:
 
 
 def example_of(designs: Array, violation: Array, fallback: Array) -> Array | None:
-    """Return the design in the middle of the feasible ones, else the design nearest to feasibility, else any other."""
+    """Return the middle one of the feasible designs, else the least infeasible, else the middle of the fallback."""
     if (feasible := violation <= FEASIBLE).any():
         return _middle_of(designs[feasible])
     if np.isfinite(violation).any():

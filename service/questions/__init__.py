@@ -1,1 +1,1 @@
-"""Questions to one design: each folder has its `QUESTION` and the numbers, the text and the figure of the answer."""
+"""Questions about one design: each folder has its `QUESTION` and the numbers, text and figure of the answer."""

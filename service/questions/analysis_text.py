@@ -29,10 +29,10 @@ def show_analysis(
     custom: Sequence[Quantity] = (),
     hint: str = "",
 ) -> None:
-    """Write all numbers of a design, how it meets the rules of its job, and its topics.
+    """Write all numbers of a design, its rules as met or missed, and its topics.
 
-    choices: of its job, judged at the design. custom: quantities of its job. hint: a line before the topics, "" for
-    none.
+    choices: choices of its job, judged at the design. custom: custom quantities of its job. hint: line before the
+    topics, "" for none.
     """
     row, reasons = analysis.row, (analysis.undefined or {}).items()
     show_design(screen, row_in({key: row[key] for key in row if key not in TOPIC_COLUMNS}, units), custom=custom)

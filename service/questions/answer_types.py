@@ -1,7 +1,7 @@
-"""Types of the answers of questions, from which JSON Schemas follow: keys, their kinds, and why a value is null.
+"""Types of the answers to questions, the source of JSON Schemas: keys, their kinds, reasons for null.
 
-An answer is what the function `numbers` of a question returns: a `Record`, a typed dictionary that mypy checks, or,
-where its keys follow from data, a dictionary with `Keys`. The unit of a number is the end of its key.
+The function `numbers` of a question returns the answer: a `Record`, a typed dictionary that mypy checks, or, if its
+keys follow from data, a dictionary with `Keys`. The key of a number ends with its unit.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ NullIfLocked = Annotated[float | None, Note("null where friction locks or may ja
 
 
 class Record(TypedDict):
-    """A record of JSON that has no other keys. A text below a key describes it."""
+    """A JSON record without other keys. A text below a key describes it."""
 
 
 def _title(key: str, _: object = None) -> str:
@@ -62,8 +62,8 @@ Record.__pydantic_config__ = _CLOSED  # type: ignore[attr-defined]
 class Keys:
     """Keys of a record that follow from data.
 
-    types: by key, `NotRequired` where the record need not have it. text: describes the record. count: of the keys that
-    a record has, if that is known.
+    types: types by key, `NotRequired` for optional keys. text: description of the record. count: number of keys in a
+    record, if known.
     """
 
     name: str
@@ -81,16 +81,16 @@ class Keys:
 
 
 def keys_of_kinds(names: Iterable[str], kinds: Iterable[Kind]) -> dict[str, Any]:
-    """Return keys of numbers, each name with the unit of one of some kinds."""
+    """Return keys of numbers: each name with the unit of each kind."""
     return {f"{name}{kind.metric.suffix}": NotRequired[NullIfLocked] for name in names for kind in kinds}
 
 
 @dataclass(frozen=True)
 class AnswerSchema:
-    """Schema of a record of JSON that answers one of some questions, in metric or in inch units.
+    """Schema of a JSON record that answers one of several questions, in metric or inch units.
 
-    types: gives those of the answers. names: of the answers in a metric record that has some of them beside others;
-    without, the record is one of them.
+    types: function that returns the types of the answers. names: keys of the answers in a metric record with other
+    keys; without names, the record is one of the answers.
     """
 
     types: Callable[[], list[Any]]

@@ -1,4 +1,4 @@
-"""All numbers of one design, and of the topics that are asked for: what `analyse` prints and the API sends."""
+"""All numbers of one design and of the requested topics, as `analyse` prints and the API sends them."""
 
 from __future__ import annotations
 
@@ -30,11 +30,10 @@ _MOST_CHOICES = 256
 
 @dataclass(frozen=True)
 class Analysis:
-    """Analysis of a design. row: all its numbers. found: those of its topics. notes: what is left out, and why.
+    """Analysis of a design. row: all its numbers. found: numbers of its topics. notes: omissions with reasons.
 
-    refused: topics that the design does not have, each with the reason. undefined: why quantities have no value, by
-    their columns; None without a job, which defines next to nothing. violated: by how much the design goes beyond
-    allowable values, by column.
+    refused: topics that the design does not have, each with the reason. undefined: reasons for undefined quantities, by
+    column; None without a job, which leaves most undefined. violated: excess over allowable values, by column.
     """
 
     row: Row
@@ -51,9 +50,9 @@ class Analysis:
         rules: Sequence[JudgedRule] | None = None,
         choices: Sequence[JudgedChoice] = (),
     ) -> dict[str, Any]:
-        """Return all numbers of the design and of its topics, for JSON, with what is undefined and what is violated.
+        """Return all numbers of the design and of its topics, for JSON, with undefined and violated quantities.
 
-        rules: of its job at the design; None without one. choices: of its job, judged at the design.
+        rules: rules of its job at the design; None without a job. choices: choices of its job, judged at the design.
         """
         topics = {topic.name: topic.numbers_in(self.topic_numbers[topic.name], units) for topic in self.topics}
         undefined = {} if self.undefined is None else {"undefined": record_in(self.undefined, units)}
@@ -67,7 +66,7 @@ def judge_choices(
 ) -> list[JudgedChoice]:
     """Return every combination of a job's choices with the rules that a design misses with it.
 
-    mechanism: of the design without a choice. row: its quantities. Empty for a job without choices, and for one with
+    mechanism: mechanism of the design without a choice. row: its quantities. Empty for a job without choices, or with
     more than 256 combinations.
     """
     judged = []
@@ -83,7 +82,7 @@ def judge_choices(
 def quantities_of_design(
     mechanism: Mechanism, linkage: Linkage, custom: Sequence[Quantity] = ()
 ) -> tuple[Row, dict[str, str]]:
-    """Return every quantity of one design, and by column why it lacks others. custom: quantities of its job."""
+    """Return every quantity of one design, and the reason for each missing one by column. custom: custom quantities."""
     from ...objectives.tables.analysis import columns_of
     from .peaks import row_of
 
@@ -97,7 +96,7 @@ def with_undefined_values(
 ) -> tuple[Row, dict[str, str]]:
     """Return a row of all quantities with NaN for undefined ones, and the reason for each by column.
 
-    row: of the `columns_of` of a table. custom: quantities of the job. swing: in place of a full turn.
+    row: row with the `columns_of` a table. custom: custom quantities of the job. swing: swing instead of full rotation.
     """
     from ...objectives.peak_torque import PEAK_TORQUE
     from ...objectives.registry import QUANTITIES
@@ -121,7 +120,7 @@ def with_undefined_values(
 
 
 def quantities_of_swing(design: StoredDesign) -> tuple[Row, dict[str, str]]:
-    """Return every quantity of a design that swings, and by column why it lacks others."""
+    """Return every quantity of a swinging design, and the reason for each missing one by column."""
     import numpy as np
 
     from ...objectives.tables.swinging import columns_of

@@ -1,4 +1,4 @@
-"""A question to one design: a topic, which `analyse --show` can add, or a command of its own."""
+"""A question about one design: a topic, which `analyse --show` can add, or a separate command."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ if TYPE_CHECKING:
 class QuestionCommand:
     """Declaration of a question that is a command with its own endpoint instead of a topic of `analyse --show`.
 
-    help: what it answers, the first sentence in a paragraph of its own. endpoint: name of the endpoint. job, alone:
-    help on JOB, and on what holds without. curves: what the command can write and draw, by functions `curves` and
-    `figure` that take what `numbers` takes and `units`.
+    help: description, with the first sentence in a separate paragraph. endpoint: name of the endpoint. job: help on
+    JOB. alone: help on the use without JOB. curves: output that the command can write and draw, by functions `curves`
+    and `figure` with the parameters of `numbers` and `units`.
 
-    sizes: whether the question sizes a part of a machine that turns: it needs a job, libraries that are not always
-    there, and seconds. called: name of such a command, if it is not the question's. figure: name of the file that it
-    draws by a function `figure`, and what that shows.
+    sizes: whether the question sizes a part of a rotating machine: it needs a job, optional libraries, and seconds.
+    called: name of such a command, if it differs from the question's. figure: name of the file drawn by a function
+    `figure`, and its content.
     """
 
     help: str
@@ -50,17 +50,17 @@ class QuestionCommand:
 class DesignQuestion:
     """A question, declared by its folder, whose module `analysis` has the functions `numbers`, `blocks` and `figure`.
 
-    What `numbers` returns is the type of the answer (`answers`), from which its JSON Schema follows.
+    The return type of `numbers` is the type of the answer (`answers`), from which its JSON Schema follows.
 
-    package: the folder's; its last part is the name. place: where it stands among the others, in ascending order.
-    shows: for the help. needs_job: whether it needs masses, loads or tolerances. tells: columns that it shows, which
-    the table of a design therefore leaves out. inputs: what it may be asked with. A function `prepare` of that module,
-    if it has one, gives further options for numbers and figure, from those that there are. A function `in_units`, if it
-    has one, gives the numbers in a system of units.
+    package: package of the folder; its last part is the name. place: position among the questions, in ascending order.
+    shows: description for the help. needs_job: whether it needs masses, loads or tolerances. tells: columns that it
+    shows, which the table of a design therefore omits. inputs: accepted inputs. An optional function `prepare` of that
+    module gives further options for numbers and figure, from the present ones. An optional function `in_units` gives
+    the numbers in a system of units.
 
-    command: if it is one of its own. Its numbers also take `words`, what the door calls the inputs, and `swing`, that
-    the crank makes in its job, or `problem` if it sizes; the design need not turn fully. `note` or `notes` among them
-    say what is undefined; a function `notes` of the module, if it has one, what is not proven.
+    command: declaration as a separate command. Its numbers also take `words`, the interface's names for the inputs, and
+    `swing`, the swing of the crank in its job, or `problem` if it sizes; the design need not rotate fully. `note` or
+    `notes` among them explain undefined values; an optional function `notes` of the module reports unproven optima.
     """
 
     package: str
@@ -94,10 +94,10 @@ class DesignQuestion:
         inputs: Mapping[str, object],
         words: Mapping[str, str] | None = None,
     ) -> BoundQuestion:
-        """Return the question to a design. problem: that it answers. inputs: by name, in SI or as text with a unit.
+        """Return the question about a design. problem: problem of the design. inputs: by name, in SI or text with unit.
 
-        words: what the door calls the inputs, if not by their names. Raises `InputError` for a problem that swings,
-        unless the question takes it, and for inputs that it does not take.
+        words: the interface's names for the inputs, if different. Raises `InputError` for a swing problem, unless the
+        question accepts it, and for inputs that it does not accept.
         """
         swing = None if problem is None else problem.motion
         if self.command is None:
@@ -116,7 +116,7 @@ class DesignQuestion:
     def answer(
         self, mechanism: Mechanism, linkage: Linkage, problem: Problem | None, inputs: Mapping[str, object]
     ) -> dict[str, Any]:
-        """Return the numbers as JSON has them, metric: a question of `optimise.problem.questions`."""
+        """Return the numbers as JSON, metric: a question of `optimise.problem.questions`."""
         from ...model.linkage.single import single
 
         bound = self.for_problem(mechanism, linkage, problem, inputs)
@@ -128,13 +128,13 @@ class DesignQuestion:
     def for_design(
         self, mechanism: Mechanism, linkage: Linkage, options: dict[str, Any] | None = None
     ) -> BoundQuestion:
-        """Return the question to one design. options: of its `numbers`."""
+        """Return the question about one design. options: options of its `numbers`."""
         return BoundQuestion(self, mechanism, linkage, dict(options or {}))
 
 
 @dataclass(frozen=True)
 class BoundQuestion:
-    """A question to one design, with its options."""
+    """A question about one design, with its options."""
 
     question: DesignQuestion
     mechanism: Mechanism
@@ -147,25 +147,25 @@ class BoundQuestion:
         return self.question.name
 
     def numbers(self, cancelled: Callable[[], bool] = lambda: False) -> dict[str, Any]:
-        """Return the numbers, ready for JSON. Raises `InputError` where the design has none."""
+        """Return the numbers, ready for JSON. Raises `InputError` if the design has none."""
         self._prepare(cancelled)
         record: dict[str, Any] = self._analysis.numbers(self.mechanism, self.linkage, **self.options)
         return record
 
     def numbers_in(self, numbers: dict[str, Any], units: System) -> dict[str, Any]:
-        """Return the numbers, metric as they are, in a system of units, for JSON."""
+        """Return metric numbers in a system of units, for JSON."""
         from ..designs.display_units import record_in
 
         converted: dict[str, Any] = getattr(self._analysis, "in_units", record_in)(numbers, units)
         return converted
 
     def blocks(self, numbers: dict[str, Any]) -> list[Block]:
-        """Return the numbers, metric as they are, for people."""
+        """Return metric numbers as blocks for people."""
         shown_blocks: list[Block] = self._analysis.blocks(numbers)
         return shown_blocks
 
     def notes(self, numbers: dict[str, Any]) -> list[str]:
-        """Return notes on the numbers: values that are undefined, or an optimum that is not proven."""
+        """Return notes on the numbers: undefined values, or an unproven optimum."""
         if hasattr(self._analysis, "notes"):
             remarks: list[str] = self._analysis.notes(numbers)
             return remarks
@@ -184,7 +184,7 @@ class BoundQuestion:
         return file
 
     def figure(self, cancelled: Callable[[], bool], units: System = "metric") -> Figure:
-        """Return the figure, its numbers not asked for before. Raises `InputError` where there is none."""
+        """Return the figure without earlier numbers. Raises `InputError` if there is none."""
         from ..figures.panels import figure_of
 
         self._prepare(cancelled)

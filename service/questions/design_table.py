@@ -1,4 +1,4 @@
-"""Tables of designs, a row for each quantity, as questions to a front answer with them."""
+"""Tables of designs, a row for each quantity, for answers to questions about a front."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Questions, found by looking into their folders, and the topics that somebody asks for."""
+"""Questions, found in their folders, and the requested topics."""
 
 from __future__ import annotations
 
@@ -46,9 +46,9 @@ TOPIC_OF_INPUT = {given.name: topic.name for topic in TOPICS.values() for given 
 
 
 def chosen_topics(names: Iterable[str], *, job: bool, word: str = "--show") -> tuple[str, ...]:
-    """Return the topics that were asked for, each once. Raises `InputError` for unknown ones and those without job.
+    """Return the requested topics, each once. Raises `InputError` for unknown topics and those that lack a job.
 
-    word: what the door calls them.
+    word: the interface's name for them.
     """
     import difflib
 

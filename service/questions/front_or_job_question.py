@@ -1,4 +1,4 @@
-"""Questions to a front or a job."""
+"""Questions about a front or a job."""
 
 from __future__ import annotations
 
@@ -44,10 +44,11 @@ class FrontOrJobQuestion:
     """Declaration of a question to a front or a job. The module `analysis` of its folder has the function `answer`.
 
     `answer` takes the subject, for a front also `row`, then `watch`, `words` (names of the inputs in the interface) and
-    the inputs by name; it returns an `Answer`. package: of the folder; its last part is the name. subject: kind of
-    object that the question is put to. help: first sentence in a paragraph of its own. row: whether the question is
-    about one design of the front. path: of the endpoint, with names in braces. posted: whether the inputs are the body
-    of the request instead of part of its address. key: of the numbers in the answer, "" if they are the whole answer.
+    the inputs by name; it returns an `Answer`. package: package of the folder; its last part is the name. subject: kind
+    of object that the question is about. help: description, with the first sentence in a separate paragraph. row:
+    whether the question is about one design of the front. path: path of the endpoint, with names in braces. posted:
+    whether the inputs are the body of the request instead of part of its address. key: key of the numbers in the
+    answer, "" if they are the whole answer.
     """
 
     package: str
@@ -89,9 +90,9 @@ class FrontOrJobQuestion:
         words: Mapping[str, str] | None = None,
         listener: SearchListener | None = None,
     ) -> Answer:
-        """Return the answer. inputs: by name. row: of a front. words: what the door calls the inputs, if not so.
+        """Return the answer. inputs: by name. row: row of a front. words: the interface's names for the inputs.
 
-        Raises as `read` does, and what the answer raises.
+        Raises the errors of `read` and of the answer.
         """
         values = self.read(inputs, row, words)
         options: dict[str, Any] = {"row": row} if self.row != "none" else {}
@@ -102,6 +103,6 @@ class FrontOrJobQuestion:
         return result
 
     def answer_of(self, subject: object, row: int | None, inputs: Mapping[str, object]) -> dict[str, Any]:
-        """Return the numbers as JSON has them, metric: a question of `optimise.problem.questions`."""
+        """Return the numbers as JSON, metric: a question of `optimise.problem.questions`."""
         record: dict[str, Any] = json_ready(self.ask(subject, inputs, row=row).record("metric"))
         return record

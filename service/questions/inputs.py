@@ -1,4 +1,4 @@
-"""Inputs of questions: declared once, parsed alike in every interface."""
+"""Inputs of questions: declared once, parsed identically in every interface."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 class Input:
     """An input of a question.
 
-    name: the parameter of the question's `numbers`, which has its default. kind: of the value, in SI there; None for a
-    word. title: before the field of a form. help: of the option, with the default in brackets. usual: the default, as
-    it is typed, "" if there is none. option: of the command line, without dashes, if it is not the name. sign: what the
-    value must be. below: what it must be less than, in SI. drawn: whether the figure takes it too. example: as
-    it is typed. words: a `Literal` of those that it may be. loose: whether they may be in capitals, with - and _ for
-    spaces. required: whether there is no answer without it.
+    name: parameter of the question's `numbers`, which has its default. kind: kind of the value, in SI there; None for a
+    word. title: label of the field in a form. help: help of the option, with the default in brackets. usual: default as
+    typed, "" if there is none. option: command-line option, without dashes, if it differs from the name. sign: required
+    sign of the value. below: exclusive upper bound, in SI. drawn: whether the figure takes it too. example: example as
+    typed. words: `Literal` of the allowed words. loose: whether words may be in capitals, with - and _ for spaces.
+    required: whether it must be given.
     """
 
     name: str
@@ -41,17 +41,17 @@ class Input:
 
     @property
     def unit(self) -> DisplayUnit:
-        """Unit in the API, whose numbers are metric."""
+        """Unit in the API, where numbers are metric."""
         return DisplayUnit("", "") if self.kind is None else self.kind.metric
 
     @property
     def key(self) -> str:
-        """Name in the API: its unit is its end."""
+        """Name in the API, which ends with the unit."""
         return self.name + self.unit.suffix
 
     @property
     def flag(self) -> str:
-        """Option of the command line, with its dashes."""
+        """Command-line option, with its dashes."""
         return f"--{(self.option or self.name).replace('_', '-')}"
 
     @property
@@ -61,7 +61,7 @@ class Input:
 
     @property
     def schema(self) -> dict[str, Any]:
-        """JSON Schema of what an agent gives: a text with its unit, or a word."""
+        """JSON Schema of an agent's value: a text with its unit, or a word."""
         return {"type": "string", **({"enum": list(get_args(self.words))} if self.words else {})}
 
     @property
@@ -93,17 +93,17 @@ class Input:
         return value
 
     def with_unit(self, number: float | str) -> str:
-        """Return a number of the API as text with its unit; a word as it is."""
+        """Return a number of the API as text with its unit; a word unchanged."""
         return number if isinstance(number, str) else f"{number!r} {self.unit.symbol}"
 
 
 def read_inputs(
     inputs: Sequence[Input], raw_values: Mapping[str, object], question: str, words: Mapping[str, str] | None = None
 ) -> dict[str, Any]:
-    """Return the values, in SI, of the inputs that are given by name; None is not given.
+    """Return the values, in SI, of inputs given by name; None counts as not given.
 
-    words: what the door calls them, if not by their names. Raises `InputError` for an input that the question does not
-    have, and without one that it needs.
+    words: the interface's names for them, if different. Raises `InputError` for an unknown input, and for a missing
+    required one.
     """
     labels = {item.name: item.name for item in inputs} | dict(words or {})
     by_name = {item.name: item for item in inputs}

@@ -1,4 +1,4 @@
-"""Peaks of one design over the cycle, as topics tell them."""
+"""Peaks of one design over the cycle, as topics report them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ...model.signals.signals import Signal
 
 
 class Peak(NamedTuple):
-    """Greatest size of a signal, SI, and the crank angle where it is, deg; NaN where it is not determined."""
+    """Greatest magnitude of a signal, SI, and its crank angle, deg; NaN if undetermined."""
 
     value: float
     degrees: float
@@ -27,6 +27,6 @@ def row_of(linkage: Linkage) -> NDArray[np.float64]:
 
 
 def peak(mechanism: Mechanism, signal: Signal, linkage: Linkage) -> Peak:
-    """Return the peak of a signal over the cycle; of equal peaks the first (`first_peaks`)."""
+    """Return the peak of a signal over the cycle; the first of equal peaks (`first_peaks`)."""
     values, angles = first_peaks(mechanism, signal, row_of(linkage))
     return Peak(float(values[0]), math.degrees(float(angles[0])))

@@ -15,8 +15,8 @@ class TypedInput(Input):
     """An input with a plain type instead of a physical kind.
 
     type: a number, `str`, a `list` of texts, or a `dict` of texts by name, typed as "name=text" on the command line.
-    least: minimum of a number. limits: in services, by the names of `pydantic.Field`. form: of a text with a name,
-    "REQUIREMENT=AMOUNT". metavar: of the option. sent: an example in a body.
+    least: minimum of a number. limits: limits in services, by the names of `pydantic.Field`. form: form of a text with
+    a name, "REQUIREMENT=AMOUNT". metavar: placeholder of the option. sent: example in a body.
     """
 
     type: Any = float
@@ -33,7 +33,7 @@ class TypedInput(Input):
 
     @property
     def schema(self) -> dict[str, Any]:
-        """JSON Schema of what an agent gives."""
+        """JSON Schema of an agent's value."""
         return dict(self._adapter.json_schema())
 
     @property
@@ -67,9 +67,9 @@ class TypedInput(Input):
 
 
 def texts_by_name(texts: Sequence[object], word: str, form: str, example: str) -> dict[str, str]:
-    """Return texts such as "stroke=0.1 mm" by their names. word: that messages begin with.
+    """Return texts such as "stroke=0.1 mm" by their names. word: first word of messages.
 
-    Raises `InputError` for what is not of the form, and for a name that comes twice.
+    Raises `InputError` for a text of another form, and for a repeated name.
     """
     from ...objectives.units import quote
 

@@ -29,7 +29,7 @@ class PlainBlock:
 
 
 def format_value(value: Value, system: System = "metric", *, bare: bool = False, printed: bool = False) -> str:
-    """Return a value with its unit in a system. bare: without the unit. printed: as figures write numbers."""
+    """Return a value with its unit in a system. bare: without the unit. printed: in the number style of figures."""
     if value.number is None or math.isnan(value.number):
         return value.missing
     display_unit = value.kind.display_unit(system)

@@ -1,4 +1,4 @@
-"""Least-cost tolerances within a limit of the position error: numbers, text and figure."""
+"""Least-cost tolerances within a position error limit: numbers, text and figure."""
 
 from ....objectives.kinds import LENGTH
 from ....optimise.sizing.words import Kind

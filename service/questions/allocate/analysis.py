@@ -1,4 +1,4 @@
-"""Least-cost tolerances as numbers and text, and the cost and error of those that a mechanism has."""
+"""Least-cost tolerances as numbers and text, with the cost and error of the original tolerances."""
 
 from __future__ import annotations
 
@@ -103,8 +103,8 @@ def prepare(
 def numbers(before: Mechanism, linkage: Linkage, *, allocation: Allocation, costs: Costs, **_: Any) -> Tolerances:
     """Return an allocation ready for JSON.
 
-    before: the mechanism as it was; cost and error of its own tolerances are None unless it has all that have a cost.
-    The exact worst case is None where a linkage within the tolerances does not turn.
+    before: original mechanism; cost and error of its tolerances are None unless it has all tolerances with a cost. The
+    exact worst case is None if a linkage within the tolerances does not rotate fully.
     """
     try:
         exact = 1e3 * worst(allocation.mechanism, linkage).size
@@ -149,7 +149,7 @@ def numbers(before: Mechanism, linkage: Linkage, *, allocation: Allocation, cost
 
 
 def notes(numbers: Tolerances) -> list[str]:
-    """Return a note if the optimum is not proven."""
+    """Return a note for an unproven optimum."""
     residual = f"the optimality conditions are only met to {numbers['residual']:.1e}"
     return [] if numbers["converged"] else [f"not proven to be the cheapest: {residual}"]
 

@@ -1,4 +1,4 @@
-"""Allocated tolerances: what each adds to the position error over the cycle, and what each costs."""
+"""Allocated tolerances: the contribution of each to the position error over the cycle, and its cost."""
 
 from __future__ import annotations
 
@@ -28,10 +28,11 @@ _SAMPLES = 721
 class AllocationCurves:
     """The figure's data: errors in m over crank angles (m,), deg.
 
-    sources: (s,), of those that add to the error; parts: (s, m), what each adds (worst case) or its share of the
-    squares times the error (root-sum-square), so that both add up to the error. before: (m,), with the tolerances that
-    the mechanism had; None if it had not all of them. limit: m. counted: crank angles (from, to), deg, of the parts of
-    the cycle that count. active: crank angles, deg. names, costs, costs_before: of the tolerances that were chosen.
+    sources: names of the error sources (s,). parts: contribution of each (s, m), its term (worst case) or its fraction
+    of the squares times the error (root-sum-square), so that both add up to the error. before: error (m,) with the
+    original tolerances; None if some were missing. limit: error limit, m. counted: crank angles (from, to), deg, of the
+    parts of the cycle that count. active: crank angles of active limits, deg. names, costs, costs_before: names and
+    costs of the chosen tolerances.
     """
 
     angles: Array
@@ -48,7 +49,7 @@ class AllocationCurves:
 
 
 def allocation_curves(allocation: Allocation, linkage: Linkage, costs: Costs, before: Mechanism) -> AllocationCurves:
-    """Return the figure's data. before: the mechanism with the tolerances that it had."""
+    """Return the figure's data. before: mechanism with its original tolerances."""
     theta = np.linspace(0.0, 2.0 * np.pi, _SAMPLES)
     now = first_order(allocation.mechanism, linkage, theta)
     share, error = _cumulated_error(now, allocation.kind)
@@ -71,14 +72,14 @@ def allocation_curves(allocation: Allocation, linkage: Linkage, costs: Costs, be
 
 
 def _cumulated_error(linear: FirstOrder, kind: str) -> tuple[Array, Array]:
-    """Return shares of the sources (8, m) and the error (m,), m, as errors add up in an allocation."""
+    """Return contributions of the sources (8, m) and the error (m,), m, as errors add up in an allocation."""
     if kind == "worst case":
         return linear.share_of_worst_case, linear.worst_case
     return linear.share_of_variance, linear.root_sum_square
 
 
 def allocation_figure(data: AllocationCurves, system: System = "metric") -> Figure:
-    """Return the figure in a system of units: above the error over the cycle, below the costs."""
+    """Return the figure in a system of units: the error over the cycle above, the costs below."""
     unit = LENGTH.display_unit(system)
     limit = unit.factor * data.limit
     count = len(data.names)

@@ -1,4 +1,4 @@
-"""Textbook approximations of one design against the exact model: two-mass rod, series, k F tan(alpha)."""
+"""Textbook approximations for one design, compared with the exact model: two-mass rod, series, k F tan(alpha)."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ _SHORT = {"two masses by mass centre": "two masses", "two masses, half and half"
 
 
 def _errors_over_offset(mechanism: Mechanism, linkage: Linkage, count: int) -> Errors:
-    """Return the errors at offsets from zero to the design's own, or to (rod - crank) / 2 if greater."""
+    """Return the errors at offsets from zero to the design's offset, or to (rod - crank) / 2 if greater."""
     offset = float(linkage.offset)
     far = max(abs(offset), 0.5 * (float(linkage.rod) - float(linkage.crank)))
     return errors_over_offset(mechanism, linkage, math.copysign(1.0, offset) * np.linspace(0.0, far, count))
@@ -69,8 +69,8 @@ def _errors_over_offset(mechanism: Mechanism, linkage: Linkage, count: int) -> E
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Approximations:
     """Return for each approximation its peak, its error at this design, and its error over offset.
 
-    Errors: the greatest difference over the cycle as a share of the exact peak, in per cent; None where all is zero.
-    Of inertia alone, at constant speed. Raises `InputError` without a crank speed.
+    Errors: greatest difference over the cycle relative to the exact peak, in percent; None if the peak is zero. They
+    cover inertia alone, at constant speed. Raises `InputError` without a crank speed.
     """
     comparison = compare(mechanism, linkage, np.linspace(0.0, 2.0 * math.pi, 1440, endpoint=False))
     rotating, reciprocating = rotating_and_reciprocating(mechanism, linkage)

@@ -1,4 +1,4 @@
-"""Shaking of the frame: numbers, text and figure."""
+"""Shaking force and moment on the frame: numbers, text and figure."""
 
 from ..design_question import DesignQuestion
 

@@ -1,4 +1,4 @@
-"""Balance of one design: shaking force and moment on the frame, and what the counterweight does to them."""
+"""Balance of one design: shaking force and moment on the frame, and the effect of the counterweight."""
 
 from __future__ import annotations
 
@@ -55,9 +55,9 @@ def _bare(mechanism: Mechanism) -> Mechanism | None:
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Shaking:
-    """Return peaks and root mean squares of shaking force and moment of one linkage, as it is and uncounterweighted.
+    """Return peaks and root mean squares of shaking force and moment of one linkage, with and without counterweight.
 
-    Root mean squares are over time. Inertia forces only: gravity and load are left out (`model.dynamics.inertia`). The
+    Root mean squares are over time. Inertia forces only: gravity and load are ignored (`model.dynamics.inertia`). The
     values without counterweight are None if the machine has none. Raises `InputError` for a crank without a speed.
     """
     if not MOTION.is_met(mechanism):

@@ -1,4 +1,4 @@
-"""Proof of how far a front can be from the true one: numbers and text."""
+"""Proven bound on the distance of a front from the true one: numbers and text."""
 
 from ....optimise.certificate.defaults import EPSILON, SECONDS
 from ..front_or_job_question import FrontOrJobQuestion

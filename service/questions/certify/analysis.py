@@ -27,7 +27,7 @@ _SHOWN_NOTES = 8
 def answer(
     front: ParetoFront, *, watch: SearchListener, epsilon: float = EPSILON, seconds: float = SECONDS, **_: Any
 ) -> Answer:
-    """Return the certificate, or of a front without designs the proof. Raises as `certify_designs` does."""
+    """Return the certificate, or the proof for a front without designs. Raises the errors of `certify_designs`."""
     if not len(front):
         return _nothing_feasible(front.problem, seconds)
 
@@ -59,7 +59,7 @@ def _nothing_feasible(problem: Problem, seconds: float) -> Answer:
 
 
 def _record(certificate: Certificate, problem: Problem) -> dict[str, Any]:
-    """Return a certificate for JSON, metric; at the end the added designs with all their numbers."""
+    """Return a certificate for JSON, metric; the added designs with all their numbers come last."""
     quantities = [problem.quantity(objective.quantity) for objective in problem.objectives]
     return {
         "name": problem.name,

@@ -1,4 +1,4 @@
-"""Simulation of a loose joint over some turns of the crank, and its statistics: numbers, text and figure."""
+"""Simulation of a loose joint over some crank revolutions, and its statistics: numbers, text and figure."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 CYCLES, DISCARD = 12, 4
 
-# Field of the summary, key without unit, unit in the key, factor from SI, title, and unit where the key has none.
+# Field of the summary, key without unit, unit in the key, factor from SI, title, and unit if the key has none.
 ROWS = (
     ("peak_acceleration", "peak_acceleration", "_m_s2", 1.0, "peak slider acceleration", ""),
     ("acceleration_ratio", "peak_acceleration_ratio", "", 1.0, "  relative to ideal joints", ""),
@@ -78,9 +78,9 @@ def simulated(
     discard: int = DISCARD,
     cancelled: Callable[[], bool] | None = None,
 ) -> ClearanceRun:
-    """Return the simulation of the joint that the mechanism has loose, its progress shown where there is a terminal.
+    """Return the simulation of the mechanism's loose joint, with its progress shown on a terminal.
 
-    Raises `InputError` if no joint is loose, and as `model.clearance.run.simulate` does.
+    Raises `InputError` if no joint is loose, and the errors of `model.clearance.run.simulate`.
     """
     if mechanism.clearance is None:
         raise InputError(
@@ -99,9 +99,9 @@ def prepare(mechanism: Mechanism, linkage: Linkage, cancelled: Callable[[], bool
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None = None, **options: Any) -> Impacts:
-    """Return the statistics of a simulation, ready for JSON: each with its uncertainty, None for what is not defined.
+    """Return the statistics of a simulation, ready for JSON: each with its uncertainty, None if undefined.
 
-    run: one that was done before; else `simulated` with the options does it.
+    run: finished simulation; else `simulated` runs one with the options.
     """
     run = run or simulated(mechanism, linkage, **options)
     clearance = run.clearance
@@ -153,7 +153,7 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None = None) -> Callable[[System], Figure]:
-    """Return the last turn of a simulation. run: one that was done before; else `simulated` does it now."""
+    """Return the figure of a simulation's last revolution. run: finished simulation; else `simulated` runs one."""
     from .figure import clearance_figure
 
     return partial(clearance_figure, run or simulated(mechanism, linkage))
@@ -161,9 +161,9 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None =
 
 @contextlib.contextmanager
 def _turns_bar() -> Iterator[Callable[[ClearanceProgress], None] | None]:
-    """Show a live bar of turns on standard error if it is a terminal; yield the callback for each turn.
+    """Show a progress bar on standard error if it is a terminal; yield the callback for each revolution.
 
-    Threads other than the main one show nothing: a service simulates for others.
+    Only the main thread shows it: a service simulates for others.
     """
     if not sys.stderr.isatty() or threading.current_thread() is not threading.main_thread():
         yield None

@@ -1,4 +1,4 @@
-"""Figures of a loose joint: motion against the ideal one, path of the journal, several speeds side by side."""
+"""Figures of a loose joint: motion compared with the ideal, path of the journal, several speeds side by side."""
 
 from __future__ import annotations
 
@@ -33,10 +33,11 @@ _TITLES = {LENGTH: "slider displacement", SPEED: "slider velocity", ACCELERATION
 
 @dataclass(frozen=True)
 class LooseCurves:
-    """Curves of the last turn of a run with a loose joint, in SI.
+    """Curves of the last revolution of a run with a loose joint, in SI.
 
-    angles: (n,), deg, from 0 to 360 in the direction of rotation. curves, ideal: kind -> (n,), displacement, velocity
-    and acceleration of the slider. force: contact force. journal_x, journal_y: m. touching: (n,).
+    angles: crank angles (n,), deg, from 0 to 360 in the direction of rotation. curves, ideal: kind -> (n,),
+    displacement, velocity and acceleration of the slider. force: contact force. journal_x, journal_y: position of the
+    journal, m. touching: contact flags (n,).
     """
 
     angles: Array
@@ -49,7 +50,7 @@ class LooseCurves:
 
 
 def loose_curves(run: ClearanceRun) -> LooseCurves:
-    """Return the curves of the last turn of a run. Raises `InputError` if it has no complete turn."""
+    """Return the curves of the last revolution of a run. Raises `InputError` without a complete revolution."""
     if run.cycles < 1:
         raise InputError("a figure needs a complete turn of the crank; got none; simulate longer")
     start = (run.cycles - 1) * run.period
@@ -68,7 +69,7 @@ def loose_curves(run: ClearanceRun) -> LooseCurves:
 
 
 def clearance_figure(run: ClearanceRun, system: System = "metric") -> Figure:
-    """Return slider motion and contact force over the last turn of a run, and the path of the journal."""
+    """Return slider motion and contact force over the last revolution of a run, and the path of the journal."""
     curves = loose_curves(run)
     figure = new_figure(12.4, 7.6)
     title = words("{clearance}, {speed}", clearance=_clearance(run), speed=_speed(run))
@@ -104,7 +105,7 @@ def speeds_figure(runs: Sequence[ClearanceRun]) -> PanelFigure:
 
 
 def speed_runs(mechanism: Mechanism, linkage: Linkage, rpm: Sequence[float] = CASE_RPM) -> list[ClearanceRun]:
-    """Return a run of three turns at each speed, in the direction in which the mechanism turns."""
+    """Return a run of three revolutions at each speed, in the mechanism's direction of rotation."""
     if mechanism.clearance is None:
         raise InputError("a comparison of speeds needs a joint with clearance; all joints are ideal; give a clearance")
     way = math.copysign(_RPM, mechanism.speed)
@@ -135,7 +136,7 @@ def _motion_panel(curves: LooseCurves, kind: Kind) -> Panel:
 
 
 def _journal(curves: LooseCurves, radius: float) -> Panel:
-    """Return the path of the journal's centre, dots where it touches the bearing, and the circle of free play."""
+    """Return the path of the journal's centre, dots at contacts with the bearing, and the clearance circle."""
     turn, touching = np.linspace(0.0, 2.0 * math.pi, 361), curves.touching
     lines = (
         Line("", radius * np.cos(turn), radius * np.sin(turn), DASHED),

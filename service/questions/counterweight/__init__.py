@@ -1,4 +1,4 @@
-"""The counterweight, and a rod balance, of least shaking: numbers, text and figure."""
+"""Counterweight and rod balance for least shaking: numbers, text and figure."""
 
 from ....objectives.kinds import LENGTH, MASS
 from ....optimise.sizing.words import Measure

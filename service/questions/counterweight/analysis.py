@@ -1,4 +1,4 @@
-"""The counterweight of least shaking, and the shaking before and after it: numbers, text and figure."""
+"""Counterweight for least shaking, and the shaking before and after: numbers, text and figure."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def prepare(
     arm: float | None = None,
     **inputs: Any,
 ) -> dict[str, Any]:
-    """Return one balance for numbers and figure. inputs: what is left of them, in SI."""
+    """Return one balance for numbers and figure. inputs: remaining inputs, in SI."""
     at = radius or mechanism.counterweight.radius or float(linkage.crank)
     optimum = balance(
         mechanism,
@@ -110,7 +110,7 @@ def prepare(
 
 
 def _rod_space(inputs: Mapping[str, Any], labels: Mapping[str, str]) -> RodSpace | None:
-    """Return the space for a balance mass on the rod. Raises `InputError` for its radius or mass alone."""
+    """Return the space for a balance mass on the rod. Raises `InputError` if only its radius or mass is given."""
     names = [item.name for item in QUESTION.inputs if item.name.startswith("rod_")]
     (first, radius), (second, mass) = ((labels.get(name, name), inputs.get(name)) for name in names)
     if radius is None and mass is None:
@@ -124,7 +124,7 @@ def _rod_space(inputs: Mapping[str, Any], labels: Mapping[str, str]) -> RodSpace
 def numbers(
     _: Mechanism, __: Linkage, *, optimum: Balance, measure: Measure = "peak", **options: Any
 ) -> BalanceNumbers:
-    """Return a balance ready for JSON; the angle of the counterweight is from the crank's direction."""
+    """Return a balance ready for JSON; the angle of the counterweight is measured from the crank direction."""
     rod = optimum.rod
     weighs = rod is not None and rod.mass > 0.0
     return {
@@ -213,7 +213,7 @@ def _centre(rod: RodBalance) -> Text:
 
 
 def figure(_: Mechanism, __: Linkage, *, optimum: Balance, problem: Problem, **options: Any) -> PanelFigure:
-    """Return hodograph, force and, where a rod balance changes it, moment before and after."""
+    """Return hodograph, force and, if a rod balance changes it, moment before and after."""
     theta = np.linspace(0.0, 2.0 * np.pi, _SAMPLES)
     degrees = np.degrees(theta)
     curves = list(enumerate(zip(("before", "after"), optimum.hodograph(theta), strict=True)))

@@ -1,4 +1,4 @@
-"""Several cylinders on one crankshaft: torque, shaking force, moment and rocking couple of the whole; each cylinder."""
+"""Several cylinders on one crankshaft: total torque, shaking force, moment and rocking couple; each cylinder."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Cylinders(Record):
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Cylinders:
-    """Return torque and shaking of all cylinders together, and the peaks of each. None: an angle of what is zero.
+    """Return torque and shaking of all cylinders together, and the peaks of each. None: angle of a zero value.
 
     Raises `InputError` for a machine without stated cylinders.
     """
@@ -137,7 +137,7 @@ def blocks(numbers: Cylinders) -> list[Block]:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
-    """Return torque, shaking force and shaking moment of the whole over a turn, with the torque of each cylinder."""
+    """Return total torque, shaking force and shaking moment over a revolution, with the torque of each cylinder."""
     theta = sampled_turn(multi_cylinder_breakpoints(mechanism, linkage), turns=cycle_turns(mechanism))
     degrees, now = np.degrees(theta), multi_cylinder_curves(mechanism, linkage, theta)
     single_lines = [Line("each" if k == 0 else "", degrees, torque, FAINT) for k, torque in enumerate(now.torques)]

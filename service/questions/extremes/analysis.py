@@ -1,4 +1,4 @@
-"""Least and greatest value of every curve of one design over the turn, and the difference between the strokes."""
+"""Least and greatest values of every curve of one design over the revolution, and differences between the strokes."""
 
 from __future__ import annotations
 
@@ -74,11 +74,11 @@ class Extremes(Record):
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Extremes:
-    """Return the extremes of each curve, by its name, and the strokes: their durations, greatest speeds and ratios.
+    """Return the extremes of each curve, by name, and the strokes: durations, greatest speeds and ratios.
 
-    A curve without masses, loads or a speed that it needs is left out. None stands for what friction leaves
-    undetermined, with the reason, and for crank angle and slider position of a curve that is constant. Ratios and
-    differences compare the outward stroke with the inward stroke.
+    A curve is omitted without the masses, loads or speed that it needs. None stands for values that friction leaves
+    undetermined, with the reason, and for crank angle and slider position of a constant curve. Ratios and differences
+    compare the outward stroke with the inward stroke.
     """
     extremes = {curve.name: curve for curve in curve_extremes(mechanism, linkage)}
     locks = locking_reason(mechanism.friction, linkage)
@@ -109,7 +109,7 @@ def _place(word: str, extreme: Extreme) -> dict[str, float | None]:
 def _strokes(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | None) -> dict[str, Any]:
     """Return crank angle, duration and greatest slider speed of both strokes, with ratios and differences.
 
-    Durations are None for several cylinders along a speed profile, where they differ between cylinders.
+    Durations are None for several cylinders with a speed profile, since they differ between cylinders.
     """
     inner, outer = (float(angle) for angle in linkage.dead_centre_angles)
     outward = (mechanism.direction * (outer - inner)) % (2.0 * math.pi)
@@ -175,9 +175,9 @@ def blocks(numbers: Extremes) -> list[Block]:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
-    """Return the main curves over the turn, with their extremes: as many of six as the machine defines.
+    """Return the main curves over the revolution, with their extremes: those of six that the machine defines.
 
-    What friction leaves undetermined has gaps.
+    Curves have gaps where friction leaves them undetermined.
     """
     extremes = {extreme_curve.name: extreme_curve for extreme_curve in curve_extremes(mechanism, linkage)}
     marked = [e.crank_angle for name in _PANELS if name in extremes for e in _ends(extremes[name])]

@@ -1,4 +1,4 @@
-"""The flywheel that a machine needs for a speed fluctuation, exact and by the classical estimate."""
+"""Flywheel that a machine needs for a speed fluctuation, exact and by the classical estimate."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ _SIZES = np.geomspace(0.25, 4.0, 33)
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCTUATION.default) -> Flywheel:
-    """Return the flywheel for a coefficient of speed fluctuation, and those for others, ready for JSON."""
+    """Return the flywheels for a coefficient of speed fluctuation and for others, ready for JSON."""
     chosen = design_flywheel(mechanism, linkage, fluctuation)
     tried = [chosen if limit == fluctuation else design_flywheel(mechanism, linkage, limit) for limit in _TRIED]
     bare, reason = _fluctuation_without_flywheel(mechanism, linkage)
@@ -69,7 +69,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUC
 def _fluctuation_without_flywheel(
     mechanism: Mechanism, linkage: Linkage
 ) -> tuple[tuple[float, float] | None, str | None]:
-    """Return fluctuation and least speed, rad/s, without a flywheel, or the reason why there are none."""
+    """Return fluctuation and least speed, rad/s, without a flywheel, or the reason why they are undefined."""
     runner, drive = Runner(mechanism, linkage), mechanism.drive
     try:
         if drive is None:
@@ -120,7 +120,7 @@ def blocks(numbers: Flywheel) -> list[Block]:
 
 
 def _without_one(numbers: Flywheel) -> Text:
-    """Return how the machine runs without a flywheel."""
+    """Return a sentence on running without a flywheel."""
     bare = numbers["fluctuation_without_flywheel"]
     if bare is None:
         return f"steady running was not reached: {numbers['reason_without_flywheel']}"
@@ -131,9 +131,9 @@ def _without_one(numbers: Flywheel) -> Text:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCTUATION.default) -> PanelFigure:
-    """Return the fluctuation over the flywheel, exact and classical, and the speed over a turn with two flywheels.
+    """Return the fluctuation over flywheel inertia, exact and classical, and the speed over a cycle with two flywheels.
 
-    Where a flywheel is too small for the machine to come through a turn, there is no point.
+    There is no point where a flywheel is too small for the machine to complete a revolution.
     """
     design, runner = design_flywheel(mechanism, linkage, fluctuation), Runner(mechanism, linkage)
 

@@ -164,7 +164,7 @@ def blocks(numbers: FrictionNumbers) -> list[Block]:
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return torque, guide force and transmission angle with and without friction, over the cycle.
 
-    At angles where friction locks there is no torque and no force.
+    Torque and force are missing at angles where friction locks.
     """
     mechanism = single_cylinder(mechanism)
     smooth = replace(mechanism, friction=Friction())

@@ -1,4 +1,4 @@
-"""Indicator diagram of one design: pressure over volume in each cylinder, valve events, work."""
+"""Indicator diagram of one design: pressure over volume for each cylinder, valve events, work."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def _require_cylinders(mechanism: Mechanism) -> tuple[tuple[int, Cylinder], ...]
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Indicator:
     """Return volumes, pressures and events of each cylinder, in the order of the loads.
 
-    The end of expansion, compression or burning at peak pressure is None where no such event comes. Raises `InputError`
+    The end of expansion, compression or combustion at peak pressure is None without such an event. Raises `InputError`
     without a cylinder.
     """
     records: list[CylinderPressures] = []

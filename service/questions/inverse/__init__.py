@@ -1,4 +1,4 @@
-"""Crank angles, speeds and accelerations that move the slider as given."""
+"""Crank angles, speeds and accelerations for a given slider motion."""
 
 from ....objectives.kinds import ACCELERATION, LENGTH, SPEED
 from ..design_question import DesignQuestion, QuestionCommand

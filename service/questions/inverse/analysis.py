@@ -1,6 +1,6 @@
-"""Crank angles that put the slider of a design at a position: the record of JSON, in metric units.
+"""Crank angles that put the slider of a design at a position: the JSON record, in metric units.
 
-Of a crank that swings they are those of its swing: it has no others.
+For a swinging crank only the angles of its swing count.
 """
 
 from __future__ import annotations
@@ -68,9 +68,9 @@ def numbers(
 ) -> CrankAngles:
     """Return dimensions, slider motion and every solution with keys that carry their units, and a note.
 
-    The slider's position, m, velocity, m/s, and acceleration, m/s^2, are along +x. Of a crank that swings the angles of
-    its swing alone count. null: what is not asked for, and what a dead centre leaves undefined; the note then says so.
-    Raises what `Linkage.from_slider` and `require_swing` raise, and `AssemblyError` for a position beyond the swing.
+    The slider's position, m, velocity, m/s, and acceleration, m/s^2, are along +x. For a swinging crank only the angles
+    of its swing count. null: values not requested, and values undefined at a dead centre, which the note reports.
+    Raises the errors of `Linkage.from_slider` and `require_swing`, and `AssemblyError` for a position beyond the swing.
     """
     every = linkage.from_slider(slider_position, velocity=slider_velocity, acceleration=slider_acceleration)
     solutions, notes = every, []
@@ -116,7 +116,7 @@ def numbers(
 
 
 def _solutions_in_swing(solutions: tuple[CrankSolution, ...], swing: Swing) -> tuple[CrankSolution, ...]:
-    """Return the solutions of a swing between crank angles, their angles as it has them."""
+    """Return the solutions within a swing between crank angles, with angles in its range."""
     within_swing = []
     for solution in solutions:
         angles = [at for near in (0.0, _NEAR, -_NEAR) for at in swing.occurrences(solution.crank_angle + near)]

@@ -1,4 +1,4 @@
-"""A design like one of a front, but with something else: by how much every number changes."""
+"""A design similar to one of a front under further conditions, and the change of every number."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _EXAMPLE = f"{QUESTION.inputs[0].flag} {QUESTION.inputs[0].example}"
 
 
 def answer(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> Answer:
-    """Return the nearest design that meets the conditions. Raises as `optimise.decisions.like.nearest` does."""
+    """Return the nearest design that meets the conditions. Raises the errors of `optimise.decisions.like.nearest`."""
     front.part(row)  # refuses what is no row
     before = rows_of(front.columns)[row]
     constraints, ranges = _added_constraints(where, before, front.problem)
@@ -57,7 +57,7 @@ def answer(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> A
 
 
 def _added_constraints(texts: Sequence[str], row: Row, problem: Problem) -> tuple[list[Constraint], dict[str, Ends]]:
-    """Return conditions as constraints, and those on dimensions as ranges, m; both bounds of one quantity as one."""
+    """Return conditions as constraints, and those on dimensions as ranges, m; both bounds of a quantity are merged."""
     names = quantity_names(problem) | {f"{dimension}_mm": dimension for dimension in DIMENSIONS}
     ends_by_name: dict[str, Ends] = {}
     for text in texts:
@@ -86,7 +86,7 @@ def _added_constraints(texts: Sequence[str], row: Row, problem: Problem) -> tupl
 
 
 def _ends(condition: Condition, factor: float, text: str) -> Ends:
-    """Return the ends that a condition gives, SI. factor: what one SI unit is in the column's."""
+    """Return the bounds in a condition, SI. factor: one SI unit in the column's unit."""
     assert not isinstance(condition.value, str)
     value = condition.value / factor
     ends = {">=": (value, None), "<=": (None, value), "==": (value, value)}.get(condition.comparison)
@@ -96,7 +96,7 @@ def _ends(condition: Condition, factor: float, text: str) -> Ends:
 
 
 def _change(before: Row, after: Row, key: str) -> float | None:
-    """Return by how much a number changed; None for what is no quantity or has no finite change."""
+    """Return the change of a number; None if it is not a quantity or has no finite change."""
     old, new = before.get(key), after[key]
     if key == "residual" or not isinstance(old, float) or not isinstance(new, float):
         return None

@@ -1,4 +1,4 @@
-"""Measured curves beside the computed ones of one design: numbers, text and figure."""
+"""Measured curves compared with the computed ones of one design: numbers, text and figure."""
 
 from ..design_question import DesignQuestion
 

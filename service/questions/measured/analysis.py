@@ -1,4 +1,4 @@
-"""Deviation of measured curves from the computed ones of one design, and the shifts that fit them best."""
+"""Deviation of measured curves from the computed ones of one design, and the best-fitting shifts."""
 
 from __future__ import annotations
 
@@ -57,9 +57,9 @@ _UNDETERMINED = "undefined where friction locks"
 def numbers(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> Deviations:
     """Return the deviation of each measured curve, measured minus computed, by the curve's name.
 
-    best_crank_angle_shift_deg and best_shift: what is to be added to the measured crank angles and values so that the
-    least root mean square is left, left_rms. None stands for what friction leaves undetermined, and for shifts that
-    the samples do not determine.
+    best_crank_angle_shift_deg and best_shift: amounts added to the measured crank angles and values that leave the
+    least root mean square, left_rms. None stands for values that friction leaves undetermined, and for shifts that the
+    samples do not determine.
     """
     found_deviations = deviations(mechanism, linkage, measured.crank_angle, measured.values)
     return {
@@ -94,7 +94,7 @@ def _entry(deviation: Deviation) -> dict[str, Any]:
 
 
 def blocks(numbers: Deviations) -> list[Block]:
-    """Return the deviation of each curve, then the shifts that fit best, and what was left out."""
+    """Return the deviation of each curve, then the best-fitting shifts, and the omitted data."""
     source = ", crank angles derived from time at constant speed" if numbers["crank_angle_from_time"] else ""
     deviations: list[tuple[Text, ...]] = []
     fits: list[tuple[Text, ...]] = []
@@ -123,12 +123,12 @@ def blocks(numbers: Deviations) -> list[Block]:
 
 
 def curve_value(entry: Mapping[str, Any], name: str, **look: Any) -> Value:
-    """Return a number of a curve by its name without the unit. look: further fields of `Value`."""
+    """Return a number of a curve by its name without unit. look: further fields of `Value`."""
     return recorded(entry, next(key for key in entry if kind_of_key(key)[0] == name), **look)
 
 
 def file_notes(numbers: Mapping[str, Any]) -> list[str]:
-    """Return sentences on what was read of a file, and on the rows and columns that were left out."""
+    """Return sentences on the data read from a file, and on the omitted rows and columns."""
     rows, names = numbers["rows_without_crank_angle"], numbers["left_out"]
     lines = [f"Interpretation of the file: {numbers['understood']}"] if numbers["understood"] else []
     if rows:
@@ -155,7 +155,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> Pan
 
 
 def _curves(mechanism: Mechanism, linkage: Linkage, deviation: Deviation) -> list[Line]:
-    """Return the computed curve, and where there is a fit, the same where the samples would then lie."""
+    """Return the computed curve, and, if there is a fit, the curve shifted to the samples."""
 
     def line(style: int, angle: float, value: float) -> Line:
         turns = cycle_turns(mechanism)

@@ -60,7 +60,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Motor:
     """Return peak, RMS and mean torque, peak and mean power, and the range of the reflected inertia of one linkage.
 
     RMS torque and mean power are over time, mean torque and mean inertia over the crank angle. Torque and power are
-    None if friction locks the linkage, power without a speed too. For several cylinders they are those of all together.
+    None if friction locks the linkage; power is None without a speed too. For several cylinders the values are totals.
     """
     design = row_of(linkage)
     signals = (Signal.TORQUE, Signal.POWER, Signal.REFLECTED_INERTIA)
@@ -86,7 +86,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Motor:
 
 
 def _least_inertia(mechanism: Mechanism, linkage: Linkage) -> tuple[float, float]:
-    """Return the least moving inertia and its crank angle, rad; of equal ones the first."""
+    """Return the least moving inertia and its crank angle, rad; the first of equal values."""
     angles_sampled = np.linspace(0.0, TURN, _SAMPLES, endpoint=False)
     values, step = _inertia(mechanism, linkage, angles_sampled), TURN / _SAMPLES
     dips = np.flatnonzero((values <= np.roll(values, 1)) & (values <= np.roll(values, -1)))

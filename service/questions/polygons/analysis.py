@@ -88,7 +88,7 @@ def _vertices(drawn: Polygons) -> BranchPolygons:
 
 
 def blocks(numbers: Mapping[str, Any]) -> list[Block]:
-    """Return the vertices, one a line, both branches beside each other."""
+    """Return the vertices, one per line, both branches side by side."""
     heads = ("open x", "open y", "crossed x", "crossed y")
     rows: list[tuple[Text, ...]] = []
     for name, vertices, kind in _POLYGONS:
@@ -125,7 +125,7 @@ def polygon_panels(
 ) -> PanelFigure:
     """Return the three polygons as panels, one line for each branch; the vertices are named.
 
-    units: of position, velocity and acceleration, of numbers that are drawn as they are; None for SI.
+    units: units of position, velocity and acceleration, for numbers drawn without conversion; None for SI.
     """
     panels = []
     for place, (name, vertices, kind) in enumerate(_POLYGONS):

@@ -1,6 +1,6 @@
 """Capability of a press before a dead centre: force, speed and work at a rated torque, and dwell.
 
-The force is static and without friction, by virtual work: F = T / |x'| with the slider's travel x' per crank angle.
+The force is static and frictionless, by virtual work: F = T / |x'| with the slider's travel x' per crank angle.
 """
 
 from __future__ import annotations
@@ -64,9 +64,10 @@ def numbers(
 ) -> Press:
     """Return force, speed and work before the dead centre, and the dwell, ready for JSON.
 
-    touch_distance, dwell_distance: m, those of the machine if None. rated_torque: N m, the peak torque of the design if
-    None. None: speeds and times without a constant crank speed, what a dwell without its distance would give. Raises
-    `InputError` without a touch distance or a torque, and for distances that the stroke does not reach.
+    touch_distance, dwell_distance: distances to the dead centre, m, those of the machine if None. rated_torque: rated
+    torque, N m, the peak torque of the design if None. None: speeds and times without a constant crank speed, dwell
+    values without a dwell distance. Raises `InputError` without a touch distance or a torque, and for distances that
+    the stroke does not reach.
     """
     touch, torque = _touch(mechanism, touch_distance), _torque(mechanism, linkage, rated_torque)
     distances = touch * np.arange(1, _ROWS + 1) / _ROWS
@@ -95,7 +96,7 @@ def numbers(
 
 
 def _speed(mechanism: Mechanism) -> float:
-    """Return the size of the crank speed, rad/s; 0 along a profile, where there is not one for all angles."""
+    """Return the magnitude of the crank speed, rad/s; 0 with a speed profile, where it varies."""
     return abs(mechanism.speed) if mechanism.speed_profile is None else 0.0
 
 

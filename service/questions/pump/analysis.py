@@ -1,4 +1,4 @@
-"""Delivery of pumps and compressors: mean flow, ripple over the cycle, torque from the pressures only."""
+"""Delivery of pumps and compressors: mean flow, ripple over the cycle, torque from the pressures alone."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Delivery(Record):
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Delivery:
     """Return flow, ripple and pressure torque of all cylinders together, ready for JSON.
 
-    flow_ripple: None for gas and along a speed profile. Raises `InputError` without a pump, a compressor or a speed.
+    flow_ripple: None for gas and with a speed profile. Raises `InputError` without a pump, a compressor or a speed.
     """
     reason = FLOW.undefined_because([mechanism])
     if reason:
@@ -59,17 +59,17 @@ def _value(quantity: Quantity, mechanism: Mechanism, linkage: Linkage) -> float:
 
 
 def _is_even(mechanism: Mechanism) -> bool:
-    """Whether the flow has a ripple: of liquid at constant speed."""
+    """Whether the flow has a ripple: liquid at constant speed."""
     return not FLOW_RIPPLE.undefined_because([mechanism])
 
 
 def _pressures(mechanism: Mechanism) -> Mechanism:
-    """Return the machine with nothing but the pressures in its cylinders."""
+    """Return the machine with only the pressures in its cylinders."""
     return replace(massless(mechanism), loads=tuple(load for load in mechanism.loads if isinstance(load, Cylinder)))
 
 
 def _flows(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float64]) -> list[NDArray[np.float64]]:
-    """Return the flow of each cylinder of liquid, m^3/s, at crank angles of the shaft, rad."""
+    """Return the flow of each liquid cylinder, m^3/s, at crank angles of the shaft, rad."""
     flows = []
     pumps = [(pump.area, 1.0 if pump.head == "outer dead centre" else -1.0) for pump in pumps_of(mechanism).values()]
     for member in members(mechanism):
@@ -92,7 +92,7 @@ def blocks(numbers: Delivery) -> list[Block]:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
-    """Return the flow of each cylinder and of all together, of a liquid, and the pressure torque."""
+    """Return the flow per cylinder and in total, for a liquid, and the pressure torque."""
     shaft = mechanism if mechanism.arrangement else replace(mechanism, arrangement=Arrangement(phases=(0.0,)))
     alone = _pressures(shaft)
     theta = sampled_turn(multi_cylinder_breakpoints(alone, linkage))

@@ -1,4 +1,4 @@
-"""Rounded neighbours of a design of a front: what each costs and misses, and the steps as people write them."""
+"""Rounded neighbours of a design of a front: their losses and missed requirements, and the parsing of steps."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _TO, _ALLOW = (one for one in QUESTION.inputs if isinstance(one, TypedInput) and
 
 
 def answer(front: ParetoFront, *, row: int, watch: SearchListener, words: Mapping[str, str], **inputs: Any) -> Answer:
-    """Return the rounded neighbours of a design. Raises as `search` does."""
+    """Return the rounded neighbours of a design. Raises the errors of `search`."""
     for at in search(front, row, words, **inputs):
         if isinstance(at, Answer):
             return at
@@ -49,10 +49,10 @@ def search(
     allow: Sequence[str] = (),
     count: int = 5,
 ) -> Iterator[Stage | Answer]:
-    """Yield where the search is, several times a second, and at last the answer; closing ends it.
+    """Yield the progress of the search, several times a second, and finally the answer; closing ends it.
 
     to: steps, "0.5 mm" for all lengths, "rod=1 mm" for one number. allow: requirements that may be missed, each as
-    "stroke=0.1 mm". count: designs at most. words: what the door calls these. Raises `InputError`.
+    "stroke=0.1 mm". count: maximum number of designs. words: the interface's names for these. Raises `InputError`.
     """
     steps = steps_of(to, front.part(row), words["to"])
     named = texts_by_name(allow, words["allow"], _ALLOW.form, _ALLOW.example)
@@ -74,7 +74,7 @@ def _answered(rounded: Rounded, row: int) -> Answer:
 
 
 def steps_of(texts: Sequence[str], part: Problem, key: str) -> dict[str, float]:
-    """Return the steps by name, SI. key: what gives them, for messages. Raises `InputError`."""
+    """Return the steps by name, SI. key: name of the input, for messages. Raises `InputError`."""
     from ....model.machine.numbers import unit_of
     from ....objectives.tables.varying_column import varying_column
     from ....objectives.units import kind_of
@@ -112,7 +112,7 @@ def _step(text: str, kind: Kind, key: str) -> float:
 
 
 def _record(rounded: Rounded) -> dict[str, Any]:
-    """Return the answer as JSON has it, metric."""
+    """Return the answer as JSON, metric."""
     part = rounded.problem
     original: dict[str, Any] = {
         name: factor * value
@@ -149,7 +149,7 @@ def _record(rounded: Rounded) -> dict[str, Any]:
 
 
 def _record_in(units: System, record: dict[str, Any], rounded: Rounded) -> dict[str, Any]:
-    """Return the answer in a system of units, its round numbers as they are written there."""
+    """Return the answer in a system of units, with round numbers in the form used there."""
     converted: dict[str, Any] = record_in(deepcopy(record), units) | {"message": rounded.message_in(units)}
     keys = [key_in(rounded.names[name][0], units)[0] for name in rounded.steps]
     for row in (converted["steps"], *converted["designs"]):
@@ -162,7 +162,7 @@ def _record_in(units: System, record: dict[str, Any], rounded: Rounded) -> dict[
 
 
 def _blocks(rounded: Rounded, record: dict[str, Any], row: int) -> list[Block]:
-    """Return the designs as the columns of a table, and what each misses or nearly does."""
+    """Return the designs as the columns of a table, and the requirements that each misses or nearly misses."""
     original, designs, steps = record["given"], record["designs"], record["steps"]
     step_texts = [
         words("{title} {step}", title=find_column(key, original).title, step=recorded(steps, key, digits=4))
@@ -203,7 +203,7 @@ def _format_loss(value: float) -> Value:
 
 
 def _requirements(design: Mapping[str, Any], rounded: Rounded) -> Text:
-    """Return in words what a design misses, or which requirement is tightest."""
+    """Return in words the requirements that a design misses, or the tightest requirement."""
     if design["misses"]:
         missed = joined([_format_miss(miss, rounded.problem) for miss in design["misses"]], " and ")
         return words("misses {missed}", missed=missed)

@@ -1,4 +1,4 @@
-"""Sections of crank and rod of least mass: numbers and text."""
+"""Least-mass sections of crank and rod: numbers and text."""
 
 from ..design_question import DesignQuestion, QuestionCommand
 

@@ -1,4 +1,4 @@
-"""Widths and depths of crank and rod of one design, for least mass: numbers and text."""
+"""Widths and depths of crank and rod for least mass of one design: numbers and text."""
 
 from __future__ import annotations
 
@@ -41,9 +41,9 @@ _ACTIVE = 1e-3  # percent of mass per percent of a limit, to be worth a remark
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, *, problem: Problem | None, **_: Any) -> Sections:
-    """Return the sections of least mass, ready for JSON; pins are those of the design.
+    """Return the least-mass sections, ready for JSON; pins are those of the design.
 
-    Raises `InputError` without limits, and as `size_sections` does.
+    Raises `InputError` without limits, and the errors of `size_sections`.
     """
     if problem is None or problem.sections is None or mechanism.strength is None:
         raise InputError(

@@ -52,11 +52,11 @@ _LEFT_OUT = ("inner_dead_centre_position", "outer_dead_centre_position")
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Sensitivity:
-    """Return the table of `objectives.tables.sensitivity` for one linkage, ready for JSON: None where not defined.
+    """Return the table of `objectives.tables.sensitivity` for one linkage, ready for JSON: None if undefined.
 
     quantities: one entry each with quantity, title, unit, value, and for each dimension its derivative
     (<dimension>_per_mm), percent per percent (<dimension>_percent) and change for its tolerance
-    (<dimension>_tolerance), in the unit of the entry; each once more with _below, for the side of smaller values.
+    (<dimension>_tolerance), in the unit of the entry; each again with _below, for the side of smaller values.
     """
     return {"quantities": json_ready(rows_of(sensitivity(mechanism, row_of(linkage)[0]).to_dict("list")), gaps=True)}
 
@@ -117,7 +117,7 @@ def blocks(numbers: Sensitivity) -> list[Block]:
 
 
 def _per_length(kind: Kind) -> Kind:
-    """Return the kind of a derivative by a dimension, without a unit: the heading names the step."""
+    """Return the kind of a derivative with respect to a dimension, without a unit: the heading names the step."""
     inch = kind.display_unit("inch").factor / LENGTH.display_unit("inch").factor
     return replace(
         kind, metric=display_unit("", kind.metric.factor / LENGTH.metric.factor), inch=display_unit("", inch)
@@ -125,7 +125,7 @@ def _per_length(kind: Kind) -> Kind:
 
 
 def _derivative(row: dict[str, Any], key: str, kind: Kind, digits: int) -> Text:
-    """Return a derivative as text: both where the quantity has a kink."""
+    """Return a derivative as text; both one-sided ones at a kink of the quantity."""
 
     def value(number: float | None) -> Value:
         return Value(

@@ -1,4 +1,4 @@
-"""The tornado figure: by how many percent each quantity changes for one percent more of each dimension."""
+"""Tornado figure: percentage change of each quantity for a one percent increase in each dimension."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ _STEPS: dict[System, tuple[str, float]] = {"metric": ("1 mm", 1.0), "inch": ("0.
 
 
 def tornado_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing | None = None) -> pd.DataFrame:
-    """Return the rows of the figure: title and percentages of every quantity that has them, the most sensitive first.
+    """Return the rows of the figure: title and percentages of every quantity with percentages, most sensitive first.
 
-    swing: of a crank that makes no full turn. Of an offset of zero the percentages are for 1 mm.
-    <dimension>_percent_below: on the side of smaller values.
+    swing: swing of a crank that does not rotate fully. For a zero offset the percentages are for 1 mm.
+    <dimension>_percent_below: percentages on the side of smaller values.
     """
     table = sensitivity(mechanism, row_of(linkage)[0], swing)
     columns = [f"{name}_percent{side}" for name in DIMENSIONS for side in ("", "_below")]
     if float(linkage.offset) == 0.0:
-        # Those that have percentages: not zero, and no crank angle of a dead centre.
+        # Quantities with percentages: not zero, and not the crank angle of a dead centre.
         sizes = table["value"].where(table["crank_percent"].notna())
         for side in ("", "_below"):
             table[f"offset_percent{side}"] = 100.0 * table[f"offset_per_mm{side}"] / sizes
@@ -43,7 +43,7 @@ def tornado_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing | None = N
 def tornado_figure(rows: pd.DataFrame, system: System = "metric", *, width: float = 10.6, limit: int = 1000) -> Figure:
     """Return the figure in a system of units: a panel for each dimension, a bar for each quantity.
 
-    width: inches. limit: quantities that are drawn, of those that change the most.
+    width: width of the figure, inches. limit: number of most sensitive quantities to draw.
     """
     left_out, rows = len(rows) - limit, rows.head(limit)
     step, millimetres = _STEPS[system]

@@ -1,4 +1,4 @@
-"""Start of a machine: from rest under its motor to steady running."""
+"""Start of a machine from rest under its motor to steady running."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ RPM = ANGULAR_SPEED.metric.factor
 
 
 def start(mechanism: Mechanism, linkage: Linkage, **options: Any) -> tuple[Transient, SteadyRunning | None, str]:
-    """Return the start from rest at the inner dead centre, steady running if there is any, and if not why.
+    """Return the start from rest at the inner dead centre, and steady running or the reason for its absence.
 
     options: those of `simulate`. Raises `InputError` if the mechanism has no drive.
     """
@@ -90,7 +90,7 @@ def prepare(mechanism: Mechanism, linkage: Linkage, cancelled: Callable[[], bool
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, **options: Any) -> Start:
-    """Return the start from rest and the steady running, ready for JSON. options: those of `simulate`."""
+    """Return the start from rest and the steady running, ready for JSON. options: options of `simulate`."""
     run, running, reason = start(mechanism, linkage, **options)
     return {
         "verdict": run.verdict,
@@ -165,7 +165,7 @@ def blocks(numbers: Start) -> list[Block]:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, **options: Any) -> PanelFigure:
-    """Return speed and torque over time, and over a turn of steady running if there is any.
+    """Return speed and torque over time, and over a cycle of steady running if there is any.
 
     options: those of `simulate`. Raises `InputError` if the mechanism has no drive.
     """
@@ -185,7 +185,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, **options: Any) -> PanelFigur
 
 
 def in_order(running: SteadyRunning, *columns: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Return the crank angles of steady running, deg, from 0 to 360 or 720, and columns of it by them."""
+    """Return the crank angles of steady running, deg, from 0 to 360 or 720, and its columns in their order."""
     angle = np.degrees(running.crank_angle) % (360.0 * running.turns)
     order = np.argsort(angle, kind="stable")
     return angle[order], [column[order] for column in columns]

@@ -1,4 +1,4 @@
-"""Static forces of one design over the cycle: what the loads alone need, without masses, gravity and friction."""
+"""Static forces of one design over the cycle: loads alone, without masses, gravity and friction."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ _MOST_ADVANTAGE = 10.0  # beyond it the curve only says that a dead centre is ne
 def massless(mechanism: Mechanism, load: float | None = None) -> Mechanism:
     """Return the mechanism without masses, gravity and friction; with a constant load, N outward, if given.
 
-    Without loads of its own and without one given, the load is 1 N towards the crank pivot.
+    If the mechanism has no loads and none is given, the load is 1 N towards the crank pivot.
     """
     slider_loads = _slider_loads(mechanism)
     constant = -1.0 if load is None and not slider_loads else load
@@ -85,14 +85,14 @@ def massless(mechanism: Mechanism, load: float | None = None) -> Mechanism:
 
 
 def _slider_loads(mechanism: Mechanism) -> tuple[Load, ...]:
-    """Return the loads on the slider that act on it at rest."""
+    """Return the loads that act on the slider at rest."""
     return tuple(load for load in mechanism.loads if not load.on_crank and not load.inertial)
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None) -> StaticForces:
     """Return peaks over the cycle, continuous in the crank angle, and the forces every 30 deg.
 
-    load: on the slider, N outward; those of the mechanism if None, and 1 N towards the crank if it has none.
+    load: load on the slider, N outward; if None, the loads of the mechanism, or 1 N towards the crank without any.
     """
     machine = massless(mechanism, load)
     linkage = Linkage(linkage.crank, linkage.rod, linkage.offset, mechanism.branch)
@@ -116,7 +116,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None
         "least_mechanical_advantage_angle_deg": rate.degrees,
         "crank_angle_deg": [float(angle) for angle in degrees],
         "load_N": loads.tolist(),
-        # Adding zero makes a negative zero a plain one.
+        # Adding zero turns a negative zero into a positive one.
         "rod_force_N": (at.rod_force + 0.0).tolist(),
         "guide_reaction_N": (at.guide_reaction + 0.0).tolist(),
         "crank_torque_Nm": (at.crank_torque + 0.0).tolist(),

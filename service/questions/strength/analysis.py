@@ -1,4 +1,4 @@
-"""Strength of crank and rod of one design: stresses, safeties, pins, wear, and where the stress is greatest."""
+"""Strength of crank and rod of one design: stresses, safety factors, pins, wear, location of the greatest stress."""
 
 from __future__ import annotations
 
@@ -64,11 +64,11 @@ StrengthNumbers = Annotated[
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> StrengthNumbers:
-    """Return the quantities of strength that the machine has, and of each bar the greatest tension and compression.
+    """Return the machine's strength quantities, and the greatest tension and compression of each bar.
 
-    With the crank angle and the place along the bar from the crank pin; and of each eye the greatest stress with its
-    crank angle; `violated` as of a design. None: a quantity without a value; the safety of what is not compressed is
-    infinite. Raises `InputError` for a machine without material and pins.
+    Each comes with its crank angle and its distance along the bar from the crank pin. Also returns the greatest stress
+    of each eye with its crank angle, and `violated` as for a design. None: an undefined quantity; the safety factor of
+    an uncompressed bar is infinite. Raises `InputError` for a machine without material and pins.
     """
     _require(mechanism)
     design = row_of(linkage)
@@ -98,7 +98,7 @@ def _bars(mechanism: Mechanism) -> list[str]:
 
 
 def _extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str, float | None]:
-    """Return the greatest stresses along a bar, its eyes apart, and where; None of a sign that it never has."""
+    """Return the greatest stresses along a bar without its eyes, with locations; None for a sign that never occurs."""
     extremes: dict[str, float | None] = {}
     cycle = TURN * cycle_turns(mechanism)
     for place, (sign, criterion) in enumerate(zip(_SIGNS, STATIC, strict=True)):
@@ -145,7 +145,7 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
-    """Return the stress of each bar: both faces where it is greatest, and its ends along the bar.
+    """Return the stress of each bar: both faces at the greatest stress, and the extremes along the bar.
 
     Raises `InputError` for a machine without material and pins, and for a design that friction locks.
     """

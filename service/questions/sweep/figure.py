@@ -44,7 +44,7 @@ def column_of(axis: Axis) -> str:
 
 
 def sweep_grid(table: pd.DataFrame, axes: Sequence[Axis], item: Quantity) -> tuple[list[Array], Array]:
-    """Return the values of each axis as shown, ascending, and those of the quantity over them; NaN where none."""
+    """Return the values of each axis as shown, ascending, and the quantity's values over them; NaN if missing."""
     shape = [len(axis.values) for axis in axes]
     values = table[item.field].to_numpy(dtype=np.float64).reshape(shape)
     values = np.where(np.isfinite(values), values, np.nan)
@@ -63,7 +63,7 @@ def sweep_figure(
 ) -> Figure:
     """Return the figure of a sweep over one or two axes: a panel for each quantity, six at most.
 
-    An axis of a single value is named in the heading and not drawn. system: of the units that all is shown in.
+    An axis with a single value is named in the heading and not drawn. system: system of units shown.
     """
     items = list(quantities)[:MOST]
     drawn = [n for n, axis in enumerate(axes) if len(axis.values) > 1] or [0]
@@ -105,7 +105,7 @@ def sweep_figure(
 
 
 def _axis_title(axis: Axis, system: System) -> tuple[str, float]:
-    """Return the title of an axis with its unit, and that unit in the one of its column."""
+    """Return the title of an axis with its unit, and the size of that unit in the unit of its column."""
     symbol, factor = shown_in("rpm" if axis.parameter == "speed" else "mm", system)
     return with_unit(axis.parameter, symbol), factor
 

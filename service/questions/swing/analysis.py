@@ -1,4 +1,4 @@
-"""A swing of one design: the record of JSON, its text, and its curves, with keys that carry their units."""
+"""A swing of one design: the JSON record, its text, and its curves, with units in the keys."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ _KINDS = (*KINDS, ANGULAR_SPEED, ANGULAR_ACCELERATION)
 
 
 def _places(name: str, *, way: bool = True) -> dict[str, Any]:
-    """Return the keys of where a value is."""
+    """Return the keys for the location of a value."""
     return {f"{name}_{place}": kind for place, kind in (_PLACES | ({"way": _Way} if way else {})).items()}
 
 
@@ -122,9 +122,9 @@ SwingNumbers = Annotated[
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, **options: Any) -> SwingNumbers:
-    """Return the numbers of a swing, ready for JSON. options: the inputs, in SI, with `swing` and `words`.
+    """Return the numbers of a swing, ready for JSON. options: inputs, in SI, with `swing` and `words`.
 
-    Raises `AssemblyError` where the linkage does not close, and as `asked_swing` does.
+    Raises `AssemblyError` if the linkage does not close, and the errors of `asked_swing`.
     """
     machine, swing = _swing_from_inputs(mechanism, **options)
     return swing_record(machine, summarise(machine, linkage, swing))
@@ -156,7 +156,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, units: System, **options: 
 
 
 def swing_record(mechanism: Mechanism, summary: SwingSummary) -> SwingNumbers:
-    """Return a swing in numbers, metric; null for what is undefined, and notes that say why."""
+    """Return the metric numbers of a swing; null if undefined, with notes that give the reason."""
     swing, linkage = summary.swing, summary.linkage
     drive, error = drive_kind(swing).metric, error_kind(swing).metric
     record: dict[str, Any] = {
@@ -194,9 +194,9 @@ def swing_record(mechanism: Mechanism, summary: SwingSummary) -> SwingNumbers:
 
 
 def _extremes(mechanism: Mechanism, summary: SwingSummary) -> dict[str, Any]:
-    """Return title, least and greatest value of each curve over both ways, and where; null if undefined.
+    """Return title, least and greatest values of each curve over both strokes, with locations; null if undefined.
 
-    Left out: loads that are zero, errors without tolerances, forces where nothing acts.
+    Zero loads, errors without tolerances and forces without a cause are omitted.
     """
     strokes = SwingCycle(mechanism, summary.linkage, summary.swing)
     entries: dict[str, Any] = {}
@@ -210,7 +210,7 @@ def _extremes(mechanism: Mechanism, summary: SwingSummary) -> dict[str, Any]:
             fields = _value_and_place(
                 f"{word}{curve.kind.metric.suffix}", at, curve.kind.metric.factor, way=True, stem=word
             )
-            # Next to a place where friction locks forces grow beyond all bounds.
+            # Near a position where friction locks, forces grow without bound.
             is_bounded = summary.locked is None or curve.kind not in (FORCE, TORQUE, POWER)
             entry |= fields if is_bounded and math.isfinite(at.value) else dict.fromkeys(fields)
         entries[curve.name] = entry
@@ -218,7 +218,7 @@ def _extremes(mechanism: Mechanism, summary: SwingSummary) -> dict[str, Any]:
 
 
 def _value_and_place(key: str, at: SwingPoint, factor: float, *, way: bool = False, stem: str = "") -> dict[str, Any]:
-    """Return a value and its places. stem: how the keys of these begin; the key without its unit if empty."""
+    """Return a value and its location. stem: prefix of the location's keys; the key without its unit if empty."""
     stem = stem or key.rpartition("_")[0]
     return {
         key: finite_or_none(factor * at.value + 0.0),
@@ -249,7 +249,7 @@ def swing_title(record: Mapping[str, Any]) -> str:
 
 
 def swing_numbers(record: Mapping[str, Any]) -> list[NamedNumber]:
-    """Return the numbers of a metric record but its extremes, each with where it is."""
+    """Return the numbers of a metric record except its extremes, each with its location."""
     lines: list[NamedNumber] = []
     for key, value in record.items():
         name, _ = kind_of_key(key)

@@ -96,11 +96,10 @@ def numbers(
 ) -> PositionError:
     """Return the effect of a mechanism's tolerances on the slider position of one linkage, ready for JSON.
 
-    limit: position tolerance, m, whose yield is wanted; without it, the yields at the root-sum-square and at the worst
-    case are given. Shares are those at the crank angle of the first-order worst case, of the variance as simulated.
-    The exact worst case is None where a linkage within the tolerances does not turn. The histogram counts machines by
-    their greatest error, in even bins from 0. Raises `InputError` if there are
-    no tolerances.
+    limit: position tolerance for the yield, m; without it, the yields at the root-sum-square and at the worst case are
+    given. Contributions are fractions of the simulated variance, at the crank angle of the first-order worst case. The
+    exact worst case is None if a linkage within the tolerances does not rotate fully. The histogram counts machines by
+    their greatest error, in even bins from 0. Raises `InputError` without tolerances.
     """
     source_limits = limits(mechanism, linkage)
     if not np.any(source_limits):
@@ -166,7 +165,7 @@ def numbers(
 
 
 def _histogram(greatest: np.ndarray) -> Histogram | None:
-    """Return edges, mm, and counts of the machines that turn; None if none does."""
+    """Return edges, mm, and counts of the machines that rotate fully; None without any."""
     turning = 1e3 * greatest[np.isfinite(greatest)]
     if not len(turning) or not turning.max() > 0.0:
         return None
@@ -229,7 +228,7 @@ def _sources(contributions: list[Contribution]) -> Table:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> Callable[[System], Figure]:
-    """Return the bands of the error over the cycle, and where they come from."""
+    """Return the bands of the error over the cycle, and their sources."""
     from .figure import error_bands, tolerances_figure
 
     return partial(tolerances_figure, error_bands(mechanism, linkage))

@@ -30,9 +30,9 @@ PERCENTS = (0.135, 5.0, 95.0, 99.865)
 class Bands:
     """Deviations of the slider over the cycle, m, each (m,), at crank angles, deg.
 
-    least, greatest: exact; None where a linkage within the tolerances does not turn. percentiles: (4, m), `PERCENTS`.
-    shares: (s, m), of the variance, in percent, of the sources named. machines: (n,), the greatest error of each random
-    machine that turns, over the counted part of the cycle.
+    least, greatest: exact extremes; None if a linkage within the tolerances does not rotate fully. percentiles: (4, m),
+    at `PERCENTS`. shares: fractions of the variance (s, m), percent, for each source. machines: (n,), the greatest
+    error of each random machine that rotates fully, over the counted part of the cycle.
     """
 
     angles: Array
@@ -47,7 +47,7 @@ class Bands:
 
 
 def error_bands(mechanism: Mechanism, linkage: Linkage, *, samples: int = SAMPLES, seed: int = 1) -> Bands:
-    """Return the bands of one fully turning linkage over a whole turn, whatever part of it counts."""
+    """Return the bands of one fully rotating linkage over a full revolution, whichever part of it counts."""
     theta = np.linspace(0.0, 2.0 * np.pi, ANGLES)
     least = greatest = None
     with contextlib.suppress(AssemblyError):
@@ -70,7 +70,7 @@ def error_bands(mechanism: Mechanism, linkage: Linkage, *, samples: int = SAMPLE
 
 
 def tolerances_figure(bands: Bands, system: System = "metric") -> Figure:
-    """Return the figure in a system of units: the bands, beside them random machines, below where they come from."""
+    """Return the figure in a system of units: the bands, random machines beside them, and sources below."""
     unit = LENGTH.display_unit(system)
     figure = style.new_figure(9.2, 7.2)
     note = "Monte Carlo: normal errors, limits at three standard deviations; pins pressed to either side"

@@ -1,4 +1,4 @@
-"""A crank speed that varies over the turn: numbers, text and figure."""
+"""Crank speed that varies over the revolution: numbers, text and figure."""
 
 from ..design_question import DesignQuestion
 

@@ -1,4 +1,4 @@
-"""A machine at the speed profile of its job, beside the same at constant speed."""
+"""A machine with the speed profile of its job, compared with constant speed."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def _require(mechanism: Mechanism) -> None:
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> UnevenSpeed:
-    """Return speeds, period and peaks at the profile, and the peaks at constant speed. Raises without a profile."""
+    """Return speeds, period and peaks with the profile, and the peaks at constant speed. Raises without a profile."""
     _require(mechanism)
     profile, even = (
         speed_profile_cycle(machine, linkage) for machine in (mechanism, replace(mechanism, speed_profile=None))
@@ -118,7 +118,7 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
-    """Return speed, torque and shaking force over a turn, at the profile and at constant speed."""
+    """Return speed, torque and shaking force over a revolution, with the profile and at constant speed."""
     _require(mechanism)
     knots = np.mod(speed_knots(mechanism), 2.0 * np.pi)
     theta = sampled_turn(breakpoints(mechanism, linkage), knots, turns=cycle_turns(mechanism))

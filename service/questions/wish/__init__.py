@@ -1,4 +1,4 @@
-"""The optimal design that comes nearest to what is wished: numbers and text."""
+"""The optimal design nearest to a wish: numbers and text."""
 
 from ..front_or_job_question import FrontOrJobQuestion
 from ..typed_input import TypedInput

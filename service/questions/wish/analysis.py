@@ -1,4 +1,4 @@
-"""Answer to a wish: the design, and for each objective what was wished and what is reached."""
+"""Answer to a wish: the design, and for each objective the wish and the outcome."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ if TYPE_CHECKING:
 
 
 def answer(front: ParetoFront, *, row: int | None, at: Mapping[str, object], **_: Any) -> Answer:
-    """Return the answer to wishes by objective. row: of the design that improve, keep and worsen speak of.
+    """Return the answer to wishes by objective. row: row of the design that improve, keep and worsen refer to.
 
-    Raises as `optimise.decisions.wish.wish` does.
+    Raises the errors of `optimise.decisions.wish.wish`.
     """
     return answered(Wishes(front).wish(at, row=row), at)
 
 
 def answered(wished: Wished, at: Mapping[str, object]) -> Answer:
-    """Return a solved wish as an answer. at: by objective, as it was asked for.
+    """Return a solved wish as an answer. at: wishes by objective, as entered.
 
-    Of its numbers: possible, whether everything wished is reached. sentences: the answer in words. achievement: value
-    of the achievement function. objectives: of each, wish and outcome, in its unit. design: the row of a front's table,
-    null where no design stays within what is allowed.
+    Its numbers: possible: whether every wish is met. sentences: the answer in words. achievement: value of the
+    achievement function. objectives: wish and outcome of each, in its unit. design: row of a front's table, null if no
+    design stays within the allowed limits.
     """
     rows = rows_of(wished.found.columns) if len(wished) else []
 
@@ -64,7 +64,7 @@ def told_wish(at: Mapping[str, object], row: int | None) -> str:
 
 
 def sentences(wished: Wished) -> list[Phrase]:
-    """Return whether a wish can be had, then wish and outcome of each objective, for people."""
+    """Return whether a wish can be met, then wish and outcome of each objective, for people."""
     return [Phrase(*pair) for pair in zip(wished.sentences("metric"), wished.sentences("inch"), strict=True)]
 
 
