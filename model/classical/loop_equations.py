@@ -51,13 +51,13 @@ def solve_loop(
     """Return the motion at crank angles (rad) for crank speed (rad/s) and acceleration (rad/s^2); all broadcast.
 
     start: slider position (m) and rod angle (rad) to start from. By default the rod lies along the slider line on the
-    linkage's branch; from there the rod angle rises or falls to the solution without overshooting, because the sine is
-    concave up to a quarter turn. From another start the solution that is found may lie on the other branch.
-    iteration_limit: iterations allowed.
+    linkage's branch; from there the rod angle approaches the solution without overshooting, because the sine is concave
+    up to a quarter turn. From another start the iteration may converge to the other branch. iteration_limit: iterations
+    allowed.
 
     Raises `AssemblyError` where the linkage cannot be assembled, `InputError` where the iteration does not end.
     """
-    linkage.at(crank_angle, speed=speed, acceleration=acceleration)  # refuses what cannot be assembled
+    linkage.at(crank_angle, speed=speed, acceleration=acceleration)  # rejects linkages that cannot be assembled
     theta, w, alpha, r, l, e = np.broadcast_arrays(
         *(np.asarray(value, dtype=np.float64) for value in (crank_angle, speed, acceleration)),
         linkage.crank,
@@ -111,7 +111,7 @@ def _jacobian(l: Array, phi: Array) -> Array:
 
 
 def _solve(jacobian: Array, right: Array, active: Mask, theta: Array) -> Array:
-    """Solve at the angles that are wanted; zero elsewhere."""
+    """Solve at the requested angles; zero elsewhere."""
     singular = active & (np.abs(jacobian[..., 1, 1]) < np.finfo(np.float64).tiny)
     if np.any(singular):
         raise InputError(

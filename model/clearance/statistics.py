@@ -1,4 +1,4 @@
-"""Statistics of a run with a loose joint over the turns of the crank, each with its uncertainty."""
+"""Statistics over the crank turns of a run with a loose joint, each with its uncertainty."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ CONFIDENCE = 0.99
 
 @dataclass(frozen=True)
 class Estimate:
-    """A mean over turns of the crank, and how far it may be from that of ever more turns.
+    """A mean over crank turns, and its uncertainty as an estimate of the long-run mean.
 
     uncertainty: half the width of the 99 % confidence interval, Student's t times s / sqrt(n) with s the standard
-    deviation of the turns; None after one turn. The motion is chaotic as a rule: two runs that differ by rounding part
-    after a few impacts, so that single turns do not repeat and only such means compare. The difference of two of them
-    is sqrt(2) wider spread than either, so that it lies within this width in 9 of 10 comparisons or more. Turns count
-    as independent; where the motion repeats after several turns, that overstates the uncertainty.
+    deviation of the turns; None after one turn. The motion is usually chaotic: two runs that differ by rounding diverge
+    after a few impacts. Single turns therefore do not repeat, and only such means can be compared. The difference of
+    two means scatters sqrt(2) times as widely as either, so it lies within this width in at least 9 of 10 comparisons.
+    Turns count as independent; where the motion repeats after several turns, that overstates the uncertainty.
     """
 
     value: float
@@ -46,14 +46,14 @@ class Estimate:
 class ClearanceSummary:
     """Statistics of the turns after the first `discard` ones. SI.
 
-    turns: how many count. peak_acceleration: greatest size of the slider's acceleration in a turn, m/s^2;
+    turns: number of counted turns. peak_acceleration: greatest size of the slider's acceleration in a turn, m/s^2;
     acceleration_ratio: the same over that of the ideal linkage. displacement_deviation: greatest distance from the
-    ideal slider position in a turn, as a share of the stroke. velocity_deviation: likewise of the velocity, m/s.
-    impacts: beginnings of contact in a turn. contact_share: of the time. peak_contact_force: in a turn, N.
-    penetration: greatest in a turn, m. fastest_impact: of all, m/s; None if there was none.
+    ideal slider position in a turn, as a fraction of the stroke. velocity_deviation: likewise for the velocity, m/s.
+    impacts: contacts begun per turn. contact_share: fraction of the time in contact. peak_contact_force: greatest in a
+    turn, N. penetration: greatest in a turn, m. fastest_impact: greatest of all, m/s; None if there was none.
     input_work, load_work, dissipated, stored: in a turn, J: work of the drive, work of the loads on the slider, loss in
-    the joint, gain of kinetic, potential and elastic energy.
-    energy_residual: greatest energy balance error in a turn, J.
+    the joint, gain of kinetic, potential and elastic energy. energy_residual: greatest energy balance error in a turn,
+    J.
     """
 
     turns: int
@@ -74,14 +74,14 @@ class ClearanceSummary:
 
 
 def summarise(run: ClearanceRun) -> ClearanceSummary:
-    """Return the statistics of a run. Raises `InputError` if no turn is left after those that are discarded."""
+    """Return the statistics of a run. Raises `InputError` if no turn remains after the discarded ones."""
     turns = run.cycles - run.discard
     if turns < 1:
         raise InputError(
             f"statistics need a complete turn after the first {run.discard}; got {run.cycles} turns; let it run longer"
         )
     marks = run.period * np.arange(run.discard, run.cycles + 1)
-    # Samples of one turn: from the last one at its beginning to the first one at its end.
+    # Samples of one turn: from the last sample at its beginning to the first one at its end.
     first = np.searchsorted(run.times, marks[:-1] * (1.0 + 1e-12), side="right") - 1
     last = np.searchsorted(run.times, marks[1:] * (1.0 - 1e-12), side="left")
     spans = [slice(int(a), int(b) + 1) for a, b in zip(first, last, strict=True)]

@@ -1,4 +1,4 @@
-"""Self-locking: where friction lets no crank torque, however great, drive the slider as prescribed.
+"""Self-locking: where friction prevents any crank torque, however great, from driving the slider as prescribed.
 
 From `rubbing`: the force balance of the rod is one equation h(y) = 0, whose slope tends to along + D and along - D
 for y -> +-infinity, with
@@ -8,9 +8,9 @@ for y -> +-infinity, with
 Where |D| < |along| both slopes have one sign and there is a solution for every load. Where |D| >= |along| both ends of
 h point the same way, and the number of solutions is even: none for loads that resist (the linkage *locks*: the harder
 the crank pushes, the more the guide holds), two or more for loads that drive it (it *may jam*: the prescribed motion
-and a wedged state both balance, and which one comes about the forces do not tell). The condition knows no load and no
-mass; turning the other way changes the sign of D alone. Without pins it says that the transmission angle is below
-arctan(mu).
+and a wedged state both balance, and the forces do not determine which one occurs). The condition contains no load and
+no mass; reversing the rotation changes only the sign of D. Without pin friction it says that the transmission angle is
+below arctan(mu).
 
 |D| is greatest, and |along| least, where the crank is normal to the slider line and points away from it,
 sin(theta) = -sgn(e); there l cos(phi) = mu l sin(phi) + q (rho_A + rho_B) in the limit from one side. The margin is
@@ -38,10 +38,10 @@ from ..machine.raw import Raw
 
 
 def locking_margin(friction: Friction, designs: Array, *, gradients: bool = False) -> tuple[Array, Array | None]:
-    """Return the self-locking margin, rad, of designs (n, 3): crank, rod, offset, m, each turning fully.
+    """Return the self-locking margin, rad, of designs (n, 3): crank, rod, offset, m, each rotating fully.
 
     It does not depend on loads and masses: zero or less means that the linkage locks or may jam somewhere (see module).
-    -inf where the friction circles' sum is the rod or more.
+    -inf where the sum of the friction circles' radii is at least the rod length.
     """
     return varied_margin(Mechanism(friction=friction), designs, gradients=gradients)
 
@@ -65,7 +65,7 @@ def require_driving(friction: Friction, linkage: Linkage) -> None:
 
 
 def varied_margin(mechanism: Mechanism, designs: Array, *, gradients: bool = False) -> tuple[Array, Array | None]:
-    """Return the self-locking margin like `locking_margin`, of designs (n, 3 + k) of a machine, which may vary."""
+    """Return the self-locking margin, as `locking_margin`, for designs (n, 3 + k) of a machine with varying numbers."""
     designs = np.asarray(designs, dtype=np.float64)
     require_width(mechanism, designs)
     friction = mechanism.friction

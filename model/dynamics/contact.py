@@ -1,7 +1,7 @@
-"""The cycle of a machine with friction: signs of the sliding in each segment, where the guide's force changes sides.
+"""The cycle of a machine with friction: signs of sliding in each segment; angles where the guide's force changes sides.
 
-Friction turns over with the slider (dead centres), with the rod (where the crank is normal to the slider line) and with
-the guide's force. The first two are cuts of `segments.cut_cycle`; the third is found here, a kink of every curve.
+Friction reverses with the slider (dead centres), with the rod (where the crank is normal to the slider line) and with
+the guide's force. The first two are cuts of `segments.cut_cycle`. The third, a kink in every curve, is found here.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _TURN = 2.0 * math.pi
 
 
 def rubs(mechanism: Mechanism) -> bool:
-    """Whether kernels have to count with friction."""
+    """Whether kernels have to include friction."""
     return bool(mechanism.fullest.friction.acts)
 
 
@@ -50,7 +50,7 @@ def _touch(
 
 @analytic
 def _senses(probe: Any, d: Any) -> Any:
-    """Senses in which the crank turns, the rod, and the crank against the rod, 1 or -1."""
+    """Senses of rotation of the crank, the rod, and the crank relative to the rod, 1 or -1."""
     turn = 1.0 if d.speed >= 0.0 else -1.0
     m = motion(math.sin(probe), math.cos(probe), d.r, d.l, d.e, d.branch)
     return turn, 1.0 if m.rod_1 * turn > 0.0 else -1.0, turn if m.rod_1 < 1.0 else -turn
@@ -60,7 +60,7 @@ def _senses(probe: Any, d: Any) -> Any:
 def sides_of(
     probe: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any, rubbing: Any
 ) -> Any:
-    """Return the `Sides` of the segment, entered before, around the crank angle `probe`."""
+    """Return the `Sides` of the previously entered segment around the crank angle `probe`."""
     if not rubbing:
         return Sides(0.0, 0.0, 0.0, 0.0, 0.0)
     turn, swing, grip = _senses(probe, d)
@@ -75,13 +75,13 @@ def cut_contacts(
 ) -> int:
     """Add cuts where the guide's force changes sides to the first `count` cuts; return their new number.
 
-    Found between neighbouring samples: two changes within one spacing, where the force is next to nothing, are passed
-    over; the curves follow the one side there, off by no more than the friction of that force.
+    Found between neighbouring samples: two changes within one spacing, where the force is almost zero, are ignored.
+    There the curves follow one side, with an error of at most the friction of that force.
     """
     kappa = crowding(d.r, d.l, d.e)
     first, ahead, n = cuts.angle[0], 0, count
-    for s in range(count - 1, -1, -1):  # backwards: what is added moves only cuts that have been looked at
-        while cuts.angle[ahead] < first:  # but for those after the last one that are before the first one
+    for s in range(count - 1, -1, -1):  # backwards: additions move only cuts that have already been processed
+        while cuts.angle[ahead] < first:  # except those after the last cut that lie before the first one
             ahead += 1
         a = cuts.angle[ahead + s]
         b = cuts.angle[ahead + s + 1] if s + 1 < count else first + _TURN
@@ -158,7 +158,7 @@ def shift_of(
     shift: Any,
     sides: Any,
 ) -> float:
-    """Return the imaginary part of any cut's angle, in the segment entered before."""
+    """Return the imaginary part of any cut's angle, in the previously entered segment."""
     if cuts.code[i] == CONTACT:
         return contact_shift(z, stepped, d, block, 0, theta, outward, loads, piece, shift, sides)
     return cut_shift(z, stepped, 0, theta, cuts, i)

@@ -19,7 +19,7 @@ from .dimensions import DIMENSIONS
 class Kinematics:
     """Motion at given crank angles; arrays of the broadcast shape, SI and radians.
 
-    rod_angle: of the rod from +x, counter-clockwise; near 180 deg on the crossed branch.
+    rod_angle: angle of the rod from +x, counter-clockwise; near 180 deg on the crossed branch.
     transmission_angle: between rod and the normal of the slider line, 90 deg - |phi| from the slider line.
     """
 
@@ -43,7 +43,7 @@ class PointMotion:
 
 
 def numbers(value: ArrayLike, argument: str = "a crank angle, speed or acceleration") -> Array:
-    """Return real or complex numbers; typed as real, which all but a complex step are. Raises `InputError`."""
+    """Return real or complex numbers, typed as real (all except complex steps are). Raises `InputError`."""
     kind = np.complex128 if np.iscomplexobj(value) else np.float64
     try:
         array: Array = np.asarray(value, dtype=kind)
@@ -53,7 +53,7 @@ def numbers(value: ArrayLike, argument: str = "a crank angle, speed or accelerat
 
 
 def dimensions(crank: ArrayLike, rod: ArrayLike, offset: ArrayLike) -> tuple[Array, Array, Array]:
-    """Return crank, rod and offset, m, as arrays that broadcast; an offset that is a rounding error becomes zero.
+    """Return crank, rod and offset, m, as arrays that broadcast; an offset of rounding size becomes zero.
 
     Raises `InputError` for other values, `AssemblyError` where no crank angle is possible.
     """
@@ -114,12 +114,12 @@ def in_a_turn(angle: Array) -> Array:
 
 
 def first_marked(values: Array, marked: Mask) -> float:
-    """Return the first of the values that are marked."""
+    """Return the first marked value."""
     return float(np.asarray(values)[marked].flat[0])
 
 
 def in_mm(crank: Array, rod: Array, offset: Array, marked: Mask) -> str:
-    """Return the first of the linkages that are marked, in words, mm."""
+    """Return the first marked linkage in words, mm."""
     crank, rod, offset = (np.broadcast_to(value, marked.shape) for value in (crank, rod, offset))
     return (
         f"rod {1e3 * first_marked(rod, marked):g} mm, crank {1e3 * first_marked(crank, marked):g} mm, "

@@ -1,7 +1,7 @@
-"""Work over a turn: whether a machine takes any, judged by its parts and not by numbers that cancel.
+"""Work over a turn: whether a machine takes any, judged by its parts and not by cancelling numbers.
 
-At constant crank speed the kinetic energy repeats after a turn, and so does what gravity and every load have stored
-whose force depends on the slider's position alone. The mean drive torque is then zero for every linkage.
+At constant crank speed the kinetic energy repeats after a turn. So does the energy stored by gravity and by every load
+whose force depends only on the slider's position. The mean drive torque is then zero for every linkage.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ _ROUNDING = 1e-12
 def works_over_a_turn(mechanism: Mechanism) -> bool:
     """Return whether the mean drive torque over a turn may differ from zero for some design.
 
-    It does not without friction of what is loaded, acceleration of the crank, loads that change with the speed or have
-    a formula of their own, loads that differ between the strokes and loads over crank angle (`Load.turn_work`). Of
-    numbers that vary two values each are tried, neither of them special.
+    It is zero without all of these: friction in loaded joints, crank acceleration, loads that change with speed or have
+    their own formula, loads that differ between strokes, and loads over crank angle (`Load.turn_work`). For each
+    varying number two values are tried, neither of them special.
     """
     return any(machine.acceleration != 0.0 or _rubs(machine) or _load_works(machine) for machine in _tried(mechanism))
 
@@ -38,7 +38,7 @@ def load_works_over_a_turn(mechanism: Mechanism) -> bool:
 
 @memoise_by_machine
 def with_loads_alone(mechanism: Mechanism) -> Mechanism:
-    """Return the machine without what weighs and what rubs: all that its drive gives goes into the loads."""
+    """Return the machine without masses and friction: all work of its drive goes into the loads."""
     nothing = RigidLink(mass=0.0)
     of_loads = {"loads", "speed", "speed_profile"}
 
@@ -64,13 +64,13 @@ def rubs_under_load(mechanism: Mechanism) -> bool:
 
 
 def linkage_loaded(machine: Mechanism) -> bool:
-    """Return whether forces act on rod or slider: loads, or weight and inertia of what moves."""
+    """Return whether forces act on rod or slider: loads, or weight and inertia of moving parts."""
     driven = machine.speed != 0.0 or machine.acceleration != 0.0 or any(machine.gravity)
     return (moves(machine) and driven) or pushed(machine)
 
 
 def pushed(machine: Mechanism) -> bool:
-    """Return whether loads act on the slider: some that need no speed, or any while it moves."""
+    """Return whether loads act on the slider: speed-independent ones, or any while it moves."""
     return any(not load.on_crank for load in _acting_loads(machine))
 
 
@@ -85,7 +85,7 @@ def drive_loaded(machine: Mechanism) -> bool:
 
 
 def _acting_loads(machine: Mechanism) -> list[Load]:
-    """Return the loads that are not zero throughout; if the crank is at rest, those that need no speed."""
+    """Return the loads that are not zero throughout; if the crank is at rest, only speed-independent ones."""
     driven = machine.speed != 0.0 or machine.acceleration != 0.0
     return [
         load
@@ -121,7 +121,7 @@ def _rubs(machine: Mechanism) -> bool:
 
 
 def _tried(mechanism: Mechanism) -> list[Mechanism]:
-    """Return the machine, or of one with varying numbers two that are not special."""
+    """Return the machine, or for varying numbers two machines with values that are not special."""
     if not mechanism.varying:
         return [mechanism]
     inner = [item.lower + (0.618 * n % 1.0) * (item.upper - item.lower) for n, item in enumerate(mechanism.varying, 1)]

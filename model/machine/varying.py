@@ -16,11 +16,11 @@ from ..errors import InputError
 class Varying:
     """A number of a machine that a design may choose.
 
-    name: for people; in a job its path, "mechanism.slider.mass". sets: which numbers of the `Mechanism` follow it, each
-    by its dotted path ("slider_mass", "crank.width", "loads.0.stiffness") and a factor: the number is factor times
-    value. A force F that opposes every motion sets ("loads.0.outward", -1.0) and ("loads.0.inward", 1.0).
-    lower, upper: where the value may lie, SI; equal ends fix it. idle: whether it sets nothing, being of another turn
-    of the cycle (`two_turns`).
+    name: displayed name; in a job its path, "mechanism.slider.mass". sets: numbers of the `Mechanism` that follow it,
+    each with its dotted path ("slider_mass", "crank.width", "loads.0.stiffness") and a factor: the number is factor
+    times value. A force F that opposes every motion sets ("loads.0.outward", -1.0) and ("loads.0.inward", 1.0). lower,
+    upper: bounds of the value, SI; equal bounds fix it. idle: whether it sets nothing, because it belongs to another
+    turn of the cycle (`two_turns`).
     """
 
     name: str
@@ -40,7 +40,7 @@ class Varying:
 
     @property
     def fullest(self) -> float:
-        """The end of greatest size."""
+        """The bound of greatest size."""
         return max(self.lower, self.upper, key=abs)
 
     @property
@@ -61,7 +61,7 @@ def with_values(part: Any, varying: Sequence[Varying], values: Sequence[float]) 
 
 
 def number_at(part: Any, path: str) -> float | None:
-    """Return the number at a dotted path of a machine; None where a link takes its own. Raises `InputError`."""
+    """Return the number at a dotted path of a machine; None where a link uses its default. Raises `InputError`."""
     for key in path.split("."):
         part = _member(part, key, path)
     if isinstance(part, bool) or not (part is None or isinstance(part, int | float)):

@@ -27,7 +27,7 @@ _TURN = 2.0 * math.pi
 
 
 def limits(mechanism: Mechanism, linkage: Linkage) -> Array:
-    """Return how far each source may be off, (8,), m; the crank angle in rad."""
+    """Return the limit of each source, (8,), m; the crank angle's in rad."""
     linkage, t = one_linkage(mechanism, linkage), mechanism.tolerances
     lengths = (
         tolerance.limit(float(length))
@@ -50,8 +50,8 @@ def source_influences(mechanism: Mechanism, linkage: Linkage, crank_angle: Array
 def limit_box(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return least and greatest crank, rod, offset (m) and deviation of the crank angle (rad), (4, 2).
 
-    Clearances widen the rod (pins) and the offset (guide). Raises `AssemblyError` unless every linkage in the box turns
-    fully, `InputError` if the crank angle may be off by half a turn.
+    Clearances widen the rod (pins) and the offset (guide). Raises `AssemblyError` unless every linkage in the box
+    rotates fully, `InputError` if the crank angle may be off by half a turn.
     """
     linkage, limits_of_sources = single(mechanism, linkage), limits(mechanism, linkage)
     half = np.add(limits_of_sources[:4], [0.0, limits_of_sources[PINS].sum(), limits_of_sources[GUIDE], 0.0])
@@ -74,8 +74,8 @@ def limit_box(mechanism: Mechanism, linkage: Linkage) -> Array:
 def counted_angles(mechanism: Mechanism, linkage: Linkage, *, count: int = ANGLES) -> list[Array]:
     """Return the crank angles, rad, over which the position error counts: an ascending array for each connected part.
 
-    count: angles a turn, concentrated where the linkage comes close to locking. The ends of a part are among its
-    angles; the whole cycle is one part, that ends one turn after it began.
+    count: angles per turn, concentrated where the linkage comes close to locking. The ends of a part are among its
+    angles; the whole cycle is one part that ends one turn after its start.
     """
     linkage, window = single(mechanism, linkage), mechanism.tolerances.window
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)

@@ -1,16 +1,16 @@
 """Running under a constant torque by the energy integral: exact where no load depends on the speed.
 
-With K = (J + J_drive) w^2 / 2 the speed leaves the equation of motion, dK / d(theta) = T - C. The torque of a turn that
-repeats is the mean of C, and with W, the integral of T - C counted from its least value,
+With K = (J + J_drive) w^2 / 2 the speed leaves the equation of motion, dK / d(theta) = T - C. The torque of a periodic
+turn is the mean of C, and with W, the integral of T - C counted from its least value,
 
     K(theta) = K_least + W(theta),        period = integral of sqrt((J + J_drive) / 2 K) d(theta).
 
 One unknown is left for the mean speed: K_least > 0. No load jumps over the crank angle, so W rises smoothly from its
-least value, and the period grows without bound as K_least falls to 0: every mean speed has its running, however closely
-the crank comes to stopping.
+least value, and the period grows without bound as K_least falls to 0. Every mean speed therefore has a solution,
+however close the crank comes to stopping.
 
-Loads D w and E w^2, and friction, are taken along the motion found last, from a constant speed on: then the result is a
-first guess.
+Loads D w and E w^2, and friction, are evaluated along the latest motion, starting with constant speed; the result is
+then a first guess.
 """
 
 from __future__ import annotations
@@ -40,8 +40,8 @@ _GRADES = 10
 class Coasting:
     """A turn by the energy integral.
 
-    load: C, viscous loads and friction on the nodes, N m. guess: where Newton's iteration starts; None if these do not
-    settle. stops: the crank is slower than can be told even with the least K_least, which guess has then.
+    load: C, viscous loads and friction on the nodes, N m. guess: start of Newton's iteration; None if the loads do not
+    settle. stops: whether the crank is slower than can be resolved, even with the least K_least, which guess then has.
     """
 
     load: Array
@@ -50,9 +50,9 @@ class Coasting:
 
 
 def coasting(turn: PeriodicTurn, inertia: float, speed: float) -> Coasting:
-    """Return the turn that repeats by the energy integral; inertia: of the drive, kg m^2; speed: mean, rad/s, its size.
+    """Return the periodic turn by the energy integral. inertia: of the drive, kg m^2. speed: size of the mean, rad/s.
 
-    No energy below zero may hide between nodes: see `cut_where_least`.
+    Between nodes the energy must not fall below zero: see `cut_where_least`.
     """
     pace, rise = np.full(turn.angle.shape, speed), np.zeros(turn.angle.shape)
     for _ in range(_ROUNDS):
@@ -64,7 +64,7 @@ def coasting(turn: PeriodicTurn, inertia: float, speed: float) -> Coasting:
             return Coasting(load, guess, stops)
         rise = (guess[2] - load - 2.0 * turn.terms.spin * guess[0]) / (turn.terms.inertia + inertia)
         change = np.sqrt(2.0 * guess[0]) - pace
-        pace = pace + 0.5 * change  # the whole of it overshoots where the drag is strong
+        pace = pace + 0.5 * change  # a full step overshoots where the drag is strong
         if np.abs(change).max() <= _SETTLED * pace.max():
             return Coasting(load, guess, stops)
     return Coasting(load, None, stops)

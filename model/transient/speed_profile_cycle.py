@@ -1,10 +1,11 @@
 """Torque, forces and shaking of a machine whose crank speed follows a profile over the crank angle.
 
-With w(theta) and alpha = w dw/d(theta) at every angle, the inverse dynamics of the cycle holds as it is:
+With w(theta) and alpha = w dw/d(theta) at every angle, the inverse dynamics of the cycle applies unchanged:
 
     T = w^2 J' / 2 + J alpha + V' - F x'.
 
-Over a turn the kinetic energy J w^2 / 2 comes back, so the work of the torque is that of loads and friction.
+Over a turn the kinetic energy J w^2 / 2 returns to its initial value, so the torque's work equals that of loads and
+friction.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from ..machine.two_turns import TURN, cycle_turns
 from ..signals.first_greatest import angle_in_cycle
 from ..signals.panels import Extreme, panels_of, peak_of
 
-_PIECES = 12  # panels of a turn at least
+_PIECES = 12  # least number of panels in a turn
 _SAMPLES = 360
 _TIME = 2  # row with the time per crank angle
 _SQUARES = ("pivot_force", "crank_pin_force", "slider_pin_force", "shaking_force")
@@ -51,7 +52,7 @@ class SpeedProfileCurves:
 class SpeedProfileCycle:
     """Numbers over a turn, SI.
 
-    period: of a turn, s. mean_speed: over time, rad/s. fluctuation: range of speed over the mean speed.
+    period: time of a turn, s. mean_speed: mean over time, rad/s. fluctuation: range of speed over the mean speed.
     peaks: greatest magnitudes by name. mean_torque: over the crank angle. rms_torque: over time. work: of torque, J.
     """
 
@@ -144,6 +145,6 @@ def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage) -> SpeedProfileC
 
 
 def _size(extremes: tuple[Extreme, Extreme], turns: int) -> Extreme:
-    """Return the extreme of greatest size, as a size."""
+    """Return the greatest size of both extremes."""
     top = peak_of(extremes, turns * TURN)
     return Extreme(abs(top.value), angle_in_cycle(top.angle, turns * TURN))

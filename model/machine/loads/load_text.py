@@ -35,7 +35,7 @@ def range_text(low: str, high: str) -> str:
 
 
 def sized(forces: Iterable[float], unit: str = "N", ways: Ways = SLIDES) -> str:
-    """Return sizes and directions: "350 N outward", "up to 600 N inward". ways: of positive and negative forces."""
+    """Return sizes and directions: "350 N outward", "up to 600 N inward". ways: words for positive and negative."""
     low, high = min(forces := tuple(forces)), max(forces)
     if low < 0.0 < high:
         return f"{-low:.6g} {unit} {ways[1]} to {high:.6g} {unit} {ways[0]}"
@@ -47,7 +47,7 @@ def sized(forces: Iterable[float], unit: str = "N", ways: Ways = SLIDES) -> str:
 
 
 def without_steps_from_zero(at: Sequence[float], forces: Sequence[float]) -> Sequence[float]:
-    """Return the forces of a table without zeros at its ends that a step parts from the others."""
+    """Return the forces of a table without zeros at its ends that a step separates from the others."""
     first = int(forces[0] == 0.0 and at[0] == at[1])
     last = int(forces[-1] == 0.0 and at[-1] == at[-2])
     return forces[first : len(forces) - last] or forces
@@ -85,7 +85,7 @@ def _verb(forces: Sequence[float]) -> str:
 
 
 def range_of_positions(positions: Sequence[float], forces: Sequence[float], datum: str, during: str) -> str:
-    """Return where a table over position lies, m from its datum, and what holds beyond it."""
+    """Return the range of a table over position, m from its datum, and the force beyond it."""
     low, high = (f"{1e3 * end:.6g} mm" for end in (positions[0], positions[-1]))
     inner_end = datum == "crank pivot" or positions[0] > 0.0
     towards = (datum, during) in (("outer dead centre", "outward stroke"), ("inner dead centre", "inward stroke"))
@@ -104,7 +104,7 @@ def range_of_positions(positions: Sequence[float], forces: Sequence[float], datu
 
 
 def range_of_angles(angles: Sequence[float], datum: str, cycle: str) -> str:
-    """Return where a table over crank angle lies, rad from its datum, and the cycle that it repeats after."""
+    """Return the range of a table over crank angle, rad from its datum, and the cycle after which it repeats."""
     low, high = (f"{math.degrees(end):.6g}" for end in (angles[0], angles[-1]))
     after = "of crank angle" if datum == "zero crank angle" else f"after the {datum}"
     return f"from {low} to {high} deg {after}; periodic over {cycle}"

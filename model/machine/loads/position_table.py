@@ -34,9 +34,8 @@ from .load_text import range_of_positions, sized, without_steps_from_zero
 class PositionTable(Load):
     """A force tabulated over slider position, interpolated linearly, constant beyond the ends of the table.
 
-    positions: increasing, two equal ones where the force steps, m, from the datum: of a dead centre distances, zero or
-    more. forces: N, positive outward.
-    during: the force acts in these strokes. drives: see `Load`.
+    positions: increasing, two equal ones where the force steps, m, from the datum; distances from a dead centre are
+    zero or more. forces: N, positive outward. during: strokes in which the force acts. drives: see `Load`.
     """
 
     positions: tuple[float, ...]
@@ -79,13 +78,13 @@ class PositionTable(Load):
         return self.during == "cycle"
 
     def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
-        """Return one for a table of one stroke, which the same table of the other stroke cancels."""
+        """Return one for a table of one stroke, which the same table in the other stroke cancels."""
         if self.during == "cycle":
             return {}
         return {(self.datum, self.positions, self.forces): (1.0 if self.during == "outward stroke" else -1.0,)}
 
     def stroke_work(self, passage: Passage) -> Any:
-        """Return the work of a table of one stroke; over the cycle it gives back what it takes."""
+        """Return the work of a table of one stroke; a table over the cycle returns what it takes."""
         if self.during != ("outward stroke" if passage.outward else "inward stroke"):
             return 0.0
         at, distance = 0.5 * (passage.distance[:, 1:] + passage.distance[:, :-1]), passage.distance
@@ -108,7 +107,7 @@ class PositionTable(Load):
 
     @property
     def range(self) -> str:
-        """The ends of the table, and what holds beyond them."""
+        """The ends of the table, and the force beyond them."""
         return range_of_positions(self.positions, self.forces, self.datum, self.during)
 
 

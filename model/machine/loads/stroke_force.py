@@ -42,7 +42,7 @@ class StrokeForce(Load):
         return self.outward == self.inward
 
     def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
-        """Return the two forces, against each other."""
+        """Return the force of the outward stroke and the negated one of the inward stroke."""
         return {StrokeForce: (self.outward, -self.inward)}
 
     def stroke_work(self, passage: Passage) -> Any:
@@ -64,7 +64,7 @@ class StrokeForce(Load):
 
     @property
     def range(self) -> str:
-        """All of a stroke."""
+        """The whole of a stroke."""
         return "throughout"
 
 
