@@ -29,8 +29,8 @@ _ANGLES = 1440
 class Comparison:
     """Exact and approximate curves of one design at constant speed; each (n,), SI.
 
-    accelerations: of the slider, by the names of `ACCELERATION`. torques: inertia torque that the drive gives, by the
-    names of `TORQUE`.
+    accelerations: slider acceleration, by the names in `ACCELERATION`. torques: inertia torque from the drive, by the
+    names in `TORQUE`.
     """
 
     crank_angle: Array
@@ -43,7 +43,7 @@ class Comparison:
 def compare(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Comparison:
     """Return the curves of one fully turning linkage at crank angles (n,), rad: inertia alone, at constant speed.
 
-    Loads, gravity and the acceleration of the crank are left out. Masses of the formulas: the rod by its mass centre.
+    Loads, gravity and the acceleration of the crank are left out. The formulas split the rod's mass by its mass centre.
     Raises `InputError` without a crank speed, and for a mass centre that is not between the pins.
     """
     linkage = single(mechanism, linkage)
@@ -68,7 +68,7 @@ def compare(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> C
 
 @dataclass(frozen=True)
 class Errors:
-    """Greatest error of each approximation over the cycle as a share of the exact peak; each (offsets,).
+    """Greatest error of each approximation over the cycle as a fraction of the exact peak; each (offsets,).
 
     peak_acceleration, peak_torque: exact, m/s^2 and N m. Errors of a torque that is zero throughout are `nan`.
     """
@@ -83,7 +83,7 @@ class Errors:
 def errors_over_offset(mechanism: Mechanism, linkage: Linkage, offsets: ArrayLike) -> Errors:
     """Return the errors for each offset (n,), m, with crank and rod of one linkage; 1440 crank angles each.
 
-    Raises `AssemblyError` for an offset with which the linkage does not turn fully.
+    Raises `AssemblyError` for an offset with which the linkage does not rotate fully.
     """
     values = np.atleast_1d(np.asarray(offsets, dtype=np.float64))
     theta = np.linspace(0.0, 2.0 * math.pi, _ANGLES, endpoint=False)
@@ -101,7 +101,7 @@ def errors_over_offset(mechanism: Mechanism, linkage: Linkage, offsets: ArrayLik
 
 
 def relative_error(approximate: Array, exact: Array) -> float:
-    """Return the greatest difference as a share of the greatest exact size; `nan` if that is zero."""
+    """Return the greatest difference as a fraction of the greatest exact size; `nan` if that is zero."""
     peak = float(np.abs(exact).max())
     return float(np.abs(approximate - exact).max()) / peak if peak > 0.0 else math.nan
 

@@ -7,8 +7,7 @@ Per cycle, one turn or two, with dt = dtheta / w at constant speed:
   crank, of M dtheta;
 - friction heat: mu |N| |dx| in the guide, rho |F| times the relative turning in the pins: |phi'| in the slider pin,
   1 - phi' in the crank pin, 1 in the crank pivot;
-- stored: what the crank's acceleration, if there is one, puts into kinetic energy. Springs and gravity give back in a
-  turn what they take.
+- stored: kinetic energy from the crank's acceleration, if any. Springs and gravity return within a turn what they take.
 
 Loads that do net work on the machine drive it: the crank delivers that work less friction.
 """
@@ -38,9 +37,9 @@ _ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class Energies:
-    """Energies of one cycle of one turn or two, J. useful: work done against the load, negative if the load drives.
+    """Energies of one cycle of one or two turns, J. useful: work done against the load, negative if the load drives.
 
-    throughput: integral of |F dx|, by which it can be told whether the useful work is more than rounding.
+    throughput: integral of |F dx|, to judge whether the useful work exceeds rounding.
     """
 
     input: float
@@ -62,7 +61,7 @@ class Energies:
         """Work output divided by work input; None if the load neither takes nor supplies net work.
 
         If the crank drives, the input is useful work plus friction heat. If the load drives, the input is the work of
-        the load and the output is what the crank delivers after friction, at least 0.
+        the load and the output is the work that the crank delivers after friction, at least 0.
         """
         if abs(self.useful) <= _ROUNDING * self.throughput:
             return None
@@ -73,7 +72,7 @@ class Energies:
 def energies(mechanism: Mechanism, linkage: Linkage) -> Energies:
     """Return the energies of one cycle for one linkage.
 
-    Raises `InputError` where friction locks the linkage, `AssemblyError` where it does not turn fully.
+    Raises `InputError` where friction locks the linkage, `AssemblyError` where it does not rotate fully.
     """
     linkage = single(mechanism, linkage)
     cuts = breakpoints(mechanism, linkage)

@@ -19,7 +19,7 @@ from ..machine.loads.engine import LimitedPressure
 from ..machine.mechanism import Mechanism
 from ..machine.two_turns import half_at, in_cycle
 
-_BEFORE = 5e-10  # rad, that a crank angle is taken earlier: less than what figures mark jumps by
+_BEFORE = 5e-10  # rad by which a crank angle is taken earlier: less than the width at which figures mark jumps
 
 
 @dataclass(frozen=True)
@@ -32,12 +32,12 @@ class Indicator:
 
 
 def indicator(mechanism: Mechanism, linkage: Linkage, load: Cylinder, crank_angle: ArrayLike) -> Indicator:
-    """Return volume and pressure in one of a machine's cylinders; on a dead centre the pressure before it."""
+    """Return volume and pressure in one of a machine's cylinders; at a dead centre, the pressure just before it."""
     linkage = single(mechanism, linkage)
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     stroke, sign, top = _top(linkage, load)
     z = np.clip(sign * (linkage.sign * linkage.at(theta).slider_position - top), 0.0, stroke)
-    # The motion of a moment before: at a dead centre that of the stroke that ends there.
+    # The motion a moment earlier: at a dead centre, that of the stroke ending there.
     before = linkage.at(theta - _BEFORE * mechanism.direction, speed=mechanism.direction).slider_velocity
     away = sign * linkage.sign * before > 0.0
     pressure = _pressure(load, z, stroke, away)
@@ -86,7 +86,7 @@ def burning_ends(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> floa
 def _angle_at(mechanism: Mechanism, linkage: Linkage, load: Cylinder, z: float, *, away: bool) -> float | None:
     """Return the crank angle at which the piston is z from its top, rad in [0, 2 pi).
 
-    away: whether it moves away from there. None for a z that it does not reach.
+    away: whether it moves away from its top. None for a z out of its reach.
     """
     stroke, sign, top = _top(linkage, load)
     outward = away == (sign > 0.0)

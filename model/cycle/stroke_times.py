@@ -20,7 +20,7 @@ from ..machine.mechanism import Mechanism
 from ..machine.members import cylinders_of
 from ..machine.speed_profile import Profile
 
-_EQUAL = 1e-12  # share of their sum: a smaller difference between stroke times is rounding
+_EQUAL = 1e-12  # fraction of their sum: a smaller difference between stroke times is rounding
 DIFFERS = "differs"
 """Reported as slow stroke where not all cylinders have the same one."""
 

@@ -44,11 +44,11 @@ def compressed_at(stroke: Any, h: Any, ratio: Any, exponent: Any) -> Any:
 def events_of(d: Any, block: Any, j: int, k: int, kind: int) -> Any:
     """Return z_e and z_c of the cylinder that is load k of a derived block.
 
-    Where gas burns, the first is z_b, and there is no second.
+    Where gas burns, the first is z_b, and there is no second one.
     """
     q = DESIGN + LOAD_ROWS * k + AREA
     if kind == _BURNING_CYLINDER:
-        return block[q + 7, j], -block[q + 1, j]  # at z = -h, which the piston never comes to
+        return block[q + 7, j], -block[q + 1, j]  # at z = -h, which the piston never reaches
     stroke, h, ratio = d.outer - d.inner, block[q + 1, j], block[q + 3, j] * inverse(block[q + 2, j])
     if block[q + 4, j].real == 0.0:
         return 0.0 * h, stroke + 0.0 * h
@@ -85,7 +85,7 @@ def gas_force(m: Any, d: Any, block: Any, j: int, k: int, outward: bool, piece: 
 
 @analytic
 def burning_force(m: Any, d: Any, block: Any, j: int, k: int, outward: bool, piece: int) -> Any:
-    """Return the force of gas that burns at limited pressure, as `gas_force` does."""
+    """Return the force of gas burning at limited pressure, as `gas_force` does."""
     q = DESIGN + LOAD_ROWS * k
     position = m.x if d.branch.real > 0.0 else -m.x
     sign, z = block[q, j], block[q, j] * (position - block[q + 1, j])

@@ -1,4 +1,4 @@
-"""Closed forms of a linkage that turns fully: dead centres, stroke, time ratio, transmission angle, inverse relations.
+"""Closed-form formulas for full rotation: dead centres, stroke, time ratio, transmission angle, inverse relations.
 
 Every function runs on floats, arrays and complex numbers. `magnitude_of_offset` is |e|; passing it separately keeps the
 functions free of the kink at e = 0. They hold for full rotation, l > r + |e|, which the caller has checked.

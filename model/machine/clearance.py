@@ -1,6 +1,6 @@
-"""A joint with clearance: a journal that is loose in its bearing, and the force between them.
+"""A joint with clearance: a journal loose in its bearing, and the force between them.
 
-The normal force over the penetration d is Hertz's, with a hysteresis damping that takes energy out of every impact:
+The normal force over the penetration d is Hertz's, with hysteresis damping that dissipates energy in every impact:
 
     F = K d^(3/2) (1 + h d' / d'_0),        F >= 0,
 
@@ -29,17 +29,16 @@ Law = Literal["flores", "lankarani-nikravesh"]
 class Clearance:
     """One pin joint with clearance; the other two are ideal.
 
-    joint: which one. The journal is on the crank (crank pivot, crank pin) or on the slider (slider pin).
+    joint: the loose joint. The journal is on the crank (crank pivot, crank pin) or on the slider (slider pin).
     radius: radial clearance, radius of the bearing less radius of the journal, m. journal_radius: m.
     restitution: e, ratio of the speeds after and before an impact, above 0 and at most 1.
     friction: coefficient between journal and bearing, with the tangential force
     mu F v / sqrt(v^2 + slip_speed^2) against the sliding velocity v. slip_speed: m/s, below which friction fades;
     the default is small next to the sliding of any pin that turns.
-    law: of the damping, see above.
-    elastic_modulus, poisson: of journal and bearing, Pa; steel if not given. stiffness: K, N/m^1.5; Hertz's if None.
-    slow_impact: m/s; impacts slower than this have the damping of this one. It keeps the damping finite where a
-    contact begins softly, and lets e rise towards one for slow impacts, as Hunt and Crossley found (Journal of
-    Applied Mechanics 42 (1975) 440-445), whose law this is below it.
+    law: damping law, see above. elastic_modulus, poisson: of journal and bearing, Pa; steel by default. stiffness: K,
+    N/m^1.5; Hertz's if None. slow_impact: impact speed below which the damping stays constant, m/s. It keeps the
+    damping finite where a contact begins softly, and lets e rise towards one for slow impacts. Below it, this is the
+    law that Hunt and Crossley found (Journal of Applied Mechanics 42 (1975) 440-445).
     """
 
     joint: Joint
@@ -84,8 +83,8 @@ class Clearance:
     def contact_stiffness(self) -> float:
         """K, N/m^1.5: as given, or Hertz's for bodies of radii R_j and -R_b and of one material.
 
-        K = (2/3) E / (1 - nu^2) sqrt(R_j R_b / (R_b - R_j)): two spheres, as is usual for joints with clearance. A
-        long journal touches along a line and is stiffer: give its stiffness where that is known.
+        K = (2/3) E / (1 - nu^2) sqrt(R_j R_b / (R_b - R_j)): two spheres, as is usual for joints with clearance. A long
+        journal touches along a line and is stiffer: state its stiffness if known.
         """
         if self.stiffness is not None:
             return self.stiffness
@@ -94,6 +93,6 @@ class Clearance:
 
     @property
     def hysteresis(self) -> float:
-        """h, the share of damping in the force at the beginning of an impact."""
+        """h, ratio of damping to elastic force at the beginning of an impact."""
         e = self.restitution
         return 1.6 * (1.0 - e) / e if self.law == "flores" else 0.75 * (1.0 - e * e)

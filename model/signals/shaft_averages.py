@@ -20,7 +20,7 @@ from .shaft_segments import segments_of
 
 MEAN, SQUARE, SQUARE_OVER_TIME = range(3)
 """Rows of `Means`: mean and mean square over the crank angle, mean square over time."""
-_RESOLVED = 1e-12  # what may be left of the last coefficients on a panel, of the curve's greatest size
+_RESOLVED = 1e-12  # greatest size of the last coefficients on a resolved panel, relative to the curve's greatest size
 _DEEPEST = 24
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 _NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS

@@ -1,4 +1,4 @@
-"""The curves over the cycle whose peaks matter, each as one formula that is never negative."""
+"""The curves over the cycle whose peaks matter, each as one non-negative formula."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from .position_error import influences, root_sum_square, worst_case
 
 
 class Signal(IntEnum):
-    """A signal that is watched over the cycle by its size.
+    """A signal judged by its size over the cycle.
 
     Torque (N m), forces (N), guide moment (N m), power (W), the component along the slider line of the force between
     rod and slider (N), slider speed, acceleration and jerk, position error (m), reflected inertia (kg m^2), shaking
-    force (N), shaking moment (N m) and rocking couple (N m), which is of several cylinders alone. Up to the line force
-    they follow from the joint forces.
+    force (N), shaking moment (N m) and rocking couple (N m), which needs several cylinders. The signals up to the line
+    force follow from the joint forces.
     """
 
     TORQUE = 0

@@ -18,14 +18,15 @@ class SwingSummary:
     """One linkage over a swing, SI and radians.
 
     driver_ends: crank angles or slider positions. swing_angle, travel: of crank and slider, sizes. peak_drive: greatest
-    size of the driver's torque or force, either way. drive_start, drive_end: what the driver brings there on its way
-    forth and on its way back, without inertia: the two hold the linkage at rest where friction is next to nothing, and
-    any force between them where it is not. holds: whether friction alone holds the linkage at rest all over the swing.
-    energy_forth, energy_back: of the driver, J. stored: what the way forth takes slowly and without friction, J.
-    efficiency: of the slow way forth, else of the slow way back, what it takes without friction over what it takes;
-    None where neither is driven. peak_power: W, None where the swing is slow. least_transmission: angle of the driven
-    side. position_error: over the whole swing, None without tolerances. Where friction may lock the linkage, `locked`
-    is the first such place, and peaks and energies are NaN.
+    size of the driver's torque or force, either way. drive_start, drive_end: drive at each end on the forward and on
+    the return stroke, without inertia. With negligible friction both hold the linkage at rest; with friction, any force
+    between them does. holds: whether friction alone holds the linkage at rest throughout the swing. energy_forth,
+    energy_back: energy of the driver on the forward and return strokes, J. stored: energy of the slow forward stroke
+    without friction, J. efficiency: energy without friction over energy with friction, on the slow forward stroke,
+    otherwise the slow return stroke; None where neither is driven. peak_power: W, None for a slow swing.
+    least_transmission: least transmission angle of the driven side. position_error: greatest over the swing, None
+    without tolerances. Where friction may lock the linkage, `locked` is the first such place, and peaks and energies
+    are NaN.
     """
 
     swing: Swing
@@ -47,17 +48,17 @@ class SwingSummary:
 
     @property
     def swing_angle(self) -> float:
-        """Angle that the crank turns by, one way."""
+        """Angle of crank rotation, one way."""
         return abs(self.crank_angles[1] - self.crank_angles[0])
 
     @property
     def travel(self) -> float:
-        """Distance of the slider's positions at both ends; on its way it may go beyond them where the crank drives."""
+        """Distance between the slider positions at both ends; under a driven crank the slider may pass them."""
         return abs(self.slider_positions[1] - self.slider_positions[0])
 
 
 def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSummary:
-    """Return the numbers of a swing. Peaks are of the continuous crank angle, energies integrals between kinks.
+    """Return the numbers of a swing. Peaks are over the continuous crank angle, energies integrals between kinks.
 
     Raises what `require_swing` raises.
     """
@@ -71,7 +72,7 @@ def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSumm
     locked = cycle.first_locked()
     peak = cycle.greatest("drive")
     power = None if swing.duration is None else cycle.greatest("power")
-    if locked is not None:  # next to that place the drive grows beyond all bounds
+    if locked is not None:  # near that place the drive grows without bound
         peak, power = locked, None if power is None else locked
     tolerances = mechanism.tolerances.are_stated or swing.actuator_tolerance > 0.0
     return SwingSummary(
@@ -95,7 +96,7 @@ def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSumm
 
 
 def _efficiency(slow: SwingCycle, free: SwingCycle) -> float | None:
-    """Return the energy without friction over that with it, of the first way that is driven."""
+    """Return the energy without friction over that with friction, for the first driven stroke."""
     for back in (False, True):
         least, spent = free.energy(back=back), slow.energy(back=back)
         if least > 0.0 and spent > 0.0:

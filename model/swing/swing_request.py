@@ -1,4 +1,4 @@
-"""A swing that is asked for, with what is not said as the job of the machine has it."""
+"""A requested swing, with missing values taken from the machine's job."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _ANGLES, _POSITIONS = ("start", "end"), ("slider_start", "slider_end")
 
 @dataclass(frozen=True, kw_only=True)
 class SwingRequest:
-    """Limits and law asked of a swing; None for what stays. start, end: crank angles, rad. slider_start, slider_end: m.
+    """Requested ends and law of a swing; None: kept. start, end: crank angles, rad. slider_start, slider_end: m.
 
     side, driver, law, duration (s), actuator_tolerance (m): as in `Swing`.
     """
@@ -36,11 +36,11 @@ class SwingRequest:
 def resolve_swing(
     mechanism: Mechanism, motion: Swing | None, request: SwingRequest, field_names: Mapping[str, str] | None = None
 ) -> tuple[Mechanism, Swing]:
-    """Return the swing that is asked for, and the machine without a start of its own.
+    """Return the requested swing, and the machine without its own start.
 
-    motion: of the job, from the start that the machine of one design has; None without one. Then the crank drives,
-    slowly. A start that is asked for alone takes the end along where the job states the angle or the travel.
-    field_names: names of the fields of `SwingRequest` in messages, where they are not those of Python.
+    motion: the job's swing, from the start that the machine of one design has; None without one. By default the crank
+    drives, slowly. A start requested alone moves the end along if the job states the angle or the travel. field_names:
+    names of the fields of `SwingRequest` in messages, if they differ from Python's.
 
     Raises `InputError` for ends of two kinds, missing ends, and a table of motion that no job gives.
     """
@@ -76,7 +76,7 @@ def resolve_swing(
 
 
 def _requested_ends(request: SwingRequest, motion: Swing | None, names: Mapping[str, str]) -> dict[str, Any]:
-    """Return start and end that are asked for, and what they are of."""
+    """Return the requested start and end, and whether they refer to crank or slider."""
     stated = {name: getattr(request, name) for name in (*_ANGLES, *_POSITIONS) if getattr(request, name) is not None}
     if not stated:
         return {}

@@ -20,8 +20,8 @@ Contact = Literal["along the rod", "any direction", "anywhere"]
 def spread(shape: Shape = "normal", *, sigmas: float = 3.0) -> Any:
     """Return the distribution of an error in units of its limit, as a frozen distribution of `scipy.stats`.
 
-    normal: the limit is `sigmas` standard deviations; truncated normal: and nothing lies beyond it. uniform and
-    triangular (peak in the middle) end at the limits; `sigmas` does not matter for them.
+    normal: the limit is `sigmas` standard deviations; truncated normal: the same, with nothing beyond the limit.
+    uniform and triangular (peak in the middle) end at the limits and ignore `sigmas`.
     """
     from scipy import stats
 
@@ -44,10 +44,10 @@ class Spreads:
     """The distributions of all sources; errors of different sources are independent.
 
     crank, rod, offset, crank_angle: in units of the limit, from `spread` or any frozen distribution of `scipy.stats`.
-    contact: where a pin is in its clearance c. "along the rod": pressed to either side with equal chance by the force
-    in the rod (variance of what it adds to the rod: c^2). "any direction": it touches, in a direction that is uniform
-    (c^2 / 2). "anywhere" within the clearance circle, uniform over its area (c^2 / 4). The slider touches either side
-    of its guide (c^2), or with "anywhere" is uniform between them (c^2 / 3).
+    contact: position of a pin in its clearance c. "along the rod": pressed to either side with equal probability by the
+    force in the rod (variance of its addition to the rod: c^2). "any direction": in contact, in a uniformly distributed
+    direction (c^2 / 2). "anywhere" within the clearance circle, uniform over its area (c^2 / 4). The slider touches
+    either side of its guide (c^2), or with "anywhere" is uniform between them (c^2 / 3).
     """
 
     crank: Any = field(default_factory=spread)
@@ -65,7 +65,7 @@ class Spreads:
 
     @property
     def variances(self) -> Array:
-        """Variance of each source, (8,), in units of its squared limit; of a pin, the part along the rod."""
+        """Variance of each source, (8,), in units of its squared limit; for a pin, the part along the rod."""
         pin, guide = {"along the rod": (1.0, 1.0), "any direction": (0.5, 1.0), "anywhere": (0.25, 1.0 / 3.0)}[
             self.contact
         ]

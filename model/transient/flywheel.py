@@ -1,14 +1,14 @@
-"""The flywheel for a wanted coefficient of speed fluctuation: classical estimate, then exact.
+"""The flywheel for a desired coefficient of speed fluctuation: classical estimate, then exact value.
 
 Classical (e.g. Norton, Design of Machinery, 5th ed., section 11.11): with the torque T(theta) that a constant speed w
 needs, and the greatest change dE of the energy, the integral of mean T - T, between two angles of the turn,
 
     J = dE / (delta w^2),    delta = (w_max - w_min) / w_mean.
 
-It holds to first order in delta: T is that of the constant speed, and the mechanism's own inertia is neglected next to
-J. The exact J is a root search on steady running, whose speed is that of the equation of motion. w_mean is 2 pi over
-the time of a turn, not the middle of w_max and w_min: a crank that nearly stops has any delta above 1, without bound.
-The search is for 1 / delta, which is nearly linear in J, and 0 where the crank does not come through the turn.
+It holds to first order in delta: T is the torque at constant speed, and the mechanism's own inertia is neglected next
+to J. A root search on steady running, with the speed from the equation of motion, gives the exact J. w_mean is 2 pi
+over the time of a turn, not the middle of w_max and w_min: a crank that nearly stops has any delta above 1, without
+bound. The search uses 1 / delta, which is nearly linear in J, and 0 where the crank does not complete the turn.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ _BETWEEN = 12
 class FlywheelDesign:
     """A flywheel on the crank shaft.
 
-    inertia: kg m^2; 0 if none is needed. estimate: by the classical method, kg m^2. target: the coefficient of speed
-    fluctuation. running: the steady running with it. drive: the motor, with the flywheel in it.
+    inertia: kg m^2; 0 if no flywheel is needed. estimate: inertia by the classical method, kg m^2. target: coefficient
+    of speed fluctuation. running: steady running with the flywheel. drive: motor with the flywheel.
     """
 
     inertia: float
@@ -47,18 +47,18 @@ class FlywheelDesign:
 
     @property
     def needed(self) -> bool:
-        """Whether the machine runs less evenly than wanted without a flywheel."""
+        """Whether the machine without a flywheel runs less evenly than desired."""
         return self.inertia > 0.0
 
 
 def design_flywheel(
     mechanism: Mechanism, linkage: Linkage, fluctuation: float, drive: Drive | None = None
 ) -> FlywheelDesign:
-    """Return the least flywheel that keeps the coefficient of speed fluctuation at the wanted one or below.
+    """Return the least flywheel that keeps the coefficient of speed fluctuation within the target.
 
-    drive: the mechanism's own if None; its flywheel is replaced. Without any, the motor is one of constant torque that
-    keeps the mechanism's speed as the mean one. Raises `InputError` for a fluctuation that is not between 0 and 1 (from
-    1 on the crank may stop within the turn), and where no steady running exists.
+    drive: motor and flywheel, by default the mechanism's own; its flywheel is replaced. Without a drive, the motor has
+    the constant torque that keeps the mechanism's speed as the mean one. Raises `InputError` for a fluctuation that is
+    not between 0 and 1 (from 1 on the crank may stop within the turn), and where no steady running exists.
     """
     from scipy.optimize import brentq
 
@@ -73,7 +73,7 @@ def design_flywheel(
 
     @cache
     def surplus(flywheel: float) -> float:
-        """Return 1 / delta, 0 where the crank does not come through the turn, less what is wanted."""
+        """Return 1 / delta, 0 where the crank does not complete the turn, less its target."""
         try:
             delta = run(flywheel).fluctuation
         except InputError:
@@ -94,7 +94,7 @@ def design_flywheel(
                 break
             enough *= 1.6
         else:
-            run(enough)  # says why, if it does not run at all
+            run(enough)  # explains the reason if it does not run at all
             raise InputError(
                 f"no flywheel up to {enough:.3g} kg m^2 keeps the fluctuation at {fluctuation:g}; allow more"
             )

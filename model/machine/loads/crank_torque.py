@@ -1,4 +1,4 @@
-"""A torque on the crank besides the drive's: constant, against every motion, or of a spring to the frame."""
+"""A torque on the crank in addition to the drive's: constant, opposing every motion, or from a spring to the frame."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from .load_text import TURNS, effect_by_direction, sized, spring_effect
 class CrankTorque(Load):
     """A torque on the crank, N m: torque - resistance sgn(w) - crank_stiffness (theta - free_angle).
 
-    torque: positive counter-clockwise. resistance: against every motion (Coulomb, of known size). crank_stiffness:
-    N m/rad, of a spring between crank and frame. free_angle: rad; the angle counts on beyond a turn, so that a spring
-    is of a crank that swings.
+    torque: positive counter-clockwise. resistance: torque against every motion (Coulomb, of known size).
+    crank_stiffness: stiffness of a spring between crank and frame, N m/rad. free_angle: rad; the angle continues beyond
+    a turn, so only a crank that swings can have a spring.
     """
 
     torque: float = 0.0
@@ -51,7 +51,7 @@ class CrankTorque(Load):
         return self.crank_stiffness != 0.0
 
     def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
-        """Return the constant torque and the one against the motion."""
+        """Return the constant torque and the torque against the motion."""
         return {(CrankTorque, "torque"): (self.torque,), (CrankTorque, "resistance"): (self.resistance,)}
 
     @property
