@@ -85,7 +85,8 @@ def stress_rows(mechanism: Mechanism, part: str, linkage: Linkage, theta: Array,
     """Return axial stress and stress by bending, each (n, m), at crank angles (n,) and shares of the length (m,)."""
     bar: Any = getattr(mechanism, part)
     load = cycle(mechanism, linkage, theta).load
-    design = design_of(replace(mechanism, loads=()), linkage)
+    masses = tuple(own for own in mechanism.loads if own.inertial)
+    design = design_of(replace(mechanism, loads=masses), linkage)
     moved = motion(np.sin(theta), np.cos(theta), design.r, design.l, design.e, design.branch)
     c = stress_along(
         ROD if part == "rod" else CRANK,
