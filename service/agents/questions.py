@@ -30,6 +30,8 @@ from .call import Call, ToolAnswer, tables_of, text_of
 from .inputs import Design, Files, JobInput, TopicRequest
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from ...objectives.kinds import System
     from ..render.blocks import Block
     from .inputs import Machine
@@ -161,7 +163,7 @@ def _analyse_rotating(
     """Analyse a design that turns fully. options: of each topic."""
     from ..designs.requirements import judge_rules
     from ..questions.analysis_text import show_analysis
-    from ..questions.design_analysis import analysis_of, quantities_of_design
+    from ..questions.design_analysis import analysis_of, judge_choices, quantities_of_design
 
     row, undefined = quantities_of_design(machine.mechanism, machine.linkage, machine.problem.own)
     analysis = analysis_of(
@@ -175,8 +177,15 @@ def _analyse_rotating(
         undefined=undefined,
     )
     rules = judge_rules(machine.problem, row, question.units)
-    text = text_of(lambda screen: show_analysis(screen, analysis, rules, question.units, custom=machine.problem.own))
-    return ToolAnswer(analysis.record(question.units, rules), "\n".join((text, *analysis.notes, *analysis.refused)))
+    choices = judge_choices(machine.problem, machine.mechanism, machine.linkage, row, question.units)
+
+    def show(screen: Console) -> None:
+        show_analysis(screen, analysis, rules, question.units, choices=choices, custom=machine.problem.own)
+
+    text = text_of(show)
+    return ToolAnswer(
+        analysis.record(question.units, rules, choices), "\n".join((text, *analysis.notes, *analysis.refused))
+    )
 
 
 def _analyse_by_command(name: str, machine: Machine, question: TopicRequest) -> ToolAnswer:

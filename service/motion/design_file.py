@@ -12,7 +12,7 @@ ENDINGS = {"dxf": (".dxf",), "svg": (".svg",), "motion": (".html", ".htm"), "gif
 """How the names of the files may end, by what is written."""
 
 
-def design_file(kind: str, design: StoredDesign, angle: float | None, units: System, **named: str) -> bytes:
+def design_file(kind: str, stored: StoredDesign, angle: float | None, units: System, **named: str) -> bytes:
     """Return a file of one design, one of `ENDINGS`.
 
     angle: of the crank in drawings, rad; None for the usual one. named: job and design, for titles.
@@ -20,19 +20,19 @@ def design_file(kind: str, design: StoredDesign, angle: float | None, units: Sys
     if kind == "cycle":
         from ..designs.design_curves import design_csv
 
-        return design_csv(design, units).encode()
+        return design_csv(stored, units).encode()
     if kind == "motion":
         from .player_page import player_page
 
-        return player_page(design.mechanism, design.linkage, swing=design.part.motion, **named)
+        return player_page(stored.mechanism, stored.linkage, swing=stored.part.motion, **named)
     if kind == "gif":
         from .animated_gif import animated_gif
 
-        return animated_gif(design.mechanism, design.linkage, swing=design.part.motion, **named)
+        return animated_gif(stored.mechanism, stored.linkage, swing=stored.part.motion, **named)
     from ..drawings.design_drawing import design_drawing
 
     system: System = units if kind == "svg" else "metric"  # DXF is in mm
-    drawing = design_drawing(design, name=named["name"], design=named["design"], crank_angle=angle, system=system)
+    drawing = design_drawing(stored, name=named["name"], design=named["design"], crank_angle=angle, system=system)
     if kind == "svg":
         from ..drawings.svg import svg_file
 
