@@ -16,7 +16,6 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import Bar, Counterweight, RigidLink
-from slidercrank.model.machine.loads.added_mass import AddedMass
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.loads.drag import Drag
@@ -291,7 +290,6 @@ def random_loads(
         ),
         AngleTable(angles=tuple(angles), forces=tuple(size[8:12]), during="outward stroke"),
         Drag(drag=random.uniform(0.0, 20.0)),
-        AddedMass(mass=0.01 * abs(size[0])),
     )
 
 

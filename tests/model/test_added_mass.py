@@ -35,7 +35,7 @@ def pairs(count: int, *, friction: bool = True) -> list[tuple[Mechanism, Mechani
         machine = replace(random_machine(random), gravity=(0.0, 0.0))
         if friction and n % 2:
             machine = replace(machine, friction=random_friction(random))
-        mass, loads = random.uniform(0.2, 5.0), machine.loads[:-1]
+        mass, loads = random.uniform(0.2, 5.0), machine.loads
         found.append(
             (
                 replace(machine, loads=(*loads, AddedMass(mass=mass))),

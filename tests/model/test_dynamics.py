@@ -12,6 +12,7 @@ import pytest
 from slidercrank.model.cycle.cycle import Cycle, cycle
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.loads.added_mass import AddedMass
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
@@ -32,7 +33,12 @@ THETA = 2.0 * math.pi * np.arange(ANGLES) / ANGLES
 
 def machines(*, loads: bool = True) -> list[Mechanism]:
     random = np.random.default_rng(32)
-    return [random_machine(random, loads=loads) for _ in range(MACHINES)]
+    drawn = [random_machine(random, loads=loads) for _ in range(MACHINES)]
+    masses = random.uniform(0.0, 3.0, MACHINES)
+    return [
+        dataclasses.replace(machine, loads=(*machine.loads, AddedMass(mass=mass)))
+        for machine, mass in zip(drawn, masses, strict=True)
+    ]
 
 
 def curves(machine: Mechanism, design: Array, theta: Any = THETA) -> Cycle:

@@ -29,7 +29,8 @@ THETA = 2.0 * math.pi * np.arange(120) / 120 + 0.004
 
 def machines() -> list[Mechanism]:
     random = np.random.default_rng(102)
-    return [random_machine(random) for _ in DESIGNS]
+    drawn = [random_machine(random) for _ in DESIGNS]
+    return [dataclasses.replace(each, loads=(*each.loads, AddedMass(mass=random.uniform(0.0, 3.0)))) for each in drawn]
 
 
 def curves(machine: Mechanism, design: Array) -> ShakingCurves:

@@ -374,7 +374,7 @@ def test_installed_packages_add_questions_by_entry_point(monkeypatch: pytest.Mon
     problem = fronts.problem()
     try:
         assert problem.ask("reach", [0.1, 0.4, 0.0], share=1.0) == {"reach_mm": 500.0, "share": 1.0}
-        with pytest.raises(InputError, match="got 'balance'; choose from reach"):
+        with pytest.raises(InputError, match="there is no question 'balance'; choose from reach"):
             problem.ask("balance", [0.1, 0.4, 0.0])
         announced.questions.cache_clear()
         offered["theirs"] = {"reach": Reach()}

@@ -36,7 +36,9 @@ def test_a_limit_that_binds_is_widened_and_the_front_before_stays_behind(
     expect(lines).to_have_count(len(limits), timeout=30_000)
     for line, limit in zip(lines.all(), limits, strict=True):
         count = len(limit["designs"])
-        expect(line).to_contain_text(f"{count} of 8 designs {'rests' if count == 1 else 'rest'} on {limit['title']}")
+        expect(line).to_contain_text(
+            f"{count} of 8 designs {'is' if count == 1 else 'are'} at the limit {limit['title']}"
+        )
         line.get_by_role("button", name="Show the designs").click()
         expect(page.locator(".count")).to_have_text(f"{count} of 8 designs chosen")
         page.get_by_role("button", name="Clear all limits").click()
