@@ -1,10 +1,10 @@
 """Two-mass model of the rod: a point mass at the crank pin, and one at the slider pin.
 
-By its mass centre at the distance a from the crank pin and b = l - a from the slider pin: m b / l at the crank pin,
-m a / l at the slider pin. Mass and mass centre are kept; the inertia about the mass centre becomes m a b, so that the
-model is exact for a rod of just that inertia. Any other split (half and half, as in Eqs. 31 to 36 of M. Obaseki and
-P. B. Alfred, "Modeling and Investigating the Effect of Offset Distance on Slider-Crank Mechanism", 2020) moves the mass
-centre too, unless it is that of the rod.
+With the mass centre at distance a from the crank pin and b = l - a from the slider pin: m b / l at the crank pin, m a /
+l at the slider pin. Mass and mass centre are preserved. The inertia about the mass centre becomes m a b, so the model
+is exact for a rod with exactly that inertia. Any other split (half and half, as in Eqs. 31 to 36 of M. Obaseki and P.
+B. Alfred, "Modeling and Investigating the Effect of Offset Distance on Slider-Crank Mechanism", 2020) also moves the
+mass centre, unless it matches the rod's.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def mass_properties(link: Link, length: float) -> MassProperties:
 
 
 def share_at_crank_pin(mechanism: Mechanism, linkage: Linkage) -> float:
-    """Return the share of the rod's mass that its mass centre gives to the crank pin, b / l.
+    """Return the fraction of the rod's mass that its mass centre assigns to the crank pin, b / l.
 
     Raises `InputError` for a mass centre that is not between the pins: one mass would be negative.
     """
@@ -55,8 +55,8 @@ def share_at_crank_pin(mechanism: Mechanism, linkage: Linkage) -> float:
 def lumped(mechanism: Mechanism, linkage: Linkage, *, crank_pin_share: float | None = None) -> Mechanism:
     """Return the mechanism of one linkage with a massless rod, its mass on crank pin and slider.
 
-    crank_pin_share: of the rod's mass at the crank pin; b / l if None. How far the mass centre lies off the rod's axis
-    is lost.
+    crank_pin_share: fraction of the rod's mass at the crank pin; b / l if None. The distance of the mass centre from
+    the rod's axis is lost.
     """
     share = share_at_crank_pin(mechanism, linkage) if crank_pin_share is None else crank_pin_share
     if not 0.0 <= share <= 1.0:
@@ -83,7 +83,7 @@ def lumped(mechanism: Mechanism, linkage: Linkage, *, crank_pin_share: float | N
 def rotating_and_reciprocating(
     mechanism: Mechanism, linkage: Linkage, *, crank_pin_share: float | None = None
 ) -> tuple[float, float]:
-    """Return the rotating mass at the crank pin, with the crank's own part of it, and the reciprocating mass, kg.
+    """Return the rotating mass at the crank pin, including the crank's, and the reciprocating mass, kg.
 
     The crank counts by its first moment, m centre / r (Eq. 35 of the paper); its counterweight does not.
     """

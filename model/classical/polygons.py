@@ -1,4 +1,4 @@
-"""Vertices of the position, velocity and acceleration polygons, found as with ruler and compasses.
+"""Vertices of the position, velocity and acceleration polygons, constructed as with ruler and compasses.
 
     position       O, A, B            B on the slider line and on the circle around A
     velocity       o, a, b            o-a normal to the crank; b on the line of the slider's velocity and on the normal
@@ -25,7 +25,7 @@ from ..linkage.linkage import Linkage
 
 @dataclass(frozen=True)
 class Polygons:
-    """Vertices (..., vertex, 2), x and y, and what is read off them, (...). SI and radians.
+    """Vertices (..., vertex, 2), x and y, and values read off them, (...). SI and radians.
 
     position: O, A, B, m. velocity: o, a, b, m/s. acceleration: o1, a11, a1, b11, b1, m/s^2.
     rod_velocity, rod_acceleration: rad/s and rad/s^2, from a-b and b11-b1.
@@ -49,7 +49,7 @@ def polygons(
 
     Raises `AssemblyError` where the linkage cannot be assembled.
     """
-    linkage.at(crank_angle, speed=speed, acceleration=acceleration)  # refuses what cannot be assembled
+    linkage.at(crank_angle, speed=speed, acceleration=acceleration)  # rejects linkages that cannot be assembled
     theta, w, alpha, r, l, e = np.broadcast_arrays(
         *(np.asarray(value, dtype=np.float64) for value in (crank_angle, speed, acceleration)),
         linkage.crank,
@@ -84,7 +84,7 @@ def _quarter_turned(vector: Array) -> Array:
 
 
 def _meet_slider_line(start: Array, rod: Array) -> tuple[Array, Array]:
-    """Return where the normal to the rod through `start` meets y = 0, and how many turned rods lead there."""
+    """Return the point where the normal to the rod through `start` meets y = 0, and its signed distance in rods."""
     turns = -start[..., 1] / rod[..., 0]
     x = start[..., 0] - turns * rod[..., 1]
     return np.stack([x, np.zeros_like(x)], axis=-1), turns

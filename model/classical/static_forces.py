@@ -6,12 +6,12 @@ Equilibrium of slider, rod and crank for a load P along the slider line, positiv
     guide on the slider (+y)     N = P tan(phi) on the open branch, -P tan(phi) on the crossed one
     crank torque                 T = -P r (cos(theta) tan(phi) - sin(theta)) on the open branch, P on the crossed one
 
-T is what the drive has to give, counter-clockwise. Without offset, with phi' = -phi = asin(r sin(theta) / l) and a load
+T is the required drive torque, counter-clockwise. Without offset, with phi' = -phi = asin(r sin(theta) / l) and a load
 p = -P towards the crank, F = p / cos(phi'), N = p tan(phi') and T = -p r (sin(theta) + cos(theta) tan(phi')): Eqs. 12
 and 13 of the report "In-line Slider Crank Mechanism" (Amrita School of Engineering, 2021).
 
 Mechanical advantage: load on the slider over the tangential force at the crank pin that holds it, r / |x'|. It grows
-without bound towards the dead centres; on them no crank torque is needed, and it is infinite.
+without bound towards the dead centres; at them no crank torque is needed, and the advantage is infinite.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ from ..linkage.linkage import Linkage
 class StaticForces:
     """Arrays of the broadcast shape; SI and radians.
 
-    rod_force: along the rod, N, positive in compression. guide_reaction: of the guide on the slider along +y, N.
-    crank_torque: that the drive has to give, N m, counter-clockwise. tangential_force: crank_torque / crank, N.
+    rod_force: force along the rod, N, positive in compression. guide_reaction: force of the guide on the slider along
+    +y, N. crank_torque: required drive torque, N m, counter-clockwise. tangential_force: crank_torque / crank, N.
     mechanical_advantage: size of the load over that of the tangential force; `inf` on a dead centre.
     slider_force_per_torque: size of the load over that of the crank torque, 1/m; `inf` on a dead centre.
     """
@@ -61,7 +61,7 @@ def static_forces(linkage: Linkage, crank_angle: ArrayLike, *, load: ArrayLike) 
     outward = linkage.sign * p
     arm = linkage.crank * (np.cos(theta) * tangent - np.sin(theta))  # x'
     torque = -outward * arm
-    # Closer to a dead centre than rounding of the crank angle tells: on it.
+    # Closer to a dead centre than the rounding of the crank angle: treated as on it.
     still = np.abs(arm) <= 4.0 * np.finfo(np.float64).eps * (1.0 + np.abs(theta)) * linkage.crank
     with np.errstate(divide="ignore"):
         per_torque = np.where(still, np.inf, 1.0 / np.abs(arm))

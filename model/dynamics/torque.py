@@ -23,8 +23,8 @@ from ..machine.design import Design
 class Forces(NamedTuple):
     """Drive torque on the crank (N m, counter-clockwise) and joint forces (N).
 
-    pivot: of the frame on the crank. crank_pin: of the crank on the rod. slider_pin: of the rod on the slider.
-    guide: of the guide on the slider, along +y.
+    pivot: force of the frame on the crank. crank_pin: force of the crank on the rod. slider_pin: force of the rod on
+    the slider. guide: force of the guide on the slider, along +y.
     """
 
     torque: Any
@@ -47,7 +47,7 @@ class Balance(NamedTuple):
     """Terms of the equations of motion before the slider pin's force is known, N and N m.
 
     pull: B_x without friction in the guide. moment: I_A phi_tt + S x (a_A - G) of the rod. rod_x, rod_y: A - B.
-    crank_x, crank_y: P - A. couple: the torque without the crank pin's share.
+    crank_x, crank_y: P - A. couple: torque without the crank pin's contribution.
     """
 
     pull: Any
@@ -91,7 +91,7 @@ def with_couple(b: Balance, couple: Any) -> Balance:
 
 @analytic
 def joined(sine: Any, cosine: Any, d: Design, b: Balance, bx: Any, by: Any) -> Forces:
-    """Return drive torque and reactions for the slider pin's force; the torque without friction in the pins."""
+    """Return drive torque and reactions for the slider pin's force; the torque excludes pin friction."""
     ax = bx + b.rod_x
     ay = by + b.rod_y
     torque = b.couple + d.r * (cosine * ay - sine * ax)

@@ -1,4 +1,4 @@
-"""The quantities that closed formulas give, for many designs at once, with exact gradients."""
+"""Quantities with closed-form formulas, for many designs together, with exact gradients."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .in_line import in_line
 
 
 class ClosedForm(IntEnum):
-    """Quantities of closed form: time ratio, least transmission angle (rad), stroke (m), ratios, footprints (m^2)."""
+    """Closed-form quantities: time ratio, least transmission angle (rad), stroke (m), ratios, footprints (m^2)."""
 
     TIME_RATIO = 0
     TRANSMISSION_ANGLE = 1
@@ -27,16 +27,16 @@ class ClosedForm(IntEnum):
     FOOTPRINT_OF_OFFSET = 6
 
 
-_LANES = 16  # designs a loop
+_LANES = 16  # designs per loop
 _TIME_RATIO, _TRANSMISSION, _STROKE, _ROD_TO_OFFSET, _ROD_TO_CRANK, _OF_CRANK, _ = map(int, ClosedForm)
 
 
 @analytic
 def closed_form(kind: Any, r: Any, l: Any, e: Any) -> Any:
-    """Return one quantity of a linkage that turns fully.
+    """Return one quantity of a linkage that rotates fully.
 
-    Footprint: area of the rectangle around the pin centres over the cycle, (x_out + r) (r + max(r, |e|)), as its two
-    smooth pieces. Rod to offset: l / |e|, infinite without offset.
+    Footprint: area of the rectangle around the pin centres over the cycle, (x_out + r) (r + max(r, |e|)), as two smooth
+    pieces. Rod to offset: l / |e|, infinite without offset.
     """
     a = magnitude(e)
     if kind == _TIME_RATIO:
@@ -56,7 +56,7 @@ def closed_form(kind: Any, r: Any, l: Any, e: Any) -> Any:
 
 @analytic
 def _lanes(kind: Any, work: Any, slopes: Any) -> None:
-    """Fill value and, if asked for, slopes (rows 3 to 6) of designs (rows 0 to 2)."""
+    """Fill value and, if requested, slopes (rows 3 to 6) for designs (rows 0 to 2)."""
     for j in range(_LANES):
         work[3, j] = closed_form(kind, work[0, j], work[1, j], work[2, j])
     for j in range(_LANES if slopes else 0):
@@ -74,7 +74,7 @@ def _evaluate(kind: int, designs: Table, values: Row, gradients: Table) -> None:
         for j in range(_LANES):
             for i in range(3):
                 work[i, j] = designs[min(begin + j, n - 1), i]
-        # Each its own loop: one that chose the kind inside would be no vector instructions.
+        # One loop per kind: a choice inside the loop would prevent vector instructions.
         if kind == _TIME_RATIO:
             _lanes(_TIME_RATIO, work, slopes)
         elif kind == _TRANSMISSION:

@@ -22,13 +22,13 @@ class Pose:
     stroke: tuple[float, float]
 
     def box(self, crank: float) -> tuple[float, float, float, float]:
-        """Return left, right, bottom and top of all that is drawn."""
+        """Return left, right, bottom and top of the whole drawing."""
         xs = [x for x in (self.slider[0], *self.stroke) if math.isfinite(x)]
         return min(-crank, *xs), max(crank, *xs), min(-crank, self.slider[1]), max(crank, self.slider[1])
 
 
 def svg(pose: Pose, crank: float, label: str) -> str:
-    """Return a linkage as an SVG element that needs nothing else; label: read out in place of the picture."""
+    """Return a linkage as a self-contained SVG element. label: text read out in place of the picture."""
     left, right, bottom, top = pose.box(crank)
     scale = min((_WIDTH - 2.0 * _ROOM) / (right - left), (_HEIGHT - 2.0 * _ROOM) / (top - bottom))
     x0 = 0.5 * (_WIDTH - scale * (left + right))

@@ -1,8 +1,8 @@
 """Several identical cylinders on one crankshaft: angles between their cranks, bank angles, places along the shaft.
 
 Cylinder k has its crank at the angle theta + phase_k and its slider line turned by bank_k about the shaft, both
-counter-clockwise. So it stands as a single machine does at the crank angle theta + phase_k - bank_k, drawn turned by
-bank_k. Crank, counterweight, rod, slider, loads and friction are those of each cylinder.
+counter-clockwise. Its position is that of a single machine at the crank angle theta + phase_k - bank_k, rotated by
+bank_k. All cylinders have the same crank, counterweight, rod, slider, loads and friction.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ class Arrangement:
     """Identical cylinders on one crankshaft.
 
     phases: angle of each crank from the shaft's zero, counter-clockwise, rad. banks: angle of each slider line from
-    +x, counter-clockwise, rad; all zero where left out. places: of the cylinders along the shaft, m, towards the viewer
-    to whom counter-clockwise is as it says; all in one plane where left out.
+    +x, counter-clockwise, rad; all zero by default. places: places of the cylinders along the shaft, m, positive
+    towards the viewer who sees counter-clockwise as stated; all in one plane by default.
     """
 
     phases: tuple[float, ...]
@@ -50,7 +50,7 @@ class Arrangement:
                 self._require_apart(i, k)
 
     def _require_apart(self, i: int, k: int) -> None:
-        """Refuse two cylinders that stand alike at one place."""
+        """Raise an error for two cylinders with equal phase and bank at one place."""
         angles = self.phases[k] - self.phases[i], self.bank(k) - self.bank(i)
         if self.place(i) == self.place(k) and all(abs(math.remainder(angle, _TURN)) <= _SAME for angle in angles):
             bank_text = f", both in the bank of {math.degrees(self.bank(k)):.6g} deg" if self.banks else ""
@@ -69,7 +69,7 @@ class Arrangement:
         return self.places[k] if self.places else 0.0
 
     def lead(self, k: int) -> float:
-        """Return how far the crank angle of cylinder k, from its own slider line, is ahead of the shaft's, rad."""
+        """Return the lead of cylinder k's crank angle, from its own slider line, over the shaft's, rad."""
         return self.phases[k] - self.bank(k)
 
     @property

@@ -1,7 +1,7 @@
 """Mass properties of the links: by section, or by mass, inertia and mass centre.
 
 Crank and rod are described along their own axis: origin at the crank pivot (crank) or at the crank pin (rod), length
-between pin centres. Those of a `Bar` follow the length: a longer crank is a heavier one.
+between pin centres. The properties of a `Bar` follow its length: a longer crank is heavier.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ class Bar:
 
     mass = density depth (L width + pi width^2 / 4) for centre distance L.
 
-    width: in the plane of motion, m. depth: normal to it, m. density: kg/m^3.
+    width: size in the plane of motion, m. depth: size normal to it, m. density: kg/m^3.
     """
 
     width: float
@@ -57,7 +57,7 @@ class RigidLink:
     mass: kg.
     centre: distance of the mass centre from the link's origin along the link, m; half the length if None.
     centre_across: distance of the mass centre from the link's axis, m, positive to the left of origin -> far pin.
-    inertia: about the mass centre, kg m^2; that of a slender uniform rod, mass length^2 / 12, if None.
+    inertia: inertia about the mass centre, kg m^2; that of a slender uniform rod, mass length^2 / 12, if None.
     """
 
     mass: float
@@ -77,8 +77,8 @@ Link = Bar | RigidLink
 class Counterweight:
     """A mass fixed to the crank.
 
-    mass: kg. radius: distance of its mass centre from the crank pivot, m. angle: of its mass centre from the crank's
-    own direction, rad (pi: opposite to the crank pin). inertia: about its own mass centre, kg m^2.
+    mass: kg. radius: distance of its mass centre from the crank pivot, m. angle: angle of its mass centre from the
+    crank's direction, rad (pi: opposite to the crank pin). inertia: inertia about its own mass centre, kg m^2.
     """
 
     mass: float

@@ -1,6 +1,6 @@
-"""Joint forces of many designs at given crank angles, in complex numbers: for quantities that others write.
+"""Joint forces of many designs at given crank angles, in complex numbers, for custom quantities.
 
-Where loads or friction are piecewise the piece is that at the real crank angle of the real design, as in `cycle`.
+Where loads or friction are piecewise, the real crank angle of the real design selects the piece, as in `cycle`.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def complex_joint_forces(
 ) -> tuple[Forces, ComplexArray]:
     """Return the joint forces and the load on the slider, N outward, each (n, k).
 
-    designs: (n, 3), crank, rod, offset, m, each turning fully. angles: (n, k), rad. NaN where friction locks.
+    designs: (n, 3), crank, rod, offset, m, each rotating fully. angles: (n, k), rad. NaN where friction locks.
     """
     # Arrays of one kind, so that one compiled kernel serves.
     designs, angles = (np.require(array, np.complex128, ["C", "W"]) for array in (designs, angles))

@@ -1,8 +1,8 @@
 """Stress along crank and rod at one crank angle, from the joint forces and the links' own inertia and weight.
 
 A link is a round-ended `Bar`: width w in the plane, depth t, density rho. Sections are counted from the crank pin A, x
-along the unit vector to the other pin (slider pin of the rod, crank pivot of the crank), y across. What lies on the
-crank pin's side of a section, a half-disc beyond the pin included, accelerates (less gravity) by
+along the unit vector to the other pin (slider pin of the rod, crank pivot of the crank), y across. The part on the
+crank pin's side of a section, including a half-disc beyond the pin, has the acceleration (less gravity)
 
     a_t(x, y) = a_t0 - omega^2 x - alpha y,    a_n(x, y) = a_n0 + alpha x - omega^2 y
 
@@ -31,7 +31,7 @@ ROD, CRANK = 0, 1
 
 
 class Stress(NamedTuple):
-    """Stress along a bar, Pa, by the share xi = x / L of its length from the crank pin.
+    """Stress along a bar, Pa, over the fraction xi = x / L of its length from the crank pin.
 
     Axial n0 + n1 xi + n2 xi^2, and bending b0 + b1 xi + b2 xi^2 + b3 xi^3 at the face where it adds to tension.
     """
@@ -94,5 +94,5 @@ def stress_along(
 
 @analytic
 def at_share(c: Stress, side: Any, xi: Any) -> Any:
-    """Return the stress at a share of the length. side: 1 or -1, or 0 for the axial stress alone."""
+    """Return the stress at a fraction of the length. side: 1 or -1, or 0 for the axial stress alone."""
     return c.n0 + xi * (c.n1 + xi * c.n2) + side * (c.b0 + xi * (c.b1 + xi * (c.b2 + xi * c.b3)))

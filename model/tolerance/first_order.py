@@ -1,4 +1,4 @@
-"""First-order position errors: worst case, root-sum-square, what contributes, and how far off they can be."""
+"""First-order position errors: worst case, root-sum-square, contributions, and a bound on their inaccuracy."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ class FirstOrder:
     """First-order position errors at crank angles (m,), rad.
 
     worst_case, root_sum_square: (m,), m. contributions: |influence| times limit of each source, (8, m), m.
-    share_of_worst_case, share_of_variance: (8, m), of 1; NaN where nothing contributes.
-    remainder: (m,), m, a bound on what second and higher orders add, anywhere within the limits.
+    share_of_worst_case, share_of_variance: fractions, (8, m); NaN where nothing contributes. remainder: (m,), m, bound
+    on the contribution of second and higher orders, anywhere within the limits.
     """
 
     crank_angle: Array
@@ -36,8 +36,8 @@ class FirstOrder:
 def first_order(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> FirstOrder:
     """Return the first-order position errors of one linkage at crank angles (m,), rad.
 
-    The shares of the variance are those of sources whose limits are the same number of standard deviations: squares
-    of the contributions over the square of the root-sum-square.
+    The fractions of the variance assume limits of the same number of standard deviations for all sources. They are
+    squares of the contributions over the square of the root-sum-square.
     """
     linkage = single(mechanism, linkage)
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))

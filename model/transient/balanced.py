@@ -1,4 +1,4 @@
-"""Constant speed at which a motor and the loads balance over a turn: where the search for steady running starts."""
+"""Constant speed at which motor and loads balance over a turn: the start of the search for steady running."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _DOUBLINGS = 40
 def balanced_speed(turn: PeriodicTurn, drive: Drive, motor: Torque, near: float) -> float:
     """Return the size of the speed, rad/s; see `Runner.balanced_speed`.
 
-    motor: the drive's torque. near: the mechanism's speed, rad/s, its size.
+    motor: the drive's torque. near: size of the mechanism's speed, rad/s.
     """
     from scipy.optimize import brentq
 
@@ -68,12 +68,12 @@ def balanced_speed(turn: PeriodicTurn, drive: Drive, motor: Torque, near: float)
 
 
 def _mean_friction(turn: PeriodicTurn, speed: float) -> float:
-    """Return the mean torque of friction at a constant speed, rad/s, its size, against the turning; N m."""
+    """Return the mean friction torque against the rotation, N m, at a constant speed of this size, rad/s."""
     return turn.way * turn.mean(turn.friction(np.array(turn.way * speed), 0.0))
 
 
 def _friction(turn: PeriodicTurn, top: float) -> Callable[[float], float]:
-    """Return the mean torque of friction, N m, at speeds up to the greatest, rad/s."""
+    """Return the mean friction torque, N m, at speeds up to the greatest, rad/s."""
     if not turn.equation.rubs:
         return lambda speed: 0.0
     from scipy.interpolate import CubicSpline
@@ -86,7 +86,7 @@ def _friction(turn: PeriodicTurn, top: float) -> Callable[[float], float]:
 def _speed_where_friction_balances(
     turn: PeriodicTurn, motor_surplus: Callable[[float], float], near: float
 ) -> float | None:
-    """Return a speed, rad/s, at which friction, growing with the forces of inertia, takes all that a motor has left."""
+    """Return a speed, rad/s, at which friction, growing with inertia forces, absorbs the motor's remaining torque."""
     top = max(1.0, near)
     for _ in range(_DOUBLINGS if turn.equation.rubs else 0):
         if motor_surplus(top) <= _mean_friction(turn, top):

@@ -12,10 +12,10 @@ Medium = Literal["gas", "liquid"]
 
 
 class Compressor(Cylinder):
-    """A cylinder that takes in at `low` and delivers at `high` pressure through valves that open without loss.
+    """A cylinder with intake at `low` and delivery at `high` pressure through valves that open without loss.
 
-    What stays in the clearance expands before the suction valve opens. A machine that never delivers is refused where
-    its clearance is a ratio; with a clearance volume that depends on the design (`volumetric_efficiency`).
+    Gas left in the clearance expands before the suction valve opens. A machine that never delivers raises an error if
+    its clearance is a ratio; with a clearance volume, delivery depends on the design (`volumetric_efficiency`).
     """
 
     def __post_init__(self) -> None:
