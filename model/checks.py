@@ -1,4 +1,4 @@
-"""Checks of fields of a machine, and of whatever else is given one by one."""
+"""Checks of a machine's fields, and of other individual values."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _REMEDY = "text with a unit belongs into the tables of a job"
 def require_numbers(
     owner: object, *names: str, phrase: str = "", least: float = -math.inf, above: float = -math.inf, unit: str = ""
 ) -> None:
-    """Refuse fields of an object that are no finite numbers, below `least` or not above `above`; None passes.
+    """Raise an error for fields that are not finite numbers, below `least` or not above `above`; None passes.
 
-    phrase: the number in words, with {} where the name of the field belongs. unit: written behind the number.
+    phrase: the number in words, with {} for the field's name. unit: unit, shown after the number.
     """
     for name in names:
         value = getattr(owner, name)
@@ -32,7 +32,7 @@ def require_numbers(
 
 
 def require_all_finite(subject: str, values: Iterable[float], suffix: str = "") -> None:
-    """Refuse numbers of which one is not finite, or is no number."""
+    """Raise an error if one of the numbers is not finite, or not a number."""
     for value in values:
         try:
             finite = math.isfinite(value)
@@ -45,7 +45,7 @@ def require_all_finite(subject: str, values: Iterable[float], suffix: str = "") 
 def require_kinds(
     owner: object, kinds: Mapping[str, type | UnionType], remedy: str, *, item_by_item: bool = False
 ) -> None:
-    """Refuse fields of an object that are of another kind than theirs. item_by_item: of tuples, item by item."""
+    """Raise an error for fields of another kind than annotated. item_by_item: whether to check the items of tuples."""
     for name, kind in kinds.items():
         field = getattr(owner, name)
         for value in field if item_by_item and isinstance(field, tuple) else (field,):

@@ -1,4 +1,4 @@
-"""Curves of what the moving masses do by themselves: shaking force, shaking moment, reflected inertia (`inertia`)."""
+"""Effects of the moving masses alone: shaking force, shaking moment, reflected inertia (`inertia`)."""
 
 from __future__ import annotations
 
@@ -43,12 +43,12 @@ def shaking_curves(
 ) -> ShakingCurves:
     """Return the curves of one fully turning linkage at crank angles (n,), rad.
 
-    speed, acceleration: of the crank at each angle, rad/s and rad/s^2, (n,); if None those of the mechanism, along its
-    profile if it has one.
+    speed, acceleration: crank speed and acceleration at each angle, rad/s and rad/s^2, (n,); by default those of the
+    mechanism, along its profile if it has one.
     """
     linkage = single(mechanism, linkage)
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
-    raw_vector(mechanism)  # refuses varying numbers
+    raw_vector(mechanism)  # rejects varying numbers
     numbers, structure = inertial_inputs(one_turn(mechanism))
     raw = numbers[:, None].copy()
     raw[:3, 0] = float(linkage.crank), float(linkage.rod), float(linkage.offset)

@@ -4,12 +4,12 @@ With A the crank pin, S the rod's first moment about it, C that of the crank (co
 
     J = I_O + m_rod r^2 + 2 phi' (A . S) + phi'^2 I_A + (m_s + m_a) x'^2
 
-so that J w^2 / 2 is the kinetic energy; m_s is the slider, m_a what moves with it, such as fluid in a pipe. The shaking
-force is minus the rate of change of the linkage's momentum, the resultant of all inertia forces; the shaking moment is
-minus the rate of change of its angular momentum about the crank pivot. They are what the machine does to its frame
-through pivot, guide and motor (the reaction of the drive torque counts: the motor stands on the frame) beyond gravity
-and load, added masses included, which are left out: the one is constant or balanced by the foundation at rest, the
-other is usually closed within the machine. Friction is internal and changes neither.
+so that J w^2 / 2 is the kinetic energy; m_s is the slider's mass, m_a the mass moving with it, such as fluid in a pipe.
+The shaking force is minus the rate of change of the linkage's momentum, the resultant of all inertia forces; the
+shaking moment is minus the rate of change of its angular momentum about the crank pivot. They are the machine's actions
+on its frame through pivot, guide and motor (including the reaction of the drive torque: the motor stands on the frame).
+Gravity and loads, including added masses, are left out: gravity is constant or balanced by the foundation at rest, and
+loads are usually closed within the machine. Friction is internal and changes neither.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from ..machine.design import Design
 
 @analytic
 def reflected_inertia(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
-    """Return the inertia that the whole linkage presents at the crank, kg m^2."""
+    """Return the inertia of the whole linkage reflected to the crank, kg m^2."""
     sx = d.rod_along * m.l_cos - d.rod_across * m.l_sin
     sy = d.rod_along * m.l_sin + d.rod_across * m.l_cos
     rod = d.rod_mass * d.r * d.r + 2.0 * m.rod_1 * d.r * (cosine * sx + sine * sy) + m.rod_1 * m.rod_1 * d.rod_inertia

@@ -17,13 +17,13 @@ from ..arrays import Array
 from ..errors import AssemblyError
 from .interruption import ask_between
 
-_KNOTS = 10_000  # of the loads of designs that are computed in one go: some tenths of a second
+_KNOTS = 10_000  # in the loads of designs that are computed together: some tenths of a second
 
 
 def turning(designs: ArrayLike) -> Array:
     """Return designs (n, 3 + k) of full rotation as a contiguous array: crank, rod, offset, m, and more.
 
-    Raises `AssemblyError` where rod > crank + |offset| > 0 fails: beyond it a formula may still give some number.
+    Raises `AssemblyError` where rod > crank + |offset| > 0 fails: a formula might still return a number there.
     """
     designs = np.ascontiguousarray(designs, dtype=np.float64)
     turns = (designs[:, 1] > designs[:, 0] + np.abs(designs[:, 2])) & (designs[:, 0] > 0.0)
@@ -62,7 +62,8 @@ def in_chunks(count: int, work: Callable[[int, int], Any], *, size: int = 512, k
     """Call work(begin, end) for consecutive chunks of range(count), on all cores when there are several.
 
     Chunks have a fixed size and each design is evaluated by itself, so results do not depend on the number of cores.
-    knots: of the loads of each design. The more there are, the smaller the parts between which it asks whether to end.
+    knots: number of knots in the loads of each design. More knots make smaller parts; interruption is checked between
+    parts.
     """
     part = max(1, min(size, _KNOTS // max(1, knots)))
 
@@ -76,7 +77,7 @@ def in_chunks(count: int, work: Callable[[int, int], Any], *, size: int = 512, k
         return
     bounds = range(0, count, size)
     with _handing_out:
-        # Each in a context of its own: it knows what may end the wait for a kernel.
+        # Each chunk has its own context, which knows the callbacks that may end the wait for a kernel.
         submitted = [
             threads().submit(copy_context().run, in_parts, begin, min(begin + size, count)) for begin in bounds
         ]
@@ -86,5 +87,5 @@ def in_chunks(count: int, work: Callable[[int, int], Any], *, size: int = 512, k
     except Exception:
         for chunk in submitted:
             chunk.cancel()
-        wait(submitted)  # what ended one ends those under way
+        wait(submitted)  # the error that ended one chunk ends the running ones
         raise

@@ -1,9 +1,9 @@
-"""Loaded stroke: the one in which the load on the slider does more work against the motion.
+"""Loaded stroke: the stroke in which the load on the slider does more work against the motion.
 
 The work against a stroke is W = -integral of F dX, F the load and X the distance of the slider, both positive outward.
-Springs and tables over position that act in both strokes are left out: what they take in one stroke they give back in
-the other. So is viscous resistance, which the fast stroke always has more of. A constant force is not: a weight loads
-the stroke in which it is lifted.
+Springs and tables over position that act in both strokes are left out: they return in one stroke what they take in the
+other. Viscous resistance is also left out, as it is always greater in the fast stroke. A constant force counts: a
+weight loads the stroke in which it is lifted.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from .linkage import Linkage
 
 MORE = 0.01
 """Of the greater work: strokes whose works differ by less are loaded alike."""
-_STEPS = 256  # of a stroke: sums good to 1e-3
+_STEPS = 256  # steps per stroke: sums accurate to 1e-3
 
 
 def loaded_stroke(mechanism: Mechanism, dimensions: Array) -> NDArray[np.str_]:
-    """Return which stroke of designs (n, 3 + k) is the loaded one: "outward", "inward", or "equal" for neither.
+    """Return the loaded stroke of designs (n, 3 + k): "outward", "inward", or "equal" for neither.
 
-    Designs as in `Quantity.evaluate`: crank, rod, offset, m, each turning fully, then the varying numbers.
+    Designs as in `Quantity.evaluate`: crank, rod, offset, m, each rotating fully, then the varying numbers.
     """
     dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64))
     if mechanism.varying:
@@ -41,7 +41,7 @@ def loaded_stroke(mechanism: Mechanism, dimensions: Array) -> NDArray[np.str_]:
 
 
 def _work(mechanism: Mechanism, dimensions: Array) -> Array:
-    """Return the work against the outward and against the inward stroke (2, n), J."""
+    """Return the work against the outward and the inward stroke (2, n), J."""
     linkage = Linkage(dimensions[:, 0], dimensions[:, 1], dimensions[:, 2], mechanism.branch)
     work = np.zeros((2, len(dimensions)))
     for row, outward in enumerate((True, False)):

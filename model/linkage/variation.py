@@ -1,4 +1,4 @@
-"""One-at-a-time variation: the slider's motion over the cycle with one dimension changed, against the motion meant."""
+"""One-at-a-time variation: the slider's motion over the cycle with one dimension changed, and the nominal motion."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Dimension = Literal["crank", "rod", "offset"]
 
 @dataclass(frozen=True)
 class Variation:
-    """The motion with one dimension at another value, m. Arrays of `motion` are (m,), as those of `Variations`."""
+    """The motion with one dimension at another value, m. Arrays of `motion` are (m,), like those of `Variations`."""
 
     dimension: Dimension
     value: float
@@ -29,7 +29,7 @@ class Variation:
 
 @dataclass(frozen=True)
 class Variations:
-    """The motion meant and those with one dimension changed, at crank angles (m,), rad."""
+    """The nominal motion and the motions with one dimension changed, at crank angles (m,), rad."""
 
     crank_angle: Array
     linkage: Linkage
@@ -45,10 +45,10 @@ def vary(
     speed: float = 1.0,
     acceleration: float = 0.0,
 ) -> Variations:
-    """Return the slider's motion of one linkage, and with each change alone: a dimension and its other value, m.
+    """Return one linkage's slider motion, nominal and with each single change: a dimension and its other value, m.
 
-    speed, acceleration: of the crank, rad/s and rad/s^2; at a speed of 1 velocity is per rad of crank angle.
-    Raises `AssemblyError` where a changed linkage cannot be assembled at some of the crank angles.
+    speed, acceleration: crank speed and acceleration, rad/s and rad/s^2; at speed 1, velocity is per rad of crank
+    angle. Raises `AssemblyError` where a changed linkage cannot be assembled at some of the crank angles.
 
     >>> found = vary(Linkage(0.14, 0.31, 0.06), [("crank", 0.15)], [0.0])
     >>> round(float(found.varied[0].motion.slider_position[0] - found.meant.slider_position[0]), 9)

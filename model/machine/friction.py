@@ -1,8 +1,9 @@
-"""Coulomb friction of a machine: what rubs and how much.
+"""Coulomb friction of a machine: joints with friction, and its coefficients.
 
 In the guide the friction force is the coefficient times the size of the guide's force, against the slider's velocity.
-In a pin the friction moment is coefficient times radius times the size of the pin's force, against the turning of one
-part on the other: the pin's force passes its centre at that distance, the radius of its *friction circle*.
+In a pin the friction moment is coefficient times radius times the size of the pin's force, against the relative
+rotation of the parts. The pin's force passes its centre at the distance coefficient times radius, the radius of its
+*friction circle*.
 """
 
 from __future__ import annotations
@@ -33,13 +34,13 @@ class Pin:
 class Friction:
     """Friction of a machine; none unless given.
 
-    guide: coefficient of the slider in its guide. crank_pivot: between frame and crank. crank_pin: between crank and
-    rod. slider_pin: between rod and slider.
+    guide: coefficient of friction of the slider in its guide. crank_pivot: pin between frame and crank. crank_pin: pin
+    between crank and rod. slider_pin: pin between rod and slider.
 
-    The guide carries a single normal force N at the slider pin and rubs with mu |N|; a moment that the slider pin's
-    friction puts on the slider is taken by the guide without rubbing more. Where a joint does not move (the slider at a
-    dead centre, everything at crank speed zero) friction acts against the motion that follows in the sense in which
-    the crank turns; a crank at speed zero is taken to turn counter-clockwise, as for loads that change with the stroke.
+    The guide carries a single normal force N at the slider pin and rubs with mu |N|; the guide takes the moment of the
+    slider pin's friction without additional friction. Where a joint does not move (the slider at a dead centre,
+    everything at crank speed zero) friction acts against the motion that follows in the crank's sense of rotation;
+    a crank at speed zero is taken to turn counter-clockwise, as for loads that change with the stroke.
     """
 
     guide: float = 0.0
@@ -52,12 +53,12 @@ class Friction:
 
     @property
     def acts(self) -> bool:
-        """Whether anything rubs."""
+        """Whether any joint has friction."""
         return self.guide > 0.0 or any(pin.circle > 0.0 for pin in (self.crank_pivot, self.crank_pin, self.slider_pin))
 
 
 def require_frictionless(friction: Friction, subject: str) -> None:
-    """Refuse friction where an analysis has none. subject: the analysis, as the subject of a sentence."""
+    """Raise an error for friction if an analysis ignores it. subject: the analysis, as the subject of a sentence."""
     if friction.acts:
         raise InputError(
             f"{subject} takes joints and guide without friction; got friction that acts; leave [friction] out"

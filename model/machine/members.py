@@ -1,7 +1,7 @@
-"""The cylinders of a crankshaft as machines of their own, and whether a machine is followed as a shaft.
+"""Cylinders of a crankshaft as separate machines, and whether a machine is treated as a shaft.
 
-A machine is followed as a shaft where several cylinders add up, or where its speed follows a profile; any other one by
-the formulas of a single crank at constant speed.
+A machine is treated as a shaft if several cylinders add up, or if its speed follows a profile. For any other machine
+the formulas of a single crank at constant speed apply.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from .memoise import memoise_by_machine
 
 
 class Member(NamedTuple):
-    """A cylinder as a machine of its own. lead: of its crank angle over the shaft's, rad. bank: rad. place: m."""
+    """A cylinder as a separate machine. lead: lead of its crank angle over the shaft's, rad. bank: rad. place: m."""
 
     mechanism: Mechanism
     lead: float
@@ -26,26 +26,26 @@ class Member(NamedTuple):
 
 
 def is_shaft(mechanism: Mechanism) -> bool:
-    """Return whether a machine has cylinders that are stated one by one, or a speed profile."""
+    """Return whether a machine has individually stated cylinders or a speed profile."""
     return mechanism.arrangement is not None or mechanism.speed_profile is not None
 
 
 def cylinder_count(mechanism: Mechanism) -> int:
-    """Return how many cylinders a machine has on its crankshaft."""
+    """Return the number of cylinders on a machine's crankshaft."""
     return 1 if mechanism.arrangement is None else len(mechanism.arrangement.phases)
 
 
 @memoise_by_machine
 def single_cylinder(mechanism: Mechanism) -> Mechanism:
-    """Return one cylinder of a machine by itself, in the bank of angle zero, at its constant mean speed."""
+    """Return one cylinder of a machine alone, at bank angle zero and its constant mean speed."""
     return replace(mechanism, arrangement=None, speed_profile=None) if is_shaft(mechanism) else mechanism
 
 
 @memoise_by_machine
 def members(mechanism: Mechanism) -> tuple[Member, ...]:
-    """Return the cylinders of a machine, each as a machine of its own. Raises `InputError` without an arrangement.
+    """Return the cylinders of a machine, each as a separate machine. Raises `InputError` without an arrangement.
 
-    Gravity is turned into the axes of each bank; one that varies from design to design keeps its values.
+    Gravity is rotated into the axes of each bank; gravity that varies from design to design keeps its values.
     """
     arrangement = mechanism.arrangement
     if arrangement is None:
@@ -65,7 +65,7 @@ def members(mechanism: Mechanism) -> tuple[Member, ...]:
 
 
 def require_plain(mechanism: Mechanism, subject: str) -> None:
-    """Refuse several cylinders and a speed profile where an analysis has neither; subject: the analysis."""
+    """Raise an error for several cylinders or a speed profile if an analysis covers neither; subject: the analysis."""
     require_one_cylinder(mechanism.arrangement, subject)
     if mechanism.speed_profile is not None:
         raise InputError(

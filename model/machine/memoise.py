@@ -1,4 +1,4 @@
-"""Answers about a machine, and about designs of it, kept while the same ones are asked about."""
+"""Cached results for a machine, and for designs of it, kept while the same ones are requested."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ Parameters = ParamSpec("Parameters")
 Result = TypeVar("Result")
 
 _BATCHES = 4
-_LARGEST = 10_000  # designs of a batch: the largest fronts, whose tables ask for the same again and again
+_LARGEST = 10_000  # designs in a batch: the largest fronts, whose tables request the same results repeatedly
 
 
 def memoise_by_machine(
     function: Callable[Concatenate[Mechanism, Parameters], Result],
 ) -> Callable[Concatenate[Mechanism, Parameters], Result]:
-    """Keep what a function says of the machine that was last asked about: a search asks thousands of times.
+    """Cache a function's result for the latest machine: a search requests it thousands of times.
 
-    Its other arguments are hashable, and its answers are not written to.
+    Its other arguments must be hashable, and its results must not be changed.
     """
     last: tuple[Mechanism | None, dict[object, Result]] = (None, {})
 
@@ -45,11 +45,10 @@ def memoise_by_machine(
 def memoise_by_batch(
     function: Callable[Concatenate[Mechanism, Array, Parameters], Result],
 ) -> Callable[Concatenate[Mechanism, Array, Parameters], Result]:
-    """Keep the answers of a function for the last few batches of designs (n, 3 + k).
+    """Cache the results of a function for the last few batches of designs (n, 3 + k).
 
-    Several quantities ask for the same.
-
-    Its other arguments are hashable, and its answers are not written to. Of larger batches nothing is kept.
+    Several quantities need the same results. Its other arguments must be hashable, and its results must not be changed.
+    Results for larger batches are not cached.
     """
     batches: OrderedDict[object, tuple[Mechanism, dict[object, Result]]] = OrderedDict()
     lock = Lock()
@@ -62,7 +61,7 @@ def memoise_by_batch(
             return function(mechanism, designs, *arguments, **named)
         batch, key = (id(mechanism), designs.shape, designs.tobytes()), (arguments, *named.items())
         with lock:
-            # The machine is held, so that no other one gets its number.
+            # Hold the machine, so that no other machine gets its id.
             _, results = batches.setdefault(batch, (mechanism, {}))
             batches.move_to_end(batch)
             while len(batches) > _BATCHES:

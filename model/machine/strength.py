@@ -1,4 +1,4 @@
-"""Material and pins of crank and rod: what their strength is judged by."""
+"""Material and pins of crank and rod, to judge their strength."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ Criterion = Literal["goodman", "soderberg"]
 class Material:
     """Material of crank and rod, SI.
 
-    endurance: fully reversed strength of the finished bar, all corrections in it but the concentration of stress in the
-    eyes (Shigley eq. 6-18). bearing_pressure: permissible at the pins, on the projected area.
+    endurance: fully reversed strength of the finished bar, with all corrections except stress concentration in the eyes
+    (Shigley eq. 6-18). bearing_pressure: permissible pressure at the pins, on the projected area.
     """
 
     density: float
@@ -48,8 +48,8 @@ class Strength:
     """Material of the bars of a machine, and its pins.
 
     crank_pivot, crank_pin, slider_pin: diameters of the pins, m. eye_concentration: greatest over mean stress in the
-    net section of an eye. criterion: fatigue criterion for mean stresses. wear_coefficient: volume worn off over force
-    and sliding distance, m^2/N (Archard); None if it is not known.
+    net section of an eye. criterion: fatigue criterion for mean stresses. wear_coefficient: worn volume over force and
+    sliding distance, m^2/N (Archard); None if unknown.
     """
 
     material: Material
@@ -69,5 +69,5 @@ class Strength:
 
     @property
     def steady(self) -> float:
-        """Strength that mean stresses count against: ultimate (Goodman) or yield (Soderberg), Pa."""
+        """Reference strength for mean stresses: ultimate (Goodman) or yield (Soderberg), Pa."""
         return self.material.ultimate_strength if self.criterion == "goodman" else self.material.yield_strength

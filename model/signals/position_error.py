@@ -8,13 +8,13 @@ Mechanism", Eq. (3), whose offset is the mirror image of the one here.
 
 Clearances. A pin with radial clearance c lets the two centres of its joint lie apart by any vector u with |u| <= c. At
 the crank pivot and the crank pin, u moves the end A of the rod; at the slider pin, the other end. To first order
-dx = u . n / cos(phi), n the direction of the rod: the greatest is c / cos(phi), with the contact along the rod, which
-is also where the force of a rod without mass holds it. That is exact and not only first order: by the triangle
-inequality the distance of the centres at both ends lies between l - c and l + c, and every distance between occurs. So
-the clearance of a pin is a tolerance of the rod, and that of the guide, across its line, a tolerance of the offset.
-In the root-sum-square each clearance stands as a source of its own, its c as a limit like the tolerances. A pin that
-the force presses to either side scatters wider, with a standard deviation of c instead of a third of it: what that
-does, the Monte Carlo simulation shows.
+dx = u . n / cos(phi), n the direction of the rod. The greatest value is c / cos(phi), with the contact along the rod,
+where the force of a massless rod also holds it. This is exact and not only first order: by the triangle inequality the
+distance of the centres at both ends lies between l - c and l + c, and every distance in between occurs. So the
+clearance of a pin is a tolerance of the rod, and that of the guide, across its line, a tolerance of the offset. In the
+root-sum-square each clearance is a separate source, with its c as a limit like the tolerances. A pin that the force
+presses to either side scatters more widely, with a standard deviation of c instead of a third of it. The Monte Carlo
+simulation shows the effect.
 """
 
 from __future__ import annotations

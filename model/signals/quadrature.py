@@ -1,4 +1,4 @@
-"""Quadrature over a turn of curves with kinks: panels in the crowded angle, and what tells whether one is resolved."""
+"""Quadrature over a turn for curves with kinks: panels in the crowded angle, and a test whether one is resolved."""
 
 from __future__ import annotations
 
@@ -17,21 +17,19 @@ PANELS = 24
 EVEN = 0.21
 DEEPEST = 24  # halvings of a panel
 _TAIL = 3  # Legendre coefficients that tell whether a panel is resolved ...
-RESOLVED = 1e-12, 1e-10  # ... and what is left of them then, of the curve's and its derivatives' greatest values
-MOST_HALVINGS = 20_000  # panels halved for one design: beyond that only the rounding of the curves remains
-ANGLE_ROUNDING = (
-    1e-13  # rad, by which rounding of angles and positions moves a curve: no halving lessens its slope times it
-)
+RESOLVED = 1e-12, 1e-10  # ... and their size then, relative to the greatest values of the curve and its derivatives
+MOST_HALVINGS = 20_000  # panels halved for one design: beyond that, only rounding of the curves remains
+ANGLE_ROUNDING = 1e-13  # rad, shift of a curve by rounding of angles and positions: halving does not reduce its effect
 NOISE = 0.004  # of a curve's rounding, in units of RESOLVED, times kappa^2: that of the crank angle itself
 
 
 @analytic
 def square_along(theta: Any, d: Any, gap: Any) -> Any:
-    """Return l^2 cos^2(phi), m^2, exact to rounding however near to locking; gap: l - r - |e|, m, likewise.
+    """Return l^2 cos^2(phi), m^2, exact to rounding however close to locking; gap: l - r - |e|, m, equally exact.
 
-    l^2 - across^2 = (l - |across|) (l + |across|) loses its digits where the rod stands nearly across. With psi the
-    crank angle from there, -pi/2 for e >= 0, the factors are gap + 2 r sin^2(psi / 2) and
-    gap + 2 |e| + 2 r cos^2(psi / 2).
+    l^2 - across^2 = (l - |across|) (l + |across|) loses its digits where the rod is nearly normal to the slider line.
+    With psi the crank angle from there, -pi/2 for e >= 0, the factors are gap + 2 r sin^2(psi / 2) and gap + 2 |e| + 2
+    r cos^2(psi / 2).
     """
     half = 0.5 * (theta - (0.5 if d.e < 0.0 else 1.5) * math.pi)
     s, c = math.sin(half), math.cos(half)
@@ -40,7 +38,7 @@ def square_along(theta: Any, d: Any, gap: Any) -> Any:
 
 @analytic
 def rough(values: Any, tail: Any, allowed: Any) -> bool:
-    """Return whether the last Legendre coefficients of values at the nodes of a panel exceed what is allowed."""
+    """Return whether the last Legendre coefficients of values at a panel's nodes exceed the tolerance."""
     for k in range(tail.shape[0]):
         coefficient = 0.0
         for i in range(tail.shape[1]):
@@ -61,7 +59,7 @@ def steepness(values: Any, width: Any) -> Any:
 
 @lru_cache(maxsize=1)
 def panel_rule() -> tuple[Array, Array, Array]:
-    """Return nodes and weights on [0, 1] of a panel, and what gives the last Legendre coefficients from its values."""
+    """Return nodes and weights on [0, 1] of a panel, and the matrix for the last Legendre coefficients."""
     nodes, weights = np.polynomial.legendre.leggauss(16)
     orders = np.arange(16 - _TAIL, 16)
     basis = np.polynomial.legendre.legvander(nodes, 15)[:, orders]

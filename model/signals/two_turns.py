@@ -29,7 +29,7 @@ class _Averages(Protocol):
 
 
 def highest(mechanism: Mechanism, designs: Array, first: _Peaks, second: _Peaks) -> tuple[Array, Array, Array | None]:
-    """Return values, angles and gradients of the highest peaks of both turns, as many as each has."""
+    """Return values, angles and gradients of the highest peaks of both turns, as many as each turn has."""
     limit = first.values.shape[1]
     values = np.concatenate([first.values, second.values], axis=1)
     order = np.argsort(-values, axis=1, kind="stable")[:, :limit]

@@ -1,6 +1,6 @@
 """Balance of a linkage whose slider is pushed and whose crank is free: the force in the slider pin.
 
-The equations are those of `forces`. Written for numbers of one design, for arrays, and for kernels.
+The equations are those of `forces`, written for numbers of one design, for arrays, and for kernels.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class PinRows(NamedTuple):
 
 
 class PinSides(NamedTuple):
-    """Radii of the friction circles of crank pin, slider pin and crank pivot, m, with the sense of their turning."""
+    """Radii of the friction circles of crank pin, slider pin and crank pivot, m, with their senses of rotation."""
 
     crank_pin: Any
     slider_pin: Any
@@ -69,7 +69,7 @@ def pin_rows(bx: Any, by: Any, sine: Any, cosine: Any, m: Motion, d: Design, b: 
 
 @analytic
 def newton_step(rows: PinRows) -> tuple[Any, Any]:
-    """Return the step of B that Newton's iteration takes."""
+    """Return the step of Newton's iteration for B."""
     per = inverse(rows.rod_x * rows.crank_y - rows.rod_y * rows.crank_x)
     return (rows.rod_y * rows.crank - rows.crank_y * rows.rod) * per, (
         rows.crank_x * rows.rod - rows.rod_x * rows.crank

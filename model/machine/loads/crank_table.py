@@ -16,7 +16,7 @@ from .load_text import TURNS, effect_by_direction, sized
 class CrankTable(AngleTable):
     """A torque on the crank tabulated over crank angle, interpolated linearly and periodically.
 
-    forces: torques, N m, positive counter-clockwise. The other fields are as in `AngleTable`; it acts all over the
+    forces: torques, N m, positive counter-clockwise. The other fields are as in `AngleTable`; it acts throughout the
     cycle.
     """
 
@@ -24,7 +24,7 @@ class CrankTable(AngleTable):
     tabulated: ClassVar = ("torques", "N m")
 
     def numbers(self) -> tuple[float, float, float, float]:
-        """Return factors of one, alike in both strokes."""
+        """Return factors of one for both strokes."""
         return (1.0, 1.0, 0.0, 0.0)
 
     def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
@@ -34,7 +34,7 @@ class CrankTable(AngleTable):
         return {CrankTable: tuple(0.5 * (b - a) * (first + second) for (a, b), (first, second) in pairs)}
 
     def stroke_work(self, passage: Passage) -> Any:
-        """Return none: no stroke is loaded by it."""
+        """Return zero: it loads neither stroke."""
         return 0.0
 
     @property

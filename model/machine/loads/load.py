@@ -223,7 +223,7 @@ class Load:
     def stroke_work(self, passage: Passage) -> Any:
         """Return the work (n,), J, that shows which stroke is loaded.
 
-        None for a load that returns it in the other stroke, or that always resists.
+        Zero for a load that returns it in the other stroke, or that always resists.
         """
         return 0.0
 
