@@ -1,4 +1,4 @@
-"""Amounts that come with what is chosen: the price or the mass of a gearmotor of a catalogue."""
+"""Amounts that come with a chosen option: the price or the mass of a gearmotor in a catalogue."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _NONE = float("nan")
 
 @dataclass(frozen=True, kw_only=True)
 class Amount(Quantity):
-    """A number that follows from a choice alone. value: SI; NaN where nothing is chosen. choice: its name."""
+    """A number that depends only on a choice. value: SI; NaN without a chosen option. choice: its name."""
 
     value: float = _NONE
     choice: str = ""
@@ -54,6 +54,6 @@ def kind_of_amount(unit: str) -> Kind:
 
 
 def amount_of(text: str | float) -> tuple[float, str] | None:
-    """Return number and unit of an amount such as "280 EUR"; None of what is none."""
+    """Return number and unit of an amount such as "280 EUR"; None if it is not one."""
     parts = number_and_unit(text) if isinstance(text, str) else (str(text), "")
     return None if parts is None else (float(parts[0]), parts[1])

@@ -50,7 +50,7 @@ FORCE = {
 
 
 class Part(NamedTuple):
-    """Smooth pieces of n designs: values (n, k), gradients (n, k, 3 + v) if asked for, labels (n, k)."""
+    """Smooth pieces of n designs: values (n, k), gradients (n, k, 3 + v) if requested, labels (n, k)."""
 
     values: Array
     gradients: Array | None
@@ -62,9 +62,9 @@ class Part(NamedTuple):
         return self._with_slopes(values[:, None] * self.values, values[:, None], slopes, self.values)
 
     def dividing(self, factor: tuple[Array, Array | None]) -> Part:
-        """Return a closed form (n,) over the pieces, highest first; +inf where they are absent, or not positive.
+        """Return a closed form (n,) divided by the pieces, highest first; +inf where these are absent or not positive.
 
-        Of one that is negative the highest piece alone counts.
+        If the closed form is negative, only the highest piece counts.
         """
         values, slopes = factor
         counts = self.values > 0.0
@@ -75,7 +75,7 @@ class Part(NamedTuple):
         return part
 
     def _with_slopes(self, values: Array, outer: Array, slopes: Array | None, inner: Array) -> Part:
-        """Return values whose derivatives are `outer` by the pieces and `inner` by the factor."""
+        """Return values with derivatives `outer` with respect to the pieces and `inner` to the factor."""
         if self.gradients is None or slopes is None:
             return Part(values, None, self.labels)
         finite = np.isfinite(self.values) & np.isfinite(values)
@@ -86,7 +86,7 @@ class Part(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class OfBars(Quantity):
-    """A quantity that is the greatest, or the least, of what several parts of crank and rod have."""
+    """A quantity that is the greatest or least value over several parts of crank and rod."""
 
     group: Group = fact(Group.STRENGTH)
     section: str = fact("22. Strength of crank and rod")
@@ -94,19 +94,19 @@ class OfBars(Quantity):
     least: bool = False
 
     def allowable(self, mechanism: Mechanism) -> float:
-        """Return 1, below which a safety fails; what is no safety says its own; see `Quantity`."""
+        """Return 1, below which a safety fails; quantities other than a safety override this; see `Quantity`."""
         return 1.0
 
     @abstractmethod
     def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
-        """Return the parts that count for designs (n, 3 + k). piece_count: pieces wanted of each."""
+        """Return the relevant parts for designs (n, 3 + k). piece_count: number of pieces of each."""
 
     def bars(self, mechanism: Mechanism) -> list[str]:
         """Return which of its links are bars."""
         return [name for name in self.links if isinstance(getattr(mechanism, name), Bar)]
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
-        """Return the quantity for designs (n, 3 + k); NaN without what it is of; see `Quantity`."""
+        """Return the quantity for designs (n, 3 + k); NaN without any parts; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return undefined(dimensions, gradients)
         all_parts = self.joined(mechanism, dimensions, 1, gradients)
@@ -152,7 +152,7 @@ def stresses(
     piece_count: int,
     gradients: bool,
 ) -> list[Part]:
-    """Return the greatest p sigma - q sigma of each place, for (p, q) of the criteria; see `stress_peaks`."""
+    """Return the greatest p sigma - q sigma at each place, for each (p, q) of the criteria; see `stress_peaks`."""
     peaks = stress_peaks(mechanism, places, designs, np.array(criteria), gradients=gradients, limit=piece_count)
     return [Part(each.values, each.gradients, each.labels) for each in peaks]
 
@@ -167,7 +167,7 @@ def pin_force(mechanism: Mechanism, designs: Array, pin: str, piece_count: int, 
 def eyes_of(link: str, pin: str) -> list[Eye]:
     """Return the critical edges of a link's eye: the bore, and both edges where the torque bends it.
 
-    That is the crank's pivot. What the friction of a pin bends its eye is left out.
+    The torque bends the eye at the crank's pivot. Bending of an eye by friction of its pin is neglected.
     """
     sizes = LINKS[link]
     bent = sizes.part == CRANK and pin == sizes.far

@@ -1,12 +1,12 @@
-"""Bounds of a quantity that hold for every design within ranges of crank, rod and |offset| that turns fully.
+"""Bounds of a quantity for every fully rotating design within ranges of crank, rod and |offset|.
 
 With a = |offset|, stroke and time ratio rise with r and a and fall with l; the transmission angle does the reverse:
 
     dS/dr = (l+r)/x_out + (l-r)/x_in > 0      dS/da = a/x_in - a/x_out > 0      dS/dl = (l+r)/x_out - (l-r)/x_in < 0
     b = asin(a/(l-r)) - asin(a/(l+r)), the excess angle, likewise term by term; cos(mu) = (r + a)/l.
 
-So one extreme is at least crank, greatest rod, least offset. The other is at the opposite corner if that turns fully,
-else on the edge of rotation l = r + a, where S = 2 sqrt(l r), cos(b) = a / (2 r + a) and mu = 0.
+So one extreme is at least crank, greatest rod, least offset. The other is at the opposite corner if that rotates
+fully, else on the edge of rotation l = r + a, where S = 2 sqrt(l r), cos(b) = a / (2 r + a) and mu = 0.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ CLEAR = 1.0 + 1e-12
 
 @dataclass(frozen=True)
 class LengthRanges:
-    """Least and greatest crank r, rod l and |offset| a, m, with some design among them that turns fully."""
+    """Least and greatest crank r, rod l and |offset| a, m, with at least one fully rotating design among them."""
 
     r0: float
     r1: float
@@ -31,12 +31,12 @@ class LengthRanges:
 
     @property
     def turns(self) -> bool:
-        """Whether the corner nearest to locking turns fully."""
+        """Whether the corner nearest to locking rotates fully."""
         return (self.r1 + self.a1) * CLEAR < self.l0
 
     @property
     def crank(self) -> float:
-        """The longest crank that turns, m."""
+        """The longest crank that rotates fully, m."""
         return min(self.r1, self.l1 - self.a0)
 
 

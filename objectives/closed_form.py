@@ -1,4 +1,4 @@
-"""Quantities that a closed formula gives."""
+"""Quantities with a closed-form formula."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .quantity import Array, Formula, Number, Pieces, Quantity, Values, fact
 class ClosedFormQuantity(Quantity):
     """A quantity given by one closed form, or by the greatest of several (`forms`).
 
-    rises: whether it rises with crank, rod and |offset|, where the derivatives have one sign for all that turns fully.
+    rises: whether it rises with crank, rod and |offset|, if the derivatives have one sign for all that rotate fully.
     """
 
     section: str = fact("2. Closed forms")
@@ -35,7 +35,7 @@ class ClosedFormQuantity(Quantity):
         return True
 
     def is_closed(self, mechanism: Mechanism) -> bool:
-        """Return whether the closed form, and with it `rises` and `reach`, holds for a machine."""
+        """Return whether the closed form, and hence `rises` and `reach`, holds for a machine."""
         return True
 
     def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
@@ -43,7 +43,7 @@ class ClosedFormQuantity(Quantity):
         return [partial(_of_numbers, form) for form in self.forms] if self.is_closed(mechanism) else ()
 
     def bounds_for(self, mechanism: Mechanism) -> QuantityBounds | None:
-        """Return its reach if the closed form holds for the machine."""
+        """Return its bounds if the closed form holds for the machine."""
         return self.bounds if self.is_closed(mechanism) else None
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:

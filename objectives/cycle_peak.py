@@ -19,7 +19,7 @@ from .quantity import Array, Pieces, Quantity, Values
 class CyclePeak(Quantity):
     """The greatest value of `signal` over the cycle, or over one stroke.
 
-    Exact over continuous crank angle. `screen_peaks` trades that for speed where thousands of designs are only sorted.
+    Exact over continuous crank angle. `screen_peaks` is faster but less exact, for sorting thousands of designs.
     """
 
     signal: Signal
@@ -53,7 +53,7 @@ def screened(
     certain: bool = False,
     angles: int = ANGLES,
 ) -> dict[str, Values]:
-    """Return those quantities by name that vectorised screening takes, for designs (n, 3 + k).
+    """Return the quantities that vectorised screening supports, by name, for designs (n, 3 + k).
 
     certain: whether a torque whose peak may be on a kink is left out, as NaN.
     """

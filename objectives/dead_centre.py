@@ -23,7 +23,7 @@ from .quantity import Array, Formula, Group, Number
 
 @dataclass(frozen=True, kw_only=True)
 class NearDeadCentre(GreatestFormula):
-    """A closed form at a distance from a dead centre; NaN where the stroke is not longer. closed_form: gives it."""
+    """A closed form at a distance from a dead centre; NaN unless the stroke is longer. closed_form: its function."""
 
     closed_form: Callable[[Mechanism, Number], Any] = field(repr=False)
 
@@ -40,7 +40,7 @@ class NearDeadCentre(GreatestFormula):
 def _triangle(number: Number, distance: float, outer: bool) -> tuple[Any, ...]:
     """Return x, B^2, (l + r)^2 - B^2 and B^2 - (l - r)^2 near a dead centre.
 
-    B: distance of slider pin and crank pivot. Written as products, of which none cancels towards the dead centre.
+    B: distance between slider pin and crank pivot. The results are products, which do not cancel near the dead centre.
     """
     lengths = number(Raw.CRANK), number(Raw.ROD), number(Raw.OFFSET)
     far, near = outer_dead_centre(*lengths), inner_dead_centre(*lengths)
@@ -65,7 +65,7 @@ def _travel(machine: Mechanism, number: Number, distance: Any) -> Any:
 
 
 def _angle_from_line(machine: Mechanism, number: Number, distance: Any) -> Any:
-    """Return the angle between the crank and the line from crank pivot to slider pin, rad, by its half."""
+    """Return the angle between the crank and the line from crank pivot to slider pin, rad, by the half-angle."""
     r, l = number(Raw.CRANK), number(Raw.ROD)
     outer = machine.slider.dead_centre == "outer"
     _, square, outer_product, inner_product = _triangle(number, distance, outer)
@@ -77,7 +77,7 @@ def _angle_from_line(machine: Mechanism, number: Number, distance: Any) -> Any:
 def before_dead_centre(machine: Mechanism, design: Array, distances: Array) -> tuple[Array, Array]:
     """Return the crank angle, rad, before a dead centre and |x'|, m, at distances from it, m.
 
-    design: crank, rod, offset, m, whose stroke is longer. What is small with the distance is so to its last digits.
+    design: crank, rod, offset, m, with a longer stroke. Results for small distances are accurate to the last digits.
     """
     lengths = dict(zip((int(Raw.CRANK), int(Raw.ROD), int(Raw.OFFSET)), design, strict=True))
     number: Number = lengths.__getitem__

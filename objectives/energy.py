@@ -51,7 +51,7 @@ def _heat(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[Array, 
 def _useful(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[Array, Array | None]:
     """Return the work done against the loads in a turn, J (n,), and its derivatives (n, 3 + k).
 
-    What a torque on the crank takes is no force on a path: with such loads it is what drives them alone.
+    A torque on the crank is not a force along a path: with such loads, it is the work that drives the loads alone.
     """
     if not any(load.on_crank for load in mechanism.loads):
         return _TURN * work.mean[:, LOAD], None if work.gradients is None else _TURN * work.gradients[:, LOAD]

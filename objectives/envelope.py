@@ -1,8 +1,8 @@
-"""Envelope of the moving links: length and height of the room that crank and rod sweep, their widths included.
+"""Envelope of the moving links: length and height of the space that crank and rod sweep, including their widths.
 
-A link is a bar with half-discs about its pin centres; one that is not given by its section is its centre line. Crank
-pivot and crank pin stay within r of the pivot, the slider pin on its line between the dead centres, and a bar reaches
-farthest at one of its ends. With h_c, h_r half the widths, h the greater of both, and x_out the outer dead centre:
+A link is a bar with half-discs about its pin centres; without a section, it is its centre line. Crank pivot and crank
+pin stay within r of the pivot, the slider pin on its line between the dead centres, and a bar reaches farthest at one
+of its ends. With the half widths h_c and h_r, the greater of them h, and the outer dead centre x_out:
 
     length = (r + h) + max(x_out + h_r, r + h_c)        height = (r + h) + max(r + h, |e| + h_r)
 

@@ -51,11 +51,11 @@ class Flow(Quantity):
 
 
 class FlowRipple(Quantity):
-    """Greatest less least flow of all liquid pumps together, over the mean flow.
+    """Greatest minus least flow of all liquid pumps together, divided by the mean flow.
 
-    Without masses, pumps that resist with 1 Pa in their delivery strokes take a drive torque, N m, of the size of the
-    delivered volume per crank angle, m^3/rad. With its greatest value taken off, the greatest size of what is left is
-    the difference of greatest and least flow.
+    Without masses, pumps that resist with 1 Pa in their delivery strokes need a drive torque, N m, equal to the
+    delivered volume per crank angle, m^3/rad. After subtracting its greatest value, the greatest magnitude is the
+    difference between greatest and least flow.
     """
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
@@ -98,7 +98,7 @@ class FlowRipple(Quantity):
 
 
 def pumps_of(mechanism: Mechanism) -> dict[int, Cylinder]:
-    """Return the pumps of a liquid among the loads of a machine, by their places."""
+    """Return the liquid pumps among the loads of a machine, by their indices."""
     return {
         k: load for k, load in cylinders(mechanism) if isinstance(load, Compressor) and load.compression_exponent == 0.0
     }
@@ -111,14 +111,14 @@ def _area(k: int, number: Callable[[int], Any]) -> Any:
 
 
 def _mean(number: Callable[[int], Any], pumps: Iterable[int], count: int) -> Any:
-    """Return the volume that all cylinders deliver per crank angle, m^3/rad, over a turn."""
+    """Return the mean volume that all cylinders deliver per crank angle over a turn, m^3/rad."""
     swept = stroke(number(Raw.CRANK), number(Raw.ROD), magnitude(number(Raw.OFFSET)))
     return swept * sum(_area(k, number) for k in pumps) * (count / (2.0 * math.pi))
 
 
 @memoise_by_machine
 def _flow_as_torque(mechanism: Mechanism) -> Mechanism:
-    """Return the machine whose drive torque is the flow; its designs end with the pumps' areas and a torque less."""
+    """Return the machine whose drive torque is the flow; designs end with the pumps' areas and a torque to deduct."""
     loads: list[Load] = []
     varying = []
     for place, pump in enumerate(pumps_of(mechanism).values()):

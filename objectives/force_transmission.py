@@ -1,4 +1,4 @@
-"""Force transmission: the greatest force that moves the slider, over the greatest force that the rod must give it."""
+"""Force transmission: ratio of the greatest force that moves the slider to the greatest force of the rod on it."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from .quantity import Array, Domain, Group, Pieces, Quantity, Values
 class ForceTransmission(Quantity):
     """max |B_x| / max |B| over the cycle, for the force B between rod and slider.
 
-    A rod without mass under a constant force: the least |B_x| / |B| of the cycle, which is the sine of the least
-    transmission angle. In general that least ratio would be 0 for nearly every machine: inertia turns B_x round within
-    the turn while the rod's own mass keeps B_y. The ratio of the peaks says in every case how much of the force that
-    sizes rod and pin is of use. Each peak is exact over continuous crank angle; -inf where friction locks.
+    For a massless rod under a constant force, it is the least |B_x| / |B| in the cycle, which is the sine of the least
+    transmission angle. In general that least ratio would be 0 for nearly every machine: inertia reverses B_x within
+    the turn while the rod's own mass keeps B_y. The ratio of the peaks always gives the useful fraction of the force
+    that sizes rod and pin. Each peak is exact over continuous crank angle; -inf where friction locks.
     """
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
@@ -32,7 +32,7 @@ class ForceTransmission(Quantity):
         return Values(values[:, 0], slopes[:, 0] if gradients else None)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the ratios to the highest local peaks of |B|, the least of which is the quantity; see `Quantity`."""
+        """Return the ratios to the highest local peaks of |B|; the least ratio is the quantity; see `Quantity`."""
         line_peaks = find_peaks(mechanism, Signal.LINE_FORCE, dimensions, gradients=True, limit=1)
         pin_peaks = find_peaks(mechanism, Signal.SLIDER_PIN_FORCE, dimensions, gradients=True)
         return Pieces(*_ratios(line_peaks, pin_peaks), pin_peaks.angles, least=True)

@@ -1,4 +1,4 @@
-"""Gas cycle of a machine's cylinders: volumes, work, mean pressure, what a compressor delivers."""
+"""Gas cycle of a machine's cylinders: volumes, work, mean pressure, delivery of a compressor."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from .quantity import Array, Domain, Group, Quantity, Values, undefined
 
 @dataclass(frozen=True, kw_only=True)
 class GasQuantity(Quantity):
-    """A number of the `GasCycle`, in closed form. closed_form: gives it."""
+    """A closed-form number of the `GasCycle`. closed_form: its function."""
 
     closed_form: Callable[[GasCycle], Any] = field(repr=False)
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
-        """Return the quantity for designs (n, 3 + k); NaN without a cylinder that it is of; see `Quantity`."""
+        """Return the quantity for designs (n, 3 + k); NaN without a suitable cylinder; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return undefined(dimensions, gradients)
         return Values(*gas_cycle(mechanism, dimensions, self.closed_form, gradients=gradients))
@@ -93,6 +93,6 @@ VOLUMETRIC_EFFICIENCY = _gas(
     example=0.8,
     better="high",
     domain=Domain.share("the volumetric efficiency", "0.6 to 0.9"),
-    floor=0.05,  # towards zero the machine runs for nothing
+    floor=0.05,  # near zero the machine delivers nothing
     needs=(COMPRESSOR,),
 )

@@ -1,4 +1,4 @@
-"""Quantities that are the greatest of smooth formulas of a machine's numbers, or the only one."""
+"""Quantities that are the greatest of one or more smooth formulas in a machine's numbers."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from .quantity import Array, Pieces, Quantity, Values, undefined
 
 @dataclass(frozen=True, kw_only=True)
 class GreatestFormula(Quantity):
-    """The greatest of its `formulas`, with exact derivatives by all numbers that vary; NaN where one is not a number.
+    """The greatest of its `formulas`, with exact derivatives by all varying numbers; NaN if any formula is NaN.
 
-    A formula takes complex numbers and, for bounds over ranges, enclosures: it has no branch on a number of a design.
+    A formula takes complex numbers and, for bounds over ranges, enclosures: it must not branch on a design's numbers.
     """
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:

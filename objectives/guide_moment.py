@@ -1,4 +1,4 @@
-"""Guide moment: by how much the slider pin's force tilts the slider in its guide."""
+"""Guide moment: moment of the slider pin's force that tilts the slider in its guide."""
 
 from ..model.signals.signals import Signal
 from .cycle_peak import CyclePeak

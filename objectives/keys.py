@@ -1,4 +1,4 @@
-"""Keys that end with their unit, as columns and JSON have them: `peak_torque_Nm`, `crank_in`."""
+"""Keys that end with their unit, as in columns and JSON: `peak_torque_Nm`, `crank_in`."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from .kinds import INERTIA, LENGTH, PRESSURE, RATIO, SHOWN, DisplayUnit, Kind, System, display_unit, kind_in
 
-# How a column's name ends: the longest first, as "_lbf_in" ends like "_in".
+# Suffixes of column names: longest first, as "_lbf_in" ends like "_in".
 _DISPLAY_UNITS = sorted(
     {unit for kind in SHOWN for unit in (kind.metric, kind.inch) if unit is not None},
     key=lambda unit: -len(unit.suffix),
@@ -39,7 +39,7 @@ def split_unit(key: str) -> tuple[str, str, float]:
 
 
 def kind_of_key(key: str) -> tuple[str, Kind]:
-    """Return the name and the kind of a metric key; a ratio if it ends with no unit."""
+    """Return the name and the kind of a metric key; a ratio if it ends without a unit."""
     unit = _display_unit_of(key)
     if unit is None:
         return key, RATIO

@@ -1,9 +1,9 @@
 """Kinds of physical values and their display units: one table for files, tables, figures and the page.
 
-SI inside, always. Columns and JSON have metric units; inch units are the US customary ones that a reader may
-ask for: inch, pound-mass, pound-force, second, and what is made of these; horsepower and psi where the field has them.
+Values are always SI inside the program. Columns and JSON have metric units. Inch units are the US customary ones that
+a reader may choose: inch, pound-mass, pound-force, second, and their combinations; horsepower and psi where usual.
 Factors are exact to rounding: inch and pound are defined (international, 1959), pound-force by the standard
-acceleration of gravity (3rd CGPM, 1901), horsepower as 550 foot-pounds-force a second.
+acceleration of gravity (3rd CGPM, 1901), horsepower as 550 foot-pounds-force per second.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ System = Literal["metric", "inch"]
 
 @dataclass(frozen=True)
 class DisplayUnit:
-    """Unit of a kind in a system. symbol: of the unit. suffix: of columns in it. factor: what one SI unit is in it."""
+    """Unit of a kind in a system. symbol: its symbol. suffix: ending of its columns. factor: value of one SI unit."""
 
     symbol: str
     suffix: str
@@ -44,13 +44,13 @@ def quotient_unit(symbol: str, factor: float = 1.0) -> DisplayUnit:
 class Kind:
     """A kind of physical value.
 
-    name: with its article, "a length". unit: the SI unit, "" if none. example: as a job file has it.
-    limit: the greatest magnitude in SI that is believed. It lies orders beyond any machine: what exceeds it is a
-    mistaken unit (80 Mm for 80 mm), and products of several values stay far from the ends of a double.
-    metric, inch: how it is shown; inch is None where both systems use the same unit.
-    typed: units that a form offers, the SI unit first; usual: the one that it begins with, the metric one if left out.
-    spoken: units that mean something in a value of this kind alone, each with the unit that it means there.
-    believed: the least and the greatest magnitude in SI that a number without a unit is believed to mean; None for any.
+    name: name with its article, "a length". unit: the SI unit, "" if none. example: a value as in a job file.
+    limit: greatest credible magnitude in SI. It is orders of magnitude beyond any machine: a larger value means a
+    mistaken unit (80 Mm for 80 mm), and products of several values stay far from the limits of a double.
+    metric, inch: display units; inch is None where both systems use the same unit.
+    typed: units that a form offers, the SI unit first. usual: unit that the form selects first, by default the metric
+    one. spoken: units with a meaning only in values of this kind, each with that meaning.
+    believed: least and greatest credible magnitude in SI of a number without a unit; None for any.
     amount: whether the unit is a text that stands for itself, such as a currency.
     """
 
@@ -72,7 +72,7 @@ class Kind:
         return quotient_unit(self.unit) if "_per_" in self.metric.suffix else display_unit(self.unit)
 
     def display_unit(self, system: System) -> DisplayUnit:
-        """Return how a system shows it."""
+        """Return its display unit in a system."""
         return self.metric if system == "metric" or self.inch is None else self.inch
 
     @property
@@ -98,7 +98,7 @@ def _kind(
     believed: tuple[float, float] | None = None,
     spoken: tuple[tuple[str, str], ...] = (),
 ) -> Kind:
-    """Return a kind by the units of a form, separated by commas; shown in the first, SI, unless said."""
+    """Return a kind from the units of a form, separated by commas; the first one, SI, is the default display unit."""
     units = tuple(typed.split(", ")) if typed else ()
     unit = units[0] if units else ""
     return Kind(name, unit, example, limit, metric or display_unit(unit), inch, units, usual, believed, spoken)
@@ -184,10 +184,10 @@ SHOWN = (*(kind for kind in KINDS if kind.unit), PER_ANGLE, PER_SQUARED_ANGLE, P
 
 
 def shown_in(symbol: str, system: System) -> tuple[str, float]:
-    """Return the unit in which a system shows a metric one, and the metric unit's value in it.
+    """Return a system's display unit for a metric unit, and the metric unit's value in it.
 
-    "mm" is ("in", 1 / 25.4) in the inch system. A unit that is no metric one of `SHOWN`, such as one of an own
-    quantity, stays as it is.
+    "mm" is ("in", 1 / 25.4) in the inch system. A unit that is not a metric one of `SHOWN`, such as that of a custom
+    quantity, stays unchanged.
     """
     for kind in SHOWN if system == "inch" else ():
         if kind.inch is not None and kind.metric.symbol == symbol:
@@ -201,14 +201,14 @@ def unit_text(symbol: str) -> str:
 
 
 def amount_in(unit: str) -> Kind:
-    """Return the kind of an amount in a unit that is none of physics, such as EUR."""
+    """Return the kind of an amount in a unit that is not physical, such as EUR."""
     return Kind(f"an amount in {unit}", unit, f"100 {unit}", 1e15, display_unit(unit), typed=(unit,), amount=True)
 
 
 def kind_in(symbol: str, factor: float = 1.0, kind: Kind | None = None) -> Kind:
-    """Return the kind of a value shown in any unit, its suffix made from the unit's symbol.
+    """Return the kind of a value displayed in any unit; the suffix derives from the unit's symbol.
 
-    factor: what one SI unit is in it. kind: that of the table, if it is known; else one named after the unit.
+    factor: value of one SI unit in it. kind: kind from the table, if known; else one named after the unit.
     """
     if kind is None:
         return Kind(f"a value in {symbol or 'no unit'}", symbol, f"1 {symbol}", 1e30, display_unit(symbol, factor))

@@ -1,4 +1,4 @@
-"""Masses of crank and rod, and of all that moves."""
+"""Masses of crank and rod, and of all moving parts."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .quantity import Formula, Group, Number
 
 @dataclass(frozen=True, kw_only=True)
 class Mass(GreatestFormula):
-    """A mass in closed form. closed_form: gives it from the raw numbers of a machine."""
+    """A mass in closed form. closed_form: its function of the raw numbers of a machine."""
 
     closed_form: Formula = field(repr=False)
 

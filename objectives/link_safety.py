@@ -20,7 +20,7 @@ _COMPRESSION = ((0.0, 1.0),)
 
 
 class FatigueSafety(OfBars):
-    """1 / (amplitude / S_e + mean / S_m), least of all points of the bars and their eyes."""
+    """Least value of 1 / (amplitude / S_e + mean / S_m) over all points of the bars and their eyes."""
 
     def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
         """Return the safety of each bar and of each eye; see `OfBars`."""
@@ -39,7 +39,7 @@ class FatigueSafety(OfBars):
 
 
 class BucklingSafety(OfBars):
-    """Critical stress over the greatest compression, least of bars and planes."""
+    """Critical stress divided by the greatest compression, least value over bars and planes."""
 
     def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
         """Return the safety of each bar in the plane of motion and out of it; see `OfBars`."""

@@ -36,7 +36,7 @@ CRANK = "crank"
 
 
 class LinkStress(OfBars):
-    """The greatest stress along links and in the net sections of their eyes, or the yield strength over it."""
+    """The greatest stress along links and in the net sections of their eyes, or the yield strength divided by it."""
 
     def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
         """Return the stresses along the bars and in their eyes; see `OfBars`."""
@@ -100,7 +100,7 @@ def _angle_of(mechanism: Mechanism, place: StressLocation, design: Array) -> flo
 
 
 def _places(mechanism: Mechanism) -> list[tuple[str, str, StressLocation]]:
-    """Return the places with the stress of a whole section: along the bars, and in the eye of the pivot."""
+    """Return the places with stress over a whole section: along the bars, and in the eye at the pivot."""
     bars, pivot = STATIC_SAFETY.bars(mechanism), LINKS[CRANK].far
     places: list[tuple[str, str, StressLocation]] = [(name, "", WholeBar(LINKS[name].part)) for name in bars]
     return places + [(CRANK, pivot, eye) for eye in (eyes_of(CRANK, pivot) if CRANK in bars else [])]

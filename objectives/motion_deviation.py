@@ -1,4 +1,4 @@
-"""Motion deviation: how far the slider's motion is from a wanted one given as points.
+"""Motion deviation: deviation of the slider's motion from a target motion given as points.
 
 These quantities exist for a target motion only; a `Problem` has them among its own quantities.
 """
@@ -21,9 +21,9 @@ from .quantity import Array, Group, Pieces, Quantity, Values
 
 @dataclass(frozen=True, kw_only=True)
 class MotionDeviation(Quantity):
-    """The deviation from a target motion, greatest or root mean square; phase and shift at their best where free.
+    """The deviation from a target motion, greatest or root mean square; free phase and shift are fitted.
 
-    target: None where no job has said yet from what: facts without values.
+    target: the target motion; None before a job gives one: facts without values.
     """
 
     target: TargetMotion | None = None
@@ -49,7 +49,7 @@ class MotionDeviation(Quantity):
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the greatest of smooth pieces; see `Quantity`."""
         fitted = fit_pieces(self._required_target, mechanism.sign, self.measure, dimensions[:, :3])
-        further = dimensions.shape[1] - 3  # what varies besides the dimensions does not move the slider
+        further = dimensions.shape[1] - 3  # extra variables do not move the slider
         return Pieces(fitted.values, np.pad(fitted.gradients, ((0, 0), (0, 0), (0, further))), fitted.labels)
 
     def settings(self, mechanism: Mechanism, dimensions: Array) -> dict[str, Array]:
@@ -96,5 +96,5 @@ DEVIATIONS = {each.name: each for each in (MOTION_DEVIATION, MOTION_DEVIATION_RM
 
 
 def motion_deviations(target: TargetMotion) -> tuple[MotionDeviation, ...]:
-    """Return the quantities that a target motion makes."""
+    """Return the quantities for a target motion."""
     return tuple(replace(each, target=target) for each in DEVIATIONS.values())

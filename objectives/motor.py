@@ -1,4 +1,4 @@
-"""Loads of a motor beyond its torque: greatest and mean power, greatest inertia that it feels."""
+"""Loads on a motor besides its torque: greatest and mean power, greatest reflected inertia."""
 
 from functools import partial
 

@@ -32,8 +32,8 @@ class Need:
     """A requirement of a quantity on the machine.
 
     is_met: whether a machine meets it; with varying numbers, whether it may meet it. missing: rule, value and remedy;
-    "{instead}" stands for the quantities to use otherwise. consequence: the quantity of a machine that does not meet it
-    is undefined, equals another one, or is zero for every design.
+    "{instead}" stands for the quantities to use otherwise. consequence: effect of an unmet need: the quantity is
+    undefined, equals another one, or is zero for every design.
     """
 
     is_met: Callable[[Mechanism], bool]

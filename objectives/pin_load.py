@@ -1,4 +1,4 @@
-"""Loads of the pins: bearing pressure and shear at the greatest force of a turn."""
+"""Loads on the pins: bearing pressure and shear at the greatest force in a turn."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class PinPressure(OfBars):
     pin: str
 
     def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
-        """Return the pressure in each bar that the pin bears in; see `OfBars`."""
+        """Return the pressure in each bar that bears on the pin; see `OfBars`."""
         force = pin_force(mechanism, designs, self.pin, piece_count, gradients)
         areas = [projected(self.pin, name) for name in self.bars(mechanism)]
         return [
@@ -37,7 +37,7 @@ class PinPressure(OfBars):
 
 @dataclass(frozen=True, kw_only=True)
 class PinShear(OfBars):
-    """The greatest mean shear stress of a pin that is cut in one section."""
+    """The greatest mean shear stress of a pin in single shear."""
 
     pin: str
 
@@ -51,7 +51,7 @@ class PinShear(OfBars):
         return [force_over_area(force, area)]
 
     def allowable(self, mechanism: Mechanism) -> float:
-        """Return the shear yield strength by distortion energy, S_y / sqrt(3), Pa; pins are of the bars' material.
+        """Return the shear yield strength by distortion energy, S_y / sqrt(3), Pa; pins have the bars' material.
 
         Shigley, Mechanical Engineering Design, 9th ed., eq. 5-21.
         """
@@ -59,7 +59,7 @@ class PinShear(OfBars):
 
 
 def projected(pin: str, name: str) -> Formula:
-    """Return the formula of the area D d that a pin bears on in a link, m^2."""
+    """Return the formula for the projected bearing area D d of a pin in a link, m^2."""
     return lambda number: number(PINS[pin]) * number(LINKS[name].depth)
 
 
@@ -75,7 +75,7 @@ def of_pin(
 ) -> dict[str, Any]:
     """Return the facts that quantities of a pin share.
 
-    needs_before, needs_after: needs besides its own. bears: on the bars that it joins.
+    needs_before, needs_after: needs besides its own. bears: whether it bears on the bars that it joins.
     """
     picture, bar, loaded = _OF_PINS[pin]
     if not bears:

@@ -29,7 +29,7 @@ _RUBS = {"crank_pivot": CRANK_PIVOT, "crank_pin": CRANK_PIN, "slider_pin": SLIDE
 class PinRubbing(OfBars):
     """A factor over twice the bearing's length b times the mean of |F| |d psi / d theta|.
 
-    psi: the turning in the pin.
+    psi: relative rotation in the pin.
 
     p = F / (D b) and a rubbing speed of D/2 |d psi / dt|: the pin's diameter D cancels.
     """
@@ -38,7 +38,7 @@ class PinRubbing(OfBars):
     factor: Callable[[Mechanism], Formula]
 
     def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
-        """Return it for each bar that the pin bears in; see `OfBars`."""
+        """Return the quantity for each bar that bears on the pin; see `OfBars`."""
         work, place = turn_work(single_cylinder(mechanism), designs, gradients=gradients), _RUBS[self.pin]
         slopes = None if work.gradients is None else work.gradients[:, place, None]
         mean = Part(work.mean[:, place, None], slopes, np.zeros((len(designs), 1)))
@@ -61,7 +61,7 @@ def _speed(mechanism: Mechanism) -> Formula:
 
 
 def _worn(mechanism: Mechanism) -> Formula:
-    """Return K times the crank angle of a million cycles; `PinRubbing` has the rest of K F s / A."""
+    """Return K times the crank angle of a million cycles; `PinRubbing` supplies the rest of K F s / A."""
     assert mechanism.strength is not None
     rate = mechanism.strength.wear_coefficient or math.nan
     return lambda number: rate * _CYCLES * cycle_turns(mechanism) * 2.0 * math.pi + 0.0 * number(Raw.CRANK)

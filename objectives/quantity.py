@@ -1,4 +1,4 @@
-"""A quantity and its facts: everything asked about a number that is an objective or stands in a constraint."""
+"""A quantity and its facts: all properties of a number that serves as an objective or in a constraint."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ class Group(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Domain:
-    """The values of a quantity that some linkage has: from lower to upper, SI.
+    """The values that a quantity can have in some linkage: from lower to upper, SI.
 
-    open: whether the ends are excluded. idle: whether a least value below the domain is let pass, as it asks nothing.
-    rule, remedy: in words, for a message.
+    open: whether the ends are excluded. idle: whether a lower bound below the domain is accepted, as it has no effect.
+    rule, remedy: words for a message.
     """
 
     lower: float
@@ -59,21 +59,21 @@ class Domain:
 
     @classmethod
     def share(cls, subject: str, usual: str) -> Domain:
-        """Return the domain of a share, 0 to 1."""
+        """Return the domain of a fraction, 0 to 1."""
         return cls(
             upper=1.0, lower=0.0, open=False, rule=f"{subject} lies between 0 and 1", remedy=f"{usual} are usual"
         )
 
     @classmethod
     def acute(cls, rule: str, usual: str) -> Domain:
-        """Return the domain of an acute angle; within: what lies between 0 and 90 deg, in words."""
+        """Return the domain of an acute angle, 0 to 90 deg. rule: the rule in words."""
         remedy = f"{usual} are usual (a plain number is in rad)"
         return cls(lower=0.0, upper=0.5 * math.pi, rule=f"{rule}, ends excluded", remedy=remedy)
 
     def refuses(self, value: float, *, least: bool) -> bool:
-        """Return whether no linkage has a value. least: whether the value is a lower bound.
+        """Return whether no linkage can have a value. least: whether the value is a lower bound.
 
-        A least value at the lower end has no effect, except that it switches off the floor of a quantity with one.
+        A lower bound at the lower end has no effect, except that it switches off the quantity's floor if it has one.
         """
         if least and (self.idle or value == self.lower):
             return False
@@ -84,8 +84,8 @@ class Domain:
 class Values:
     """A quantity of n designs.
 
-    values: (n,), SI. gradients: (n, 3 + k), by crank, rod, offset and the machine's varying
-    numbers; None unless asked for.
+    values: (n,), SI. gradients: (n, 3 + k), by crank, rod, offset and the machine's varying numbers; None unless
+    requested.
     """
 
     values: Array
@@ -100,7 +100,7 @@ class Values:
 
 
 def undefined(designs: Array, gradients: bool) -> Values:
-    """Return no numbers for designs (n, 3 + k), NaN throughout."""
+    """Return NaN for designs (n, 3 + k), in values and gradients."""
     blank = np.full(np.shape(designs), np.nan)
     return Values(blank[:, 0], blank if gradients else None)
 
@@ -110,11 +110,11 @@ class Pieces:
     """A quantity as the greatest of smooth pieces: the local peaks of a curve over the cycle, highest first.
 
     values: (n, k), SI, -inf where a design has fewer than k pieces. gradients: (n, k, 3 + v) for v varying numbers.
-    labels: (n, k), what tells the pieces of neighbouring designs apart: the crank angle of a peak, rad, or a number.
+    labels: (n, k), labels that match the pieces of neighbouring designs: the crank angle of a peak, rad, or a number.
     A tie between two pieces is a kink of the quantity; a solver treats it as a minimax.
-    least: the quantity is the least of its pieces instead, lowest first, +inf for absent ones. opposite: of a quantity
-    with kinks of both kinds, the same from the other side; each side holds the kinks of the other one at the piece that
-    is active.
+    least: whether the quantity is the least of its pieces instead, lowest first, +inf for absent ones. opposite: for a
+    quantity with kinks of both kinds, its pieces from the other side. Each side holds the kinks of the other one at the
+    active piece.
     """
 
     values: Array
@@ -124,7 +124,7 @@ class Pieces:
     opposite: Pieces | None = None
 
     def take(self, places: Whole) -> Pieces:
-        """Return the pieces at some places (n, m) of each design."""
+        """Return the pieces at some indices (n, m) of each design."""
         return Pieces(
             np.take_along_axis(self.values, places, axis=1),
             np.take_along_axis(self.gradients, places[:, :, None], axis=1),
@@ -134,7 +134,7 @@ class Pieces:
 
 
 def fact(default: Any) -> Any:
-    """Return a fact that is told, not computed with: quantities that differ in it alone compute the same."""
+    """Return a fact that is only reported: quantities that differ only in such facts compute the same values."""
     return _field(default=default, compare=False)
 
 
@@ -142,24 +142,23 @@ def fact(default: Any) -> Any:
 class Quantity(ABC):
     """A number that judges a design: its facts, and its values and gradients for a batch of designs.
 
-    name: in job files. title: for people, the name in words if left out. kind: of value, with its units. key: how its
-    column begins, the name if left out. short: title where room is scarce, the title if left out. place: in tables,
-    lower first.
+    name: name in job files. title: title for people, by default the name in words. kind: kind of its values, with
+    units. key: first part of its column, by default the name. short: title for small spaces, by default the title.
+    place: rank in tables, lower first.
 
-    group: that it is shown in. sentence: of the help, for an engineer who meets it first. advice: what is usual, or
-    what it trades against. formula: in plain text, its symbols those of docs/theory.md. section: of docs/theory.md.
-    source: of the equations. picture: what a picture of the linkage points out.
+    group: group in which it is shown. sentence: help for an engineer new to it. advice: usual values, or conflicting
+    quantities. formula: formula in plain text, with the symbols of docs/theory.md. section: section of docs/theory.md.
+    source: source of the equations. picture: the feature that a picture of the linkage points out.
 
-    example: a usual value as job files have it, that of the kind if left out. better: its good side, low or high, on
-    which a requirement or an objective usually asks for it; empty for one without. signed: whether it may be negative.
-    instead_of_quotient: the quantity to use where a formula would divide by it. domain: values that some linkage has.
-    floor: least value that holds where a job sets none, SI. in_line: its value for every design without offset.
-    endless: why it may be infinite for every design, as a sentence. needs: of the machine. instead: quantities that
-    serve where a need is not met. reach: bounds within ranges of the dimensions. allowed_by: what sets its allowable
-    value, in words; empty for one without. about_tolerances: whether it includes tolerances already. offered: parts of
-    a form that ask for it. on_sheet: whether the sheet of a design has it. plain: whether it follows from others at a
-    glance, so that a short table leaves it out. turning: whether it needs a crank that rotates fully, so that a swing
-    has none.
+    example: a usual value as in job files, by default that of the kind. better: its good side, low or high, as usual in
+    requirements and objectives; empty for one without. signed: whether it may be negative. instead_of_quotient: the
+    quantity to use where a formula would divide by it. domain: values that it can have in some linkage. floor: least
+    value where a job sets none, SI. in_line: its value for every design without offset. endless: reason why it may be
+    infinite for every design, as a sentence. needs: needs that a machine must meet. instead: quantities to use where a
+    need is not met. reach: bounds within ranges of the dimensions. allowed_by: origin of its allowable value, in words;
+    empty for one without. about_tolerances: whether it already includes tolerances. offered: parts of a form that offer
+    it. on_sheet: whether the datasheet of a design has it. plain: whether it follows obviously from others, so that a
+    short table leaves it out. turning: whether it needs a crank that rotates fully, so that a swing has none.
     """
 
     name: str
@@ -215,19 +214,19 @@ class Quantity(ABC):
 
     @property
     def short_title(self) -> str:
-        """Title where room is scarce."""
+        """Title for small spaces."""
         return self.short or self.title
 
     @property
     def usual(self) -> str | float:
-        """A usual value as job files have it."""
+        """A usual value as in job files."""
         if self.example is not None:
             return self.example
         return self.kind.example if self.kind.unit else float(self.kind.example)
 
     @property
     def has_gradient(self) -> bool:
-        """Whether it has derivatives by the dimensions."""
+        """Whether it has derivatives with respect to the dimensions."""
         return True
 
     @property
@@ -241,7 +240,7 @@ class Quantity(ABC):
         return False
 
     def follows_speed(self, mechanism: Mechanism) -> bool:
-        """Return whether the crank speed, its sense, or that there is one, changes the quantity of a machine."""
+        """Return whether the crank speed, its sign or its presence changes the quantity for a machine."""
         numbers = [item.fullest for item in mechanism.varying]
         designs = np.array([[0.05, 0.2, offset, *numbers] for offset in (0.02, -0.02)])
         still, *moving = (
@@ -250,7 +249,7 @@ class Quantity(ABC):
         return not all(np.allclose(still, values, rtol=1e-9, atol=0.0, equal_nan=True) for values in moving)
 
     def bounds_for(self, mechanism: Mechanism) -> QuantityBounds | None:
-        """Return its reach if it holds for the machine."""
+        """Return its bounds if they hold for the machine."""
         return self.bounds
 
     def allowable(self, mechanism: Mechanism) -> float:
@@ -258,22 +257,22 @@ class Quantity(ABC):
         raise NotImplementedError(f"{self.name} has no allowable value")
 
     def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
-        """Return formulas of raw numbers, of which it is the greatest, for bounds over ranges; none without."""
+        """Return the formulas of raw numbers whose greatest value it is, for bounds over ranges; empty without any."""
         return ()
 
     @property
     def made_of(self) -> tuple[Quantity, ...]:
-        """The quantities that it is computed from, if it is made of others."""
+        """The quantities from which it is computed, if any."""
         return ()
 
     def with_parts(self, parts: tuple[Quantity, ...]) -> Quantity:
-        """Return the same made of other parts, in the order of `made_of`."""
+        """Return the quantity with other parts, in the order of `made_of`."""
         return self
 
     def lacks(self, mechanism: Mechanism, consequence: Consequence) -> str | None:
         """Return rule, value and remedy for the first unmet need of a machine; None if there is none.
 
-        consequence: what becomes of the quantity: "undefined", "equal" to another one, or "zero" for every design.
+        consequence: effect on the quantity: "undefined", "equal" to another one, or "zero" for every design.
         """
         for need in self.needs:
             if need.consequence == consequence and not need.is_met(mechanism):
@@ -282,32 +281,32 @@ class Quantity(ABC):
 
     @property
     def blank(self) -> str:
-        """Why a design may have none though the machine defines it."""
+        """Reason why a design may have no value though the machine defines the quantity."""
         needs = (need for need in self.needs if need.consequence == "undefined")
         return next((need.missing for need in needs), "it has no value for this design")
 
     def undefined_because(self, machines: Iterable[Mechanism]) -> str | None:
-        """Return rule, value and remedy where one of the machines does not define the quantity; None if all do.
+        """Return rule, value and remedy if one of the machines does not define the quantity; None if all do.
 
-        Nor is it defined where it only equals another quantity.
+        A quantity that only equals another one counts as undefined.
         """
         reasons = (self.lacks(m, "undefined") or self.lacks(m, "equal") for m in machines)
         return next(filter(None, reasons), None)
 
     def zero_because(self, machines: Iterable[Mechanism]) -> str | None:
-        """Return rule, value and remedy where the quantity is zero for all designs and machines; None otherwise."""
+        """Return rule, value and remedy if the quantity is zero for all designs and machines; None otherwise."""
         reasons = [self.lacks(machine, "zero") for machine in machines]
         return reasons[0] if all(reasons) else None
 
     @abstractmethod
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
-        """Return the quantity for designs (n, 3 + k), each turning fully.
+        """Return the quantity for designs (n, 3 + k) that all rotate fully.
 
         Columns: crank, rod, offset, m, then the value of each of the machine's varying numbers, SI.
         """
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the quantity as the greatest of smooth pieces: as its only one, unless its class has several."""
+        """Return the quantity as the greatest of smooth pieces: a single one, unless its class has several."""
         evaluation = self.evaluate(mechanism, dimensions, gradients=True)
         assert evaluation.gradients is not None
         return Pieces(evaluation.values[:, None], evaluation.gradients[:, None], np.zeros((len(evaluation.values), 1)))

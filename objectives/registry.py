@@ -1,4 +1,4 @@
-"""All quantities by name, found in the modules of this folder; their order in tables is that of their places."""
+"""All quantities by name, found in the modules of this folder; their places give their order in tables."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .quantity import Quantity
 
 
 def declared(package: str) -> tuple[Quantity, ...]:
-    """Return every quantity that the modules of a package declare, those of sub-packages left out, by their places."""
+    """Return every quantity that a package's modules declare, without sub-packages, in order of their places."""
     quantities: dict[str, Quantity] = {}
     for module in pkgutil.iter_modules(import_module(package).__path__):
         if not module.ispkg and f"{package}.{module.name}" != __name__:
@@ -54,7 +54,7 @@ for _kind in {type(of) for of in FACTS.values()}:
 
 
 def listed(names: Collection[str]) -> str:
-    """Return the first of many names for a message, a job's own before all others, and where all are."""
+    """Return the first of many names for a message, a job's own ones before others, and where to find all."""
     few = ", ".join(sorted(names, key=FACTS.__contains__)[:_MOST_NAMES])
     left_over = len(names) - _MOST_NAMES
     return (
@@ -65,10 +65,10 @@ def listed(names: Collection[str]) -> str:
 
 
 def quantity(name: str, custom: Collection[Quantity] = ()) -> Quantity:
-    """Return the quantity of a name; raise `InputError` with the nearest names otherwise.
+    """Return the quantity with a name; raise `InputError` with the nearest names for an unknown one.
 
-    custom: quantities of a problem besides those that every one has. Where there is a problem, ask it: it has its own
-    (`Problem.quantity`).
+    custom: quantities of a problem besides the built-in ones. If there is a problem, use `Problem.quantity`, which
+    includes its own.
     """
     match = next((of for of in custom if of.name == name), None) or QUANTITIES.get(name)
     if match is None:

@@ -1,4 +1,4 @@
-"""Self-locking margin: by how much the transmission angle stays above the angles of friction."""
+"""Self-locking margin: margin of the transmission angle above the angles of friction."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Geometry of a limited swing: transmission angle of the driven side, way of the slider, angle of the crank."""
+"""Geometry of a limited swing: transmission angle of the driven side, slider travel, crank angle travelled."""
 
 import numpy as np
 

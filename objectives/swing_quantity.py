@@ -24,9 +24,9 @@ from .quantity import MECHANICS, Array, Pieces, Quantity, Values
 class SwingQuantity(Quantity):
     """A number of a swing.
 
-    swing: None where no job has said yet which: facts without values. driver: what must drive, either if None. timed:
-    whether the swing must have a duration. tolerated: whether it comes from tolerances, those of the actuator among
-    them. rubbing: whether it is one without friction.
+    swing: the swing; None before a job gives one: facts without values. driver: required driver, any if None. timed:
+    whether the swing must have a duration. tolerated: whether it comes from tolerances, including those of the
+    actuator. rubbing: the quantity or number that it equals without friction, "" for none.
     """
 
     swing: Swing | None = None
@@ -45,7 +45,7 @@ class SwingQuantity(Quantity):
         return self.swing
 
     def unfit(self, swing: Swing) -> str | None:
-        """Return rule, value and remedy where a swing does not define the quantity; None if it does."""
+        """Return rule, value and remedy if a swing does not define the quantity; None if it does."""
         if self.driver is not None and swing.driver != self.driver:
             return (
                 f'it is of a swing that the {self.driver} drives; got driver = "{swing.driver}"; use {self.instead}, '
@@ -75,9 +75,9 @@ class SwingQuantity(Quantity):
 
 @dataclass(frozen=True, kw_only=True)
 class SwingPeak(SwingQuantity):
-    """The greatest size of a state over both ways. state: of `points`; None for the drive at rest at the ends.
+    """The greatest magnitude of a state over both ways.
 
-    free: whether that is without friction.
+    state: state of `points`; None for the drive at rest at the ends. free: whether the latter is without friction.
     """
 
     state: int | None
@@ -104,7 +104,7 @@ class SwingPeak(SwingQuantity):
 
 @dataclass(frozen=True, kw_only=True)
 class SwingLeast(SwingQuantity):
-    """The least drive along the motion of one way, without inertia: below zero where loads push the linkage on."""
+    """The least drive along the motion of one way, without inertia: negative where loads drive the linkage."""
 
     back: bool
 
@@ -125,7 +125,7 @@ class SwingLeast(SwingQuantity):
 
 @dataclass(frozen=True, kw_only=True)
 class SwingIntegral(SwingQuantity):
-    """A number from the work of the drive. of: the work on the forward stroke, or the share of it without friction."""
+    """A number from the drive's work. of: work on the forward stroke, or its fraction without friction."""
 
     integral: Literal["work", "share"]
 
@@ -138,9 +138,9 @@ class SwingIntegral(SwingQuantity):
 
 @dataclass(frozen=True, kw_only=True)
 class SwingForm(SwingQuantity):
-    """A closed form of lengths and ends: least transmission angle, way of the slider, angle of the crank.
+    """A closed form in lengths and ends: least transmission angle, slider travel, crank angle travelled.
 
-    stated: whose ends must not be stated, as they say it already; None where it does not matter.
+    stated: the side whose ends must not be stated, as they already fix the value; None if either may be stated.
     """
 
     measure: Literal["angle", "travel", "swing"]
@@ -152,7 +152,7 @@ class SwingForm(SwingQuantity):
         return True
 
     def unfit(self, swing: Swing) -> str | None:
-        """Return rule, value and remedy where every design has the same; see `SwingQuantity`."""
+        """Return rule, value and remedy if every design has the same value; see `SwingQuantity`."""
         if swing.stated_for == self.stated:
             stated_value = self.unit.factor * abs(swing.end - swing.start)
             keys = "from and to" if swing.stated_for == "crank" else "slider_from and slider_to"
@@ -169,7 +169,7 @@ class SwingForm(SwingQuantity):
         return Values(pieces.values[:, 0], pieces.gradients[:, 0] if gradients else None)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the angles at the places where the least may be, lowest first; see `Quantity`."""
+        """Return the angles at the candidate places of the least one, lowest first; see `Quantity`."""
         designs = np.ascontiguousarray(dimensions, dtype=np.float64)
         rows = np.flatnonzero(passes(mechanism, self._required_swing, designs))
         if self.measure == "angle":

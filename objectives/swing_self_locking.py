@@ -1,4 +1,4 @@
-"""Least drive of each way of a limited swing: whether the linkage runs by itself, or locks itself."""
+"""Least drive on each way of a limited swing: whether the linkage overruns, or is self-locking."""
 
 from functools import partial
 

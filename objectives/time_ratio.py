@@ -38,7 +38,7 @@ class TimeRatio(ClosedFormQuantity):
     """The time ratio: a closed form at constant speed; along a profile, the greater ratio of the stroke times."""
 
     def is_closed(self, mechanism: Mechanism) -> bool:
-        """Return whether the machine turns at constant speed."""
+        """Return whether the machine rotates at constant speed."""
         return mechanism.speed_profile is None
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:

@@ -1,9 +1,11 @@
 """Physical values as people write them, "80 mm", "300 rpm", "0.05 inch", and their conversion to SI.
 
 A value is one number and one unit; a plain number is in SI. Units come from a short list of this project's own, read
-by pint, instead of pint's default registry, for three reasons. There an angle has no dimension, so that "5 s^-1" or
-"5 Bq" would pass for a crank speed in rad/s, wrong by 2 pi; thousands of units of other fields make slips like "mM"
-or "degC" valid; and it takes 0.14 s to build, this one 3 ms. Conversion is exact rational arithmetic, rounded once:
+by pint, instead of pint's default registry, for three reasons. In the default registry an angle has no dimension, so
+that "5 s^-1" or "5 Bq" would pass for a crank speed in rad/s, wrong by 2 pi. Thousands of units from other fields make
+slips like "mM" or "degC" valid. And it takes 0.14 s to build, this one 3 ms.
+
+Conversion is exact rational arithmetic, rounded once:
 "80 mm" is the double 0.08, and 360 deg is the double nearest 2 pi.
 """
 
@@ -130,7 +132,7 @@ _VALUE = re.compile(rf"\s*({_NUMBER})(?:\s*([^\d\s.+\-].*)|\s+(1\s*/.*))?\s*", r
 _FACTOR = re.compile(r"\s*([*/·⋅-]?)\s*([A-Za-zµμ°_]+)(?:(?:\^|\*\*)?([+-]?\d))?", re.ASCII)
 _INVERSE = re.compile(r"^1?\s*/")
 _SPREAD = re.compile(rf"({_NUMBER})\s*(.*?)\s*(?:\+/?-|±)\s*({_NUMBER})\s*(.*)", re.DOTALL)
-_WEIGHT = re.compile(r"\b(lb|oz|kg)s?\b")  # masses that are taken for the force of their weight
+_WEIGHT = re.compile(r"\b(lb|oz|kg)s?\b")  # masses that people write for the force of their weight
 _IN = re.compile(r"\s*in[\s_]+(?=\S)(?!(?:lbf|ozf)\s*$)", re.IGNORECASE)
 _LONGEST = 60
 _GREATEST = 1e30  # of a number in a formula, SI: products of a few stay far from the ends of a double
@@ -142,7 +144,7 @@ _TYPESET = str.maketrans(f"−⁻⁰¹²³⁴⁵⁶⁷⁸⁹{SPACES}", f"--01234
 def kind_of(symbol: str) -> Kind:
     """Return the kind of value whose unit has the dimension of a symbol ("mm", "deg", "N m", "").
 
-    Raises InputError for a symbol that is no unit or of a dimension that is no kind.
+    Raises InputError for a symbol that is not a unit, or whose dimension has no kind.
     """
     for kind in KINDS:
         if symbol in (kind.unit, kind.metric.symbol):  # without pint, which takes 0.2 s to import
@@ -153,7 +155,7 @@ def kind_of(symbol: str) -> Kind:
 
 
 def kind_for(symbol: str) -> Kind:
-    """Return the kind of value of any unit, one of `KINDS` or a new one. Raises InputError for what is no unit."""
+    """Return the kind of value of any unit, one of `KINDS` or a new one. Raises InputError unless it is a unit."""
     kind = kind_with(dimension_of(symbol), symbol)
     if kind in KINDS:
         return kind
@@ -162,7 +164,7 @@ def kind_for(symbol: str) -> Kind:
 
 
 def dimension_of(symbol: str) -> Dimension:
-    """Return the dimension of a unit, "" for none. Raises InputError for what is no unit."""
+    """Return the dimension of a unit, "" for none. Raises InputError unless it is a unit."""
     return _unit(symbol)[1]
 
 
@@ -174,7 +176,7 @@ def dimension_of_kind(kind: Kind) -> Dimension:
 def kind_with(dimension: Dimension, symbol: str = "") -> Kind:
     """Return the kind of value with a dimension: one of `KINDS`, or a new kind in base units.
 
-    symbol: a unit, which tells kinds of one dimension apart, such as a torque and an energy.
+    symbol: a unit, which distinguishes kinds with the same dimension, such as a torque and an energy.
     """
     candidates = [kind for kind in KINDS if dimension_of(kind.unit) == dimension]
     if candidates:
@@ -190,7 +192,7 @@ def base_unit(base: str) -> str:
 
 
 def number_in_si(digits: str, symbol: str) -> float:
-    """Return a number with a unit in SI. Raises InputError for what is no unit, and for a size beyond any machine."""
+    """Return a number with a unit in SI. Raises InputError for an unknown unit, and for a size beyond any machine."""
     exact = Fraction(digits) * _unit(symbol)[0]
     if abs(exact) > _GREATEST:
         raise InputError(f"{digits} {symbol} is beyond any machine: a number in SI is at most {_GREATEST:g}")
@@ -198,15 +200,15 @@ def number_in_si(digits: str, symbol: str) -> float:
 
 
 def per_si(symbol: str) -> float:
-    """Return the value of one SI unit in a unit: 1000 for "mm". Raises InputError for what is no unit."""
+    """Return the value of one SI unit in a unit: 1000 for "mm". Raises InputError for an unknown unit."""
     return float(1 / _unit(symbol)[0])
 
 
 def to_si(value: object, kind: Kind, *, sign: Sign = "any", plain: bool = True) -> float:
     """Return a value in SI, from a string of number and unit, or from a plain number in SI.
 
-    sign: what the value must be. plain: whether messages offer a plain number, which commands do not take. A ratio is a
-    plain number, as a number or as a string.
+    sign: required sign of the value. plain: whether messages offer a plain number, which commands do not accept. A
+    ratio is a plain number, as a number or as a string.
     Raises InputError, with rule, value and remedy, for anything else: another dimension, an unknown unit, an
     expression, NaN, infinity, a boolean.
     """
@@ -237,8 +239,8 @@ def to_si(value: object, kind: Kind, *, sign: Sign = "any", plain: bool = True) 
 def spread(value: object) -> tuple[str, str] | None:
     """Return the ends of a range given by middle and half width, "180 mm +- 0.5 mm".
 
-    Each is a text in the unit of the middle; a unit that is missing on one side is that of the other. None for what
-    states no such range. Raises InputError for units of two kinds.
+    Each is a text in the unit of the middle; a unit that is missing on one side is that of the other. None if the value
+    is not such a range. Raises InputError for units of two kinds.
     """
     parts = _SPREAD.fullmatch(value.translate(_TYPESET).strip()) if isinstance(value, str) else None
     if parts is None:
@@ -256,7 +258,7 @@ def spread(value: object) -> tuple[str, str] | None:
 
 
 def is_value(text: str) -> bool:
-    """Return whether a text is one number, alone or with a unit of whatever kind."""
+    """Return whether a text is one number, alone or with any unit."""
     parts = number_and_unit(text)
     try:
         return parts is not None and (parts[1] in _SPOKEN or _unit(parts[1]) is not None)
@@ -265,7 +267,7 @@ def is_value(text: str) -> bool:
 
 
 def number_and_unit(text: str) -> tuple[str, str] | None:
-    """Return the digits and the unit, whatever it is, of a text that is one number; None of another one."""
+    """Return the digits and the unit, known or not, of a text that is one number; None for any other text."""
     match = _VALUE.fullmatch(text.translate(_TYPESET)) if len(text) <= _LONGEST else None
     return None if match is None else (match[1], _unit_in(match))
 
@@ -300,7 +302,7 @@ def quote(value: object) -> str:
 
 
 def closest(word: str, words: Iterable[str]) -> str | None:
-    """Return which of some words is meant by a misspelt one; None if none is near."""
+    """Return the word that a misspelt one probably means; None if none is near."""
     by_fold = {candidate.casefold(): candidate for candidate in words}
     near = difflib.get_close_matches(word.casefold()[:_LONGEST], by_fold, n=1, cutoff=0.6)
     near = near or sorted((folded for folded in by_fold if word.casefold() in folded.split("_")), key=len)
@@ -321,7 +323,7 @@ def without_in(text: str) -> str:
 
 
 def symbol_in(text: str, kind: Kind) -> str | None:
-    """Return the unit in a heading, spelled as in jobs; None if it is not one of the kind."""
+    """Return the unit in a heading, spelled as in jobs; None if the kind does not have it."""
     shown_symbols = [unit.symbol for unit in (kind.metric, kind.inch) if unit is not None]
     listed = next((symbol for symbol in (*kind.typed, *shown_symbols) if squeezed(symbol) == squeezed(text)), None)
     try:
@@ -331,7 +333,7 @@ def symbol_in(text: str, kind: Kind) -> str | None:
 
 
 def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
-    """Return the exact value in SI of a string."""
+    """Return the exact SI value of a string."""
     if len(text) > _LONGEST:
         raise InputError(f"{rule}; got a string of {len(text)} characters; {write}")
     if text.strip().casefold().lstrip("+-").split(" ")[0] in ("nan", "inf", "infinity"):

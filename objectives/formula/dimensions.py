@@ -1,4 +1,4 @@
-"""Dimensions of formulas: what may be added, compared or given to a function, by the units of the names."""
+"""Dimensions of formulas: checks of sums, comparisons and function arguments by the units of the names."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class _Part:
 
     @property
     def text(self) -> str:
-        """Its text, the end of a long one left out."""
+        """Its text, truncated if long."""
         text = self.written[0]
         return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
 
@@ -49,7 +49,7 @@ def kind_of_formula(node: Node, kinds: Mapping[str, Kind]) -> Kind:
 
 
 class _Dimensions:
-    """An algebra of dimensions. known: those of names."""
+    """An algebra of dimensions. known: dimensions of the names."""
 
     def __init__(self, name_powers: Mapping[str, Powers]) -> None:
         self.known, self.text = name_powers, Text()
@@ -115,7 +115,7 @@ def _raised(base: _Part, exponent: _Part, text: str) -> Powers:
 
 
 def _value(function: str, arguments: list[_Part]) -> Fraction | None:
-    """Return the value of an exponent such as 1 / 3; None for no number, and for one too great."""
+    """Return the value of an exponent such as 1 / 3; None if it is not a number or too large."""
     values = [item.value for item in arguments]
     first, last = values[0], values[-1]
     if first is None or last is None or max(map(abs, (first, last))) > 1000:
@@ -132,7 +132,7 @@ def _powers(dimension: Dimension) -> Powers:
 
 
 def _may_be_added(first: Powers, second: Powers) -> bool:
-    """Return whether values may be added: an angle times a length is a length, as an arc is."""
+    """Return whether values may be added: an angle times a length is a length, like an arc."""
     return _without_arc(first) == _without_arc(second)
 
 
@@ -146,7 +146,7 @@ def _kind(powers: Powers) -> Kind:
 
 
 def _unit(powers: Powers) -> str:
-    """Return the unit in which values of a dimension are shown."""
+    """Return the display unit for values of a dimension."""
     significant = _without_arc(powers)
     if all(power.denominator == 1 and abs(power) <= _LARGEST for power in significant.values()):
         return _kind(significant).metric.symbol or "no unit"

@@ -1,4 +1,4 @@
-"""Formulas as trees: numbers in SI, names, and functions of these, which whoever folds a tree gives a meaning."""
+"""Formulas as trees of numbers in SI, names and functions; the algebra that folds a tree gives it a meaning."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def fold(node: Node, algebra: Algebra[T]) -> T:
 
 
 def names_in(node: Node) -> tuple[str, ...]:
-    """Return the names in a formula, each once, in their order."""
+    """Return the names in a formula, each once, in order of appearance."""
 
     def occurrences(node: Node) -> Iterator[str]:
         if isinstance(node, Name):
@@ -82,7 +82,7 @@ def names_in(node: Node) -> tuple[str, ...]:
 
 
 class Text:
-    """An algebra of texts with as few brackets as will do, each with how strongly its outermost sign binds."""
+    """An algebra of texts with the fewest brackets, each with the binding strength of its outermost sign."""
 
     def number(self, number: Number) -> tuple[str, int]:
         """Return the text of a number."""
@@ -112,5 +112,5 @@ def _bound(part: tuple[str, int], least: int) -> str:
 
 
 def text_of(node: Node) -> str:
-    """Return the text of a formula: the same for formulas that differ in spaces and idle brackets alone."""
+    """Return the text of a formula: the same for formulas that differ only in spaces and redundant brackets."""
     return fold(node, Text())[0]

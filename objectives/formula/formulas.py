@@ -1,4 +1,4 @@
-"""Formulas of a job: read, checked against what their names mean, and made quantities of the problem."""
+"""Formulas of a job: parsed, checked against the meaning of their names, and converted to quantities."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _NEAREST = 3
 
 @dataclass(frozen=True)
 class Stated:
-    """A named formula as its table states it. unit: in which it is shown, that of its kind if None."""
+    """A named formula as its table states it. unit: display unit; None for that of its kind."""
 
     formula: str
     title: str | None
@@ -42,12 +42,12 @@ class Stated:
 
 @dataclass(frozen=True)
 class Units:
-    """Units of numbers. names: what follows a number after a sign is no unit if it is one of these."""
+    """Units of numbers. names: names that are not units, even after a number and a sign."""
 
     names: frozenset[str]
 
     def has(self, name: str) -> bool:
-        """Return whether a name is one of a unit."""
+        """Return whether a name is the name of a unit."""
         if name in self.names:
             return False
         try:
@@ -57,7 +57,7 @@ class Units:
         return True
 
     def si(self, digits: str, unit: str) -> float:
-        """Return a number in SI. Raises InputError for what is no unit."""
+        """Return a number in SI. Raises InputError for an unknown unit."""
         first = unit.split(" ")[0]
         if first in self.names:
             raise InputError(f"a sign of + - * / ** is missing between {digits} and {first}")
@@ -65,9 +65,9 @@ class Units:
 
 
 def is_formula(text: str, names: Iterable[str] = ()) -> bool:
-    """Return whether a bound is meant as a formula: it has a name in it, or nearly one.
+    """Return whether a bound is meant as a formula: it contains a name, or nearly one.
 
-    names: those besides the quantities that every job may name.
+    names: further names besides the quantities that every job may name.
     """
     if is_value(text):
         return False
@@ -78,14 +78,14 @@ def is_formula(text: str, names: Iterable[str] = ()) -> bool:
 
 
 def words_of(text: object) -> list[str]:
-    """Return the words of a formula, names and units; none of what is no text."""
+    """Return the words of a formula, names and units; empty if it is not a text."""
     return _WORD.findall(text) if isinstance(text, str) else []
 
 
 def unknown_name(name: str, names: Iterable[str], units: Units, formula: str) -> InputError:
-    """Return the refusal of a name in a formula that no quantity, dimension or varying number has.
+    """Return the error for a name in a formula that is not a quantity, dimension or varying number.
 
-    names: the names there are, of which one may be written with - for _.
+    names: the known names, one of which may be written with - for _.
     """
     every, written = list(names), re.sub(r"\s*-\s*", "_", formula.strip())
     same = [candidate for candidate in every if candidate.casefold() in (name.casefold(), written.casefold())]
@@ -101,7 +101,7 @@ def unknown_name(name: str, names: Iterable[str], units: Units, formula: str) ->
 
 
 class Ends(Protocol):
-    """Where a number may lie, SI."""
+    """Range of a number, SI."""
 
     @property
     def lower(self) -> float:
@@ -115,7 +115,7 @@ class Ends(Protocol):
 class Formulas:
     """The formulas of a job, and what their names mean.
 
-    made: quantities of the formulas that were asked for, in their order.
+    made: quantities of the formulas requested so far, in their order.
     """
 
     def __init__(
@@ -127,10 +127,10 @@ class Formulas:
         *,
         turning: bool = True,
     ) -> None:
-        """Take a job's own quantities, its machine, the ranges of the dimensions and its named formulas.
+        """Take a job's custom quantities, its machine, the ranges of the dimensions and its named formulas.
 
-        ranges: None for formulas whose values alone are wanted, where nothing is known of the designs.
-        turning: whether the crank must turn through, which narrows the dimensions.
+        ranges: None if only values of the formulas are needed and nothing is known about the designs.
+        turning: whether the crank must rotate fully, which narrows the dimensions.
         Raises JobError for a named formula that is wrong.
         """
         self.formula_quantities: dict[str, FormulaQuantity] = {}
@@ -150,9 +150,9 @@ class Formulas:
             self._resolve_named(name)
 
     def quantity(self, text: str, key: str) -> Quantity:
-        """Return the quantity that a name or formula means. key: of the job, for messages.
+        """Return the quantity that a name or formula means. key: key in the job, for messages.
 
-        Raises JobError, also for one that no design changes.
+        Raises JobError, also for one that is the same for every design.
         """
         try:
             quantity = self._resolve_text(text)
@@ -166,7 +166,7 @@ class Formulas:
         return quantity
 
     def bound(self, quantity: Quantity, value: object, key: str) -> tuple[Quantity, float]:
-        """Return the quantity and its bound; for a formula as a bound their difference, and 0.
+        """Return the quantity and its bound; if the bound is a formula, their difference and 0.
 
         Raises JobError.
         """
@@ -189,7 +189,7 @@ class Formulas:
         return self.formula_quantities[name]
 
     def _resolve_named(self, name: str) -> FormulaQuantity:
-        """Return the quantity of a named formula; those that it names come first. Raises JobError."""
+        """Return the quantity of a named formula, after resolving those that it names. Raises JobError."""
         if name in self.formula_quantities:
             return self.formula_quantities[name]
         if name in self._open:
@@ -279,7 +279,7 @@ class Formulas:
         raise unknown_name(name, [*self._quantities, *self._places, *self._stated], self._units, formula)
 
     def _interval(self, quantity: Quantity) -> Interval:
-        """Return bounds of a quantity within the ranges; one that is never negative is taken for never zero."""
+        """Return bounds of a quantity within the ranges; one that is never negative counts as never zero."""
         if quantity.zero_because([self._machine]):
             return Interval(0.0, 0.0)
         low = -float("inf") if quantity.signed else 0.0 if quantity.domain is None else max(quantity.domain.lower, 0.0)
@@ -294,7 +294,7 @@ class Formulas:
         return Interval(lower, upper, sign_interval.excludes_zero)
 
     def _zero_remedy(self, name: str) -> str:
-        """Return how a number is kept off zero."""
+        """Return the remedy that keeps a number away from zero."""
         if name in self._places:
             interval = self._intervals[name]
             return f"keep variables.{name} off zero: it is from {_ends(interval, self._kinds[name])}"

@@ -1,12 +1,12 @@
 """Pieces of formulas: kinks of quantities, of min, max and abs, passed on through sums, products and functions.
 
-Every part of a formula is seen from both sides. From above it is the greatest of smooth pieces, its concave kinks held
-at the piece that is active; from below the least of smooth pieces, its convex kinks held. A function that rises with
-its argument keeps the sides, one that falls swaps them: the difference of two peaks is from above the greatest of the
-first peak's pieces less the second's highest one. Where nothing is held, as in a sum of peaks, both are exact.
+Every part of a formula is seen from both sides. From above it is the greatest of smooth pieces, with its concave kinks
+held at the active piece; from below it is the least of smooth pieces, with its convex kinks held. A function that rises
+with its argument keeps the sides; one that falls swaps them. The difference of two peaks, from above, is the greatest
+of the first peak's pieces minus the second's highest one. Where nothing is held, as in a sum of peaks, both are exact.
 
-How many pieces there are follows from the formula alone, whatever the designs: solvers match the rows of two designs.
-So the side that a function sees follows from signs that are known for all designs, where any are.
+The number of pieces depends only on the formula, not on the designs: solvers match the rows of two designs.
+So the side that a function sees follows from signs that are known for all designs, if any are.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Side:
         return Side(self.values[:, :1], self.gradients[:, :1], self.labels[:, :1], self.present[:, :1])
 
     def take(self, places: Whole) -> Side:
-        """Return the pieces at some places (n, m) of each design."""
+        """Return the pieces at some indices (n, m) of each design."""
         return Side(
             np.take_along_axis(self.values, places, axis=1),
             np.take_along_axis(self.gradients, places[:, :, None], axis=1),
@@ -51,15 +51,15 @@ class Side:
         )
 
     def padded(self, width: int) -> Side:
-        """Return the side with places for more pieces, which are not there."""
+        """Return the side padded to `width` with absent pieces."""
         widths = [(0, 0), (0, width - self.values.shape[1])]
         values, labels, present = np.pad(self.values, widths), np.pad(self.labels, widths), np.pad(self.present, widths)
         return Side(values, np.pad(self.gradients, [*widths, (0, 0)]), labels, present)
 
     def ordered(self, *, from_above: bool) -> Side:
-        """Return the pieces in their order, those that cannot be right left out; the active one stays the first.
+        """Return the pieces in order, without impossible ones; the active one stays first.
 
-        A piece beyond the active one comes of a function that does not rise all the way from one to the other.
+        A piece beyond the active one arises if a function does not rise all the way from one to the other.
         """
         top = self.values[:, :1]
         with np.errstate(invalid="ignore"):
@@ -75,7 +75,7 @@ class Side:
 class TwoSided:
     """A part of a formula from above and from below; both have the same active piece.
 
-    sign: 1 where no design of the problem makes it negative, -1 where none makes it positive, 0 where nothing is known.
+    sign: 1 if no design of the problem makes it negative, -1 if none makes it positive, 0 if nothing is known.
     """
 
     from_above: Side
@@ -85,8 +85,8 @@ class TwoSided:
     def side_for(self, slope: Array, known_sign: int, *, from_above: bool) -> Side:
         """Return the side that a function sees from above or below.
 
-        slope: (n,), of the function by this part. known_sign: its sign if it is known, else 0. Designs with the other
-        sign are outside their ranges and have their active piece alone.
+        slope: (n,), derivative of the function by this part. known_sign: its sign if known, else 0. Designs with the
+        other sign are outside their ranges and have only their active piece.
         """
         same, swapped = (self.from_above, self.from_below) if from_above else (self.from_below, self.from_above)
         if known_sign:
@@ -97,7 +97,7 @@ class TwoSided:
 
 
 def two_sided(pieces: Pieces, factor: float, sign: int) -> TwoSided:
-    """Return a quantity's pieces from both sides. factor: of labels, so that sums tell the pieces of parts apart."""
+    """Return a quantity's pieces from both sides. factor: label factor, so that sums distinguish the parts' pieces."""
     least = pieces.least
     places = np.argsort(pieces.values if least else -pieces.values, axis=1, kind="stable")
     ordered = pieces.take(places)
@@ -110,7 +110,7 @@ def two_sided(pieces: Pieces, factor: float, sign: int) -> TwoSided:
 
 @dataclass(frozen=True)
 class Kinks:
-    """An algebra of pieces. leaves: what the names mean. n, d: designs and numbers of each."""
+    """An algebra of pieces. leaves: pieces of the names. n, d: number of designs, and of numbers in each."""
 
     leaves: Mapping[str, TwoSided]
     n: int
@@ -156,7 +156,7 @@ def pieces_of(formula: TwoSided) -> Pieces:
         for side, absent in ((formula.from_above, -np.inf), (formula.from_below, np.inf))
     )
     for item, side in ((from_above, formula.from_above), (from_below, formula.from_below)):
-        item.values[:, 0] = side.values[:, 0]  # infinite where friction locks, no number where it is not defined
+        item.values[:, 0] = side.values[:, 0]  # infinite where friction locks, NaN where undefined
     if from_below.values.shape[1] == 1:
         return from_above
     return Pieces(from_above.values, from_above.gradients, from_above.labels, opposite=from_below)
@@ -217,7 +217,7 @@ def _combined(function: str, sides: list[Side]) -> Side:
 
 
 def _extreme(function: str, arguments: list[TwoSided]) -> TwoSided:
-    """Return the least or the greatest of parts: all pieces on one side, those of the active on the other."""
+    """Return the least or the greatest of parts: all pieces on one side, those of the active part on the other."""
     greatest = function == "max"
     wide = [item.from_above if greatest else item.from_below for item in arguments]
     wide = [Side(s.values, s.gradients, s.labels + _APART * place, s.present) for place, s in enumerate(wide)]
@@ -241,7 +241,7 @@ def _extreme(function: str, arguments: list[TwoSided]) -> TwoSided:
 
 
 def _either(rows: Mask, chosen: Side, alternative: Side) -> Side:
-    """Return one side where `rows` (n,) says so, another one elsewhere."""
+    """Return the chosen side for `rows` (n,), the alternative elsewhere."""
     column = rows[:, None]
     return Side(
         np.where(column, chosen.values, alternative.values),

@@ -25,7 +25,7 @@ class Linear:
         return tuple(name for name, _ in self.factors)
 
     def plus(self, addend: Linear, times: Fraction = Fraction(1)) -> Linear:
-        """Return the sum with another one times a factor."""
+        """Return the sum with another linear formula times a factor."""
         factors = dict(self.factors)
         for name, factor in addend.factors:
             factors[name] = factors.get(name, Fraction(0)) + times * factor
@@ -39,7 +39,7 @@ class Linear:
 
 @dataclass(frozen=True)
 class _LinearAlgebra:
-    """An algebra of linear formulas; None for what is none. known: those that are named."""
+    """An algebra of linear formulas; None for any other formula. known: linear formulas of the names."""
 
     definitions: Mapping[str, Linear | None]
 

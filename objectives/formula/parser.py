@@ -1,4 +1,4 @@
-"""Reading of formulas: text to a tree, by a parser of its own; nothing in the text is ever run."""
+"""Parser of formulas: converts text to a tree; nothing in the text is ever run."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ class Units(Protocol):
     """The units that numbers of a formula may have."""
 
     def has(self, name: str) -> bool:
-        """Return whether a name that stands after a number is one of a unit."""
+        """Return whether a name after a number is the name of a unit."""
         ...
 
     def si(self, digits: str, unit: str) -> float:
-        """Return a number in SI. Raises `InputError`, which begins with the unit, for what is no unit."""
+        """Return a number in SI. Raises `InputError`, which begins with the unit, for an unknown unit."""
         ...
 
 
@@ -69,7 +69,7 @@ class _Token:
 
 
 class _Reader:
-    """A text, read from its left to its right: one method for each strength with which signs bind."""
+    """A text, read from left to right: one method for each binding strength of signs."""
 
     def __init__(self, text: str, units: Units) -> None:
         self.text, self.units = text, units
@@ -78,7 +78,7 @@ class _Reader:
         self.step(0)
 
     def step(self, place: int | None = None) -> None:
-        """Go on to the token after a place, after the present one if left out."""
+        """Move to the token after a place, by default the current one."""
         place = self.next.end if place is None else place
         match = _TOKEN.match(self.text, place)
         if match is not None:
@@ -89,7 +89,7 @@ class _Reader:
             self.next = _Token("end", "", len(self.text))
 
     def take(self, *signs: str) -> str | None:
-        """Return the sign that comes next if it is one of some, and go on; None otherwise."""
+        """Return the next sign if it is one of `signs`, and move on; None otherwise."""
         sign = self.next.text
         if self.next.kind != "sign" or sign not in signs:
             return None

@@ -1,4 +1,4 @@
-"""A formula as a quantity: composed of the values, gradients and pieces of what it names."""
+"""A formula as a quantity: composed from the values, gradients and pieces of the quantities that it names."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ _WORDS = {"+": "plus", "-": "minus", "*": "times", "/": "per", "**": "to_the"}
 class FormulaQuantity(Quantity):
     """A formula as a quantity. name: its text, or the name that a job gives it.
 
-    expression: the formula. parts: the quantities that it names. dimensions: of crank, rod and offset those that it
-    names. varying: the other numbers that it names; of a machine in which one does not vary it takes the machine's.
-    signs: of dimensions and numbers that are never negative (1) or never positive (-1) within the problem's ranges.
+    expression: the formula. parts: the quantities that it names. dimensions: those of crank, rod and offset that it
+    names. varying: the other numbers that it names; one that does not vary has the machine's value.
+    signs: signs of dimensions and numbers that are never negative (1) or never positive (-1) in the problem's ranges.
     """
 
     expression: Node
@@ -48,7 +48,7 @@ class FormulaQuantity(Quantity):
 
     @property
     def has_signed_offset(self) -> bool:
-        """Whether it has the offset in it by another way than its size, abs(offset)."""
+        """Whether it contains the offset other than by its size, abs(offset)."""
 
         def bare(node: Node) -> bool:
             if isinstance(node, Call):
@@ -66,7 +66,7 @@ class FormulaQuantity(Quantity):
 
     @property
     def constant(self) -> bool:
-        """Whether it is the same for every design of one machine: it has numbers and amounts only in it."""
+        """Whether it is the same for every design of one machine: it contains only numbers and amounts."""
         return all(part.constant for part in self.parts) and not self.dimensions and not self.varying
 
     @property
@@ -75,12 +75,12 @@ class FormulaQuantity(Quantity):
         return self.parts
 
     def with_parts(self, parts: tuple[Quantity, ...]) -> FormulaQuantity:
-        """Return the formula of other parts of the same names."""
+        """Return the formula with other parts of the same names."""
         return replace(self, parts=parts)
 
     def lacks(self, mechanism: Mechanism, without: Consequence) -> str | None:
-        """Return why a machine does not define it: what one of its parts lacks; None if nothing is lacking."""
-        if without == "zero":  # of a part that is zero something else may be left
+        """Return why a machine does not define it: the unmet need of one of its parts; None if all are met."""
+        if without == "zero":  # other terms may remain if a part is zero
             return None
         reasons = ((part.name, part.lacks(mechanism, without)) for part in self.parts)
         return next((f"{name}: {reason}" for name, reason in reasons if reason), None)
@@ -107,7 +107,7 @@ class FormulaQuantity(Quantity):
 
     @property
     def is_smooth(self) -> bool:
-        """Whether it has no kinks: its parts are smooth, and abs() is only of an offset with known sign."""
+        """Whether it has no kinks: its parts are smooth, and abs() is only applied to an offset with known sign."""
 
         def has_kink(node: Node) -> bool:
             if not isinstance(node, Call):
@@ -139,7 +139,7 @@ class FormulaQuantity(Quantity):
             return pieces_of(fold(self.expression, Kinks(leaves, n, d)))
 
     def _numbers(self, mechanism: Mechanism, designs: Array) -> Iterator[tuple[str, Array, int | None]]:
-        """Yield name, values (n,) and place in a design of dimensions and varying numbers; no place of a fixed one."""
+        """Yield name, values (n,) and column of dimensions and varying numbers; a fixed number has no column."""
         for name in self.dimensions:
             place = DIMENSIONS.index(name)
             yield name, designs[:, place].astype(np.float64), place
@@ -159,9 +159,9 @@ def _slope(n: int, d: int, place: int | None) -> Array:
 
 
 def equation_of(formula: FormulaQuantity, value: float) -> Linear | None:
-    """Return the linear equation that a formula has a value; None if it is not linear in dimensions and numbers.
+    """Return the linear equation of a formula and a value; None if it is not linear in dimensions and numbers.
 
-    A quotient of two linear formulas will do too.
+    A quotient of two linear formulas also gives one.
     """
     definitions, node = _named_linears(formula), formula.expression
     if isinstance(node, Call) and node.function == "/":
@@ -190,7 +190,7 @@ def linear_form(formula: FormulaQuantity) -> Linear | None:
 
 
 def leaves_of(quantities: Iterable[Quantity]) -> tuple[Quantity, ...]:
-    """Return the quantities that others are computed from: themselves, or the parts of formulas, each once."""
+    """Return the quantities from which others are computed: themselves, or the parts of formulas, each once."""
 
     def leaf_items(quantities: Iterable[Quantity]) -> Iterator[tuple[str, Quantity]]:
         for item in quantities:
@@ -223,7 +223,7 @@ def with_formulas(
 
 
 def key_of(text: str) -> str:
-    """Return how the column of a formula begins: "offset_minus_crank"."""
+    """Return the first part of a formula's column: "offset_minus_crank"."""
     spaced = re.sub(r"\*\*|(?<=[\w)]) [-+*/] (?=.)", lambda sign: f" {_WORDS[sign[0].strip()]} ", text)
     key = re.sub("[^a-z0-9]+", "_", spaced.lower().replace("-", " minus ")).strip("_")
     plain = not re.search(r"\(|[A-Za-z_]\w*\.", text) and len(key) <= _LONGEST_KEY

@@ -1,4 +1,4 @@
-"""Bounds of formulas within the ranges of a problem: signs that are certain, and divisors that may be zero."""
+"""Bounds of formulas within the ranges of a problem: certain signs, and divisors that may be zero."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _ROUNDING = 1e-14
 
 @dataclass(frozen=True)
 class Interval:
-    """Values from lower to upper, SI. excludes_zero: whether zero is certainly none of them."""
+    """Values from lower to upper, SI. excludes_zero: whether zero is certainly excluded."""
 
     lower: float
     upper: float
@@ -44,8 +44,8 @@ _IMAGES: dict[str, tuple[Callable[[float], float], float, float]] = {
 class FormulaBounds:
     """Ranges of the names of formulas.
 
-    intervals: of every name, SI. linears: names that are linear in dimensions and varying numbers. advice: for a name
-    that may be zero, how it is kept off zero.
+    intervals: interval of every name, SI. linears: names that are linear in dimensions and varying numbers. advice:
+    remedies for names that may be zero.
     """
 
     intervals: Mapping[str, Interval]
@@ -53,9 +53,9 @@ class FormulaBounds:
     advice: Mapping[str, str]
 
     def bounds(self, node: Node) -> Interval:
-        """Return bounds of a formula.
+        """Return the bounds of a formula.
 
-        Raises `InputError` for a divisor that may be zero, and for a function that is defined nowhere in the ranges.
+        Raises `InputError` for a divisor that may be zero, and for a function that is undefined throughout the ranges.
         """
         if isinstance(node, Number):
             return Interval(node.si, node.si)
@@ -84,7 +84,7 @@ class FormulaBounds:
         )
 
     def _linear(self, linear: Linear) -> Interval:
-        """Return the bounds of a linear formula where the linkage turns fully: rod > crank + |offset|."""
+        """Return the bounds of a linear formula where the linkage rotates fully: rod > crank + |offset|."""
         factors = {name: float(factor) for name, factor in linear.factors}
         least = greatest = float(linear.constant)
         for name, factor in factors.items():
@@ -104,7 +104,7 @@ class FormulaBounds:
     def _quotient(self, numerator: Linear | None, denominator: Linear | None) -> Interval:
         """Return the bounds of a quotient of formulas linear in the dimensions where the linkage turns fully.
 
-        It is greatest and least at corners. A bound that no design has, at the edge of turning, is left out.
+        Its extremes are at corners. A bound that no design attains, at the edge of full rotation, is left out.
         """
         if numerator is None or denominator is None or not {*numerator.names, *denominator.names} <= _TURNING:
             return ANY
@@ -128,7 +128,7 @@ class FormulaBounds:
         return Interval(low, high) if low <= high else ANY
 
     def _corners(self) -> list[_Corner]:
-        """Return the corners of what turns fully within the ranges, for either sign of the offset."""
+        """Return the corners of the fully rotating part of the ranges, for either sign of the offset."""
         crank, rod, offset = (self.intervals[name] for name in ("crank", "rod", "offset"))
         corners = []
         for sign in (1.0, -1.0):
@@ -150,7 +150,7 @@ class FormulaBounds:
 
 
 class _Corner(NamedTuple):
-    """A corner of ranges: crank, rod, size and sign of the offset; whether it is at the edge of turning."""
+    """A corner of ranges: crank, rod, size and sign of the offset; whether it is at the edge of full rotation."""
 
     crank: float
     rod: float
@@ -213,13 +213,13 @@ def _call(node: Call, arguments: list[Interval]) -> Interval:
 
 def _turned(function: str, angle: Interval) -> Interval:
     """Return the bounds of sine, cosine or tangent between two angles."""
-    # Within half a turn of zero sine and tangent are zero at zero alone.
+    # Within half a turn of zero, sine and tangent are zero only at zero.
     excludes_zero = angle.excludes_zero and function != "cos" and -math.pi < angle.lower and angle.upper < math.pi
     if not math.isfinite(angle.upper - angle.lower):
         return ANY if function == "tan" else _TRIG
     image = {"sin": math.sin, "cos": math.cos, "tan": math.tan}[function]
     low, high = sorted((image(angle.lower), image(angle.upper)))
-    # The quarter turns at which sine and cosine are greatest and least, and the tangent has no end.
+    # The quarter turns at which sine and cosine are greatest and least, and the tangent is unbounded.
     quarters = {"sin": (1, 3), "cos": (0, 2), "tan": (1, 3)}[function]
     first, last = angle.lower / (0.5 * math.pi), angle.upper / (0.5 * math.pi)
     top, bottom = (math.floor((last - place) / 4.0) >= math.ceil((first - place) / 4.0) for place in quarters)
@@ -243,7 +243,7 @@ def _quotient(a: float, b: float) -> float:
 def _hull(
     first: Interval, second: Interval, operation: Callable[[float, float], float], excludes_zero: bool
 ) -> Interval:
-    # A divisor that is never zero may come near to it from one side: there its end has that side's sign.
+    # A divisor that is never zero may approach it from one side: its end there has that side's sign.
     ends = [end if end or second.upper > 0.0 else -0.0 for end in (second.lower, second.upper)]
     if second.lower < 0.0 < second.upper and operation is _quotient:
         return Interval(-math.inf, math.inf, excludes_zero)

@@ -1,4 +1,4 @@
-"""Names of quantities that may be formulas too, as functions in Python and commands take them."""
+"""Names of quantities, which may also be formulas, as passed to Python functions and commands."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ def resolve_quantities(
     ranges: Mapping[str, Ends] | None = None,
     turning: bool = True,
 ) -> list[Quantity]:
-    """Return the quantities of names and formulas.
+    """Return the quantities for names and formulas.
 
-    custom: quantities of a problem besides those that every one has. ranges: of the dimensions, for the refusal of what
-    may divide by zero in them; without, such a formula has no value where it does. turning: whether the crank must
-    turn through. Raises `InputError` with the nearest names, or with what is wrong with a formula.
+    custom: quantities of a problem besides the built-in ones. ranges: ranges of the dimensions; a formula that may
+    divide by zero within them is refused. Without ranges, such a formula has no value where it does. turning: whether
+    the crank must rotate fully. Raises `InputError` with the nearest names, or with the error in a formula.
     """
     formulas: Formulas | None = None
     quantities = []

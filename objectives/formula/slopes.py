@@ -42,9 +42,9 @@ What divides by zero is undefined and not infinite: min, max and atan would make
 
 @dataclass(frozen=True)
 class Slopes:
-    """An algebra of values (n,) and gradients (n, d); without gradients where the leaves have none.
+    """An algebra of values (n,) and gradients (n, d); without gradients if the leaves have none.
 
-    leaves: what the names mean. n, d: of numbers, whose gradients are zero.
+    leaves: values of the names. n, d: shape of plain numbers' gradients, which are zero.
     """
 
     leaves: Mapping[str, Values]
@@ -61,7 +61,7 @@ class Slopes:
         return self.leaves[name]
 
     def call(self, function: str, arguments: list[Values]) -> Values:
-        """Return a function of its arguments; at a kink with the slope of the first that is active."""
+        """Return a function of its arguments; at a kink, with the slope of the first active one."""
         if function in ("min", "max"):
             return _extreme(function, arguments)
         argument_values = [item.values for item in arguments]
@@ -78,14 +78,14 @@ class Slopes:
 
 
 def partials(function: str, arguments: list[Array], values: Array) -> tuple[Array, ...]:
-    """Return the derivatives of a smooth function by its arguments, each of their shape."""
+    """Return the derivatives of a smooth function by its arguments, each with the arguments' shape."""
     if function in UNARY:
         return (UNARY[function][1](arguments[0], values),)
     return BINARY[function][1](arguments[0], arguments[1], values)
 
 
 def sum_of(slopes: tuple[Array, ...], gradients: list[Array | None]) -> Array:
-    """Return the sum of gradients (..., d) times slopes (...); where a gradient is zero the slope may be anything."""
+    """Return the sum of gradients (..., d) times slopes (...); the slope is ignored where a gradient is zero."""
     total: Array | None = None
     for slope, gradient in zip(slopes, gradients, strict=True):
         assert gradient is not None
@@ -97,7 +97,7 @@ def sum_of(slopes: tuple[Array, ...], gradients: list[Array | None]) -> Array:
 
 def _extreme(function: str, arguments: list[Values]) -> Values:
     stacked = np.stack([item.values for item in arguments])
-    first = (np.argmin if function == "min" else np.argmax)(stacked, axis=0)  # of one that is no number: that one
+    first = (np.argmin if function == "min" else np.argmax)(stacked, axis=0)  # NaN counts as active
     rows = np.arange(stacked.shape[1])
     slopes = [item.gradients for item in arguments if item.gradients is not None]
     return Values(stacked[first, rows], np.stack(slopes)[first, rows] if slopes else None)

@@ -1,4 +1,4 @@
-"""Calling a function of your own on designs, and checking what it returns."""
+"""Call of a custom function on designs, and checks of its return value."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PIECES = 32
 
 
 class Refused(Exception):
-    """Fault of a function, in words: rule, value, place and remedy; printable, whatever the function raised."""
+    """Fault of a function in words: rule, value, place and remedy; printable, whatever the function raised."""
 
     def __init__(self, reason: str) -> None:
         """Take the reason."""
@@ -36,7 +36,7 @@ class Refused(Exception):
 class Answer:
     """Answer of a function for n designs, as the greatest of k pieces.
 
-    values: (n, k), SI. slopes: their derivatives by the dimension that was stepped, or None. angles: of peaks, or None.
+    values: (n, k), SI. slopes: derivatives by the stepped dimension, or None. angles: crank angles of peaks, or None.
     """
 
     values: Array

@@ -1,7 +1,7 @@
-"""Process that runs a function of your own: it may end, hang or print without harm to others.
+"""Process that runs a custom function: it may end, hang or print without harm to others.
 
-Requests come pickled on standard input; answers go out as length, kind and raw numbers, so that nothing which the
-function makes is ever unpickled. What the function prints goes to standard error.
+Requests come pickled on standard input; answers go out as length, kind and raw numbers, so that no object from the
+function is ever unpickled. Output that the function prints goes to standard error.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ SHAPE = struct.Struct("<QQQ")
 
 
 def load(function: str, folders: list[str]) -> Function:
-    """Return the function that "module:name" says, of a module in one of the folders or installed.
+    """Return the function named "module:name", from a module in one of the folders or an installed one.
 
-    Raises `Refused`. The folders come first for the import itself, so that a module beside the job is found, and last
-    from then on, so that none of them hides a library.
+    Raises `Refused`. The folders come first during the import, so that a module beside the job is found. Afterwards
+    they come last, so that none of them hides a library.
     """
     module, _, name = function.partition(":")
     before = list(sys.path)
@@ -57,10 +57,10 @@ def load(function: str, folders: list[str]) -> Function:
 
 
 class Watch:
-    """The time limit of a call: beyond it the process ends, even within a loop that never returns to Python."""
+    """The time limit of a call: when it expires, the process ends, even in a loop that never returns to Python."""
 
     def __init__(self, limit: float, log: BinaryIO) -> None:
-        """Take the limit, s, and the file that gets the line where the function was."""
+        """Take the limit, s, and the file for the line that the function was running."""
         self.limit, self.log = limit, log
 
     def __enter__(self) -> None:
@@ -110,7 +110,7 @@ def main() -> None:
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)
     os.dup2(2, 1)
-    sys.stdout = sys.stderr  # each line at once, also of a function that is killed
+    sys.stdout = sys.stderr  # each line immediately, even if the function is killed
     path, limit, name, folders = pickle.load(requests)
     with open(path, "wb", buffering=0) as log:  # noqa: PTH123 - its descriptor is what faulthandler needs
         faulthandler.enable(file=log)

@@ -1,4 +1,4 @@
-"""Arguments of a function of your own: designs, and everything that they do over the cycle."""
+"""Arguments of a custom function: designs, with their motion and forces over the cycle."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from ..needs import ONE_TIMING
 Numbers = NDArray[Any]
 Curve = Callable[[Numbers], Numbers]
 
-_GRID = 128  # crank angles a turn, crowded where the linkage comes close to locking
+_GRID = 128  # crank angles per turn, crowded where the linkage comes close to locking
 _MEAN = 192
 _ZOOMS = 4
 _WITHIN = 9  # angles of a zoom
@@ -34,12 +34,12 @@ _SECOND = np.array([-1.0, 16.0, -30.0, 16.0, -1.0]) / 12.0
 
 
 class Peaks(np.ndarray[Any, np.dtype[Any]]):
-    """Local peaks (n, k) with their crank angles, which arithmetic keeps: the search follows peaks by them."""
+    """Local peaks (n, k) with their crank angles, which arithmetic preserves: the search uses them to follow peaks."""
 
     angles: Array | None = None
 
     def __array_finalize__(self, of: object) -> None:
-        """Take over the angles of what this was made of."""
+        """Copy the angles from the array that this one derives from."""
         self.angles = getattr(of, "angles", None)
 
 
@@ -58,7 +58,7 @@ class PinForce(NamedTuple):
 class Reactions(NamedTuple):
     """Drive torque (N m) and forces (N) over crank angles, each (n, k); signs as in `model.dynamics`.
 
-    load: on the slider, positive outward. guide: of the guide on the slider, along +y.
+    load: load on the slider, positive outward. guide: force of the guide on the slider, along +y.
     """
 
     torque: Numbers
@@ -70,10 +70,10 @@ class Reactions(NamedTuple):
 
 
 class Designs:
-    """Designs of one machine: n of them at once, in real or in complex numbers.
+    """Designs of one machine: n of them together, in real or complex numbers.
 
-    crank, rod, offset: (n, 1), m. mechanism: speed, masses, loads. What depends on the crank angle is a method; it
-    takes angles (k,) or (n, k), rad, and gives (n, k). SI throughout. In complex numbers the imaginary part carries a
+    crank, rod, offset: (n, 1), m. mechanism: speed, masses, loads. Functions of the crank angle are methods; they take
+    angles (k,) or (n, k), rad, and return (n, k). SI throughout. In complex numbers the imaginary part carries a
     derivative: write formulas with operators and numpy's sqrt, sin, exp ..., and `magnitude` in place of abs.
     """
 
@@ -181,10 +181,10 @@ class Designs:
     def peaks(self, curve: Curve) -> Peaks:
         """Return the three highest local peaks of a curve over the cycle, (n, 3), highest first.
 
-        Return them from your function as they are, or times and plus what does not depend on the crank angle: the
-        quantity is the greatest, and the search knows of the others when two of them tie. curve: takes angles (n, k)
-        and gives (n, k). Located to rounding where the curve is smooth and on jumps at the dead centres; to about 1e-5
-        of a turn on other jumps and kinks.
+        Return them from your function unchanged, or with factors and terms that do not depend on the crank angle. The
+        quantity is the greatest; the others let the search handle ties. curve: takes angles (n, k) and returns (n, k).
+        Peaks are located to rounding where the curve is smooth and on jumps at the dead centres; to about 1e-5 of a
+        turn on other jumps and kinks.
         """
         tau = np.broadcast_to(np.linspace(-np.pi, np.pi, _GRID, endpoint=False), (len(self), _GRID))
         spacing = _TURN / _GRID
@@ -214,7 +214,7 @@ class Designs:
 
     @contextmanager
     def _real(self) -> Iterator[None]:
-        """Be real designs meanwhile: where a curve peaks needs no derivative, and real numbers are quicker."""
+        """Use real designs meanwhile: locating a peak needs no derivative, and real numbers are faster."""
         designs = self._dimensions
         self._take(designs.real)
         try:
@@ -223,7 +223,7 @@ class Designs:
             self._take(designs)
 
     def _motion(self, angle: Numbers) -> Motion:
-        """Return the motion, that of the call before where the angles are the same: a curve takes several of it."""
+        """Return the motion, reused from the previous call for the same angles: a curve uses it several times."""
         if self._known is None or not np.array_equal(self._known[0], angle):
             sine, cosine = np.sin(angle), np.cos(angle)
             found = motion(sine, cosine, self.crank, self.rod, self.offset, self._branch)
@@ -231,7 +231,7 @@ class Designs:
         return self._known[1]
 
     def _pace(self, angle: Numbers) -> tuple[Any, Any, Any]:
-        """Return crank speed and acceleration, and the slope of the acceleration over the angle."""
+        """Return crank speed, crank acceleration, and the derivative of the acceleration by the angle."""
         profile, mean = self.mechanism.speed_profile, self.mechanism.speed
         if profile is None:
             return mean, self.mechanism.acceleration, 0.0
@@ -245,7 +245,7 @@ class Designs:
         return mean * ratio, mean**2 * ratio * slope, mean**2 * (slope**2 + ratio * curvature)
 
     def _uncrowded(self, tau: Numbers) -> tuple[Array, Array]:
-        """Return crank angles (n, k) of crowded ones, and their derivative by them; see `segments.crowding`."""
+        """Return crank angles (n, k) from crowded ones, with their derivative; see `segments.crowding`."""
         q = (self.crank / (self.rod - magnitude(self.offset))).real
         kappa = np.sqrt(np.sqrt(np.maximum(1.0 - q * q, 1e-12)))
         sine, cosine = np.sin(tau), np.cos(tau)
@@ -269,7 +269,7 @@ class Designs:
         return self._sampled(curve, tau.reshape(len(centre), -1)).reshape(tau.shape)
 
     def _vertex(self, curve: Curve, centre: Numbers, half: float) -> Numbers:
-        """Return where the derivative vanishes, by one step of Newton's; as before where no smooth peak is seen."""
+        """Return the zero of the derivative by one Newton step; the centre itself without a smooth peak."""
         samples = self._sample_near(curve, centre, np.arange(-2.0, 3.0) * half)
         first, second = samples @ _FIFTH, samples @ _SECOND
         smooth = second < 0.0
@@ -277,7 +277,7 @@ class Designs:
         return centre + np.where(np.abs(step) <= 2.0, step * half, 0.0)
 
     def _dead_centres(self, curve: Curve, values: Numbers, angle: Numbers) -> tuple[Numbers, Array]:
-        """Return peaks and angles with those at a jump moved onto it: dead centres move with the design."""
+        """Return peaks and angles, those near a jump moved onto it: dead centres move with the design."""
         dimensions = (self.crank, self.rod, self.offset)
         outer, inner = geometry.outer_crank_angle(*dimensions), geometry.inner_crank_angle(*dimensions)
         ends = np.concatenate([outer, inner], axis=1)
@@ -295,5 +295,5 @@ class Designs:
 
 
 def magnitude(values: Numbers) -> Numbers:
-    """Return the sizes of numbers: `abs` that keeps the derivative that complex numbers carry."""
+    """Return the magnitudes of numbers: `abs` that preserves the derivative carried by complex numbers."""
     return cast(Numbers, _magnitude(values))

@@ -1,7 +1,7 @@
 """Guard of a custom function process: its parent, which ends all that the function starts and bounds what it prints.
 
-The guard ends everything when the function's process ends, on SIGTERM, and when the process that asks has ended, by
-whatever. It forks the function's process before anything large is imported, so it adds no start of another program.
+The guard ends everything when the function's process ends, on SIGTERM, and when the calling process has ended for any
+reason. It forks the function's process before any large import, so it need not start another program.
 
 On Linux, a process whose parent has ended becomes a child of the guard, so neither `setsid` nor a double fork escapes.
 On other systems with forks, the group of the function's process is ended. On Windows there is no guard.
@@ -41,9 +41,9 @@ def main() -> None:
 
 
 def _fork(asking: int, log: str) -> None:
-    """Fork the function's process and return in it alone; the other one is the guard, and ends with it.
+    """Fork the function's process and return only in it; the other process is the guard, and ends with it.
 
-    asking: number of the process that asks. log: file about crashes, which nobody reads once that has ended.
+    asking: number of the calling process. log: crash log, which nobody reads once that process has ended.
     """
     signals = {signal.SIGCHLD, signal.SIGTERM, signal.SIGHUP}
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for who asked
@@ -77,9 +77,9 @@ def _fork(asking: int, log: str) -> None:
 
 
 class _Family:
-    """Process of a function and all that descends from it.
+    """Process of a function and all its descendants.
 
-    code: its exit code, 128 + N after signal N as shells have it; None while it runs.
+    code: its exit code, 128 + N after signal N as in shells; None while it runs.
     """
 
     def __init__(self, function: int) -> None:
@@ -88,7 +88,7 @@ class _Family:
         self.code: int | None = None
 
     def reap(self) -> bool:
-        """Take note of children that have ended, and return whether others are left."""
+        """Record children that have ended, and return whether others are left."""
         with contextlib.suppress(ChildProcessError):
             while (ended := os.waitpid(-1, os.WNOHANG))[0]:
                 if ended[0] == self.function:
@@ -129,9 +129,9 @@ def _end_with(asking: int) -> None:
 
 
 def _relay(printed: int) -> None:
-    """Pass on whole printable lines, up to `PRINTED`; read the rest too, so nobody waits for a full pipe.
+    """Forward whole printable lines, up to `PRINTED`; read the rest too, so that no writer blocks on a full pipe.
 
-    The last line ends even if the function does not end it: others write to the same log.
+    The last line gets a line end even if the function writes none: others write to the same log.
     """
     left, unfinished = PRINTED, b""
     while piece := os.read(printed, 1 << 16):

@@ -1,4 +1,4 @@
-"""Text of functions of your own, as a terminal, a log, a page and JSON may show it."""
+"""Printable text from custom functions, for terminals, logs, pages and JSON."""
 
 from __future__ import annotations
 
@@ -9,5 +9,5 @@ _CONTROL = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udff
 
 
 def printable(text: str, *, allowed: str = "") -> str:
-    r"""Return a text with each control character, but those that are kept, as Python writes it: "\x1b"."""
+    r"""Return a text with each control character, except allowed ones, escaped as in Python: "\x1b"."""
     return _CONTROL.sub(lambda found: found[0] if found[0] in allowed else ascii(found[0])[1:-1], text)

@@ -1,4 +1,4 @@
-"""A quantity of your own: a Python function that judges designs, named in a job file or given from Python."""
+"""A custom quantity: a Python function that judges designs, named in a job file or given from Python."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ Call = Callable[[Mechanism, Array, int | None], Answer]
 class _Session:
     """State kept between calls: the process, and the machines for which the gradient has been checked.
 
-    A copy in another process starts a process of its own but does not check again: what it is given there may be one
-    design, and that on a kink.
+    A copy in another process starts its own process but does not repeat the check: it may receive a single design
+    there, and one on a kink.
     """
 
     def __init__(self, checked: tuple[Mechanism, ...] = ()) -> None:
@@ -59,14 +59,14 @@ class _Session:
 class OwnQuantity(Quantity):
     """A function of designs as a quantity.
 
-    function: takes `Designs`, returns (n,), or (n, k) of which the greatest counts, SI. "module:function" runs in a
-    process of its own, within the limit; a Python function runs in this one, without. kind: a kind of the table, or
-    `kinds.kind_in` of any unit.
+    function: takes `Designs` and returns (n,), or (n, k) whose greatest value counts, SI. "module:function" runs in its
+    own process, within the limit; a Python function runs in this process, without a limit. kind: a kind of the table,
+    or `kinds.kind_in` for any unit.
     gradient: "complex step" for a function that runs on complex numbers, else "finite differences"; "none" for methods
-    that need no gradient. folders: where the module may lie. limit: s, of a call for up to 256 designs. longest: what
-    whoever runs the function lets a call take, whatever the limit is.
+    that need no gradient. folders: folders that may contain the module. limit: time limit of a call for up to 256
+    designs, s. longest: time limit set by whoever runs the function, s, whatever `limit` is.
 
-    Every method raises `InputError` naming the quantity for a function that raises, returns anything but finite numbers
+    Every method raises `InputError` naming the quantity if the function raises, returns anything but finite numbers
     of the right shape, does not return in time, ends the process, or has no such gradient.
     """
 
@@ -94,11 +94,11 @@ class OwnQuantity(Quantity):
 
     @property
     def has_gradient(self) -> bool:
-        """Whether its job says how its derivatives are had."""
+        """Whether its job says how to obtain its derivatives."""
         return self.gradient != "none"
 
     def undefined_because(self, machines: Iterable[Mechanism]) -> str | None:
-        """Return rule, value and remedy for machines with numbers that vary: a function gets the dimensions alone."""
+        """Return rule, value and remedy for machines with extra variables: a function gets only the dimensions."""
         varying = next((machine.varying for machine in machines if machine.varying), ())
         if not varying:
             return None
@@ -122,7 +122,7 @@ class OwnQuantity(Quantity):
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the greatest of its pieces; see `Quantity`.
 
-        One piece with finite differences. Gradients are zero where the quantity has none.
+        With finite differences there is one piece. Gradients are zero where the quantity has none.
         """
         dimensions = self._turning(dimensions)
         self._check(mechanism, dimensions)
@@ -146,7 +146,7 @@ class OwnQuantity(Quantity):
         if isinstance(call, Worker):
             call.close()
 
-    # ---- how it is asked ------------------------------------------------------------------------------------------
+    # ---- how it is called -----------------------------------------------------------------------------------------
 
     def _ask(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> Answer:
         session = self._session
@@ -163,7 +163,7 @@ class OwnQuantity(Quantity):
         return lambda mechanism, dimensions, column: apply(function, mechanism, dimensions, column)
 
     def require_function(self) -> None:
-        """Raise `InputError` where the module of "module:function" is not found or lacks it; nothing is run."""
+        """Raise `InputError` if the module of "module:function" is not found or lacks the function; runs nothing."""
         if not isinstance(self.function, str):
             return
         module, _, function = self.function.partition(":")
@@ -197,7 +197,7 @@ class OwnQuantity(Quantity):
         return turning(dimensions)
 
     def _batches(self, mechanism: Mechanism, dimensions: Array) -> Iterator[Whole]:
-        """Yield the rows of designs that friction does not lock: of the others the forces are not determined."""
+        """Yield the rows of designs that friction does not lock: the forces of the others are undetermined."""
         rows = np.arange(len(dimensions))
         if mechanism.friction.acts:
             rows = rows[locking_margin(mechanism.friction, dimensions)[0] > 0.0]
@@ -228,7 +228,7 @@ class OwnQuantity(Quantity):
         return Pieces(values, slopes[:, None], np.zeros_like(values))
 
     def _differences(self, mechanism: Mechanism, dimensions: Array, share: float) -> Array:
-        """Return central differences (n, 3) with steps of a share of what is left to locking and of the crank."""
+        """Return central differences (n, 3); steps are a fraction of the distance to locking and of the crank."""
         crank, rod, offset = dimensions.T
         step = share * np.minimum(rod - crank - np.abs(offset), crank)
         slopes = np.empty((len(dimensions), 3))
@@ -243,9 +243,9 @@ class OwnQuantity(Quantity):
         return slopes
 
     def _check(self, mechanism: Mechanism, dimensions: Array) -> None:
-        """Refuse a complex step that is no derivative, before anything is searched with it.
+        """Raise an error if the complex step does not give the derivative, before a search uses it.
 
-        On three designs, against differences. One of them may lie on a kink; two hardly do.
+        Compares three designs with differences. One of them may lie on a kink; two hardly do.
         """
         if self.gradient != "complex step" or mechanism in self._session.checked:
             return
@@ -274,7 +274,7 @@ class OwnQuantity(Quantity):
 
 
 def require_name(name: str) -> None:
-    """Raise `InputError` for a name that no table could have as a column."""
+    """Raise `InputError` for a name that cannot be a column of a table."""
     if not _NAME.fullmatch(name):
         raise InputError(
             f"the name of a quantity has 1 to {LONGEST_NAME} small letters, digits and underscores, a letter first; "
@@ -283,14 +283,14 @@ def require_name(name: str) -> None:
 
 
 def bounded(quantity: Quantity, longest: float) -> Quantity:
-    """Return a quantity whose own functions take at most `longest` s a call, even inside another quantity."""
+    """Return a quantity whose custom functions take at most `longest` s per call, even inside another quantity."""
     if isinstance(quantity, OwnQuantity):
         return replace(quantity, longest=longest)
     return quantity.with_parts(tuple(bounded(part, longest) for part in quantity.made_of))
 
 
 def close_own(quantity: Quantity) -> None:
-    """End the processes of own functions that a quantity, or one that it is made of, has started."""
+    """End the custom function processes that a quantity or one of its parts has started."""
     if isinstance(quantity, OwnQuantity):
         quantity.close()
     for part in quantity.made_of:
@@ -298,7 +298,7 @@ def close_own(quantity: Quantity) -> None:
 
 
 def runs_own(quantity: Quantity) -> bool:
-    """Whether a quantity, or one that it is made of, is a function of the user's own."""
+    """Whether a quantity or one of its parts is a custom function."""
     return isinstance(quantity, OwnQuantity) or any(map(runs_own, quantity.made_of))
 
 
@@ -310,7 +310,7 @@ def own_quantities() -> dict[str, Any]:
 
 
 def installed(name: str) -> OwnQuantity:
-    """Return the quantity that an installed package gives under a name. Raises `InputError` if it is none."""
+    """Return the quantity that an installed package provides by a name. Raises `InputError` if it is not one."""
     entry = own_quantities()[name]
     quantity = entry.load()
     if not isinstance(quantity, OwnQuantity) or quantity.name != name:

@@ -1,7 +1,7 @@
-"""The other end of `child`: starting the process, asking it, and saying what became of it.
+"""The other end of `child`: starts the process, sends it requests, and explains how it ended.
 
-The process has a guard (see `guard`), which is the one started here. It ends when this process does, by whatever, and
-with it all that the function started, also a function that holds the interpreter, ignores signals or forks.
+The process has a guard (see `guard`), which is the one started here. It ends when this process ends for any reason,
+with all that the function started, even if the function holds the interpreter, ignores signals or forks.
 """
 
 from __future__ import annotations
@@ -63,19 +63,19 @@ if hasattr(os, "register_at_fork"):
 
 
 class _Suspended(Exception):
-    """The time limit of a call passed while this process, and perhaps all of the machine, was suspended."""
+    """The time limit of a call expired while this process, and perhaps the whole machine, was suspended."""
 
 
 class Worker:
-    """A process that runs one function. Raises `Refused` for all that it does wrong, and is then over.
+    """A process that runs one function. Raises `Refused` for any fault of it, and is then closed.
 
-    A call also ends, and the process with it, by what `interruption.ask` raises.
+    An exception from `interruption.ask` also ends a call, and the process with it.
     """
 
     def __init__(self, function: str, folders: list[str], limit: float, longest: float = float("inf")) -> None:
-        """Take "module:function", the folders where its module may lie, and the time limit of a call, s.
+        """Take "module:function", the folders that may contain its module, and the time limit of a call, s.
 
-        longest: limit beyond which whoever runs the function does not let it go.
+        longest: upper bound of the limit, s, set by whoever runs the function.
         """
         self.function, self.folders = function, folders
         self.limit, self.longest = min(limit, longest), longest
@@ -131,7 +131,7 @@ class Worker:
         self._await_answer(_START + self.limit)
 
     def forget(self) -> None:
-        """Leave the process to the one that started it, of which this one is a fork."""
+        """Leave the process to its starter, of which this process is a fork."""
         self._end.detach()  # at the end of this process, too
         if self._process is not None:
             for pipe in (self._process.stdin, self._process.stdout):
@@ -160,9 +160,9 @@ class Worker:
         return content
 
     def _next_message(self, limit: float) -> Message:
-        """Return the next message of the process, nothing if it has ended or is ended here, for being late.
+        """Return the next message of the process; empty if it has ended, or is ended here because it is late.
 
-        What interrupts ends a process that is slow. Time for which this process is suspended does not count.
+        An interruption ends a slow process. Time for which this process is suspended does not count.
         """
         # The child watches its time itself; this is for a child that cannot.
         waited, before = 0.0, time.monotonic()
@@ -196,11 +196,11 @@ class Worker:
         raise Refused(reason)
 
     def _reason_of_end(self) -> str:
-        """Return why the process ended. Raises `_Suspended` if the reason is no fault of the function."""
+        """Return the reason why the process ended. Raises `_Suspended` if the function is not at fault."""
         assert self._process is not None
         try:
             code: int | None = self._process.wait(_ENDING)
-        except subprocess.TimeoutExpired:  # it closed its output and goes on
+        except subprocess.TimeoutExpired:  # it closed its output but continues
             self._end()
             code = self._process.poll()
         text = Path(self._log).read_text(encoding="utf-8", errors="replace") if Path(self._log).exists() else ""
@@ -223,7 +223,7 @@ class Worker:
 
 
 def _listen(stream: IO[bytes], messages: queue.SimpleQueue[Message]) -> None:
-    """Put what a process says into a queue, and an empty message at its end."""
+    """Put the messages of a process into a queue, and an empty message at the end."""
     with stream, contextlib.suppress(OSError, ValueError):
         while len(head := _read(stream, HEAD.size)) == HEAD.size:
             kind, length = HEAD.unpack(head)
@@ -235,7 +235,7 @@ def _listen(stream: IO[bytes], messages: queue.SimpleQueue[Message]) -> None:
 
 
 def _read(stream: IO[bytes], length: int) -> bytes:
-    """Return so many bytes, fewer only at the end."""
+    """Return `length` bytes, fewer only at the end."""
     content = bytearray()
     while len(content) < length and (chunk := stream.read(length - len(content))):
         content += chunk
@@ -243,7 +243,7 @@ def _read(stream: IO[bytes], length: int) -> bytes:
 
 
 def _end(process: Process, log: str) -> None:
-    """End a process by its guard, which may be suspended. It alone stays with what it may not kill."""
+    """End a process by its guard, which may be suspended. Only the guard stays, with processes that it may not kill."""
     process.terminate()
     if os.name == "posix":
         process.send_signal(signal.SIGCONT)

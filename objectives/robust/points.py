@@ -1,4 +1,4 @@
-"""A quantity at points of the tolerance box around designs, its pieces kept apart."""
+"""A quantity at points of the tolerance box around designs, with its pieces kept separate."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ _SAME = 0.3  # labels (rad) farther apart are not the same peak; as the polish h
 class PointValues:
     """A quantity at q points around each of n designs.
 
-    values: (n, q, p) of its pieces, -inf where absent; +inf in the first where the linkage does not turn fully.
-    gradients: (n, q, p, 3 + k), by the design, not by the point: a tolerance may grow with its dimension. local:
-    (n, q, p, 3), by the point. labels: (n, q, p). turns: (n, q).
+    values: (n, q, p), values of its pieces, -inf where absent; +inf in the first where the linkage does not rotate
+    fully. gradients: (n, q, p, 3 + k), by the design, not by the point: a tolerance may grow with its dimension.
+    local: (n, q, p, 3), by the point. labels: (n, q, p). turns: (n, q), whether the linkage rotates fully.
     """
 
     values: Array
@@ -31,17 +31,17 @@ class PointValues:
     turns: Mask
 
     def highest(self, slopes: Array) -> tuple[Array, Array]:
-        """Return values (n, q) of the highest piece at each point, and its slopes."""
+        """Return the values (n, q) of the highest piece at each point, and its slopes."""
         first = np.argmax(self.values, axis=2)[:, :, None]
         values = np.take_along_axis(self.values, first, axis=2)[:, :, 0]
         return values, np.take_along_axis(slopes, first[:, :, :, None], axis=2)[:, :, 0]
 
 
 def limits_of(mechanism: Mechanism, dimensions: Array) -> Array:
-    """Return how far crank, rod and offset of designs (n, 3 + k) may be off, (n, 3), m.
+    """Return the tolerances of crank, rod and offset of designs (n, 3 + k), (n, 3), m.
 
-    That of the crank angle is left out: no quantity of a whole cycle depends on where the cycle begins. Clearances are
-    too: pins and guide are ideal in everything but the position errors. Raises `InputError` for tolerances that vary.
+    The tolerance of the crank angle is left out: no quantity of a whole cycle depends on the start of the cycle. So are
+    clearances: pins and guide are ideal except in position errors. Raises `InputError` for tolerances that vary.
     """
     for item in mechanism.varying:
         if any(path.startswith("tolerances.") for path in item.paths):
@@ -98,7 +98,7 @@ def star(columns: list[int]) -> Array:
 def evaluate_points(quantity: Quantity, mechanism: Mechanism, dimensions: Array, points: Array) -> PointValues:
     """Return a quantity at points (q, 3) around designs (n, 3 + k), in units of the limits.
 
-    points: of all designs, or (n, q, 3) of each.
+    points: points of all designs, or (n, q, 3) for each.
     """
     absolute, fraction = _parts(mechanism)
     n, q, width = len(dimensions), points.shape[-2], dimensions.shape[1]
@@ -118,9 +118,9 @@ def evaluate_points(quantity: Quantity, mechanism: Mechanism, dimensions: Array,
 
 
 def match_pieces(point_values: PointValues) -> tuple[Array, Array, Mask]:
-    """Return the pieces of the first point (the centre) at all points: values (n, q, p), gradients, and where found.
+    """Return the pieces of the first point (the centre) at all points: values (n, q, p), gradients, and a mask.
 
-    A piece is found at a point where a piece of nearly the same label is.
+    A piece is found at a point if a piece there has nearly the same label; the mask tells where.
     """
     distance = np.abs(
         point_values.labels[:, :, None, :] - point_values.labels[:, :1, :, None]

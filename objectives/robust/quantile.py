@@ -3,15 +3,15 @@
 Every design sees the same sample, scrambled Sobol points as deviations, so that the quantile is a smooth function of
 the design and designs compare without noise (I. M. Sobol 1967; A. B. Owen, "Randomly permuted (t,m,s)-nets", 1995).
 
-Within a tolerance box a quantity is a quadratic to a few parts in 10^9 of itself: it is evaluated exactly at the points
-of a star, a full quadratic is put through them, and the sample is drawn from that. Not where the offset may be zero:
-what depends on its size has a kink there, and every machine of the sample is evaluated. The quantile is the estimate of
-Harrell and Davis ("A new distribution-free quantile estimator", Biometrika 69(3), 1982): a mean of all order statistics
-with the weights of a beta distribution, hence without the kinks of a single one.
+Within a tolerance box a quantity is quadratic to a few parts in 10^9 of itself. It is evaluated exactly at the points
+of a star, a full quadratic is fitted through them, and the sample is drawn from that. Where the offset may be zero,
+quantities that depend on its size have a kink, and every machine of the sample is evaluated instead. The quantile is
+the estimate of Harrell and Davis ("A new distribution-free quantile estimator", Biometrika 69(3), 1982): a mean of all
+order statistics with the weights of a beta distribution, hence without the kinks of a single one.
 
-Of normal errors the quantile of the linear part is known, and serves as control variate: the sample gives only by how
-much the quadratic part moves the quantile (P. Glasserman, "Monte Carlo Methods in Financial Engineering", 2003, ch.
-4.1).
+For normal errors the quantile of the linear part is known, and serves as control variate: the sample only gives the
+shift of the quantile by the quadratic part (P. Glasserman, "Monte Carlo Methods in Financial Engineering", 2003,
+ch. 4.1).
 """
 
 from __future__ import annotations
@@ -32,9 +32,10 @@ _LEAST = 2.0**-40  # a scrambled point at zero would lie at minus infinity of a 
 
 @dataclass(frozen=True)
 class Sample:
-    """Machines of which a percentile is taken, the same for all designs.
+    """Sample of machines for a percentile, the same for all designs.
 
-    columns: of the uncertain dimensions. shape, samples, seed: of the deviations. share: of the machines below it.
+    columns: columns of the uncertain dimensions. shape, samples, seed: distribution, number and seed of the deviations.
+    share: fraction of machines below the percentile.
     """
 
     columns: tuple[int, ...]
@@ -115,7 +116,7 @@ class Sample:
         return quantile, slope + _einsum_by_design("nq,nqd->nd", by_control, slopes[rows, :, top])
 
     def _ranked(self, machines: Array) -> tuple[Whole, Array]:
-        """Return which machines (n, s), ascending, make the quantile, and with which weights (s,)."""
+        """Return the machines (n, s), ascending, that determine the quantile, and their weights (s,)."""
         first, last = np.flatnonzero(self.weights > _FAINT)[[0, -1]]  # few of many: the others need no order
         tail = np.sort(np.argpartition(machines, (first, last), axis=1)[:, first : last + 1], axis=1)
         order = np.argsort(np.take_along_axis(machines, tail, axis=1), axis=1, kind="stable")
@@ -127,7 +128,7 @@ sample = lru_cache(maxsize=32)(Sample)
 
 
 def linear_quantile(coefficients: Array, share: float) -> tuple[Array, Array]:
-    """Return the quantile (n,) of c . z, c (n, d), z normal with limits of three deviations, and its gradient by c."""
+    """Return the quantile (n,) of c . z and its gradient by c (n, d); z is normal, its limits three deviations."""
     from scipy.special import ndtri
 
     sigmas = float(ndtri(share)) / 3.0  # `spread` takes the limit as three deviations
@@ -145,8 +146,8 @@ def _basis(points: Array, columns: tuple[int, ...]) -> Array:
 
 
 def _einsum_by_design(sums: str, *factors: Array) -> Array:
-    """Return sums of products, those of a design the same to the last bit whatever stands beside it.
+    """Return sums of products; those of a design are the same to the last bit whatever other designs are present.
 
-    BLAS sums otherwise for other numbers of rows, einsum for other strides.
+    BLAS sums differently for other numbers of rows, einsum for other strides.
     """
     return np.asarray(np.einsum(sums, *map(np.ascontiguousarray, factors), optimize=False))

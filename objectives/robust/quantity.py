@@ -1,4 +1,4 @@
-"""A quantity under tolerances: its worst case, or the value that a share of all machines keeps."""
+"""A quantity under tolerances: its worst case, or the value that a fraction of all machines meets."""
 
 from __future__ import annotations
 
@@ -38,18 +38,19 @@ _BLOCK = 1 << 22  # numbers of a sample held at once
 class RobustQuantity(Quantity):
     """A quantity as it is within the tolerances of crank, rod and offset.
 
-    inner: the quantity. side: which side is bad, "high" where it should be low.
-    case "worst case", order 1: f + sum_i |df/dx_i| T_i (high) or f - sum_i |df/dx_i| T_i (low). Order 2: the
-    worst f in the box, exactly, hence with the second order and all above it: at a corner, at offset zero where the
-    limits span it, or within, where `within` finds that f turns. Order 1 is of order 2 where the limits span offset
-    zero: what depends on its size has no derivative there.
-    case "percentile": the value that a share of all machines keeps, `P(f <= v) = share` (high) or `P(f >= v) = share`
-    (low), errors being independent and spread as `shape` says, in units of the limits T_i = absolute + fraction |x_i|.
-    samples: machines, see `quantile`; the next power of two. seed: of their scrambling. suffix: of name and field.
+    inner: the quantity. side: the bad side, "high" if it should be low.
+    case "worst case", order 1: f + sum_i |df/dx_i| T_i (high) or f - sum_i |df/dx_i| T_i (low). Order 2: the exact
+    worst f in the box, hence with the second and all higher orders. It is at a corner, at offset zero if the limits
+    span it, or inside, where `within` finds an extreme of f. If the limits span offset zero, order 1 becomes order 2:
+    quantities that depend on its size have no derivative there.
+    case "percentile": the value that a fraction of all machines meets, `P(f <= v) = share` (high) or
+    `P(f >= v) = share` (low). Errors are independent, with the distribution `shape`, in units of the limits
+    T_i = absolute + fraction |x_i|. samples: number of machines, see `quantile`; rounded up to a power of two. seed:
+    seed of their scrambling. suffix: suffix of name and field.
 
-    The slope of a percentile has small steps where machines change places, greater ones where peaks tie among the
-    machines: a design there may be delivered as "best found" rather than stationary. Infinite, to the bad side, where a
-    corner or a point of the star does not turn fully. Raises `InputError` for options out of range.
+    The slope of a percentile has small steps where machines change places, and larger ones where peaks tie among the
+    machines: a design there may have the status "best found" rather than stationary. Infinite, on the bad side, where a
+    corner or a point of the star does not rotate fully. Raises `InputError` for options out of range.
     """
 
     name: str = _field(init=False)
@@ -93,7 +94,7 @@ class RobustQuantity(Quantity):
         return (self.inner,)
 
     def with_parts(self, parts: tuple[Quantity, ...]) -> RobustQuantity:
-        """Return the same of another quantity of the same name."""
+        """Return the robust quantity of another quantity with the same name."""
         return replace(self, inner=parts[0])
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
@@ -108,7 +109,7 @@ class RobustQuantity(Quantity):
         return Values(values, pieces.gradients[np.arange(len(values)), first])
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the quantity as the greatest of smooth pieces, the least of them on the low side."""
+        """Return the quantity as the greatest of smooth pieces, or their least on the low side."""
         dimensions = np.asarray(dimensions, dtype=np.float64)
         limits = limits_of(mechanism, dimensions)  # refuses what it must
         columns = uncertain(mechanism)
@@ -135,7 +136,7 @@ class RobustQuantity(Quantity):
     def estimate(self, mechanism: Mechanism, dimensions: Array, inner: Values) -> Array:
         """Return the first-order estimate (n,) from values and gradients of the quantity itself.
 
-        For a percentile that of a normal distribution of the same variance. For sorting many designs.
+        For a percentile, it assumes a normal distribution with the same variance. Used to sort many designs.
         """
         assert inner.gradients is not None
         limits = limits_of(mechanism, dimensions)
@@ -174,7 +175,7 @@ class RobustQuantity(Quantity):
         )
 
     def _bad_side(self, point_values: PointValues) -> tuple[Array, Array, Array]:
-        """Return values (n, m), gradients and labels at the points: all pieces, on the low side the highest of each."""
+        """Return values (n, m), gradients and labels at the points: all pieces, or the highest on the low side."""
         labels = point_values.labels + _APART * np.arange(point_values.labels.shape[1])[:, None]
         if self.side == "high":
             n, _, _, width = point_values.gradients.shape
@@ -191,8 +192,8 @@ class RobustQuantity(Quantity):
     def _linear(self, mechanism: Mechanism, dimensions: Array, columns: list[int]) -> tuple[Array, Array, Array]:
         """Return the linear extrapolation of every piece to every corner.
 
-        Directional derivatives are central differences over a small part h of the limits: what they leave is h^2 of the
-        third order, 1/400 of what first order leaves out anyway; and their gradients follow from exact gradients.
+        Directional derivatives are central differences over a small fraction h of the limits. Their error is h^2 of the
+        third order, 1/400 of the terms that first order neglects anyway. Their gradients follow from exact gradients.
         """
         signs = corners(columns)
         point_values = evaluate_points(
@@ -205,7 +206,7 @@ class RobustQuantity(Quantity):
         with np.errstate(invalid="ignore"):
             change = (values[ahead] - values[opposite]) / (2.0 * _STEP)
         change_slope = (slopes[ahead] - slopes[opposite]) / (2.0 * _STEP)
-        # A peak that vanishes nearby is hardly the highest: its own slope serves.
+        # A peak that vanishes nearby is hardly the highest: its own slope suffices.
         limits = limits_of(mechanism, dimensions)
         plain = np.einsum("npi,ci->ncp", slope[:, 0, :, :3] * limits[:, None, :], signs)
         values = np.where(np.isfinite(centre), centre + np.where(on_both_sides, change, plain), -np.inf)
@@ -226,7 +227,7 @@ class RobustQuantity(Quantity):
         values, slopes, has_twin = match_pieces(star_values)
         followed: Mask = np.logical_and.reduce(has_twin, axis=1)
         values = np.where(followed[:, None, :], values, -np.inf)
-        # Where a peak is not there at all points, and matters at some, the greatest of all peaks is taken as one piece.
+        # If a peak is absent at some points but matters at others, the greatest of all peaks is taken as one piece.
         top, steepest = star_values.highest(star_values.gradients)
         greatest: Array = values.max(axis=2, initial=-np.inf)
         lost = np.flatnonzero((greatest < top).any(axis=1))
@@ -234,7 +235,7 @@ class RobustQuantity(Quantity):
         slopes[lost, :, 0] = steepest[lost]
         share = self.share if self.side == "high" else 1.0 - self.share
         drawn = sample(columns, self.shape, self.samples, self.seed, share)
-        # What depends on the size of an offset has a kink at zero, which machines of the sample may have.
+        # Quantities that depend on the size of an offset have a kink at zero, which machines of the sample may reach.
         widest = np.abs(drawn.deviations[:, 2]).max()
         kinked = (2 in columns) & (np.abs(dimensions[:, 2]) < widest * limits_of(mechanism, dimensions)[:, 2])
         good = np.isfinite(top).all(axis=1) & ~kinked
@@ -252,7 +253,7 @@ class RobustQuantity(Quantity):
 
 
 def _blocks(rows: Mask, size: int) -> Iterator[Whole]:
-    """Yield the places of rows in blocks that may be held at once. size: numbers that each takes."""
+    """Yield the indices of rows in blocks that fit in memory together. size: number of values in each row."""
     places, step = np.flatnonzero(rows), max(1, _BLOCK // size)
     for begin in range(0, len(places), step):
         yield places[begin : begin + step]
@@ -261,7 +262,7 @@ def _blocks(rows: Mask, size: int) -> Iterator[Whole]:
 def _merge_parts(
     count: int, parts: list[tuple[Whole, tuple[Array, Array, Array]]], *, absent: float
 ) -> tuple[Array, Array, Array]:
-    """Return values, gradients and labels of all designs from those of some each; the missing ones are `absent`."""
+    """Return values, gradients and labels of all designs from parts with some each; missing pieces are `absent`."""
     if len(parts) == 1:
         return parts[0][1]
     widest = max(values.shape[1] for _, (values, _, _) in parts)

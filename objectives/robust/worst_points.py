@@ -1,4 +1,4 @@
-"""The worst point of the tolerance box where that is no corner: at offset zero, or where the quantity turns."""
+"""The worst point of the tolerance box other than a corner: at offset zero, or at an extreme of the quantity."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _EXACT = 1e-15
 
 @dataclass(frozen=True)
 class InnerPoints:
-    """Points (m, q, 3), in units of the limits, of the designs `rows` (m,) that have some besides the corners."""
+    """Points (m, q, 3) besides the corners, in units of the limits, for the designs `rows` (m,) that have any."""
 
     rows: Whole
     points: Array
@@ -38,10 +38,10 @@ def worst_inner_points(
 ) -> InnerPoints:
     """Return points inside the box of designs (n, 3 + k) that may be worse than all its corners.
 
-    at_corners: the quantity at the corners. low: whether the least value is wanted, else the greatest.
-    1. What depends on |offset| turns at zero: those points are given wherever the limits span it.
-    2. At the worst of all these points the quantity must get better on every way into the box, to first order.
-       Where it does not it turns within: from there its worst is sought by sequential quadratic programming.
+    at_corners: the quantity at the corners. low: whether the least value is the worst, else the greatest.
+    1. Quantities that depend on |offset| have an extreme at zero: those points are included if the limits span it.
+    2. At the worst of all these points the quantity must improve in every direction into the box, to first order.
+       If it does not, it has an extreme inside: sequential quadratic programming finds the worst value from there.
     """
     limits = limits_of(mechanism, dimensions)
     spanning, points = in_line(columns, dimensions, limits)
@@ -74,7 +74,7 @@ def worst_inner_points(
     count = len(ends) // 2 if len(spanning) else 0
     inner_points = np.repeat(
         start[rows][:, None], count + 1, axis=1
-    )  # what has no point of its own has its worst again
+    )  # designs without an inner point repeat their worst one
     if len(spanning):
         inner_points[np.searchsorted(rows, spanning), :count] = points
     for index, row in enumerate(rows.tolist()):
@@ -83,7 +83,7 @@ def worst_inner_points(
 
 
 def _losses(point_values: PointValues, low: bool) -> tuple[Array, Array, Mask]:
-    """Return a quantity as a loss at points (n, q), its slopes (n, q, 3), and where the linkage turns."""
+    """Return a quantity as a loss at points (n, q), its slopes (n, q, 3), and where the linkage rotates fully."""
     values, slopes = point_values.highest(point_values.local)
     sign = -1.0 if low else 1.0
     return np.where(point_values.turns, sign * values, np.inf), sign * slopes, point_values.turns
@@ -97,7 +97,7 @@ def _slopes_at_worst(worst: Array, slopes: Array) -> Array:
 def _search_worst_point(
     quantity: Quantity, mechanism: Mechanism, design: Array, columns: list[int], start: Array, low: bool
 ) -> Array:
-    """Return the worst point (3,) near a start. Of a least-of-the-greatest, several peaks may meet there (minimax)."""
+    """Return the worst point (3,) near a start. If it is the least of a maximum, peaks may tie there (minimax)."""
     from scipy.optimize import minimize
 
     search: Any = minimize  # its stubs do not follow SLSQP's

@@ -2,8 +2,8 @@
 
 The turn is cut where torque and forces may jump or have a kink (`model.cycle.cycle.breakpoints`), at the dead centres,
 and where the crank is normal to the slider's line. Within a piece every curve is sampled closely, and each of its
-highest and lowest samples is refined by golden sections between its neighbours. The ends of a piece count by their
-one-sided limits. Golden sections need no derivative and also find the tips of curves of magnitudes, which have none.
+highest and lowest samples is refined by golden sections between its neighbours. At the ends of a piece the one-sided
+limits count. Golden sections need no derivative and also find the cusps of magnitudes, where there is none.
 Source: R. P. Brent, Algorithms for Minimization without Derivatives (1973), chapter 5.
 """
 
@@ -60,7 +60,7 @@ _NEEDS: dict[str, tuple[Need, ...]] = {
 class Extreme:
     """An extreme value of a curve, SI, with crank angle in the cycle, rad, and slider position, m.
 
-    Of several equal values it is the first (`first_greatest`). Angle and position are NaN for a constant curve; all
+    Among equal values, the first counts (`first_greatest`). Angle and position are NaN for a constant curve; all
     three are NaN for a curve that friction leaves undetermined at some crank angle.
     """
 
@@ -81,11 +81,11 @@ class CurveExtremes:
 
 
 def curve_extremes(mechanism: Mechanism, linkage: Linkage) -> list[CurveExtremes]:
-    """Return the extremes of every curve of one fully turning linkage that its machine defines.
+    """Return the extremes of every curve that the machine defines, for one fully rotating linkage.
 
-    Left out are velocity, acceleration, jerk and power without a crank speed, torque and joint forces without masses
-    and loads, the load without loads, position errors without tolerances. At a jump an extreme is the limit from
-    its side. A spike within a few hundred-millionths of a radian counts by the values beside it.
+    Leaves out velocity, acceleration, jerk and power without a crank speed, torque and joint forces without masses
+    and loads, the load without loads, and position errors without tolerances. At a jump an extreme is the limit from
+    its side. For a spike narrower than a few hundred-millionths of a radian, the values beside it count.
     Raises `InputError` for arrays of linkages and for a linkage on another branch than the mechanism's.
     """
     linkage = single(mechanism, linkage)
@@ -110,7 +110,7 @@ def curve_extremes(mechanism: Mechanism, linkage: Linkage) -> list[CurveExtremes
 
 
 def defined_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> list[Curve]:
-    """Return the curves that `curve_extremes` looks at, at crank angles (n,), rad.
+    """Return the curves that `curve_extremes` examines, at crank angles (n,), rad.
 
     The rod angle of the crossed branch, about pi, is given in [0, 2 pi), where it does not jump.
     """
@@ -119,7 +119,7 @@ def defined_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -
 
 
 def every_curve(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> list[Curve]:
-    """Return the curves of `defined_curves` and those that the machine does not define, which mean nothing."""
+    """Return the curves of `defined_curves` and those that the machine does not define, which are meaningless."""
     every = {curve.name: curve for curve in cycle_curves(mechanism, linkage, crank_angle)}
     del every["crank_angle"]
     if linkage.branch == "crossed":
@@ -136,16 +136,16 @@ def every_curve(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> l
 
 
 def undefined_because(name: str, mechanism: Mechanism) -> str:
-    """Return the reason why a machine does not define a curve; empty where it does."""
+    """Return the reason why a machine does not define a curve; empty if it does."""
     if name == "load" and not mechanism.loads:
         return 'it comes from loads; got none; add a [[load]], for example force = "200 N"'
     return next((need.missing for need in _NEEDS.get(name, ()) if not need.is_met(mechanism)), "")
 
 
 def cuts_of(mechanism: Mechanism, linkage: Linkage) -> Array:
-    """Return crank angles (k,) of a cycle from 0, rad, in ascending order, between which every curve is smooth.
+    """Return ascending crank angles (k,) of a cycle from 0, rad, between which every curve is smooth.
 
-    Where friction locks one linkage, they are those without friction: forces are then undetermined anyway.
+    If friction locks the linkage, the angles are those without friction: forces are then undetermined anyway.
     """
     dimensions = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
     locks = not float(locking_margin(mechanism.friction, dimensions)[0][0]) > 0.0
@@ -162,7 +162,7 @@ def cuts_of(mechanism: Mechanism, linkage: Linkage) -> Array:
 
 
 def _pieces(mechanism: Mechanism, linkage: Linkage) -> list[Array]:
-    """Return crank angles of each smooth piece of the turn; the ends are `_INSET` further in."""
+    """Return crank angles of each smooth piece of the turn, with its ends moved inward by `_INSET`."""
     cuts = cuts_of(mechanism, linkage)
     kappa = crowding(float(linkage.crank), float(linkage.rod), float(linkage.offset))
     pieces = []
@@ -179,7 +179,7 @@ def _pieces(mechanism: Mechanism, linkage: Linkage) -> list[Array]:
 
 
 def _sizes(curves: list[Curve], samples: list[Array]) -> Array:
-    """Return the greatest magnitude (m, 2) of each curve, and of all curves with its unit; NaN if not determined."""
+    """Return the greatest magnitude (m, 2) of each curve, and of all curves with its unit; NaN if undetermined."""
     magnitudes = np.max([np.abs(values).max(axis=1) for values in samples], axis=0)
     units = [curve.kind.unit for curve in curves]
     shared = [
@@ -192,9 +192,9 @@ def _sizes(curves: list[Curve], samples: list[Array]) -> Array:
 def _ends(
     values: Callable[[Array], Array], pieces: list[Array], samples: list[Array], sizes: Array, period: float
 ) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
-    """Return value and crank angle of each curve's least value, and of its greatest one.
+    """Return the least value of each curve with its crank angle, and the same for its greatest value.
 
-    All are refined together: a section of many brackets takes hardly longer than one of few.
+    All are refined together: a section of many brackets takes hardly longer than that of a few.
     """
     sides = [_coarse(pieces, samples, sizes, sign) for sign in (-1.0, 1.0)]
     rows, left, right = (np.concatenate(parts) for parts in zip(*(side[1:] for side in sides), strict=True))
@@ -221,9 +221,9 @@ def _ends(
 def _coarse(
     pieces: list[Array], samples: list[Array], sizes: Array, sign: float
 ) -> tuple[list[tuple[float, float]], Array, Array, Array]:
-    """Return each curve's best end of a piece, times the sign, or its value where it is constant or undetermined.
+    """Return each curve's best piece end, times the sign, and the brackets in which it may be exceeded.
 
-    With it the brackets in which it may be exceeded: row of the curve, left and right crank angle of each.
+    For a constant or undetermined curve, its value instead. Brackets: row of the curve, left and right crank angle.
     """
     ends: list[tuple[float, float]] = []
     brackets: list[tuple[int, float, float]] = []
@@ -242,7 +242,7 @@ def _coarse(
 
 
 def _best_end(curve: list[Array], pieces: list[Array]) -> tuple[float, float]:
-    """Return the greatest one-sided limit at the ends of the pieces and its crank angle, linearly extrapolated."""
+    """Return the greatest one-sided limit at the piece ends, linearly extrapolated, and its crank angle."""
     ends = []
     for angles, values in zip(pieces, curve, strict=True):
         ends.append((2.0 * values[0] - values[1], angles[0] - _INSET))
@@ -262,7 +262,7 @@ def _maxima_at_cuts(curve: list[Array], pieces: list[Array]) -> tuple[Array, Arr
 
 
 def _brackets(curve: list[Array], pieces: list[Array]) -> list[tuple[float, float]]:
-    """Return the neighbours on both sides of every locally highest sample that may be next to the greatest value."""
+    """Return the neighbours on both sides of each local maximum that may be next to the greatest value."""
     brackets: list[tuple[float, float, float]] = []
     for angles, values in zip(pieces, curve, strict=True):
         padded = np.concatenate([[-np.inf], values, [-np.inf]])
@@ -280,7 +280,7 @@ def _brackets(curve: list[Array], pieces: list[Array]) -> list[tuple[float, floa
 def golden(
     function: Callable[[Array], Array], left: Array, right: Array, sections: int = _SECTIONS
 ) -> tuple[Array, Array]:
-    """Return the greatest value of a function (n,) -> (n,) in each bracket, and where it is, by golden sections."""
+    """Return the greatest value of a function (n,) -> (n,) in each bracket, and its place, by golden sections."""
     if not len(left):
         return left, right
     low, high = left + (1.0 - _GOLDEN) * (right - left), left + _GOLDEN * (right - left)

@@ -64,14 +64,14 @@ class Curve:
 
 
 def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> list[Curve]:
-    """Return the curves of one fully turning linkage at crank angles (n,), rad; the angle comes first.
+    """Return the curves of one fully rotating linkage at crank angles (n,), rad; the angle comes first.
 
-    Forces are those of the frame on the crank (pivot), of the crank on the rod (crank pin), of the rod on the slider
-    (slider pin), and of the guide on the slider along +y. Torque and power are those of the drive, with several
-    cylinders over the angle of the shaft; all else is of one over that of its own crank. Without a crank speed,
-    velocity, acceleration and jerk are those of one radian per second: derivatives by the crank angle; there is no
-    power (NaN). Position errors are NaN without tolerances. What is given where a load jumps, and what is raised: see
-    `model.cycle.cycle`.
+    Forces act from the frame on the crank (pivot), from the crank on the rod (crank pin), from the rod on the slider
+    (slider pin), and from the guide on the slider along +y. Torque and power are those of the drive. With several
+    cylinders they are over the shaft angle; all other curves belong to one cylinder, over the angle of its own crank.
+    Without a crank speed, velocity, acceleration and jerk are for one radian per second, hence derivatives by the crank
+    angle, and power is NaN. Position errors are NaN without tolerances. For values at jumps of a load and errors
+    raised, see `model.cycle.cycle`.
     """
     acting = cycle(mechanism, linkage, crank_angle)
     moving = acting if mechanism.speed else cycle(replace(mechanism, speed=1.0), linkage, crank_angle)
@@ -116,11 +116,11 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
 
 
 def cycle_table(mechanism: Mechanism, linkage: Linkage, angles: int | ArrayLike = 360) -> pd.DataFrame:
-    """Return the curves of one fully turning linkage as a table in SI, a row for each crank angle.
+    """Return the curves of one fully rotating linkage as a table in SI, with a row for each crank angle.
 
-    angles: how many, evenly spaced over the cycle from 0, two turns where a load has a cycle of two; or crank angles
-    (n,), rad. Columns: the names of `cycle_curves` with the unit, such as torque_Nm. Raises `InputError` for too few or
-    too many angles, and for ones that are not finite.
+    angles: number of crank angles, evenly spaced over the cycle from 0 (two turns if a load has a cycle of two); or
+    crank angles (n,), rad. Columns: the names of `cycle_curves` with the unit, such as torque_Nm. Raises `InputError`
+    for too few or too many angles, and for angles that are not finite.
     """
     if isinstance(angles, int | np.integer) and not isinstance(angles, bool):
         theta = cycle_turns(mechanism) * even_angles(int(angles))

@@ -1,4 +1,4 @@
-"""Designs as they are given: arrays, lists, or tables of pandas with a column for each number of a design."""
+"""Designs as callers pass them: arrays, lists, or pandas tables with a column for each number of a design."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ _WARNED = "lengths warned of"
 
 
 def numbers_of(mechanism: Mechanism) -> tuple[str, ...]:
-    """Return the names of the numbers of a design of a machine, in their order."""
+    """Return the names of a design's numbers for a machine, in their order."""
     return (*DIMENSIONS, *(item.name for item in mechanism.varying))
 
 
 def require_machine(mechanism: object) -> None:
-    """Refuse what is no machine: a problem and the tables of a job have their own functions."""
+    """Raise `InputError` unless the argument is a machine: problems and job tables have their own functions."""
     if not isinstance(mechanism, Mechanism):
         raise InputError(
             f"a machine is needed; got {type(mechanism).__name__}; give a Mechanism, or make a problem by `problem` or "
@@ -37,15 +37,15 @@ def require_machine(mechanism: object) -> None:
 
 
 def given_designs(designs: object, names: Sequence[str]) -> Array:
-    """Return designs (..., k) as an array, SI, their numbers in the order of names.
+    """Return designs (..., k) as an array, SI, with their numbers in the order of names.
 
     Columns of a table, or the index of one row, are found by these names, in any order and among others; without names
-    they go by their order. Raises `InputError` for what holds no real numbers, for other columns, and other widths.
+    their order counts. Raises `InputError` for values other than real numbers, for other columns, and other widths.
     """
     needed = ", ".join(names)
     table_or_array = _by_name(designs, names)
     try:
-        if isinstance(table_or_array, np.ma.MaskedArray):  # what is masked is not there
+        if isinstance(table_or_array, np.ma.MaskedArray):  # masked values are missing
             table_or_array = np.ma.filled(np.ma.asarray(table_or_array, dtype=np.float64), np.nan)
         array = np.asarray(table_or_array)
         written = array.dtype.kind in "US" or (array.dtype.kind == "O" and any(isinstance(x, str) for x in array.flat))
@@ -65,9 +65,9 @@ def given_designs(designs: object, names: Sequence[str]) -> Array:
 
 
 def warn_of_lengths(owner: object, designs: Array, greatest: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
-    """Warn of designs (..., 3 + k) with lengths beyond any machine, which are in mm rather than in m.
+    """Warn about designs (..., 3 + k) with lengths beyond any machine, which are in mm rather than in m.
 
-    Once for each machine or problem `owner`, attributed to the caller of the caller. greatest: intended crank, rod and
+    Warns once for each machine or problem `owner`, attributed to the caller's caller. greatest: intended crank, rod and
     offset, m, whatever their size.
     """
     if _WARNED in vars(owner):
@@ -79,12 +79,12 @@ def warn_of_lengths(owner: object, designs: Array, greatest: Sequence[float] = (
 
 
 def countable(designs: Array) -> Mask:
-    """Return which designs (n, 3 + k) are of finite numbers, with lengths whose powers are numbers too."""
+    """Return which designs (n, 3 + k) have finite numbers, with lengths whose powers are finite too."""
     return np.asarray(np.isfinite(designs).all(axis=1) & (designs[:, 0] > _LEAST) & (designs[:, 1] < _MOST))
 
 
 def shortly(value: object) -> str:
-    """Return a value as it prints, or only its type where that is long."""
+    """Return a value as it prints, or only its type if that is long."""
     text = repr(value)
     return text if len(text) <= 60 and "\n" not in text else type(value).__name__
 

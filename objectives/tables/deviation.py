@@ -1,8 +1,8 @@
 """Deviation of measured curves from the computed ones of one design, and the shifts that fit them best.
 
-The shift of the crank angle and the constant shift minimise the sum of squares of what is left. The constant is closed:
-minus the mean. The angle is sought on a grid over the whole turn, then by golden sections around the lowest points.
-Many samples are averaged beforehand in groups of neighbouring crank angles, for the search alone.
+The shift of the crank angle and the constant shift minimise the sum of squared residuals. The constant has a closed
+form: minus the mean. The angle is found on a grid over the whole turn, then by golden sections around the lowest
+points. For this search alone, many samples are first averaged in groups of neighbouring crank angles.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ _CANDIDATES = 6
 _SECTIONS = 40  # to 1e-10 rad
 _APART = 1e-3  # rad: crank angles nearer than this, as of times that were rounded, count as one
 _CONSTANT = 1e-12  # of the greatest size
-_EQUAL = 1e-9  # relative: of equally good shifts the lesser one is told
+_EQUAL = 1e-9  # relative: among equally good shifts, the smaller one is reported
 
 
 @dataclass(frozen=True)
 class Fit:
     """Shifts that bring measured samples closest to the computed curve, by least squares; SI.
 
-    crank_angle: added to the measured crank angles, rad in (-pi, pi]. value: added to the measured values. rms: root
-    mean square of the deviation that is left.
+    crank_angle: shift added to the measured crank angles, rad in (-pi, pi]. value: shift added to the measured values.
+    rms: root mean square of the remaining deviation.
     """
 
     crank_angle: float
@@ -48,9 +48,9 @@ class Fit:
 class Deviation:
     """Deviation, measured minus computed, of one curve; SI, NaN where friction leaves the curve undetermined.
 
-    count: samples. rms: root mean square. largest: the one of the greatest size, with its sign; crank_angle, rad in
-    [0, 2 pi), and sample: there. fit: None for samples at less than three crank angles, and for a curve
-    that is constant or undetermined somewhere.
+    count: number of samples. rms: root mean square. largest: deviation of the greatest size, with its sign.
+    crank_angle, sample: its crank angle, rad in [0, 2 pi), and sample. fit: best shifts; None for samples at fewer than
+    three crank angles, and for a curve that is constant or undetermined somewhere.
     """
 
     name: str
@@ -68,10 +68,10 @@ class Deviation:
 def deviations(
     mechanism: Mechanism, linkage: Linkage, crank_angle: Array, measured: Mapping[str, Array]
 ) -> list[Deviation]:
-    """Return how measured curves of one fully turning linkage deviate from the computed ones.
+    """Return the deviations of measured curves from the computed ones of one fully rotating linkage.
 
     crank_angle: (n,), rad, in any order and over any number of turns. measured: (n,) by the name of a curve of
-    `defined_curves`, SI; NaN where nothing was measured, not everywhere. Raises what `defined_curves` raises.
+    `defined_curves`, SI; NaN where nothing was measured, not everywhere. Raises the same errors as `defined_curves`.
     """
     require_one_turn(mechanism, "the comparison with measured curves")
     theta = np.mod(crank_angle, _TURN)
@@ -116,7 +116,7 @@ def _fit(
         return next(c.values for c in defined_curves(mechanism, linkage, np.mod(at, _TURN)) if c.name == name)
 
     def remaining_variance(curve: Array) -> Array:
-        """Return the weighted variance of what is left, for curves (k, groups)."""
+        """Return the weighted variance of the residuals, for curves (k, groups)."""
         off = means - curve
         middle = off @ weights
         variance: Array = ((off - middle[:, None]) ** 2) @ weights
@@ -137,7 +137,7 @@ def _fit(
     lowest = np.flatnonzero((coarse <= np.roll(coarse, 1)) & (coarse <= np.roll(coarse, -1)))
     lowest = lowest[np.argsort(coarse[lowest], kind="stable")][:_CANDIDATES]
     best, shifts = golden(at_shifts, grid[lowest] - step, grid[lowest] + step, _SECTIONS)
-    # None at all is looked at, too: it is as good as others where a curve is constant in pieces.
+    # Also try no shift: it is as good as others where a curve is piecewise constant.
     best, shifts = np.append(best, at_shifts(np.zeros(1))), np.append(shifts, 0.0)
     shifts = math.pi - np.mod(math.pi - shifts, _TURN)  # in (-pi, pi]
     size = float(np.abs(means).max())
@@ -148,7 +148,7 @@ def _fit(
 
 
 def _three(angles: Array) -> bool:
-    """Return whether there are three crank angles apart from one another, one more than there are shifts."""
+    """Return whether there are three distinct crank angles, one more than there are shifts."""
     ordered = np.sort(angles)
     for _ in range(2):
         first = ordered[0]
@@ -159,7 +159,7 @@ def _three(angles: Array) -> bool:
 
 
 def _grouped(angles: Array, values: Array) -> tuple[Array, Array, Array]:
-    """Return mean crank angles and values of groups of neighbours, and their shares of the samples."""
+    """Return mean crank angles and values of groups of neighbours, and their fractions of the samples."""
     order = np.argsort(angles, kind="stable")
     ends = np.unique(np.linspace(0, len(order), min(len(order), _GROUPS) + 1).astype(np.intp))
     counts = np.diff(ends)

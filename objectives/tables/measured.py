@@ -1,4 +1,4 @@
-"""Measured curves of a machine: columns of a table by their meaning, samples in SI over the crank angle."""
+"""Measured curves of a machine: meanings of table columns, and samples in SI over the crank angle."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _BRACKETED = re.compile(r"(.*?)[\s,:/]*[\[(](.*)[\])]\s*", re.DOTALL)
 
 @dataclass(frozen=True)
 class Column:
-    """Meaning of a column: the curve that it measures, or crank angle or time. factor: of its values to SI."""
+    """Meaning of a column: the measured curve, crank angle or time. factor: factor from its values to SI."""
 
     name: str
     factor: float
@@ -44,9 +44,9 @@ class Column:
 class Measured:
     """Measured samples, SI. crank_angle: (n,), rad. values: (n,) by the name of a curve; NaN where there is none.
 
-    left_out: columns that mean nothing here, or are empty. without_angle: rows that were left out, as they have no
-    crank angle. by_time: the crank angle is the crank speed times the time. understood: what was read of a file, in
-    words.
+    left_out: columns that are unknown or empty. without_angle: number of rows left out because they have no crank
+    angle. by_time: whether the crank angle is the crank speed times the time. understood: summary in words of the
+    contents read from a file.
     """
 
     crank_angle: Array
@@ -62,10 +62,10 @@ def columns_of(
 ) -> dict[str, Column]:
     """Return the columns that have a meaning: crank angle, or else time, and curves of the machine.
 
-    A column is called as in the tables of this project: slider_position_mm, slider_position_in, "slider position [m]",
-    torque_N_m, "torque in N m". units: further ones than those in which values are shown. Raises `InputError` for a
-    known name without its unit or with one of another kind, for two columns of the same, and without a crank angle or
-    a curve.
+    Columns have the names of this project's tables: slider_position_mm, slider_position_in, "slider position [m]",
+    torque_N_m, "torque in N m". units: further units besides the display units. Raises `InputError` for a known name
+    without its unit or with one of another kind, for two columns with one meaning, and without a crank angle or a
+    curve.
     """
     names = [str(name) for name in names]
     moving = mechanism if mechanism.speed else replace(mechanism, speed=1.0)  # velocities have their usual units
@@ -116,7 +116,7 @@ def measured_from(
 ) -> Measured:
     """Return the samples of a table; columns without a number are left out.
 
-    Raises `InputError` as `columns_of` does, for values that cannot be, and for what the machine does not define.
+    Raises `InputError` as `columns_of` does, for impossible values, and for curves that the machine does not define.
     """
     if not hasattr(table, "keys"):
         raise InputError(
@@ -161,7 +161,7 @@ def measured_from(
 
 
 def _one_turn(name: str, values: Array, linkage: Linkage) -> Array:
-    """Return rod angles within the turn that the computed ones are in; other curves as they are."""
+    """Return rod angles within the same turn as the computed ones; other curves unchanged."""
     if name != "rod_angle":
         return values
     start = -np.pi if linkage.branch == "open" else 0.0
@@ -170,7 +170,7 @@ def _one_turn(name: str, values: Array, linkage: Linkage) -> Array:
 
 
 def _meaning(text: str, spoken: Mapping[str, str], kinds: Mapping[str, Kind], units: Units | None) -> Column | None:
-    """Return the meaning of a column; None where it has none."""
+    """Return the meaning of a column; None if it has none."""
     bracketed = _BRACKETED.fullmatch(text)
     stem = _plain(text if bracketed is None else bracketed[1])
     if bracketed is not None:
@@ -207,7 +207,7 @@ def _meaning(text: str, spoken: Mapping[str, str], kinds: Mapping[str, Kind], un
 
 
 def _factor(unit: str, kind: Kind) -> float | None:
-    """Return the value of a unit of tables in SI; None if it is none of the kind's."""
+    """Return the SI value of a table's unit; None if the kind does not have it."""
     for display_unit in _display_units(kind):
         if squeezed(unit) in (squeezed(display_unit.symbol), squeezed(display_unit.suffix)):
             return 1.0 / display_unit.factor
@@ -219,7 +219,7 @@ def _display_units(kind: Kind) -> list[DisplayUnit]:
 
 
 def _text_after(name: str, text: str) -> str:
-    """Return the rest of a text after a name, whose words anything may separate."""
+    """Return the rest of a text after a name; any characters may separate the words of the name."""
     return re.sub("[^a-z0-9]*" + "[^a-z0-9]+".join(name.split("_")), "", text, count=1, flags=re.IGNORECASE)
 
 
@@ -228,13 +228,13 @@ def _plain(text: str) -> str:
 
 
 def _curve_near(name: str, spoken: Iterable[str]) -> str | None:
-    """Return the curve that a column may mean: one with its first word, or else with a like name."""
+    """Return the curve that a column may mean: one with its first word, or else one with a similar name."""
     word = _plain(name).partition("_")[0]
     return next((curve for curve in spoken if word in curve.split("_")), None) or _near(name, spoken)
 
 
 def _near(name: str, words: Iterable[str]) -> str | None:
-    """Return which of some words a misspelt name means; None if none is near."""
+    """Return the word that a misspelt name probably means; None if none is near."""
     return next(iter(difflib.get_close_matches(_plain(name)[:60], list(words), n=1)), None)
 
 

@@ -1,8 +1,8 @@
-"""Why a design has no value for a quantity that is defined for its machine.
+"""Reasons why a design has no value for a quantity that is defined for its machine.
 
-`Quantity.evaluate` gives the search the worst value there is where friction locks a linkage: infinite torques, a safety
-of zero. An analysis shows no such stand-in: it shows what is determined, and the reason for the rest. A quantity may be
-infinite by its own definition, such as the ratio of the rod to an offset of zero; that is its value.
+Where friction locks a linkage, `Quantity.evaluate` gives the search the worst possible value: infinite torques, a
+safety of zero. An analysis shows no such substitute: it shows the determined values, and the reason for each missing
+one. A quantity may be infinite by definition, such as the ratio of the rod to an offset of zero; that is its value.
 """
 
 from __future__ import annotations
@@ -40,7 +40,8 @@ def missing_value_reason(
 ) -> str:
     """Return the reason why a design has no value for a defined quantity; empty if it has one.
 
-    value: of `Quantity.evaluate`, in any unit. mechanism: with its variables fixed. swing: in place of a full turn.
+    value: value of `Quantity.evaluate`, in any unit. mechanism: machine with its variables fixed. swing: motion in
+    place of a full turn.
     """
     designs = np.array([[linkage.crank, linkage.rod, linkage.offset]], dtype=np.float64)
     (reason,) = missing_value_reasons(quantity, np.array([value]), mechanism, designs, swing)
@@ -50,7 +51,7 @@ def missing_value_reason(
 def missing_value_reasons(
     quantity: Quantity, values: Array, mechanism: Mechanism, designs: Array, swing: Swing | None = None
 ) -> list[str]:
-    """Return `missing_value_reason` of designs (n, 3) that all turn fully, or swing. values: (n,)."""
+    """Return `missing_value_reason` for designs (n, 3) that all rotate fully, or swing. values: (n,)."""
     reasons = [""] * len(designs)
     locked = locked_designs(mechanism, designs, swing)
     rows = np.flatnonzero(locked)
@@ -72,9 +73,9 @@ def locked_designs(mechanism: Mechanism, designs: Array, swing: Swing | None = N
 
 
 def _undetermined(quantity: Quantity, mechanism: Mechanism, designs: Array) -> Mask:
-    """Return for which locked designs (n, 3) friction leaves a quantity, or one that it is made of, undetermined.
+    """Return for which locked designs (n, 3) friction leaves a quantity or one of its parts undetermined.
 
-    These have the worst value there is, infinite or zero, and another one without friction.
+    These have the worst possible value, infinite or zero, and another one without friction.
     """
     parts = [_undetermined(part, mechanism, designs) for part in quantity.made_of]
     undetermined = np.any(parts, axis=0) if parts else np.zeros(len(designs), np.bool_)

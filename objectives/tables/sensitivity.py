@@ -59,20 +59,20 @@ _DEAD_CENTRES = (
 
 
 def sensitivity(mechanism: Mechanism, dimensions: Array, swing: Swing | None = None) -> pd.DataFrame:
-    """Return how each quantity of a design (3,), crank, rod, offset, m, changes with each dimension.
+    """Return the sensitivity of each quantity of a design (3,), crank, rod, offset, m, to each dimension.
 
-    swing: what its crank makes in place of a full turn, with the same ends whatever the dimensions; then the rows are
-    its quantities. One row a quantity, all of the registry and the dead centres, with the columns quantity, title,
-    unit, value (as shown) and for each dimension
-    - <dimension>_per_mm: exact derivative towards more of it, in the shown unit per mm;
+    swing: motion in place of a full turn, with the same ends whatever the dimensions; the rows are then its quantities.
+    There is one row per quantity, for all of the registry and the dead centres, with the columns quantity, title, unit,
+    value (in that unit) and for each dimension
+    - <dimension>_per_mm: exact derivative towards larger values, in the display unit per mm;
     - <dimension>_percent: percent of the quantity per percent of the dimension (for an offset, of its size); NaN where
       quantity or dimension is zero, and for the crank angle of a dead centre, whose zero is arbitrary;
-    - <dimension>_tolerance: first-order change for the dimension's tolerance, in the shown unit;
-    - the same three with _below: from the derivative on the side of smaller values (for a percentage, sizes).
-    The two differ where the quantity has a kink: two equal peaks; no offset, for what depends on its size. Derivatives
-    that are rounding are exactly zero. A quantity that is infinite has NaN in all; so has a position error without
-    tolerances, which is not defined.
-    Raises `AssemblyError` unless the linkage turns fully, or swings as far as `swing` asks.
+    - <dimension>_tolerance: first-order change for the dimension's tolerance, in the display unit;
+    - the same three with _below: from the derivative towards smaller values (for a percentage, sizes).
+    The two differ where the quantity has a kink: at two equal peaks, or at zero offset if it depends on the offset's
+    size. Derivatives within rounding are exactly zero. An infinite quantity has NaN in all these columns, and so has a
+    position error without tolerances, which is undefined.
+    Raises `AssemblyError` unless the linkage rotates fully, or swings as far as `swing` requires.
     """
     design = np.asarray(dimensions, dtype=np.float64).reshape(3)
     linkage = Linkage(design[0], design[1], design[2], mechanism.branch)
@@ -95,10 +95,10 @@ def sensitivity(mechanism: Mechanism, dimensions: Array, swing: Swing | None = N
 
 
 def _one_sided(quantity: Quantity, mechanism: Mechanism, design: Array) -> tuple[float, Array, Array]:
-    """Return value and the derivatives (3,) below and above a design, SI.
+    """Return the value of a design and its derivatives (3,) below and above, SI.
 
-    A greatest-of grows with the steepest of its equal pieces on either side: their greatest slope above, their least
-    below; a least-of the other way round.
+    A maximum of pieces grows with the steepest of its equal pieces on either side: their greatest slope above, their
+    least slope below. For a minimum of pieces it is the other way round.
     """
     value = float(quantity.evaluate(mechanism, design[None]).values[0])
     if design[2] == 0.0 and _is_tip(quantity, mechanism, design, value):
@@ -113,7 +113,7 @@ def _one_sided(quantity: Quantity, mechanism: Mechanism, design: Array) -> tuple
 
 
 def _steepest(quantity: Quantity, mechanism: Mechanism, at: Array, side: float) -> Array:
-    """Return the derivatives (3,) of a design towards one side, of the steepest of its equal pieces."""
+    """Return the derivatives (3,) towards one side of a design, for the steepest of its equal pieces."""
     pieces = quantity.pieces(mechanism, at[None])
     values, slopes = pieces.values[0], pieces.gradients[0]
     best = values.min() if pieces.least else values.max()
@@ -128,7 +128,7 @@ def _steepest(quantity: Quantity, mechanism: Mechanism, at: Array, side: float) 
 
 
 def _is_tip(quantity: Quantity, mechanism: Mechanism, design: Array, value: float) -> bool:
-    """Whether a quantity vanishes at an offset of zero: it is rounding there, and so are its peaks' places."""
+    """Whether a quantity vanishes at an offset of zero: its value and the places of its peaks are then rounding."""
     nearby = design + np.array([0.0, 0.0, _TIP * design[1]])
     return abs(value) <= _TIE * abs(float(quantity.evaluate(mechanism, nearby[None]).values[0]))
 
@@ -139,7 +139,7 @@ def _beside_tip(quantity: Quantity, mechanism: Mechanism, design: Array, side: f
         _steepest(quantity, mechanism, design + np.array([0.0, 0.0, side * share * _TIP * design[1]]), side)
         for share in (1.0, 2.0)
     )
-    slopes = 2.0 * near - far  # what grows with the offset falls out
+    slopes = 2.0 * near - far  # terms that grow with the offset cancel
     return np.where(np.abs(slopes) <= _TIE * np.abs(slopes).max(), 0.0, slopes)
 
 

@@ -45,12 +45,12 @@ def sweep(
     *,
     custom: Sequence[Quantity] = (),
 ) -> pd.DataFrame:
-    """Return a table with a row for every combination of the values of the axes, the first axis slowest.
+    """Return a table with a row for every combination of axis values; the first axis varies slowest.
 
     dimensions: (3,) crank, rod, offset, m, of the starting design; swept parameters replace its values. quantity_names:
-    quantities or formulas. custom: quantities that it may name besides those of the registry.
-    Columns: crank_mm, rod_mm, offset_mm, speed_rpm, each quantity under its field in its shown unit, and reason: why
-    the row lacks values (NaN), "" otherwise. An infinite quantity (rod to offset without offset) stays infinite.
+    names of quantities, or formulas. custom: quantities that may be named besides those of the registry.
+    Columns: crank_mm, rod_mm, offset_mm, speed_rpm, each quantity under its field in its display unit, and reason: the
+    reason why the row lacks values (NaN), else "". An infinite quantity (rod to offset without offset) stays infinite.
     Raises `InputError` for unknown names, an axis given twice, or more than a million rows.
     """
     quantities = resolve_quantities(quantity_names, mechanism, custom)
@@ -74,7 +74,7 @@ def sweep(
     columns = {f"{name}_mm": 1e3 * designs[:, n] for n, name in enumerate(DIMENSIONS)}
     columns["speed_rpm"] = speeds * 30.0 / math.pi
     turns = np.array([not reason for reason in reasons])
-    missing: dict[int, dict[str, list[str]]] = {}  # by row and reason the quantities that it lacks
+    missing: dict[int, dict[str, list[str]]] = {}  # missing quantities by row and reason
     for item in quantities:
         values = np.full(count, np.nan)
         for speed in np.unique(speeds):
@@ -96,13 +96,13 @@ def sweep(
 
 
 def _join_reasons(missing: Mapping[str, Sequence[str]], count: int) -> str:
-    """Return the reasons of a row. missing: titles by reason, which are left out where one reason is that of all."""
+    """Return the reasons for a row. missing: titles by reason; left out if all share one reason."""
     is_shared = any(len(titles) == count for titles in missing.values())
     return "; ".join(reason if is_shared else f"{', '.join(titles)}: {reason}" for reason, titles in missing.items())
 
 
 def _reason(design: Array, mechanism: Mechanism) -> str:
-    """Return why a design does not turn fully; "" if it does."""
+    """Return the reason why a design does not rotate fully; "" if it does."""
     try:
         Linkage(design[0], design[1], design[2], mechanism.branch).require_full_rotation()
     except InputError as error:

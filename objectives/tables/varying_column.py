@@ -15,7 +15,7 @@ def varying_column(varying: Varying) -> tuple[str, DisplayUnit]:
     """Return the key of a varying number in tables and JSON, and the unit there.
 
     The key is the name without a leading "mechanism", with underscores, and the unit: "mechanism.slider.mass" becomes
-    slider_mass_kg, "load.1.force" load_1_force_N. A share of a dimension has no unit.
+    slider_mass_kg, "load.1.force" load_1_force_N. A fraction of a dimension has no unit.
     """
     unit = next(kind.metric for kind in KINDS if kind.unit == unit_of(varying.paths[0]))
     name = re.sub("[^a-z0-9]+", "_", varying.name.removeprefix("mechanism.").lower()).strip("_")
@@ -29,6 +29,6 @@ def number_in_words(name: str) -> str:
 
 
 def columns_of_numbers(varying: Sequence[Varying]) -> dict[str, tuple[str, DisplayUnit]]:
-    """Return key and unit of every number of a design by name: crank, rod, offset, and those that vary besides."""
+    """Return key and unit of every number of a design by name: crank, rod, offset, and extra variables."""
     lengths = {name: (f"{name}{LENGTH.metric.suffix}", LENGTH.metric) for name in DIMENSIONS}
     return lengths | {item.name: varying_column(item) for item in varying}

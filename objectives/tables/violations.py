@@ -1,4 +1,4 @@
-"""Allowable values that designs go beyond, and by how much."""
+"""Excesses of designs over allowable values."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _ROUNDING = 1e-8
 
 
 def violations(mechanism: Mechanism, values_of: Callable[[str], ArrayLike | None]) -> dict[str, Array]:
-    """Return by how much (n,) designs go beyond each allowable value, SI, by the name of its quantity.
+    """Return the excess (n,) of designs over each allowable value, SI, by the name of its quantity.
 
-    values_of: gives the values (n,) of a quantity by its name, SI, NaN for a design without one, None where there are
-    none. Zero where a design does not go beyond; quantities of which none does are left out.
+    values_of: returns the values (n,) of a quantity by its name, SI; NaN for a design without one, None without any.
+    Zero for a design within the allowable value; quantities that no design exceeds are left out.
     """
     excesses = {}
     for name, quantity in QUANTITIES.items():
@@ -28,7 +28,7 @@ def violations(mechanism: Mechanism, values_of: Callable[[str], ArrayLike | None
             continue
         allowable = quantity.allowable(mechanism)
         excess = values - allowable if quantity.better == "low" else allowable - values
-        excess = np.where(excess > _ROUNDING * abs(allowable), excess, 0.0)  # zero too for what has no value
+        excess = np.where(excess > _ROUNDING * abs(allowable), excess, 0.0)  # zero also without a value
         if excess.any():
             excesses[name] = excess
     return excesses
