@@ -3,8 +3,8 @@
 Exit codes: 0 done; 1 a fault of this software; 2 wrong input, or a run or place that cannot be used; 3 nothing
 feasible: the input is valid, but no design meets it; 4 not proven within the budget; 130 interrupted (Ctrl-C).
 
-A command is imported when it is named. Nothing that is slow to import is imported here or at the top of the command
-modules: `--help`, which names all, stays quick.
+A command is imported when it is named. Slow imports are avoided here and at the top of the command modules: `--help`,
+which names all commands, stays quick.
 """
 
 from __future__ import annotations
@@ -52,15 +52,15 @@ _MODULES |= dict.fromkeys(("jobs", "cancel", "resume", "delete"), "queue")
 
 
 class Commands(TyperGroup):
-    """Loads and runs the command that was named, and turns its exceptions into one message and an exit code."""
+    """Group that loads and runs the named command, and turns its exceptions into one message and an exit code."""
 
     def __init__(self, **given: Any) -> None:
-        """Take what typer gives, and the names of the commands."""
+        """Accept the arguments of typer, and the names of the commands."""
         super().__init__(**given)
         self.commands = dict.fromkeys(_COMMANDS)  # type: ignore[assignment]
 
     def get_command(self, ctx: typer.Context, cmd_name: str) -> Any:  # type: ignore[override]
-        """Return a command, None if there is none of that name."""
+        """Return the command with a name, None if there is none."""
         if cmd_name in self.commands and self.commands[cmd_name] is None:
             module = import_module(f"{__package__}.commands.{_MODULES.get(cmd_name, cmd_name)}")
             alone = typer.Typer(rich_markup_mode=None, add_completion=False)
@@ -69,7 +69,7 @@ class Commands(TyperGroup):
         return self.commands.get(cmd_name)
 
     def invoke(self, ctx: typer.Context) -> Any:  # type: ignore[override]
-        """Run the command that was named."""
+        """Run the named command."""
         try:
             with _input_warnings_said():
                 return super().invoke(ctx)
@@ -102,7 +102,7 @@ class Commands(TyperGroup):
 
 @contextlib.contextmanager
 def _input_warnings_said() -> Iterator[None]:
-    """Say each warning about an input once, on a line of its own, without file and line of the program."""
+    """Print each input warning once, on a separate line, without file and line of the program."""
     with warnings.catch_warnings():
         show_other, already_said = warnings.showwarning, set[str]()
 
@@ -120,7 +120,7 @@ def _input_warnings_said() -> Iterator[None]:
 
 
 def _say_in_own_words(error: Exception) -> None:
-    """Give a value of an option that its type refuses the sentence that a job would have."""
+    """Give an option value that its type rejects the same message as in a job."""
     refused: Any = error.__cause__
     if not (isinstance(error, typer.BadParameter) and hasattr(refused, "errors")):
         return
@@ -132,7 +132,7 @@ def _say_in_own_words(error: Exception) -> None:
 
 
 def _short_of_memory(error: BaseException | None) -> bool:
-    """Whether a lack of memory, or of threads, is at the bottom of an error."""
+    """Whether a lack of memory or of threads is the cause of an error."""
     while error is not None:
         words = str(error)
         if isinstance(error, MemoryError) or (isinstance(error, OSError) and error.errno == errno.ENOMEM):
@@ -144,7 +144,7 @@ def _short_of_memory(error: BaseException | None) -> bool:
 
 
 def _log_of(error: Exception) -> str:
-    """Return where the traceback is: the log of the run if there is one, else a new file."""
+    """Return the place of the traceback: the log of the run if there is one, else a new file."""
     for note in getattr(error, "__notes__", []):
         if note.startswith("log: "):
             return str(note.removeprefix("log: "))
@@ -196,7 +196,7 @@ def slidercrank(
 
 def main() -> None:
     """Run the command line and exit."""
-    # Before NumPy is loaded: its other threads wait for matrices that are never large enough, at full speed.
+    # Before NumPy is loaded: its other threads busy-wait for matrices that are never large enough.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # else all installed packages are asked for some
     gc.set_threshold(200_000, 20, 20)  # what imports leave is no garbage: a tenth of a short command

@@ -1,4 +1,4 @@
-"""A call of a tool: where it may read and write, how it hears of a cancellation, and its answer."""
+"""A call of a tool: the folder that it may read and write, its cancellation, and its answer."""
 
 from __future__ import annotations
 
@@ -41,9 +41,9 @@ class ToolAnswer:
 
 @dataclass(frozen=True)
 class Call:
-    """A call. runs: the folder in which all is read and written. allowed: functions, "module:function", of jobs.
+    """A call. runs: folder of all reading and writing. allowed: functions, "module:function", that jobs may use.
 
-    cancelled: whether the caller has given up. report: hears of the progress.
+    cancelled: whether the caller has given up. report: listener to the progress.
     """
 
     runs: Path
@@ -52,7 +52,7 @@ class Call:
     report: Callable[[Progress], None]
 
     def folder(self, name: str) -> Path:
-        """Return the folder of a run. Raises `InputError` for one elsewhere, and for links that lead elsewhere."""
+        """Return the folder of a run. Raises `InputError` for a folder elsewhere, and for links that lead elsewhere."""
         self._require_inside(self.runs / name, name)
         folder = find_run(name, self.runs)
         for path in (folder, *folder.rglob("*")):
@@ -60,7 +60,7 @@ class Call:
         return folder
 
     def run(self, name: str) -> tuple[Path, Result]:
-        """Return the folder, as `folder`, and the result of a run. Raises `RunError` where it has none."""
+        """Return the folder, as in `folder`, and the result of a run. Raises `RunError` without a result."""
         folder = self.folder(name)
         return folder, read_run(folder, "optimise with resume =")
 
@@ -76,7 +76,7 @@ class Call:
             )
 
     def front(self, name: str) -> tuple[Path, Result]:
-        """Return a run with designs, as `run`. Raises `InfeasibleError` for one without."""
+        """Return a run with designs, as in `run`. Raises `InfeasibleError` for a run without designs."""
         folder, result = self.run(name)
         if not result.designs:
             raise InfeasibleError(result.message)
@@ -90,20 +90,20 @@ class Call:
         return bounded(problem_of(folder, result), LONGEST_ANSWER)
 
     def problem(self, tables: Mapping[str, Any], *, seconds: float = LONGEST_ANSWER, feasible: bool = True) -> Problem:
-        """Return the problem that a job states. seconds: that a function of it may take. feasible: whether it must be.
+        """Return the problem of a job. seconds: time limit per function call, s. feasible: whether it must be feasible.
 
         Raises `JobError`.
         """
         return bounded(parse_allowed(tables, self.allowed, require_feasible=feasible), seconds)
 
     def problem_again(self, tables: Mapping[str, Any], folder: Path) -> Problem:
-        """Return the problem of a search that goes on in a folder. Raises `JobError`."""
+        """Return the problem of a search to be continued in a folder. Raises `JobError`."""
         require_allowed(tables, self.allowed)
         return bounded(parse_job(tables, folder=folder), LONGEST_CALL)
 
     @contextlib.contextmanager
     def store(self) -> Iterator[Store]:
-        """Give the store of the runs, closed at the end. Raises `StoreError` where it cannot be written."""
+        """Yield the store of the runs, closed at the end. Raises `StoreError` if it cannot be written."""
         with open_store(None, self.runs) as store:
             store.require_writable()
             yield store

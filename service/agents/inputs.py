@@ -1,4 +1,4 @@
-"""Inputs of several tools, in groups: what agents read of them follows from what is declared elsewhere."""
+"""Inputs of several tools, in groups; their descriptions for agents follow from declarations elsewhere."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ Dimension = Annotated[
 
 @dataclass(frozen=True)
 class FrontPart:
-    """Part of a front that an answer has."""
+    """Part of a front in an answer."""
 
     rows: Rows = ROWS
     columns: Annotated[
@@ -94,7 +94,7 @@ class FrontPart:
     units: Units = "metric"
 
     def keys(self, columns: list[str], usual: list[str]) -> list[str] | None:
-        """Return the columns that are asked for, None for all. Raises `InputError` for others."""
+        """Return the requested columns, None for all. Raises `InputError` for unknown columns."""
         if self.columns == [ALL]:
             return None
         return usual if self.columns is None else [find_column(name, columns).key for name in self.columns]
@@ -110,7 +110,7 @@ class Machine(NamedTuple):
 
 @dataclass(frozen=True)
 class Design:
-    """A design of a run, or one with lengths of its own for a job."""
+    """A design of a run, or one with given lengths for a job."""
 
     run: Annotated[str | None, Field(description='Name of a run, or "latest"; instead of a job and lengths.')] = None
     design: Number = None
@@ -121,25 +121,25 @@ class Design:
     offset: Dimension = None
 
     def machine(self, call: Call) -> Machine:
-        """Return the machine. Raises `InputError` for none, and for two."""
+        """Return the machine. Raises `InputError` without one, and for two."""
         if (self.run is None) == (self.job is None):
             received = "both" if self.run else "neither"
             raise InputError(f"a design must come from a run or a job; got {received}; give one of them")
         return self._machine_of_job(call) if self.run is None else self._machine_of_run(call, self.run)
 
     def problem(self, call: Call) -> Problem:
-        """Return the problem of the job. Raises `InputError` for none."""
+        """Return the problem of the job. Raises `InputError` without a job."""
         if self.job is None or self.run is not None:
             raise InputError("this topic needs a job; got none; give a job, without a run")
         return call.problem(tables_of(self.job, self.files), feasible=False)
 
     @property
     def lengths(self) -> dict[str, str]:
-        """Lengths that are given."""
+        """The given lengths."""
         return {name: length for name in DIMENSIONS if (length := getattr(self, name)) is not None}
 
     def front(self, call: Call) -> tuple[Path, ParetoFront, int | None]:
-        """Return the folder of the run, its front and the row of the design. Raises `InputError` for no run."""
+        """Return the folder of the run, its front and the row of the design. Raises `InputError` without a run."""
         if self.run is None or self.job is not None:
             received = "a job" if self.job is not None else "none"
             raise InputError(f"this topic needs the front of a run; got {received}; name a run, without a job")
@@ -180,7 +180,7 @@ class TopicRequest:
     units: Units = "metric"
 
     def __post_init__(self) -> None:
-        """Raise `InputError` for topics that there are not, or that do not go together, and for inputs of others."""
+        """Raise `InputError` for unknown topics, topics that exclude each other, and inputs of other topics."""
         if self.alone is None:
             chosen_topics(self.topics, job=True, word="topics")
         elif len(self.topics) > 1:
@@ -202,7 +202,7 @@ class TopicRequest:
 
     @property
     def alone(self) -> str | None:
-        """The topic that is a command of its own, None without one."""
+        """The topic that is a separate command, None without one."""
         return next((name for name in self.topics if name in QUESTION_COMMANDS or name in FRONT_OR_JOB_QUESTIONS), None)
 
     @property

@@ -160,7 +160,7 @@ def check(call: Call, *, job: JobInput, files: Files = {}) -> ToolAnswer:  # noq
 def _analyse_rotating(
     call: Call, machine: Machine, options: Mapping[str, dict[str, Any]], question: TopicRequest
 ) -> ToolAnswer:
-    """Analyse a design that turns fully. options: of each topic."""
+    """Analyse a design that rotates fully. options: options of each topic."""
     from ..designs.requirements import judge_rules
     from ..questions.analysis_text import show_analysis
     from ..questions.design_analysis import analysis_of, judge_choices, quantities_of_design
@@ -189,7 +189,7 @@ def _analyse_rotating(
 
 
 def _analyse_by_command(name: str, machine: Machine, question: TopicRequest) -> ToolAnswer:
-    """Ask a design a question that is a command of its own."""
+    """Answer a question about a design that is a separate command."""
     from ..designs.display_units import record_in
 
     bound_question = DESIGN_QUESTIONS[name].for_problem(
@@ -203,7 +203,7 @@ def _analyse_by_command(name: str, machine: Machine, question: TopicRequest) -> 
 def _ask_front_or_job(
     call: Call, subject: Design, question: TopicRequest, definition: FrontOrJobQuestion
 ) -> ToolAnswer:
-    """Ask a question to the front of a run, or to a job."""
+    """Answer a question about the front of a run, or about a job."""
     place, row, inputs = dict[str, Any](), None, question.inputs
     if definition.subject == "job":
         target: Any = subject.problem(call)
@@ -238,7 +238,7 @@ def _topic(question: DesignQuestion | FrontOrJobQuestion) -> dict[str, Any]:
 
 
 def _runs(call: Call) -> Iterator[dict[str, Any]]:
-    """Yield the latest runs: what became of each."""
+    """Yield the latest runs with the outcome of each."""
     for folder in sorted(run_folders(call.runs), key=lambda folder: folder.name, reverse=True)[:_MOST_RUNS]:
         try:
             _, result = call.run(folder.name)

@@ -1,4 +1,4 @@
-"""Tools that make runs and read them: a search, its front, files of its designs."""
+"""Tools that create and read runs: a search, its front, files of its designs."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ _NAMES |= {
 
 @dataclass(frozen=True)
 class Search:
-    """A new search, or one that was stopped."""
+    """A new search, or a stopped one."""
 
     job: OptionalJob = None
     files: Files = field(default_factory=dict)
@@ -62,7 +62,7 @@ class Search:
     ] = None
 
     def open_run(self, call: Call, store: Store, settings: SettingOptions) -> AbstractContextManager[Opened]:
-        """Return the context of its run. Raises `InputError` for neither or both of job and run."""
+        """Return the context of its run. Raises `InputError` if neither or both of job and run are given."""
         from ..workers.own_search import new_run, resumed_run, with_settings
 
         if (self.job is None) == (self.resume is None):
@@ -192,7 +192,7 @@ def _record(result: Result, rows: Sequence[int], part: FrontPart) -> dict[str, A
 
 
 def _chosen_number(result: Result, chosen: Sequence[int], pick: Pick) -> int | None:
-    """Return which design is named or chosen by its values, None without either."""
+    """Return the number of the design named, or chosen by its values, None without either."""
     if pick.design is None:
         return pick.row(result, chosen)
     require_single_choice(pick.design, result, has_other_choice=pick.picking)

@@ -59,9 +59,9 @@ Values have units in quotes: "2400 rpm", "80 mm", "0.8 kg". Columns of answers e
 
 
 def serve(place: Path, allowed: frozenset[str], *, interrupted: Callable[[], None]) -> None:
-    """Serve agents until standard input ends. place: of all that is read and written. allowed: functions of jobs.
+    """Serve agents until standard input ends. place: folder of all reading and writing. allowed: functions of jobs.
 
-    interrupted: called after SIGINT or SIGTERM, once no call is at work; it ends the process.
+    interrupted: function called after SIGINT or SIGTERM, once no call is running; it ends the process.
 
     Raises `MissingExtra` at import without the package `mcp`.
     """
@@ -109,9 +109,10 @@ async def _answer_call(
     limiter: anyio.CapacityLimiter,
     stopping: threading.Event,
 ) -> ToolAnswer:
-    """Answer a call in a thread, which hears of a cancellation and reports its progress meanwhile.
+    """Answer a call in a thread, which notices a cancellation and reports its progress.
 
-    make: gives the call by how it hears and reports. stopping: set when the server ends.
+    make: function that creates the call from its ways to notice a cancellation and to report. stopping: set when the
+    server ends.
     """
     cancelled, loop = threading.Event(), asyncio.get_running_loop()
     send, receive = anyio.create_memory_object_stream[Progress](math.inf)

@@ -22,9 +22,8 @@ from .call import Call, ToolAnswer
 class Tool:
     """A tool. run: takes a call, and inputs by name; its docstring is the description.
 
-    A parameter is annotated as an option of the command line is, its help included, or with a pydantic `Field`; one of
-    a dataclass stands for its fields.
-    writes: whether it writes files.
+    A parameter is annotated like a command-line option, including its help, or with a pydantic `Field`; a dataclass
+    parameter stands for its fields. writes: whether it writes files.
     """
 
     name: str
@@ -38,7 +37,7 @@ class Tool:
 
     @cached_property
     def groups(self) -> dict[str, Any]:
-        """Dataclasses of inputs, by the parameters that take them."""
+        """Dataclasses of inputs, by parameter."""
         hints = get_type_hints(self.run, include_extras=True)
         return {name: hint for name, hint in hints.items() if is_dataclass(hint) and name not in ("call", "return")}
 
@@ -62,7 +61,7 @@ class Tool:
         return {key: value for key, value in schema_of(self.inputs).items() if key not in ("$schema", "title")}
 
     def execute(self, call: Call, arguments: Mapping[str, Any]) -> ToolAnswer:
-        """Run the tool. Raises `InputError` for inputs that it does not have."""
+        """Run the tool. Raises `InputError` for unknown inputs."""
         try:
             inputs = self.inputs.model_validate(dict(arguments))
         except ValidationError as error:
@@ -87,7 +86,7 @@ class Tool:
 
 
 def _default_of(item: Any) -> Any:
-    """Return the default of a field of a dataclass, as a parameter has it."""
+    """Return the default of a dataclass field in the form of a parameter default."""
     if item.default_factory is not MISSING:
         return item.default_factory()
     return inspect.Parameter.empty if item.default is MISSING else item.default

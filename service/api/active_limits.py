@@ -1,4 +1,4 @@
-"""Limits on which designs of a front rest."""
+"""Active constraints of the designs of a front."""
 
 from __future__ import annotations
 

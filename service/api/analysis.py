@@ -1,4 +1,4 @@
-"""Analyses of single designs, of a front or of none, with topics and trade-offs."""
+"""Analyses of single designs, from a front or not, with topics and trade-offs."""
 
 from __future__ import annotations
 

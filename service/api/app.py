@@ -1,4 +1,4 @@
-"""The application that serves the API: store and settings in, one ASGI application out, nothing else shared."""
+"""The application that serves the API: one ASGI application from store and settings, nothing else shared."""
 
 from __future__ import annotations
 
@@ -85,9 +85,9 @@ _FIRST = {"design": 1, "kept": 1}
 
 
 def create_app(store: Store, settings: Settings = DEFAULT, computing: Computing | None = None) -> FastAPI:
-    """Return the application of a store, which whoever serves it opens and closes.
+    """Return the application for a store, which the caller opens and closes.
 
-    computing: where requests that compute are answered; here if None.
+    computing: processes that answer computing requests; this process if None.
     """
     app = FastAPI(
         title="slidercrank",
@@ -133,7 +133,7 @@ async def _few_threads(_: FastAPI) -> AsyncIterator[None]:
 
 @contextmanager
 def computing_app(address: str, settings: Settings, *, most_queued: int, log_format: Format) -> Iterator[FastAPI]:
-    """Give the application that answers in a process of `Computing`; what comes there was let in before."""
+    """Yield the application that answers in a process of `Computing`; its requests have passed the access checks."""
     set_up_logs(log_format)
     trusted = replace(settings, token=None, hosts=("*",), submissions_per_minute=0)
     with Store(address, most_queued=most_queued) as store:
@@ -143,14 +143,14 @@ def computing_app(address: str, settings: Settings, *, most_queued: int, log_for
 
 
 async def _prepare(request: Request) -> None:
-    """Have a process ready by the time that somebody who opens the page asks for something computed."""
+    """Start a process early, so that it is ready when a user of the page needs a computation."""
     if request.app.state.computing is not None:
         request.app.state.computing.prepare()
 
 
 @cache
 def _routes() -> list[BaseRoute]:
-    """Return the endpoints for all applications of a process; FastAPI reads signatures anew where it adds them."""
+    """Return the endpoints shared by all applications of a process; FastAPI reads signatures again when adding them."""
     root = APIRouter(generate_unique_id_function=lambda route: route.name)
     for part in _PARTS:
         root.include_router(import_module(f"{__package__}.{part}").router, prefix=PREFIX, responses=_COMMON)
@@ -166,7 +166,7 @@ def _version() -> str:
 
 
 def _completed(schema: dict[str, Any], *, secured: bool) -> dict[str, Any]:
-    """Return the description of the API (OpenAPI 3.1) with what FastAPI cannot find out."""
+    """Return the description of the API (OpenAPI 3.1), completed with facts that FastAPI cannot infer."""
     if "parquet" not in exports.formats():
         schema["paths"].pop(f"{_NUMBER}/export.parquet")  # it says what to install
     parts = schema.setdefault("components", {})

@@ -1,4 +1,4 @@
-"""Sentences and tables of an answer as data: whoever shows them chooses the units, and writes the numbers."""
+"""Sentences and tables of an answer as data: the client chooses the units and formats the numbers."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def answer_blocks(blocks: Sequence[Block], notes: Sequence[str] = ()) -> list[An
 
 
 def sentence_blocks(sentences: Sequence[str]) -> list[AnswerBlock]:
-    """Return sentences as data, their numbers as they are."""
+    """Return sentences as data, with unchanged numbers."""
     return answer_blocks([sentence("{text}", text=text) for text in sentences])
 
 

@@ -1,4 +1,4 @@
-"""Proof of how far the front of a job can be from the true one, as `slidercrank certify` gives it."""
+"""Proven bound on the distance of a job's front from the true one, as in `slidercrank certify`."""
 
 from __future__ import annotations
 

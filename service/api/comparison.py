@@ -1,4 +1,4 @@
-"""Runs against each other: what differs between their jobs, and who is better where, in words."""
+"""Comparison of runs in words: differences between their jobs, and where each is better."""
 
 from __future__ import annotations
 

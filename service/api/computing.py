@@ -1,8 +1,8 @@
-"""Requests that compute, answered by processes of their own, each within limits on memory and processor time.
+"""Computing requests, answered by separate processes, each within limits on memory and processor time.
 
-A thread cannot be ended, and holds the interpreter while it computes. An executor of `concurrent.futures` can neither
-end one call nor give an answer in parts, so these are plain processes of `multiprocessing`. They come from a fork
-server, which has imported what they need: one that was ended is replaced within a moment.
+A thread cannot be killed, and holds the interpreter while it computes. An executor of `concurrent.futures` can neither
+end one call nor return an answer in parts, so these are plain processes of `multiprocessing`. They come from a fork
+server, which has imported the required modules: a killed process is replaced quickly.
 """
 
 from __future__ import annotations
@@ -36,12 +36,12 @@ _REMEDY = "ask for less, or use a command such as slidercrank analyse, which has
 
 
 class QuickRoute(APIRoute):
-    """An endpoint that computes for a moment. Its requests never wait for those that take long."""
+    """An endpoint with a short computation. Its requests never wait for long ones."""
 
     turns: ClassVar = "quick"
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Have a request answered by a process; without any, answer it here, one at a time."""
+        """Let a process answer a request; without processes, answer it here, one at a time."""
         state = scope["app"].state
         if state.computing is None:
             async with state.turn_here:
@@ -59,10 +59,10 @@ class LongRoute(QuickRoute):
 
 
 class Computing:
-    """Processes that answer requests, each one at a time, started when they are needed; used by one event loop."""
+    """Processes that answer requests, each one at a time, started when needed; used by one event loop."""
 
     def __init__(self, make: ApplicationFactory, *, limits: Limits = MOST, modules: Iterable[str] = ()) -> None:
-        """Start nothing yet. make: gives the application to a process. modules: that the fork server imports."""
+        """Start nothing yet. make: function that gives a process its application. modules: fork server imports."""
         methods = multiprocessing.get_all_start_methods()
         self._context: Any = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
         self._context.set_forkserver_preload(list(modules))
@@ -80,7 +80,7 @@ class Computing:
             asyncio.get_running_loop().run_in_executor(None, self._start)
 
     async def handle(self, turns: str, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer a request by a process that is free, and end the process if the client goes before."""
+        """Answer a request in a free process, and kill the process if the client leaves early."""
         question = {key: scope[key] for key in _SENT if key in scope}, await Request(scope, receive).body()
         messages = asyncio.Queue[Message | None]()  # no process waits for a client that takes nothing
         answering = asyncio.create_task(self._compute(turns, question, messages.put_nowait))
@@ -98,7 +98,7 @@ class Computing:
             task.result()
 
     def close(self) -> None:
-        """End all processes, whatever they are doing."""
+        """Kill all processes, whatever they are doing."""
         for process in list(self._all):
             process.end()
 
@@ -144,7 +144,7 @@ class Computing:
 
 
 class _Process:
-    """A process that answers, seen from here."""
+    """An answering process, seen from the server."""
 
     def __init__(self, context: Any, make: ApplicationFactory, limits: Limits, threads: CapacityLimiter) -> None:
         self._threads = threads
@@ -157,7 +157,7 @@ class _Process:
     async def stream(self, question: Question, give: Callable[[Message], None]) -> Message:
         """Pass on the messages of an answer but the last, which is returned.
 
-        Raises `EOFError` or `OSError` where the process ends before, and what keeps it from answering.
+        Raises `EOFError` or `OSError` if the process ends early, and the error that prevents it from answering.
         """
         message = await run_sync(self._send_request, question, abandon_on_cancel=True, limiter=self._threads)
         while True:
@@ -182,11 +182,11 @@ class _Process:
         return int(self._process.exitcode or 0)
 
     def is_alive(self) -> bool:
-        """Whether it can be asked: one that nobody asked for long has ended. Its pipe ends before it is seen to."""
+        """Whether it can take a request: idle processes end after a while. The pipe closes before the end shows."""
         return bool(self._process.is_alive()) and not self._connection.poll()
 
     def end(self) -> None:
-        """End it, if it has not ended."""
+        """Kill it, if it has not ended."""
         if self._process.is_alive():
             self._process.kill()
 

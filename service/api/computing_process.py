@@ -1,4 +1,4 @@
-"""A process that answers requests which compute, one after the other: the other end of `computing`."""
+"""A process that answers computing requests, one after the other: the other end of `computing`."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ _IDLE = 600.0  # s without a question after which it ends, and gives back its me
 
 
 def answer_questions(connection: Connection, make: ApplicationFactory, limits: Limits) -> None:
-    """Answer one request after the other until nobody asks any more.
+    """Answer one request after the other until no more come.
 
-    Sent are the messages of an answer, the last one when all is done; an error where no application can be made.
+    Sends the messages of an answer, the last one when all is done, or an error if no application can be created.
     """
     follow_parent()
     if hasattr(os, "nice"):
@@ -57,7 +57,7 @@ def is_last(message: Message) -> bool:
 
 
 async def _run_request(app: ASGIApp, scope: dict[str, Any], body: bytes, give: Callable[[Message], None]) -> Message:
-    """Give the messages of an answer but the last, which is returned."""
+    """Pass on the messages of an answer except the last, which is returned."""
     parts = deque[Message]([{"type": "http.request", "body": body}])
     last = deque[Message](maxlen=1)
 
@@ -74,18 +74,18 @@ async def _run_request(app: ASGIApp, scope: dict[str, Any], body: bytes, give: C
 
 
 def _limit_memory(limit: int | None) -> None:
-    """Have memory refused beyond a number of bytes more than this process has now, where the system can."""
+    """Limit further memory of this process to a number of bytes, if the system supports it."""
     statistics = Path("/proc/self/statm")
     if limit is not None and statistics.exists():
         import resource
 
-        # Not a limit of the whole: libraries reserve memory for each processor, and wait for ever where they get none.
+        # Not a limit on total memory: libraries reserve memory for each processor, and wait forever if they get none.
         has = int(statistics.read_text().split()[5]) * resource.getpagesize()
         resource.setrlimit(resource.RLIMIT_DATA, (has + limit, resource.getrlimit(resource.RLIMIT_DATA)[1]))
 
 
 def _limit_time(seconds: float | None) -> None:
-    """Have this process ended once it takes so much time of the processor from now on; None: never.
+    """Kill this process after a further amount of processor time; None: never.
 
     A timer, unlike a resource limit, is not inherited by processes that compile kernels or run functions of users.
     """

@@ -1,7 +1,7 @@
 """Limits on connections of the web server: their number, and the size, duration and form of a request.
 
-What is refused here never reaches the application: nobody needs a token to open a connection, and without these limits
-one client could hold all of them, or keep the server busy with a request that never ends.
+Requests rejected here never reach the application: opening a connection needs no token, and without these limits one
+client could hold all connections, or keep the server busy with an endless request.
 """
 
 from __future__ import annotations
@@ -44,9 +44,9 @@ _SHARE = 20
 
 
 def room_for_connections() -> int:
-    """Return how many connections there may be, after raising the limit of open files as far as the system lets.
+    """Return the maximum number of connections, after raising the limit of open files as far as possible.
 
-    Half of the open files are kept for the database, workers and files.
+    Half of the open files are reserved for the database, workers and files.
     """
     try:
         import resource
@@ -63,8 +63,8 @@ def room_for_connections() -> int:
 class Gate:
     """Connections of one server.
 
-    most: how many there may be. A new one beyond it takes the place of those that have waited longest, the ones without
-    the token first; it is refused where all others have it and take their answers.
+    most: maximum number of connections. A new one beyond it replaces those that have waited longest, first those
+    without the token; it is refused if all others have the token and read their answers.
     """
 
     def __init__(self, limit: int = MOST_CONNECTIONS) -> None:
@@ -86,7 +86,7 @@ class Gate:
         connection.read()
 
     def make_room(self, new: Connection) -> bool:
-        """Close the connection that is needed least if there are too many; whether the new one may stay."""
+        """Close the least needed connection if there are too many; return whether the new one may stay."""
         if len(new.connections) <= self.most:
             return True
         established = [
@@ -106,16 +106,16 @@ class Gate:
         return True
 
     def log(self, event: str) -> None:
-        """Log what happened to connections, unless that was logged within the last minute."""
+        """Log an event on connections, unless it was logged within the last minute."""
         if should_log(self._told, event):
             _log.warning("connections %s", event)
 
 
 class Connection(HttpToolsProtocol):
-    """A connection, with limits on the bytes and the time that a request takes to come.
+    """A connection, with limits on the size and arrival time of a request.
 
-    Requests are read one at a time: what a client sends ahead stays unread until it has taken the answers before.
-    since: when something last came, s, on the loop's clock.
+    Requests are read one at a time: later requests stay unread until the client has read the earlier answers. since:
+    time of the last received data, s, on the loop's clock.
     """
 
     def __init__(
@@ -136,7 +136,7 @@ class Connection(HttpToolsProtocol):
 
     @property
     def is_known(self) -> bool:
-        """Whether its last request was let in with the token."""
+        """Whether its last request was admitted with the token."""
         return KNOWN in getattr(self.cycle, "scope", ())  # none before the first request
 
     @property
@@ -169,7 +169,7 @@ class Connection(HttpToolsProtocol):
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
-        """Take in what came, unless it has to wait for answers."""
+        """Accept received data, unless it has to wait for answers."""
         self.since = self.loop.time()
         self._backlog += data
         if len(self._backlog) == len(data):
@@ -179,7 +179,7 @@ class Connection(HttpToolsProtocol):
 
     @property
     def _may_read(self) -> bool:
-        """Whether what came can be read now: before the next request the answers so far have to be taken."""
+        """Whether received data can be read now: the client must read earlier answers before its next request."""
         return not self.pipeline and (self.is_at_rest or self._part != "rest")
 
     def read(self) -> None:
@@ -219,30 +219,30 @@ class Connection(HttpToolsProtocol):
         self._wait(None)
 
     def on_header(self, name: bytes, value: bytes) -> None:
-        """Take in a header; of those that come after a body, none."""
+        """Accept a header; headers after a body are ignored."""
         if self._part == "head":
             super().on_header(name, value)
             self._size += _HEADER
 
     def on_headers_complete(self) -> None:
-        """Hand the request on."""
+        """Pass the request on."""
         self._part, self._size = "body", 0
         self._wait(None)
         super().on_headers_complete()
 
     def on_body(self, body: bytes) -> None:
-        """Take in content of the body."""
+        """Accept content of the body."""
         self._size = 0
         super().on_body(body)
 
     def on_message_complete(self) -> None:
-        """Note that the whole request is there."""
+        """Record the arrival of the whole request."""
         self._part, self._size = "rest", 0
         self._wait(None)
         super().on_message_complete()
 
     def on_response_complete(self) -> None:
-        """Go on with what was sent ahead."""
+        """Continue with data sent ahead."""
         super().on_response_complete()
         if self._backlog:
             self.flow.pause_reading()
@@ -250,11 +250,11 @@ class Connection(HttpToolsProtocol):
             self._gate.queue(self)
 
     def send_400_response(self, msg: str) -> None:
-        """Refuse what is not HTTP."""
+        """Reject data that are not HTTP."""
         self._refuse(HTTPStatus.BAD_REQUEST, "a request must be HTTP/1.1; got something else; correct it")
 
     def _wait(self, seconds: float | None) -> None:
-        """Expect what comes next within some seconds; None ends waiting."""
+        """Expect the next data within some seconds; None ends waiting."""
         if self._deadline is not None:
             self._deadline.cancel()
         self._deadline = None if seconds is None else self.loop.call_later(seconds, self._too_late, seconds)

@@ -1,4 +1,4 @@
-"""Curves of a design over its cycle, and what draws it, as JSON has them."""
+"""Curves of a design over its cycle, and its outlines for drawing, as JSON."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class CurvesModel(OfDesign, CycleModel):
 
 
 def cycle_model(design: StoredDesign, angles: int) -> CycleModel:
-    """Return the curves of a design as JSON has them."""
+    """Return the curves of a design as JSON."""
     curves = design_curves(design, angles)
     inner, outer = curves.centres or (None, None)
     slow = None if inner is None else str(slow_stroke(design.mechanism, design.linkage))
@@ -101,7 +101,7 @@ def cycle_model(design: StoredDesign, angles: int) -> CycleModel:
 
 
 def outlines_model(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) -> OutlinesModel:
-    """Return the parts of a design as its drawings have them."""
+    """Return the parts of a design as in its drawings."""
     drawn = outlines(mechanism, linkage, swing)
     actuator, body = drawn.actuator, drawn.body
     return OutlinesModel(

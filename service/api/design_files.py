@@ -1,4 +1,4 @@
-"""Files of a single design, as found or with other numbers: linkage for CAD, motion, report for a review."""
+"""Files of a single design, unchanged or with other numbers: linkage for CAD, motion, report for a review."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ def export_cycle(request: RequestedDesignDep, units: UnitsParameter = "metric") 
 
 
 def _report(request: RequestedDesign, store: Store, units: System) -> Report:
-    """Return the report of a design, with what the store keeps besides the result."""
+    """Return the report of a design, with further data from the store."""
     from ..report.design_report import design_report
     from ..report.subject import Subject
 
@@ -156,7 +156,7 @@ def _report(request: RequestedDesign, store: Store, units: System) -> Report:
 
 
 def _bookmarks_version(request: RequestedDesign, store: Store) -> int:
-    """Return a number of the state of a job's kept designs, which reports tell of: another one after each change."""
+    """Return a number for the state of a job's bookmarks, which reports contain: it changes with each edit."""
     return hash(tuple(bookmarks_of(store, request.stored_front.job.id)))
 
 

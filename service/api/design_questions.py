@@ -1,6 +1,6 @@
-"""Questions about a design of a front: those that are commands too, and measured curves.
+"""Questions about a design of a front that are also commands, and measured curves.
 
-Each answer is what the command of the same name prints with --json.
+Each answer equals the output of the command of the same name with --json.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ router = APIRouter(
 
 
 def _add(name: str, says: QuestionCommand) -> None:
-    """Add the endpoints of a question that is a command: its answer, and the figure that it draws."""
+    """Add the endpoints of a question that is a command: its answer and its figure."""
     question = DESIGN_QUESTIONS[name]
     answer_field: Any = (Annotated[dict[str, Any], AnswerSchema(lambda: [question.answer_type])], ...)
     description = (

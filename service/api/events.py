@@ -1,8 +1,8 @@
 """Events of a job: as server-sent events while they happen, or as a page of JSON.
 
-Streams never hold a thread while they wait, and never miss an event: one task looks up the events of all jobs that are
-followed and wakes their streams. A stream knows the number of the last event that it sent, takes what follows from
-those that the task looked up lately, and from the store where it is further behind.
+Streams never hold a thread while they wait, and never miss an event: one task looks up the events of all followed jobs
+and wakes their streams. A stream knows the number of the last event that it sent. It takes the next ones from the
+recent events of the task, or from the store if it is further behind.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ _PAGE = 500
 
 
 class Channel:
-    """A job that streams follow. last: its last event that is known. over: no more will come."""
+    """A job that streams follow. last: its last known event. over: whether no more will come."""
 
     def __init__(self, last: int) -> None:
         self.last = last
@@ -64,7 +64,7 @@ class Channel:
         self._changed = asyncio.Event()
 
     def publish(self, events: list[Event], *, ended: bool) -> None:
-        """Take in what is new and wake all streams."""
+        """Accept new events and wake all streams."""
         self.recent.extend(events)
         if events:
             self.last = events[-1].number
@@ -82,7 +82,7 @@ class Channel:
         return [event for event in self.recent if event.number > number]
 
     async def news(self, seconds: float) -> bool:
-        """Wait for something new, and return whether something came in that time."""
+        """Wait for new events, and return whether any came in that time."""
         changed = self._changed
         try:
             await asyncio.wait_for(changed.wait(), seconds)
@@ -102,7 +102,7 @@ class Feed:
         self._closed = False
 
     def close(self) -> None:
-        """End all streams after what is known: the service stops. To be called in the loop that serves them."""
+        """End all streams after the known events, as the service stops. Call it in the loop that serves them."""
         self._closed = True
         for channel in self._channels.values():
             channel.publish([], ended=True)
@@ -110,8 +110,8 @@ class Feed:
     async def stream(self, number: int, after: int, *, last: int, heartbeat: float) -> AsyncIterator[Event | None]:
         """Yield the events of a job after a given one as they come, up to its last one.
 
-        last: an event that it has already. Yields None when nothing came for `heartbeat` seconds. Also ends when the
-        job is deleted.
+        last: number of an event already received. Yields None if nothing came for `heartbeat` seconds. Also ends when
+        the job is deleted.
         """
         with self._following(number, last) as channel:
             position = after
@@ -150,8 +150,8 @@ class Feed:
                 del self._channels[number]
 
     async def _look(self) -> None:
-        """Look up what is new in the jobs that are followed, as long as there are any."""
-        # One thread of its own: requests that keep all others busy do not keep streams waiting.
+        """Look up new events of followed jobs, as long as there are any."""
+        # A separate thread: requests that occupy all others do not delay streams.
         self._thread = self._thread or CapacityLimiter(1)
         while self._channels:
             after = {number: channel.last for number, channel in self._channels.items() if not channel.over}

@@ -26,18 +26,18 @@ SEALED = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; sandbox"
 
 
 def formats() -> list[str]:
-    """Return the endings of the files that a front is given as here: Parquet where pyarrow is installed."""
+    """Return the file endings available for a front here: Parquet only if pyarrow is installed."""
     return ["csv", "json", *(["parquet"] if is_installed("pyarrow") else [])]
 
 
 def file_responses(media_type: str, *refusals: int) -> dict[str, Any]:
-    """Return the options of an endpoint that gives a file, and may refuse with further statuses."""
+    """Return the options of an endpoint that returns a file, and may refuse with further statuses."""
     responses = {200: {"content": {media_type: {}}}, **problem_responses(*refusals)}
     return {"response_class": Response, "responses": responses}
 
 
 def download(content: str | bytes, media_type: str, name: str, *, policy: str = "") -> Response:
-    """Return a file that a browser saves under a name. policy: of a browser that opens it nevertheless (CSP)."""
+    """Return a file that a browser saves under a name. policy: security policy (CSP) if a browser opens it anyway."""
     headers = {"Content-Disposition": f'attachment; filename="{name}"'}
     if policy:
         headers["Content-Security-Policy"] = policy

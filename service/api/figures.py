@@ -1,4 +1,4 @@
-"""Figures of a front, drawn when they are asked for."""
+"""Figures of a front, drawn on request."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _DESIGN = re.compile(r"design_([1-9][0-9]{0,8})")
 
 
 def require_figures(settings: SettingsDep) -> None:
-    """Refuse where the service draws no figures."""
+    """Raise an error if the service draws no figures."""
     if not settings.figures:
         raise NotFound("this service cannot draw figures; ask its operator to start it with figures")
 
@@ -87,7 +87,7 @@ def draw_svg(stored_front: FrontDep, name: Name, numbers: NumbersDep, units: Uni
 
 
 def _image(stored_front: StoredFront, name: str, kind: Kind, numbers: Numbers | None, units: System) -> Response:
-    """Return a figure; the sheet of a design has the name of its file. Drawn ones are kept."""
+    """Return a figure; the datasheet of a design has the name of its file. Drawn figures are cached."""
     from ..figures.style import figure_bytes
 
     single = _DESIGN.fullmatch(name)
@@ -113,7 +113,7 @@ def _image(stored_front: StoredFront, name: str, kind: Kind, numbers: Numbers | 
 
 
 def _front_figure(stored_front: StoredFront, name: str, units: System) -> FrontFigure:
-    """Return a figure of a whole front. Raises `NotFound` with those that there are."""
+    """Return a figure of a whole front. Raises `NotFound` with the available names."""
     from ..figures.front import front_figures
 
     listed = front_figures(stored_front.front, units) if stored_front.result.designs else []

@@ -1,6 +1,6 @@
-"""Fronts: what a job found, one design chosen from it, and its designs, filtered, sorted, by pages or by columns.
+"""Fronts: the result of a job, one chosen design, and its designs, filtered, sorted, by pages or by columns.
 
-All of it is read from what a job found; nothing is computed.
+All data are read from the result of a job; nothing is computed.
 """
 
 from __future__ import annotations
@@ -288,13 +288,13 @@ def list_columns(
         headers = {"Content-Encoding": "gzip"} if content.startswith(b"\x1f\x8b") else None
         return Response(content, media_type="application/json", headers=headers)
 
-    # What a job found does not change, unless it goes on: then it ends at another time.
+    # The result of a job does not change, unless it continues: then it ends at another time.
     tag = None if stored_front.job.finished is None else f'"{stored_front.job.id}-{stored_front.job.finished}"'
     return response_with_etag(request, tag, respond, {"Vary": "Accept-Encoding"})
 
 
 def _requested_columns(stored_front: StoredFront, columns: str | None) -> Sequence[Column]:
-    """Return the columns of a list of names, each once; all without a list."""
+    """Return the columns in a list of names, each once; all without a list."""
     if columns is None or not stored_front.result.designs:
         return stored_front.columns
     return list({column.key: column for column in find_columns(columns, list(stored_front.result.designs[0]))}.values())
@@ -317,7 +317,7 @@ def _content(stored_front: StoredFront, chosen_columns: Sequence[Column], *, com
 
 
 def column_models(columns: Iterable[Column]) -> list[ColumnModel]:
-    """Return columns as JSON has them."""
+    """Return columns as JSON."""
     return [
         ColumnModel(
             key=column.key,

@@ -1,4 +1,4 @@
-"""Whether the service answers, whether it can do its work, and its figures for Prometheus."""
+"""Health of the service: whether it answers, whether it can work, and its metrics for Prometheus."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def show_ready(store: StoreDep) -> Ready:
 
 
 class Metrics(Collector):
-    """The figures of one application, in a registry of its own."""
+    """The metrics of one application, in a separate registry."""
 
     def __init__(self, store: Store) -> None:
         self._store = store
@@ -71,11 +71,11 @@ class Metrics(Collector):
         )
 
     def describe(self) -> list[GaugeMetricFamily]:
-        """Return nothing, so that registering does not ask the store."""
+        """Return nothing, so that registering does not query the store."""
         return []
 
     def collect(self) -> Iterator[GaugeMetricFamily]:
-        """Yield the figures of the store."""
+        """Yield the metrics of the store."""
         counts = self._store.counts()
         jobs = GaugeMetricFamily("slidercrank_jobs", "Jobs in each state", labels=["state"])
         for state in get_args(State):
@@ -86,7 +86,7 @@ class Metrics(Collector):
         yield GaugeMetricFamily("slidercrank_workers", "Workers heard of lately", self._store.workers_at_work())
 
     def text(self) -> bytes:
-        """Return all figures in the text format. Raises `StoreError`."""
+        """Return all metrics in the text format. Raises `StoreError`."""
         return generate_latest(self._registry)
 
 
@@ -102,12 +102,12 @@ def show_metrics(metrics: Annotated[Metrics, part_of_app("metrics")]) -> Respons
 
 @dataclass
 class Timed:
-    """ASGI middleware: takes the time of every request until its answer begins."""
+    """ASGI middleware: measures the time of every request until its answer begins."""
 
     app: ASGIApp
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass a request on and take its time."""
+        """Pass a request on and measure its time."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
@@ -115,7 +115,7 @@ class Timed:
 
         async def timed(message: Message) -> None:
             if message["type"] == "http.response.start":
-                # By the name of the endpoint: paths that clients make up must not become series.
+                # By the name of the endpoint: paths invented by clients must not become series.
                 operation = getattr(scope.get("route"), "name", "none")
                 method = scope["method"] if operation != "none" else "any"
                 metrics: Metrics = scope["app"].state.metrics

@@ -1,4 +1,4 @@
-"""Job files before anything runs: their schema, the shipped ones, reading, checking and writing one.
+"""Job files before anything runs: schema, shipped jobs, reading, checking and writing.
 
 Nothing is queued, and no file of the service is read.
 """
@@ -135,7 +135,7 @@ def _presets() -> PresetList:
 
 
 def _drawn(job: dict[str, Any], design: Design) -> PresetDesign:
-    """Return the design of a shipped job with what its drawings have."""
+    """Return the design of a shipped job with its outlines for drawing."""
     from ...optimise.job import parse_job
 
     problem = parse_job(job)
@@ -188,7 +188,7 @@ def check_job(request: Annotated[RequestedJob, Depends(requested_job)], settings
 
 
 def understood(problem: Problem, tables: Mapping[str, Any]) -> Understood:
-    """Return a problem in words, as it was understood from the tables that state it."""
+    """Return a problem in words, as understood from its tables."""
     from ..text.summary import job_in_words
 
     return Understood(**job_in_words(problem, tables))

@@ -1,4 +1,4 @@
-"""Jobs that clients send: JSON with options or a job file, their content, the problem they state."""
+"""Jobs sent by clients: JSON with options or a job file, their content, their problem."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ class Clone(BaseModel, extra="forbid", strict=True):
 
 @dataclass(frozen=True, kw_only=True)
 class RequestedJob:
-    """A submission that was read. source: the job file, if one was sent. origin: the job that it is a copy of."""
+    """A parsed submission. source: job file, if one was sent. origin: number of the job that it copies."""
 
     tables: Mapping[str, Any]
     priority: int = 0
@@ -146,7 +146,7 @@ def tables_of(body: bytes, most_depth: int) -> dict[str, Any]:
 
 
 def insert_files(stated: Submission) -> dict[str, Any]:
-    """Return the tables of a job with the contents of the files that were sent in their place. Raises `JobError`."""
+    """Return the tables of a job with the contents of the sent files inserted. Raises `JobError`."""
     from ...optimise.job import with_files
 
     contents: dict[str, str | bytes] = {}
@@ -160,7 +160,7 @@ def insert_files(stated: Submission) -> dict[str, Any]:
 
 
 def limits_within(requested: RequestedLimits, allowed: Limits) -> Limits:
-    """Return limits of a job: those asked for, else the highest of the service. Raises `InputError` for higher ones."""
+    """Return the limits of a job: requested ones, else the service's maximum. Raises `InputError` beyond it."""
     limits = Limits(seconds=requested.seconds, evaluations=requested.evaluations, memory=requested.memory_bytes)
     for name, requested_value, highest in zip(
         RequestedLimits.model_fields, astuple(limits), astuple(allowed), strict=True
@@ -181,9 +181,9 @@ def problem_of_tables(
 ) -> Problem:
     """Return the problem that a job states.
 
-    allowed: functions, "module:function", that it may name as quantities. values: numbers to put in place of those
-    that it gives, by their paths. require_feasible: whether a job that no design can meet is refused. Raises
-    `JobError`, also for a job that names a file that was not sent.
+    allowed: functions, "module:function", that it may name as quantities. values: numbers that replace those in the
+    job, by their paths. require_feasible: whether a job that no design can meet is rejected. Raises `JobError`, also
+    for a job that names a missing file.
     """
     return bounded(parse_allowed(tables, allowed, values, require_feasible=require_feasible), LONGEST_ANSWER)
 

@@ -108,13 +108,13 @@ def list_files(number: JobNumber, store: StoreDep) -> dict[str, Any]:
 def fetch_file(number: JobNumber, name: FileName, store: StoreDep) -> Response:
     """Return a file of a job, as it was given or made."""
     file = store.artefact(number, name)
-    # Saved, never shown: what a job brought along must not run in a browser that has the token.
+    # Saved, never shown: files that came with a job must not run in a browser that has the token.
     return download(file.content, file.media_type, re.sub(r"[^A-Za-z0-9._-]", "_", file.name))
 
 
 @contextlib.contextmanager
 def _as_it_stands() -> Iterator[None]:
-    """Tell what a job cannot do in its state as a conflict."""
+    """Report an operation that the state of a job does not allow as a conflict."""
     try:
         yield
     except NotFound:

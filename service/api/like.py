@@ -1,4 +1,4 @@
-"""Design most like one of a front that also meets further conditions: the answer of `slidercrank like --json`."""
+"""Design nearest to one of a front that also meets further conditions: the answer of `slidercrank like --json`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""JSON models of the API's answers about jobs, from which its schema is made."""
+"""JSON models of the API's answers about jobs, the source of its schema."""
 
 from __future__ import annotations
 

@@ -279,7 +279,7 @@ def _swing_example(possible: PossibleSwing, lengths: tuple[float, float, float])
 
     swing, design = possible.shown_swing or possible.swing, np.array([lengths])
     low, high = sorted((math.degrees(swing.start), math.degrees(swing.end)))
-    # One point a degree; of a whole turn those of the swing, and one beyond each end with the place at that end.
+    # One point per degree; from a full revolution those of the swing, and one beyond each end at the end's position.
     angles = range(math.floor(low), math.floor(high) + 2)
     clipped_angles = np.radians(np.clip(angles, low, high))
     places = {

@@ -1,4 +1,4 @@
-"""Problem documents (RFC 9457), which tell a client why a request was refused or failed."""
+"""Problem documents (RFC 9457) that tell a client why a request was refused or failed."""
 
 from __future__ import annotations
 
@@ -76,13 +76,13 @@ def problem_responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
 
 
 def tagged_json(model: type[BaseModel], description: str) -> dict[str, Any]:
-    """Return the options of an endpoint that gives JSON with an ETag, or 304 to who has it."""
+    """Return the options of an endpoint that returns JSON with an ETag, or 304 to a client that has it."""
     same = {"description": "They are those of the ETag in If-None-Match"}
     return {"response_class": Response, "responses": {200: {"model": model, "description": description}, 304: same}}
 
 
 def answer_problems(app: FastAPI) -> None:
-    """Have an application answer every exception that is expected with a problem document."""
+    """Let an application answer every expected exception with a problem document."""
     app.add_exception_handler(SlidercrankError, _refused)
     app.add_exception_handler(RequestValidationError, _not_valid)
     app.add_exception_handler(HTTPException, _http)
@@ -98,7 +98,7 @@ async def _refused(request: Request, error: Exception) -> Response:
 
 
 def should_log(last_logged: dict[str, float], sentence: str) -> bool:
-    """Whether a sentence was not logged within the last minute: what one request meets, others meet as well."""
+    """Whether a sentence was not logged within the last minute: many requests meet the same fault."""
     now = time.monotonic()
     if now - last_logged.get(sentence, -_QUIET) < _QUIET:
         return False
@@ -133,7 +133,7 @@ async def _http(request: Request, error: Exception) -> Response:
 
 
 def _methods(request: Request) -> list[str]:
-    """Return the methods that a place knows: the framework names those of the first endpoint there only."""
+    """Return the methods of a path: the framework names only those of its first endpoint."""
 
     def is_known(method: str) -> bool:
         scope = {**request.scope, "method": method}
@@ -156,7 +156,7 @@ def rule_and_value(details: Mapping[str, Any]) -> str:
 
 
 def _place(location: Sequence[Any]) -> str:
-    """Return where something is wrong: "query limit", "body priority"; keys of the client are shortened."""
+    """Return the place of a mistake: "query limit", "body priority"; keys from the client are shortened."""
     first, *rest = [str(part) for part in location] or ["request"]
     text = ".".join(rest)
     return f"{first} {text[:100]}" if text else first

@@ -1,4 +1,4 @@
-"""Meanings of the dimensions and of the quantities, the units in which they are shown, and the topics of designs."""
+"""Meanings of the dimensions and quantities, their display units, and the topics of designs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rounded neighbours of a design of a front: the answer of `slidercrank round --json`, with progress where streamed."""
+"""Rounded neighbours of a design of a front: the answer of `slidercrank round --json`, with progress if streamed."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ router.add_api_route(
 
 
 async def _lines(first: _Event, events: _Events) -> AsyncIterator[bytes]:
-    """Return events as a stream, and end the search where nobody reads on."""
+    """Return events as a stream, and end the search if the client stops reading."""
     with contextlib.closing(events):
         event: _Event | None = first
         while event is not None:

@@ -1,4 +1,4 @@
-"""Access to the service: nobody without the token, no page of another site, nobody under another name."""
+"""Access to the service: only with the token, not from pages of other sites, not under another host name."""
 
 from __future__ import annotations
 
@@ -34,19 +34,20 @@ _HEADERS = {
 
 
 class Guard:
-    """ASGI middleware: refuses requests, answers what went wrong unexpectedly, and adds headers for browsers.
+    """ASGI middleware: refuses requests, answers unexpected errors, and adds headers for browsers.
 
-    Refused are, in this order: a Host that is not one of the service's names, as after DNS rebinding; an Origin that is
-    not the service itself, to the port, since cookies do not tell ports apart; a token that is wrong or missing. The
-    token comes as `Authorization: Bearer ...`; in its place a browser has the cookie that `GET /?token=...` sets, which
-    holds a value made of the token and not the token itself.
+    It refuses, in this order: a Host that is not one of the service's names, as after DNS rebinding; an Origin other
+    than the service, including the port, since cookies do not distinguish ports; a wrong or missing token. The token
+    comes as `Authorization: Bearer ...`. A browser instead has the cookie set by `GET /?token=...`, which holds a value
+    derived from the token, not the token itself.
     """
 
     def __init__(self, app: ASGIApp, *, settings: Settings) -> None:
         self.app = app
         self.hosts = frozenset(host.lower() for host in settings.hosts)
         self.token = None if settings.token is None else settings.token.encode()
-        # Cookies are shared by all ports of a machine: two services must not take each other's for their own.
+        # Cookies are shared by all ports of a machine: two services must not mistake each other's cookies for their
+        # own.
         self.cookie = f"slidercrank-{_made_of(self.token or b'', 'name')[:12]}"
         self.session = _made_of(self.token or b"", "session")
 
@@ -80,7 +81,7 @@ class Guard:
             await fault(scope, receive, protected)
 
     def _rejection(self, connection: HTTPConnection) -> Response | None:
-        """Return the answer to a request that is not passed on; None for one that is."""
+        """Return the answer to a refused request; None if it is passed on."""
         scope, headers = connection.scope, connection.headers
         host = headers.getlist("host")
         if "*" not in self.hosts and (len(host) != 1 or _name(host[0]) not in self.hosts):
@@ -137,7 +138,7 @@ class Guard:
         )
 
     def _is_token(self, token: str) -> bool:
-        """Whether it is the token, found out in a time that tells nothing about it."""
+        """Whether it is the token, compared in constant time."""
         return self.token is not None and hmac.compare_digest(token.encode(errors="replace"), self.token)
 
 
@@ -146,12 +147,12 @@ def _unauthorised(text: str) -> Response:
 
 
 def _made_of(token: bytes, purpose: str) -> str:
-    """Return a text that only who has the token can make, and from which the token cannot be had."""
+    """Return a text that can be made only with the token, and from which the token cannot be recovered."""
     return hmac.new(token, f"slidercrank {purpose}".encode(), hashlib.sha256).hexdigest()
 
 
 def _name(host: str) -> str:
-    """Return a Host without its port, in small letters."""
+    """Return a Host without its port, in lower case."""
     name, colon, port = host.rpartition(":")
     return (name if colon and port.isdecimal() else host).lower()
 

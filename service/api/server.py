@@ -1,4 +1,4 @@
-"""The web server of the API: where it listens, under which names, and until when."""
+"""The web server of the API: its address, its names, and its end."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _ANY = ("0.0.0.0", "::")
 
 
 def is_loopback(host: str) -> bool:
-    """Whether only this machine reaches an address."""
+    """Whether an address is reachable only from this machine."""
     try:
         return ipaddress.ip_address(host).is_loopback
     except ValueError:
@@ -38,7 +38,7 @@ def is_loopback(host: str) -> bool:
 
 
 def names_of(host: str) -> tuple[str, ...]:
-    """Return the names by which a service that listens on an address is called."""
+    """Return the host names of a service that listens on an address."""
     from .settings import LOOPBACK
 
     host_name = socket.gethostname() if host in _ANY else host
@@ -46,7 +46,7 @@ def names_of(host: str) -> tuple[str, ...]:
 
 
 def listen(host: str, port: int) -> socket.socket:
-    """Return a socket that listens; connections wait from now on. Raises `InputError` where that is not possible."""
+    """Return a listening socket; connections wait from now on. Raises `InputError` if that is not possible."""
     try:
         family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
         listening = socket.create_server(address[:2], family=family, backlog=_WAITING)
@@ -56,7 +56,7 @@ def listen(host: str, port: int) -> socket.socket:
             "choose another one with --port (0 takes any that is free) or --host"
         ) from None
     # Connections inherit these. Without TCP_NODELAY the second answer on one waits 40 ms for a delayed acknowledgement;
-    # asyncio sets it by itself only where the listening socket was made with the protocol named.
+    # asyncio sets it itself only if the listening socket was created with the protocol named.
     options = {"TCP_NODELAY": 1, "TCP_USER_TIMEOUT": round(1e3 * ANSWER_SECONDS), "TCP_NOTSENT_LOWAT": _BUFFER}
     for name in filter(partial(hasattr, socket), options):
         listening.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), options[name])
@@ -79,13 +79,13 @@ def url_of(host: str, listening: socket.socket, token: str | None) -> str:
 
 
 def spare_imports() -> None:
-    """Keep the garbage collector off what is imported: looking through it stops all requests for 0.2 s each time."""
+    """Exempt imported objects from garbage collection: scanning them stops all requests for 0.2 s each time."""
     gc.collect()
     gc.freeze()
 
 
 def config_of(app: FastAPI) -> Config:
-    """Return how the web server serves an application."""
+    """Return the web server configuration for an application."""
     from uvicorn import Config
 
     from .connections import Connection, Gate, room_for_connections
@@ -109,15 +109,15 @@ def run_server(
     stop_requested: Callable[[], bool] = lambda: False,
     stopping: Callable[[], None] = lambda: None,
 ) -> None:
-    """Serve an application until SIGTERM or Ctrl-C, which are passed on to the handlers that were there before.
+    """Serve an application until SIGTERM or Ctrl-C, which are passed on to the previous handlers.
 
-    stop_requested: whether a signal came before the server installed its own handlers. stopping: called when the server
-    begins to stop, before the grace period of the requests under way.
+    stop_requested: whether a signal came before the server installed its own handlers. stopping: function called when
+    the server begins to stop, before the grace period for running requests.
     """
     import uvicorn
 
     class Server(uvicorn.Server):
-        """Ends the streams of events first: they would wait until they are cut."""
+        """Server that ends the event streams first: they would otherwise wait until they are cut."""
 
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:
             self.should_exit = self.should_exit or stop_requested()

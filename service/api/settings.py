@@ -1,4 +1,4 @@
-"""Settings of the API, chosen by its operator, and how requests get at these and at the store."""
+"""Settings of the API, chosen by its operator, and access of requests to them and to the store."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
 class Settings:
     """Settings of an API.
 
-    token: what every request must carry; None lets everybody in who can reach it. hosts: names by which the service may
-    be called, without ports; "*" is any. most_body: bytes of a request. most_depth: tables within tables of a JSON
-    body. submissions_per_minute: of all clients together; 0 is no limit. allowed_quantities: functions that jobs may
-    name as quantities of their own, as "module:function"; they run on the workers with all that these may do. limits:
-    what a job may be given at most, and is given where it asks for nothing. figures: whether figures are drawn.
+    token: token required in every request; None admits everybody who can reach the service. hosts: host names of the
+    service, without ports; "*" is any. most_body: maximum size of a request, bytes. most_depth: maximum nesting of
+    tables in a JSON body. submissions_per_minute: maximum for all clients together; 0 is no limit. allowed_quantities:
+    functions that jobs may name as custom quantities, as "module:function"; they run on the workers with all
+    permissions of these. limits: maximum limits of a job, also the default. figures: whether figures are drawn.
     """
 
     token: str | None = None
@@ -38,7 +38,7 @@ DEFAULT = Settings()
 
 
 def part_of_app(name: str) -> Any:
-    """Return the dependency that gives a part of the application's state."""
+    """Return the dependency that provides a part of the application's state."""
 
     async def part(request: Request) -> Any:  # not in a thread of its own, as for plain functions
         return getattr(request.app.state, name)

@@ -1,4 +1,4 @@
-"""Fronts of ended jobs, and their designs, each with its own numbers or with others given in an address.
+"""Fronts of ended jobs, and their designs, each with its stored numbers or with others given in an address.
 
 Fronts are kept in memory: they never change, and reading 10,000 designs takes a while.
 """
@@ -43,7 +43,7 @@ DesignNumber = Annotated[
 
 
 class StoredFront:
-    """The front of a job that has ended, with what is made of it when it is first needed."""
+    """The front of an ended job, with derived data computed when first needed."""
 
     def __init__(self, job: Job, result: Result, problem: Callable[[], Problem]) -> None:
         self.job = job
@@ -65,25 +65,25 @@ class StoredFront:
 
     @cached_property
     def front(self) -> ParetoFront:
-        """The front as figures take it."""
+        """The front in the form for figures."""
         return front_of(self.problem, self.result)
 
     @cached_property
     def wishes(self) -> Wishes:
-        """The starts for wishes on the front. Raises `InputError` where nothing can be wished."""
+        """The starts for wishes on the front. Raises `InputError` if no wish is possible."""
         from ...optimise.decisions.wish import Wishes
 
         return Wishes(self.front)
 
     @cached_property
     def minimised(self) -> Array:
-        """The objectives of the designs (n, m), as they are minimised, in the units that are shown."""
+        """The objectives of the designs (n, m), as they are minimised, in display units."""
         return minimised_values(self.result)
 
     def cached(self, name: str, kind: str, make: Callable[[], tuple[Sequence[str], bytes]]) -> bytes:
-        """Return a thing made of the front lately under a name, or make and keep it.
+        """Return a cached item derived from the front, or make and cache it.
 
-        make: gives all names of what it made, and the content.
+        make: function that returns all names of the item, and its content.
         """
         content = self._kept.get((name, kind))
         if content is None:
@@ -103,13 +103,13 @@ class StoredFront:
         return self.result.designs[number - 1]
 
     def design(self, number: int) -> StoredDesign:
-        """Return a design, by its number, as the machine that it is."""
+        """Return a design, by its number, as a machine."""
         self.row(number)
         return stored_design(self.problem, self.result, number)
 
 
 class StoredFronts:
-    """The fronts that were asked for last, a bounded number of designs. Threads may share it."""
+    """The most recently requested fronts, with a bounded number of designs. Threads may share it."""
 
     def __init__(self, store: Store, *, allowed: Collection[str] = (), most_designs: int = MOST_DESIGNS) -> None:
         """Read from a store. allowed: functions, "module:function", that its jobs may name as quantities."""
@@ -120,7 +120,7 @@ class StoredFronts:
         self._reading = threading.Lock()
 
     def get(self, number: int) -> StoredFront:
-        """Return the front of a job. Raises `NotFound` for a job that is not there, `RunError` without a result."""
+        """Return the front of a job. Raises `NotFound` for a missing job, `RunError` without a result."""
         job = self._store.job(number)
         key = (job.id, job.finished)
         with self._reading:  # who asks for the same front at the same time waits for it, instead of reading it too
@@ -191,7 +191,7 @@ def _numbers(
 
 
 def _value(text: str) -> tuple[str, float]:
-    """Return column and number of a text such as "slider_mass_kg=1.2"."""
+    """Return column and number from a text such as "slider_mass_kg=1.2"."""
     column, _, number = text.partition("=")
     try:
         value = float(number)
@@ -208,7 +208,7 @@ NumbersDep = Annotated[Numbers | None, Depends(_numbers)]
 
 @dataclass(frozen=True)
 class RequestedDesign:
-    """A design of a front, or what became of it. changed: whether its numbers are others than its own."""
+    """A design of a front, perhaps with other numbers. changed: whether its numbers differ from the stored ones."""
 
     stored_front: StoredFront
     number: int
@@ -222,23 +222,23 @@ class RequestedDesign:
 
     @property
     def stem(self) -> str:
-        """The design in the names of files."""
+        """The design in file names."""
         return f"design-{self.number}" + ("-changed" if self.changed else "")
 
     @property
     def key(self) -> str:
-        """The design among what is kept with the front."""
+        """The key of the design in the cache of the front."""
         return f"design_{self.number}" + (f" {self.design.values}" if self.changed else "")
 
     def variation(self) -> Variation | None:
-        """Return all about other numbers; None for the design as it is."""
+        """Return the variation with other numbers; None for the unchanged design."""
         return (
             variation_of(self.design, self.stored_front.result, self.stored_front.minimised) if self.changed else None
         )
 
 
 def requested_design(stored_front: StoredFront, number: int, numbers: Numbers | None) -> RequestedDesign:
-    """Return a design of a front with numbers. Raises `NotFound`; `InputError` if it does not turn fully."""
+    """Return a design of a front with numbers. Raises `NotFound`; `InputError` without full rotation."""
     stored, row = stored_front.design(number), stored_front.row(number)
     cells = {column: row.get(column) for column in numbers or ()}
     stored_numbers = {column: cell if isinstance(cell, float) else math.nan for column, cell in cells.items()}

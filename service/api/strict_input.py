@@ -1,4 +1,4 @@
-"""Refusal of bodies that are too large, and of JSON that no job has, before anything else reads them."""
+"""Rejection of bodies that are too large, and of JSON that no job contains, before anything else reads them."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ PARSED_BODY = "slidercrank.json"
 
 @dataclass
 class StrictInput:
-    """ASGI middleware: reads a body up to a size, refuses what is not strict JSON, and passes it on unchanged.
+    """ASGI middleware: reads a body up to a size, rejects anything but strict JSON, and passes it on unchanged.
 
-    most_body: in bytes. most_depth: tables or lists within each other.
+    most_body: maximum size, bytes. most_depth: maximum nesting of tables or lists.
     """
 
     app: ASGIApp
@@ -83,7 +83,7 @@ class StrictInput:
 
 
 async def read_in_turn(app: Any, body: bytes, read: Callable[..., T], *of: Any) -> T:
-    """Return the content of a body; large ones are read in turn, as each holds the interpreter for long."""
+    """Return the content of a body; large bodies are read in turn, as each blocks the interpreter for long."""
     if len(body) <= _LARGE:
         return read(*of)
     turn: asyncio.Lock = app.state.reading
@@ -92,7 +92,7 @@ async def read_in_turn(app: Any, body: bytes, read: Callable[..., T], *of: Any) 
 
 
 def _again(body: bytes, receive: Receive) -> Receive:
-    """Return a receive function that gives the body once more, then whatever comes."""
+    """Return a receive function that gives the body again, then further messages."""
     first = True
 
     async def replayed() -> Message:
@@ -108,7 +108,7 @@ def _again(body: bytes, receive: Receive) -> Receive:
 def read_json(body: bytes, most_depth: int) -> Any:
     """Return the value of a JSON text.
 
-    Raises `InputError` for what `require_moderate` refuses, and for doubled keys.
+    Raises `InputError` for values that `require_moderate` rejects, and for duplicate keys.
     """
     try:
         value = json.loads(body, parse_constant=_no_number, parse_int=_parse_integer, object_pairs_hook=_unique)
@@ -123,10 +123,9 @@ def read_json(body: bytes, most_depth: int) -> Any:
 
 
 def require_moderate(value: Any, most_depth: int) -> None:
-    """Refuse data that nests too deeply, and numbers and texts that other programs would not read as they are.
+    """Reject data that are nested too deeply, and numbers and texts that other programs would not read unchanged.
 
-    Raises `InputError` for infinities, what is not a number, whole numbers beyond 2^53, dates, and text with NUL or
-    halves of characters.
+    Raises `InputError` for infinities, NaN, integers beyond 2^53, dates, and text with NUL or lone surrogates.
     """
     level, depth = [value], 0
     while level:

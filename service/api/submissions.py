@@ -34,10 +34,10 @@ from .throttle import limit_submissions
 
 
 class SubmissionRoute(QuickRoute):
-    """An endpoint that submits: of these only so many are let through within a minute."""
+    """An endpoint that submits jobs: only a limited number per minute is admitted."""
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer a request, or refuse it where too many came before."""
+        """Answer a request, or refuse it if too many came before."""
         if scope["method"] in (self.methods or ()):
             limit_submissions(scope["app"])
         await super().handle(scope, receive, send)
@@ -74,7 +74,7 @@ class Nearby(BaseModel, extra="forbid", strict=True):
 
 @dataclass(frozen=True)
 class Queue:
-    """The queue of jobs as one request sees it. idempotency_key: of the submission."""
+    """The queue of jobs as one request sees it. idempotency_key: key of the submission."""
 
     store: StoreDep
     settings: SettingsDep
@@ -82,7 +82,7 @@ class Queue:
     idempotency_key: IdempotencyKey = None
 
     def submit(self, request: RequestedJob, *, origin: int | None = None) -> dict[str, Any]:
-        """Queue a job and return its record. origin: the job that it is a changed copy of."""
+        """Queue a job and return its record. origin: number of the job from which it was copied and changed."""
         problem = problem_of_tables(request.tables, self.settings.allowed_quantities)
         files = [request.source or job_json(request.tables)]
         options: dict[str, Any] = {"priority": request.priority, "key": self.idempotency_key, "limits": request.limits}

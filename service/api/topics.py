@@ -1,4 +1,4 @@
-"""Topics of single designs, each by its name: numbers, text and figure, as `analyse --show` has them."""
+"""Topics of single designs, each by its name: numbers, text and figure, as in `analyse --show`."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class TopicRequest:
         return topic.for_problem(request.design.mechanism, request.design.linkage, request.design.part, self.inputs)
 
     def cache_kind(self, topic: DesignQuestion, content: str) -> str:
-        """Return the name under which what is made of a topic is kept."""
+        """Return the cache name for results of a topic."""
         return f"topic {topic.name} {content} {self.units} {sorted(self.inputs.items())}"
 
 
@@ -142,7 +142,7 @@ def _drawn(request: RequestedDesign, name: str, kind: Literal["png", "svg"], top
 
 
 def _topic(name: str) -> DesignQuestion:
-    """Return a topic by its name. Raises `NotFound` with those that there are."""
+    """Return a topic by its name. Raises `NotFound` with the available names."""
     if name not in TOPICS:
         raise NotFound(f"there is no topic {name!r}; choose from {', '.join(TOPICS)}")
     return TOPICS[name]

@@ -1,4 +1,4 @@
-"""Single designs: their curves and requirements, and all of them with other lengths while somebody moves these."""
+"""Single designs: their curves and requirements, also with other lengths while a user changes them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Choosing by wishing: the optimal design that comes nearest to wished values, solved anew."""
+"""Choice by wishes: the optimal design nearest to wished values, found by a new search."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ def printed_table() -> dict[str, NDArray[np.float64]]:
 def contributions(crank_angle: ArrayLike) -> dict[str, NDArray[np.float64]]:
     """Return the exact first-order contributions, mm, by `COLUMNS`, at crank angles, rad; the total with their signs.
 
-    The paper's offset error is positive where its offset, the negative of the one here, grows.
+    The paper's offset error is positive if its offset, the negative of the offset here, grows.
     """
     i = LINKAGE.error_influences(crank_angle)
     r, l, e = float(LINKAGE.crank), float(LINKAGE.rod), float(LINKAGE.offset)

@@ -33,7 +33,7 @@ def linkage(offset: float) -> Linkage:
 
 
 def masses() -> tuple[float, float]:
-    """Return rotating and reciprocating mass, kg, both links half and half as in the paper."""
+    """Return rotating and reciprocating mass, kg, with both links split in half as in the paper."""
     return rotating_and_reciprocating(MACHINE, linkage(0.020))
 
 
@@ -121,7 +121,7 @@ def numbers() -> Numbers:
 
 
 def formulas(t: float, e: float) -> dict[str, float]:
-    """Return the values of the paper's equations as they are printed, in its own notation; lengths in m."""
+    """Return the values of the paper's equations as printed, in its own notation; lengths in m."""
     k, c, w, m3 = CRANK, ROD, SPEED, masses()[1]
     sine, cosine = math.sin(t), math.cos(t)
     h = e + k * sine
@@ -170,7 +170,7 @@ def _torques() -> dict[str, float]:
 
 
 def _greatest(curve: Callable[[Array], Array], start: float, end: float) -> float:
-    """Return the greatest size of a smooth curve over an interval: sampled, then refined between samples."""
+    """Return the greatest magnitude of a smooth curve over an interval: sampled, then refined between samples."""
     from scipy.optimize import minimize_scalar
 
     angles = np.linspace(start, end, 2001)

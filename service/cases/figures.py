@@ -1,4 +1,4 @@
-"""The figures of the five publications, drawn anew: data of each as a sheet, and the files."""
+"""Figures of the five publications, redrawn: the data of each, and the files."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def polygon_figure() -> PanelFigure:
 def over_turns(
     title: str, *curves: tuple[str, Array], theta: Array = _TURN, styles: Sequence[int] = (0, 1, 2)
 ) -> Panel:
-    """Return a panel of named curves over the crank angle, each in a line style of its own."""
+    """Return a panel of named curves over the crank angle, each in a separate line style."""
     degrees = np.degrees(theta)
     lines = (Line(label, degrees, y, style) for style, (label, y) in zip(styles, curves, strict=False))
     return crank_angle_panel(title, *lines)

@@ -1,8 +1,8 @@
 """Printed numbers of publications, and the verdict on each.
 
-Each case has a data file with its printed numbers, as text: the digits printed say how exact they claim to be. The
-exact value comes from the model by the row's key. A number that the model does not confirm needs a reason, written by
-the project, in `why`; whether it is confirmed is decided here and nowhere else.
+Each case has a data file with its printed numbers, as text: the printed digits state their claimed accuracy. The exact
+value comes from the model by the row's key. A number that the model does not confirm needs a reason, written by the
+project, in `why`. Only this module decides whether a number is confirmed.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Verdict = Literal["agrees", "misprint", "differs", "not checkable", "not printed
 
 @dataclass(frozen=True)
 class Numbers:
-    """Values by the rows' keys, in the rows' units: exact ones, and what the formulas of a publication give."""
+    """Values by the rows' keys, in the rows' units: exact ones, and those from the formulas of a publication."""
 
     exact: Mapping[str, float]
     formulas: Mapping[str, float] = field(default_factory=dict)
@@ -33,8 +33,8 @@ class Numbers:
 class Row:
     """A number of a publication.
 
-    where: its place there. printed: as printed, None if it is not; where `formula`, the value of a printed formula.
-    exact: in the same unit, None if it cannot be computed. why: the reason where both do not agree.
+    where: its place there. printed: number as printed, None if not printed; with `formula`, the value of a printed
+    formula. exact: exact value in the same unit, None if it cannot be computed. why: reason if the two disagree.
     """
 
     key: str
@@ -123,17 +123,17 @@ def _row(entry: Mapping[str, Any], numbers: Numbers) -> Row:
 
 
 def confirmed(entry: Mapping[str, Any], exact: float) -> bool:
-    """Return whether a printed number is the exact one as far as it was printed.
+    """Return whether a printed number equals the exact one to its printed accuracy.
 
-    tolerance: how far off it may be; by default one unit of the last printed digit, since sources cut as well as round.
-    decimals: printed digits behind the point where the source drops zeros at the end.
+    tolerance: allowed difference; by default one unit of the last printed digit, since sources truncate as well as
+    round. decimals: digits printed after the point if the source drops trailing zeros.
     """
     printed = str(entry["printed"])
     if printed.startswith("< "):
         return exact < number(printed)
     decimals = int(entry.get("decimals", len(printed.partition(".")[2])))
     tolerance = float(entry.get("within", 10.0**-decimals))
-    # Rounding of the difference itself must not decide.
+    # Rounding errors in the difference itself must not decide.
     return abs(exact - number(printed)) <= tolerance * (1.0 + 1e-9) + 1e-9 * abs(exact)
 
 

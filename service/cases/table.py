@@ -18,14 +18,14 @@ _OF = dict(zip(CASES, (case_1, case_2, case_3, case_4, case_5), strict=True))
 
 
 def collect(numbers: Sequence[int] = CASES) -> list[Case]:
-    """Return the cases of these numbers."""
+    """Return the cases with these numbers."""
     return [read_case(number, _OF[number].numbers()) for number in numbers]
 
 
 def show_case(screen: Console, case: Case, *, full: bool) -> None:
     """Write one case: its numbers with their verdicts, and below them the reasons.
 
-    full: every cell of a long printed table; else one line for each of its columns.
+    full: whether to show every cell of a long printed table; else one line for each of its columns.
     """
     screen.print(f"Case {case.number}: {case.title}", style="bold", soft_wrap=True)
     screen.print(f"{case.source}.", style="dim", soft_wrap=True)
@@ -54,7 +54,7 @@ def show_case(screen: Console, case: Case, *, full: bool) -> None:
 
 
 def counted(rows: Sequence[Row]) -> str:
-    """Return how many rows have which verdict, in words."""
+    """Return the number of rows with each verdict, in words."""
     counts = Counter(row.verdict for row in rows)
     return ", ".join(f"{count} {_PLURAL.get(verdict, verdict)}" for verdict, count in counts.most_common())
 
@@ -68,7 +68,7 @@ def _counted(rows: Sequence[Row]) -> str:
 
 
 def _like(row: Row) -> str:
-    """Return the exact value with three digits more than are printed, nine if none are."""
+    """Return the exact value with three digits more than printed, nine without a printed value."""
     assert row.exact is not None
     digits = sum(character.isdigit() for character in (row.printed or "").partition("e")[0].lstrip("-+0."))
     return f"{row.exact:.{min(10, max(6, digits + 3)) if row.printed else 9}g}"

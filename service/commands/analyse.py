@@ -46,7 +46,7 @@ _INPUT_OPTIONS = tuple(map(option_of, INPUTS.values()))
 
 @dataclass(frozen=True)
 class Setting(Dimensions):
-    """A design as it is given, and what its machine has other than JOB says."""
+    """A design as given, and changes to the machine in JOB."""
 
     speed: Annotated[Speed, 'Crank speed, such as "300 rpm"; negative is clockwise.'] = None
     replaced_values: Annotated[
@@ -59,7 +59,7 @@ class Setting(Dimensions):
 
 @dataclass(frozen=True)
 class Files:
-    """Files that are read and written besides the numbers."""
+    """Files read and written besides the numbers."""
 
     measured: Annotated[
         File,
@@ -189,7 +189,7 @@ def _write_cycle(mechanism: Mechanism, linkage: Linkage, file: Path, units: Syst
 
 
 def _leave_out(row: Row, mechanism: Mechanism, *, alone: bool) -> list[str]:
-    """Take out what is not defined without a job or a speed; return why, in words."""
+    """Remove numbers that are undefined without a job or a speed; return the reasons in words."""
     from ...objectives.peak_torque import PEAK_TORQUE
     from ...objectives.registry import QUANTITIES
 

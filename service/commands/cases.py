@@ -1,4 +1,4 @@
-"""`slidercrank cases`: the published mechanisms, what their authors printed, and what is exact."""
+"""`slidercrank cases`: the published mechanisms, the printed values, and the exact ones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`slidercrank certify`: a proof of how far the front of a run can be from the true one."""
+"""`slidercrank certify`: a proven bound on the distance of a run's front from the true one."""
 
 from __future__ import annotations
 

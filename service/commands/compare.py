@@ -1,4 +1,4 @@
-"""`slidercrank compare`: the fronts of several runs against each other."""
+"""`slidercrank compare`: comparison of the fronts of several runs."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def _read(names: Sequence[str], place: Path) -> list[_ComparedRun]:
 
 
 def _align_objectives(result: Result, name: str, first: _ComparedRun) -> Result:
-    """Return a result with its objectives in the order of the first one. Raises `InputError` where they differ."""
+    """Return a result with its objectives in the order of the first one. Raises `InputError` if they differ."""
     by_key = {(item.quantity, item.sense, item.target): item for item in result.objectives}
     order = [(item.quantity, item.sense, item.target) for item in first.result.objectives]
     if set(by_key) != set(order):
@@ -113,7 +113,7 @@ def _words(result: Result) -> str:
 
 
 def _method(folder: Path) -> str:
-    """Return the method of a run: what its record says, else its job."""
+    """Return the method of a run, from its record, else from its job."""
     with disk(folder):
         record = json_format.loads((folder / "front.json").read_text(encoding="utf-8"))
     if isinstance(record.get("method"), str):

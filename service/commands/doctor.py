@@ -1,4 +1,4 @@
-"""`slidercrank doctor`: whether the service can do its work here, and a backup of its store."""
+"""`slidercrank doctor`: check of the service on this machine, and a backup of its store."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def _back_up(store: str | None, runs: Path | None, target: Path) -> None:
 
 
 class Check(NamedTuple):
-    """Something that was looked at. text: what was found, and what to do about it unless it is ok."""
+    """A check with its outcome. text: finding, and the remedy unless it is ok."""
 
     name: str
     grade: Grade
@@ -83,9 +83,9 @@ class Check(NamedTuple):
 
 
 def diagnose(address: str, runs: Path, *, named: bool = False) -> list[Check]:
-    """Check a store, given by its address, the place of runs and this machine; change no job.
+    """Check a store, given by its address, the folder of runs and this machine; change no job.
 
-    named: whether somebody says that there is a store at the address; it may be missing otherwise.
+    named: whether the address was specified; otherwise the store may be missing.
     """
     return [
         *_store(address, named),
@@ -120,7 +120,7 @@ def _store(address: str, named: bool) -> Iterator[Check]:
 
 
 def _private(file: Path) -> Iterator[Check]:
-    """Check who may use a store that is a file: it holds everything that a service's token protects."""
+    """Check who may access the file of a store: it holds everything that a service's token protects."""
     from ..store.database import may_use, remedy_of_rights
 
     if not may_use(file):
@@ -164,7 +164,7 @@ def _database(address: str, database: Database) -> Iterator[Check]:
 
 
 def _check_workers(address: str, now: float) -> Iterator[Check]:
-    """Look at jobs and workers. now: on the clock of the store."""
+    """Check jobs and workers. now: time on the clock of the store."""
     from ..store import Store
     from ..store.records import SILENT
 
@@ -192,7 +192,7 @@ def _check_workers(address: str, now: float) -> Iterator[Check]:
 
 
 def _existing(folder: Path) -> Path:
-    """Return the folder, or the nearest one above it that is there."""
+    """Return the folder, or its nearest existing parent."""
     return next((place for place in (folder, *folder.parents) if place.exists()), folder)
 
 

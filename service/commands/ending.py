@@ -1,4 +1,4 @@
-"""The end of a command: exit codes, and signals as a wish to stop without losing anything."""
+"""The end of a command: exit codes, and signals that request a stop without losses."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ EXIT_CODES = {"done": 0, "infeasible": NOTHING_FEASIBLE, "cancelled": INTERRUPTE
 
 
 class NoDesigns(InfeasibleError):
-    """A run without designs, where a design is needed."""
+    """A run without designs when a design is needed."""
 
     def __init__(self, result: Result) -> None:
         super().__init__(result.message)
@@ -29,7 +29,7 @@ class NoDesigns(InfeasibleError):
 
 
 def with_infeasible_json(command: Callable[..., None]) -> Callable[..., None]:
-    """Return a command that with --json prints an infeasible input as the JSON of a run without designs."""
+    """Return a command that, with --json, prints an infeasible input as the JSON of a run without designs."""
 
     @wraps(command)
     def run(**given: Any) -> None:
@@ -45,15 +45,15 @@ def with_infeasible_json(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def end_without_design(message: str) -> NoReturn:
-    """End a command whose search found no design, or that has no design that meets the conditions."""
+    """End a command whose search found no design, or where no design meets the conditions."""
     print_message(f"slidercrank: {message}")
     raise typer.Exit(NOTHING_FEASIBLE)
 
 
 class Interruption:
-    """While entered, a first Ctrl-C asks to stop at the next good moment; a second one stops at once.
+    """While entered, a first Ctrl-C requests a stop at the next good moment; a second one stops immediately.
 
-    service: SIGTERM asks, too, and nothing is said of it.
+    service: whether SIGTERM requests a stop too, and no message is printed.
     """
 
     def __init__(self, *, service: bool = False) -> None:

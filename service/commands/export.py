@@ -1,4 +1,4 @@
-"""`slidercrank export`: the designs of a run as a table, and one of them as a drawing or in motion."""
+"""`slidercrank export`: the designs of a run as a table, and one of them as a drawing or an animation."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class DesignFiles:
 
 @dataclass(frozen=True)
 class TableSelection(Selection):
-    """The designs of a table, and those that one is chosen among."""
+    """The designs in a table, also the candidates for a choice."""
 
     where: Where = None
     sort: Annotated[

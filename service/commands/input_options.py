@@ -1,4 +1,4 @@
-"""Options of the command line for what a question is asked with."""
+"""Command-line options for the inputs of a question."""
 
 from __future__ import annotations
 
@@ -41,13 +41,13 @@ def option_of(item: Input) -> inspect.Parameter:
 
 
 def options_of(question: FrontOrJobQuestion, *, optional: bool = False) -> tuple[inspect.Parameter, ...]:
-    """Return the options of all inputs. optional: whether the command has another way of being asked."""
+    """Return the options of all inputs. optional: whether the command works without them."""
     options = tuple(map(option_of, question.inputs))
     return tuple(option.replace(default=None) for option in options) if optional else options
 
 
 def with_question_help(question: FrontOrJobQuestion, addition: str = "") -> Callable[[_Command], _Command]:
-    """Return a decorator that gives a command the help of its question, and more of what the command itself does."""
+    """Return a decorator that gives a command the help of its question, and a text on the command itself."""
 
     def with_help(command: _Command) -> _Command:
         command.__doc__ = f"{question.help} {addition}".rstrip()
@@ -58,6 +58,6 @@ def with_question_help(question: FrontOrJobQuestion, addition: str = "") -> Call
 
 @contextmanager
 def search_listener(text: str, cancelled: Callable[[], bool] = lambda: False) -> Iterator[SearchListener]:
-    """Enter a context that shows an activity while an answer is searched, and where the search is."""
+    """Enter a context that shows an activity and the progress while an answer is searched."""
     with show_activity(text) as status:
         yield SearchListener(cancelled=cancelled, report=lambda words: None if status is None else status.update(words))

@@ -1,4 +1,4 @@
-"""One design that the command line names: by dimensions and perhaps a job, or by number in a run."""
+"""One design named on the command line: by dimensions and perhaps a job, or by number in a run."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Machine(NamedTuple):
-    """A machine and a linkage that the command line names, and the problem of job or run, if any."""
+    """A machine and a linkage named on the command line, and the problem of job or run, if any."""
 
     mechanism: Mechanism
     linkage: Linkage
@@ -41,10 +41,10 @@ def machine_of(
     replaced_values: Sequence[str] = (),
     turning: bool = False,
 ) -> Machine:
-    """Return the machine of dimensions, with a job if there is one, or of a design of a run.
+    """Return the machine for dimensions, with a job if there is one, or for a design of a run.
 
-    command: its name in messages. replaced_values: "PATH=VALUE" for numbers of the job. turning: whether to refuse a
-    crank that swings. Without a job nothing has mass.
+    command: its name in messages. replaced_values: "PATH=VALUE" for numbers of the job. turning: whether to reject a
+    swinging crank. Without a job nothing has mass.
     """
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
@@ -66,7 +66,7 @@ def machine_of(
 def turning_problem(job: Path, command: str) -> Problem:
     """Return the problem of a job file for the analysis of a given design; the job need not be feasible.
 
-    Raises `InputError` for a crank that swings, in the words of a command.
+    Raises `InputError` for a swinging crank, in the words of a command.
     """
     from ...optimise.job import load_job
 
@@ -78,7 +78,7 @@ def turning_problem(job: Path, command: str) -> Problem:
 def problem_of_job(job: Path | None, replaced_values: Sequence[str] = ()) -> Problem | None:
     """Return the problem of a job file with numbers at other values, "PATH=VALUE"; None without a job.
 
-    A given design is looked at, so that some design need not be able to meet the job.
+    The analysis is of a given design, so that the job need not be feasible.
     """
     if job is None:
         if replaced_values:
@@ -101,9 +101,9 @@ def problem_of_job(job: Path | None, replaced_values: Sequence[str] = ()) -> Pro
 def design_of_run(
     command: str, run: Path | None, design: int, place: Path | None, options: Mapping[str, object]
 ) -> StoredDesign:
-    """Return a design of a run. Raises `InputError` without a run, and for dimensions given besides.
+    """Return a design of a run. Raises `InputError` without a run, and if dimensions are given too.
 
-    command: that asks, for messages. place: of runs. options: options that the design answers itself.
+    command: name of the command, for messages. place: folder of runs. options: options that the design replaces.
     """
     from ..designs.stored_designs import stored_design
 

@@ -1,4 +1,4 @@
-"""`slidercrank like`: a design of a run, but with something else."""
+"""`slidercrank like`: a design similar to one of a run, under further conditions."""
 
 from __future__ import annotations
 

@@ -29,6 +29,6 @@ def mcp(runs: Runs = None, allow_quantity: AllowQuantity = None) -> None:
 
 
 def _leave() -> None:
-    """End at once: a thread still reads standard input."""
+    """End immediately: a thread still reads standard input."""
     print_message("slidercrank: interrupted")
     os._exit(INTERRUPTED)

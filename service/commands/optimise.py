@@ -41,13 +41,13 @@ _NOTHING_GIVEN = "optimise needs a job file, or a run to continue; got neither; 
 
 @dataclass(frozen=True)
 class Places:
-    """Where runs and jobs are kept, as it is given."""
+    """Places of runs and jobs, as given."""
 
     runs: Runs = None
     store: Address = None
 
     def command_again(self, run: str) -> str:
-        """Return the command that resumes a run, with the places that were named but without passwords."""
+        """Return the command that resumes a run, with the named places but without passwords."""
         from ..store.address import without_secrets
 
         options = ["--runs", str(self.runs)] if self.runs else []
@@ -141,7 +141,7 @@ def optimise(
 
 @contextlib.contextmanager
 def _store_or_own(places: Places) -> Iterator[tuple[Store, bool]]:
-    """Give the store, or a temporary one for this run where it cannot be used, and which it is."""
+    """Yield the store, or a temporary one for this run if it cannot be used, and which of the two it is."""
     from ..store import Store
 
     with contextlib.ExitStack() as opened:
@@ -160,7 +160,7 @@ def _store_or_own(places: Places) -> Iterator[tuple[Store, bool]]:
 
 
 def show_files(run: Path) -> None:
-    """Write where the files of a run are."""
+    """Print the places of a run's files."""
     screen = console()
     screen.print(f"\nFiles: {path_text(run)}", soft_wrap=True)
     listed = [name for name in _FILES if (run / name).exists()]
@@ -171,7 +171,7 @@ def show_files(run: Path) -> None:
 
 
 def _problem(job: Path, settings: SettingOptions) -> tuple[Problem, dict[str, Any], list[Artefact]]:
-    """Return the problem of a job file and its tables, both with the options that were given, and its files."""
+    """Return the problem of a job file and its tables, both with the given options, and its files."""
     from ...optimise.job import files_beside, load_job, read_job
     from ...optimise.job.notes import notes_of
     from ..jobs.own_run import files_of

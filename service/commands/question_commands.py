@@ -1,4 +1,4 @@
-"""Commands that ask one design a question, such as `slidercrank inverse`, and those that size parts of it."""
+"""Commands for questions about one design, such as `slidercrank inverse`, and for sizing parts of it."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def sizing_command(name: str) -> Callable[..., None]:
 
 
 def _print_answer(bound_question: BoundQuestion, units: System, json: bool) -> list[str]:
-    """Print the answer; return what is to be said besides."""
+    """Print the answer; return further messages."""
     from ..render.terminal import print_blocks
 
     with show_activity("computing"):

@@ -102,7 +102,7 @@ def _show(screen: Console, listed: list[Job]) -> None:
 
 
 def _standing(job: Job) -> str:
-    """Return how far a job is, or what it found, in words."""
+    """Return the progress or the result of a job in words."""
     if job.state in ("done", "cancelled") and job.summary is not None and job.summary["designs"]:
         best = []
         for column, value in job.summary["best"].items():

@@ -1,4 +1,4 @@
-"""`slidercrank round`: the best designs of round numbers near one of a run."""
+"""`slidercrank round`: the best designs with round numbers near one of a run."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def round(
 
 
 def _remedy(designs: list[dict[str, Any]]) -> str:
-    """Return the options with which the designs would do, amounts rounded up; nothing without designs."""
+    """Return the options that would accept the designs, amounts rounded up; empty without designs."""
     largest_miss: dict[str, tuple[float, str]] = {}
     for miss in (miss for row in designs for miss in row["misses"] if miss["amount"] > miss["allowed"]):
         largest_miss[miss["quantity"]] = max(

@@ -1,4 +1,4 @@
-"""A run that the command line names, and one design of it: by number, or as `front` chooses."""
+"""A run named on the command line, and one of its designs: by number, or chosen as in `front`."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def run_of(name: str, runs: Path | None) -> tuple[Path, Result]:
-    """Return the folder and the result of a run. runs: the place of runs as it is given."""
+    """Return the folder and the result of a run. runs: folder of runs as given."""
     folder = find_run(name, runs_place(runs))
     return folder, read_run(folder)
 
@@ -50,9 +50,9 @@ def front_of_run(
 
 
 def shown_result(result: Result, units: System, folder: Path | None) -> Result:
-    """Return the result of a run in the units that are asked for.
+    """Return the result of a run in the requested units.
 
-    folder: of the run, where its trade-offs are told; None where they are not.
+    folder: folder of the run, if its trade-offs are shown; else None.
     """
     problem = None
     if units != "metric" and folder is not None and result.trade_offs:

@@ -1,4 +1,4 @@
-"""`slidercrank front`: runs that are on the disk."""
+"""`slidercrank front`: runs on the disk."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ _SHORTEST = 16
 
 @dataclass(frozen=True)
 class Access:
-    """Who may call the service, by which names, and how much may be asked of it."""
+    """Access to the service: token, host names, and limits on requests."""
 
     token: Annotated[
         str | None,
@@ -101,7 +101,7 @@ def serve(
 
 
 def _leave_requests() -> None:
-    """End at once where requests are still at work: nobody waits for their answers, and all jobs are handed back."""
+    """End immediately if requests are still running: nobody waits for answers, and all jobs are handed back."""
     from ..workers.heartbeat import leave
 
     if any(not thread.daemon and thread is not threading.main_thread() for thread in threading.enumerate()):
@@ -111,7 +111,7 @@ def _leave_requests() -> None:
 
 
 def _token(token: str | None, without_token: bool, host: str) -> tuple[str | None, bool]:
-    """Return the token, and whether it was made here. Raises `InputError` for one that protects nothing."""
+    """Return the token, and whether it was generated here. Raises `InputError` for one that protects nothing."""
     import secrets
 
     from ..api.server import is_loopback

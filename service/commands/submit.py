@@ -1,4 +1,4 @@
-"""`slidercrank submit` and `slidercrank watch`: a job for the workers, and what happens to it until it ends."""
+"""`slidercrank submit` and `slidercrank watch`: a job for the workers, and its events until it ends."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def watch(job: Name, store: Address = None, json: Json = False) -> None:
 
 
 def _tell_of(functions: Sequence[str], job: Path) -> None:
-    """Say what workers need for a job that names functions of its own."""
+    """Print the requirements on workers for a job with custom functions."""
     if functions:
         options = " ".join(f"--allow-quantity {function}" for function in functions)
         print_message(
@@ -114,7 +114,7 @@ def _tell_of(functions: Sequence[str], job: Path) -> None:
 
 
 def _source(job: Path) -> Artefact | None:
-    """Return the job file as it is; None if it names other files, which the job's tables contain."""
+    """Return the original job file; None if it names other files, which the job's tables contain."""
     from ...optimise.job import files_beside
     from ..store import Artefact
 
@@ -125,7 +125,7 @@ def _source(job: Path) -> Artefact | None:
 
 
 def _write_events(store: Store, job: Job, *, json: bool) -> int:
-    """Write the events of a job until it ends and return its exit code; 0 once nobody reads on."""
+    """Write the events of a job until it ends and return its exit code; 0 once the reader stops."""
     try:
         with _event_writer(json) as show:
             for event in events_until_end(store, job.id):
@@ -142,7 +142,7 @@ def _write_events(store: Store, job: Job, *, json: bool) -> int:
 
 
 def events_until_end(store: Store, number: int) -> Iterator[Event]:
-    """Yield the past and coming events of a job until it has ended; wait while the database is away.
+    """Yield the past and future events of a job until it has ended; wait while the database is unreachable.
 
     Raises `NotFound` if the job is deleted meanwhile.
     """
@@ -172,7 +172,7 @@ def events_until_end(store: Store, number: int) -> Iterator[Event]:
 
 @contextlib.contextmanager
 def _event_writer(json: bool) -> Iterator[Callable[[Event], None]]:
-    """Yield the writer of events: as JSON, or in words, with a progress bar where there is a terminal."""
+    """Yield the writer of events: as JSON, or in words, with a progress bar on a terminal."""
     if json:
         from ..store.serialisation import text_of
 
@@ -206,7 +206,7 @@ def in_words(event: Event) -> str:
 
 
 def _close(store: Store, job: Job) -> None:
-    """Write the front of a job that has ended, if there is one."""
+    """Write the front of an ended job, if there is one."""
     from ..text.tables import show_front
 
     if job.summary is None or not job.summary["designs"]:

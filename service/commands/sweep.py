@@ -1,4 +1,4 @@
-"""`slidercrank sweep`: quantities over one or two of crank, rod, offset and speed."""
+"""`slidercrank sweep`: quantities over one or two parameters of crank, rod, offset and speed."""
 
 from __future__ import annotations
 

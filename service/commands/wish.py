@@ -1,4 +1,4 @@
-"""`slidercrank wish`: the optimal design that comes nearest to what is wished."""
+"""`slidercrank wish`: the optimal design nearest to a wish."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def wish(
 
 
 def _list(folder: Path, front: ParetoFront, units: System, *, json: bool) -> None:
-    """Write the wishes that were made of a run, the latest first, each solved again."""
+    """Write the wishes made on a run, the latest first, each solved again."""
     from ...optimise.decisions.wish import Wishes
     from ..questions.wish.analysis import answered, told_wish
 

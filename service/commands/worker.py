@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class WorkOptions:
-    """Options of workers, and of what their jobs may do and take."""
+    """Options of workers, and permissions and limits of their jobs."""
 
     lease: Annotated[
         float,
@@ -49,7 +49,7 @@ class WorkOptions:
     log_format: Annotated[Format, "Log format on standard error: text, or one JSON object per line."] = "text"
 
     def settings(self, address: str, engine: EngineOptions, processes: int, *, drain: bool = False) -> WorkerSettings:
-        """Return the settings of each of some workers of a store. drain: end as soon as no job waits."""
+        """Return the settings of each worker of a store. drain: whether to end as soon as no job waits."""
         from ..store import Limits
         from ..workers.worker import Terms
         from ..workers.worker_process import WorkerSettings

@@ -1,4 +1,4 @@
-"""The drawing of a design, which turns through or swings."""
+"""The drawing of a design that rotates fully or swings."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from .swing_drawing import swing_drawing
 def design_drawing(
     stored: StoredDesign, *, name: str, design: str = "", crank_angle: float | None = None, system: System = "metric"
 ) -> Drawing:
-    """Return a design at true scale: see `linkage_drawing`, and `swing_drawing` where its crank swings.
+    """Return a design at true scale: see `linkage_drawing`, and `swing_drawing` for a swinging crank.
 
-    crank_angle: where it is drawn, rad; where these draw it if None. system: of the units of texts.
+    crank_angle: crank angle of the drawing, rad; their default if None. system: system of units in texts.
     """
     texts: dict[str, Any] = {"name": name, "design": design, "system": system}
     if stored.part.motion is not None:

@@ -1,4 +1,4 @@
-"""Dimensions with what shows them: extension lines, a line with arrows, and the text."""
+"""Dimensions with their graphics: extension lines, a line with arrows, and the text."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _GAP, _BEYOND = 0.4, 0.6  # of an extension line, before its point and beyond th
 
 @dataclass(frozen=True)
 class Lettering:
-    """Texts of dimensions. height: mm. system: of their units."""
+    """Texts of dimensions. height: text height, mm. system: system of units."""
 
     height: float
     system: System = "metric"
@@ -39,8 +39,8 @@ def dimension(
 ) -> Dimension:
     """Return the dimension of two points along `angle`, deg, its line through a point.
 
-    tolerance: mm; the text has the digits that it makes sensible, seven without one.
-    Where arrows and text do not fit between the points they come from outside, the text beyond the end.
+    tolerance: tolerance, mm; it sets the digits of the text, seven without one. If arrows and text do not fit between
+    the points, they are drawn outside, with the text beyond the end.
     """
     turn, height = math.radians(angle), look.height
     direction, normal = (math.cos(turn), math.sin(turn)), (-math.sin(turn), math.cos(turn))
@@ -80,7 +80,7 @@ def dimension(
 
 
 def aligned(name: str, start: Point, end: Point, away: float, look: Lettering, tolerance: float) -> Dimension:
-    """Return the dimension of a link along it. away: of its line, to the left of the way from start to end."""
+    """Return the dimension along a link. away: distance of its line to the left of the direction from start to end."""
     x, y = end[0] - start[0], end[1] - start[1]
     length = math.hypot(x, y)
     through = (start[0] - away * y / length, start[1] + away * x / length)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _VERSION = "R2000"  # read by everything, and the first with units
 _MILLIMETRES = 4
 _STYLE = "SLIDERCRANK"
-# Name, description, pattern over the size of the drawing: total, then dash, gap, dash ...
+# Name, description, pattern relative to the size of the drawing: total, then dash, gap, dash ...
 _DASHES: dict[Dashes, tuple[str, str, tuple[float, ...]]] = {
     "continuous": ("CONTINUOUS", "", ()),
     "dashed": ("DASHED", "Dashed __ __ __ __", (0.016, 0.010, -0.006)),
@@ -28,7 +28,7 @@ _ANCHORS = {"start": 0, "middle": 1, "end": 2}  # horizontal alignment on the ba
 
 
 def dxf_file(drawing: Drawing) -> bytes:
-    """Return the drawing as the content of a DXF file, non-ASCII characters escaped so that any encoding serves."""
+    """Return the drawing as the content of a DXF file, with non-ASCII characters escaped so that any encoding works."""
     out = io.StringIO()
     document(drawing).write(out)
     return out.getvalue().encode("ascii", errors="dxfreplace")  # of ezdxf: \\U+00F6
@@ -66,9 +66,9 @@ def document(drawing: Drawing) -> Document:
 
 
 def _dimension_style(document: Document, drawing: Drawing) -> None:
-    """Make the style by which CAD draws dimensions anew: as they are drawn here."""
+    """Create the style with which CAD redraws dimensions as they are drawn here."""
     height = next((shape.height for shape in drawing.shapes if isinstance(shape, Dimension)), 2.5)
-    # As many decimals as make seven digits of the size; DXF knows eight at most.
+    # As many decimals as give seven digits of the size; DXF allows eight at most.
     decimals = min(8, max(0, 6 - math.floor(math.log10(drawing.size))))
     values = {
         "dimtxt": height, "dimasz": 1.2 * height, "dimexo": 0.4 * height, "dimexe": 0.6 * height,
@@ -98,7 +98,7 @@ def _add(document: Document, space: BaseLayout, shape: Shape) -> None:
 
 
 def _label(space: BaseLayout, shape: Label, attributes: dict[str, Any]) -> None:
-    # Without what would end its line or be taken for a code.
+    # Without characters that would end its line or be taken for a code.
     plain = " ".join(shape.text.replace("%%", "% %").split()).replace("^", "^ ")
     text = space.add_text(plain, height=shape.height, rotation=shape.angle, dxfattribs=attributes)
     text.dxf.insert = shape.position
@@ -107,7 +107,7 @@ def _label(space: BaseLayout, shape: Label, attributes: dict[str, Any]) -> None:
 
 
 def _dimension(document: Document, space: BaseLayout, shape: Dimension, attributes: dict[str, Any]) -> None:
-    """Add a dimension with the picture that it has here: ezdxf's own needs the fonts of the machine for it."""
+    """Add a dimension with the picture drawn here: that of ezdxf needs the fonts of the machine."""
     block = document.blocks.new_anonymous_block(type_char="D")
     for part in shape.parts:
         _add(document, block, part)

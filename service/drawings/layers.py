@@ -1,4 +1,4 @@
-"""The layers of a linkage drawing. CAD users switch them on and off, so that their names never change."""
+"""The layers of a linkage drawing. CAD users switch them on and off, so their names must never change."""
 
 from __future__ import annotations
 

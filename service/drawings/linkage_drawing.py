@@ -28,12 +28,12 @@ def linkage_drawing(
     crank_angle: float = CRANK_ANGLE,
     system: System = "metric",
 ) -> Drawing:
-    """Return one fully turning linkage at true scale, mm: crank pivot at (0, 0), slider line at y = offset.
+    """Return one fully rotating linkage at true scale, mm: crank pivot at (0, 0), slider line at y = offset.
 
-    Pivots, paths, dead centres and dimensions are exact. Links that the machine describes by their section have their
-    true width; other widths, pins and slider are for show, in proportion. name: of the run. design: which of it,
-    "design 3", for the title. crank_angle: where it is drawn, rad. system: of the units of texts.
-    Raises `AssemblyError` for a linkage that does not turn fully.
+    Pivots, paths, dead centres and dimensions are exact. Links with a section in the machine have their true width;
+    other widths, pins and slider are schematic, in proportion. name: name of the run. design: its design, "design 3",
+    for the title. crank_angle: crank angle of the drawing, rad. system: system of units in texts. Raises
+    `AssemblyError` for a linkage that does not rotate fully.
     """
     look = look_of(mechanism, linkage)
     size = look.size
@@ -53,7 +53,7 @@ def linkage_drawing(
 def _dimensions(
     pin: Point, slider: Point, look: Look, tolerances: Mapping[str, float], letters: Lettering
 ) -> list[Shape]:
-    """Return the dimension lines: of crank and rod beside them, of the offset at the left, of the stroke outside."""
+    """Return the dimension lines: crank and rod beside the links, offset at the left, stroke outside."""
     e, left, height = look.offset, look.extent[0], letters.height
     side = -1.0 if pin[1] >= 0.0 else 1.0  # away from crank and rod
     rod = (slider[0] - pin[0], slider[1] - pin[1])

@@ -1,4 +1,4 @@
-"""Sizes and places of the parts of a design as drawings show them, mm: for who draws it elsewhere."""
+"""Sizes and positions of the parts of a design as in drawings, mm, for clients that draw it."""
 
 from __future__ import annotations
 
@@ -14,11 +14,12 @@ from .swing_parts import Cylinder, half_body, swing_look
 
 @dataclass(frozen=True)
 class Outlines:
-    """Parts of a design as it is drawn, mm.
+    """Drawn parts of a design, mm.
 
-    extent: left, bottom, right and top of what stands or moves. slider: its length and height; those of the piston
-    where it is one. barrels: of the cylinders of the machine. actuator: of a slider that is driven. body: mass centre
-    of the body on a crank that swings, along the crank and across it. body_side: of the square that stands for it.
+    extent: left, bottom, right and top of all parts and their motion. slider: its length and height; those of the
+    piston if it is one. barrels: barrels of the machine's cylinders. actuator: actuator of a driven slider. body: mass
+    centre of the body on a swinging crank, along the crank and across it. body_side: side of the square that represents
+    it.
     """
 
     extent: tuple[float, float, float, float]
@@ -30,7 +31,7 @@ class Outlines:
 
 
 def outlines(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) -> Outlines:
-    """Return the parts of a design that turns through, or swings. Raises as `look_of` and `swing_look` do."""
+    """Return the parts of a design that rotates fully or swings. Raises the errors of `look_of` and `swing_look`."""
     if swing is None:
         look = look_of(mechanism, linkage)
         return Outlines(look.extent, (1.5 * look.slider_size, look.block), look.barrels, None, None, 0.0)

@@ -21,7 +21,7 @@ _FEET = 200  # hatching lines of a rail at most
 
 @dataclass(frozen=True)
 class Barrel:
-    """A cylinder about the slider line, mm: its bore, and the places of its open end and of its head."""
+    """A cylinder about the slider line, mm: its bore, and the positions of its open end and its head."""
 
     bore: float
     foot: float
@@ -30,13 +30,13 @@ class Barrel:
 
 @dataclass(frozen=True)
 class Look:
-    """A linkage as it is drawn, mm. crank, rod, offset: its dimensions.
+    """A drawn linkage, mm. crank, rod, offset: its dimensions.
 
-    inner, outer: slider pins at the dead centres, or at the ends of a swing. reach: least and greatest place of the
-    slider. extent: left, bottom, right and top of what moves, about. crank_width, rod_width: of the links. block:
-    height of the slider; the bore where it is a piston. along: two thirds of its length. pin: radius of pins. barrels:
-    of cylinders. own: whether a link is described by its section, so that its width is
-    true; everything else is for show.
+    inner, outer: slider pins at the dead centres, or at the ends of a swing. reach: least and greatest slider position.
+    extent: approximate left, bottom, right and top of the moving parts. crank_width, rod_width: widths of the links.
+    block: height of the slider; the bore for a piston. along: two thirds of its length. pin: radius of pins. barrels:
+    barrels of cylinders. own: whether a link is described by its section, so that its width is true; everything else is
+    schematic.
     """
 
     crank: float
@@ -62,7 +62,7 @@ class Look:
 
 
 def look_of(mechanism: Mechanism, linkage: Linkage) -> Look:
-    """Return how a linkage of a machine is drawn. Raises `AssemblyError` for one that does not turn fully."""
+    """Return the look of a machine's linkage. Raises `AssemblyError` for one that does not rotate fully."""
     inner, outer = (_MM * float(x) for x in linkage.dead_centres)
     r = _MM * float(linkage.crank)
     look = look_between(mechanism, linkage, (inner, outer), (min(inner, outer), max(inner, outer)), (-r, -r, r, r))
@@ -70,9 +70,9 @@ def look_of(mechanism: Mechanism, linkage: Linkage) -> Look:
 
 
 def _with_cylinders(mechanism: Mechanism, look: Look) -> Look:
-    """Return a linkage whose slider is drawn as the piston of the cylinders of a machine.
+    """Return a linkage with its slider drawn as the piston of a machine's cylinders.
 
-    Bore and clearance are true; the length of the piston is for show.
+    Bore and clearance are true; the piston length is schematic.
     """
     gas = [load for _, load in cylinders(mechanism)]
     if not gas:
@@ -101,9 +101,9 @@ def look_between(
     slider_range: tuple[float, float],
     swept: tuple[float, float, float, float],
 ) -> Look:
-    """Return how a linkage is drawn whose slider goes between two places, mm; see `Look`.
+    """Return the look of a linkage whose slider moves between two positions, mm; see `Look`.
 
-    swept: left, bottom, right and top of the way of the crank's axis.
+    swept: left, bottom, right and top of the path of the crank's axis.
     """
     r, l, e = (_MM * float(value) for value in (linkage.crank, linkage.rod, linkage.offset))
     described = (mechanism.crank, mechanism.rod)
@@ -123,7 +123,7 @@ def look_between(
 
 
 def lengths_in_words(linkage: Linkage, system: System = "metric", *, digits: int = 7, stroke: bool = False) -> str:
-    """Return the dimensions of a linkage, with its stroke where that is asked, and its branch."""
+    """Return the dimensions of a linkage, its stroke on request, and its branch."""
     names, unit = (*DIMENSIONS, *(["stroke"] if stroke else [])), LENGTH.display_unit(system)
     lengths = (f"{name} {unit.factor * float(getattr(linkage, name)):.{digits}g} {unit.symbol}" for name in names)
     return f"{', '.join(lengths)}; {linkage.branch} branch"
@@ -136,7 +136,7 @@ def pin_positions(linkage: Linkage, angle: float) -> tuple[Point, Point]:
 
 
 def moving_shapes(pin: Point, slider: Point, look: Look) -> list[Shape]:
-    """Return slider, rod and crank with their pins where crank pin and slider pin are."""
+    """Return slider, rod and crank with their pins, for given positions of crank pin and slider pin."""
     drawn = link_shapes((on.SLIDER, on.ROD, on.CRANK), pin, slider, look)
     return [*drawn, *(Circle(on.PINS, point, look.pin) for point in ((0.0, 0.0), pin, slider))]
 

@@ -17,7 +17,7 @@ WIDE = 0.85
 
 @dataclass(frozen=True)
 class Layer:
-    """A layer. title: what it holds. ink: #rrggbb. number: its colour in CAD. weight: of a line, mm on paper."""
+    """A layer. title: its content. ink: colour, #rrggbb. number: colour in CAD. weight: line width, mm on paper."""
 
     name: str
     title: str
@@ -47,7 +47,7 @@ class Circle:
 
 @dataclass(frozen=True)
 class Arc:
-    """A part of a circle, counter-clockwise from start to end, deg."""
+    """Arc of a circle, counter-clockwise from start to end, deg."""
 
     layer: Layer
     centre: Point
@@ -69,7 +69,7 @@ class Arc:
 
 @dataclass(frozen=True)
 class Outline:
-    """A closed outline. bulges: of the side that begins at each corner, 0 is straight, 1 a half turn to the left."""
+    """A closed outline. bulges: bulge of the side after each corner; 0 is straight, 1 a semicircle to the left."""
 
     layer: Layer
     corners: tuple[Point, ...]
@@ -86,7 +86,7 @@ class Wedge:
 
 @dataclass(frozen=True)
 class Label:
-    """A line of text that stands on a point. height: of capitals. angle: of the line of text, deg."""
+    """A line of text based at a point. height: height of capitals. angle: angle of the text line, deg."""
 
     layer: Layer
     text: str
@@ -98,10 +98,10 @@ class Label:
 
 @dataclass(frozen=True)
 class Dimension:
-    """The distance of two points along a direction, with what shows it.
+    """The distance of two points along a direction, with its graphics.
 
-    name: of the length. angle: of the dimension line, deg. through: a point of that line. tolerance: mm, 0 for none.
-    parts: its lines, arrows and text; CAD draws them anew when a point is moved.
+    name: name of the length. angle: angle of the dimension line, deg. through: point on that line. tolerance:
+    tolerance, mm, 0 for none. parts: its lines, arrows and text; CAD redraws them when a point is moved.
     """
 
     layer: Layer
@@ -127,7 +127,7 @@ Shape = Line | Circle | Arc | Outline | Wedge | Label | Dimension
 
 @dataclass(frozen=True)
 class Drawing:
-    """A drawing. size: a length that line types and texts are proportioned by, mm. notes: what it says of itself."""
+    """A drawing. size: reference length for line types and texts, mm. notes: notes on the drawing."""
 
     layers: tuple[Layer, ...]
     shapes: tuple[Shape, ...]
@@ -179,7 +179,7 @@ def _extreme_points(shape: Shape) -> Iterable[Point]:
 
 
 def _ends(start: Point, end: Point, bulge: float) -> tuple[Point, ...]:
-    """Return corners of a box around a side; for an arc that of its half circle or less."""
+    """Return corners of a box around a side; for an arc, the box of its semicircle or less."""
     if not bulge:
         return start, end
     half = 0.5 * math.dist(start, end)

@@ -67,7 +67,7 @@ def elements(shape: Shape) -> list[str]:
         x, y = shape.centre
         return [f'<circle cx="{_number(x)}" cy="{_number(-y)}" r="{_number(shape.radius)}"/>']
     if isinstance(shape, Arc):
-        # Counter-clockwise here, where y points downward, is against the sense of the flag.
+        # Counter-clockwise here, where y points downward, is opposite to the flag.
         start, end = _point(shape.point_at(shape.start)), _point(shape.point_at(shape.end))
         radius, large = _number(shape.radius), int(shape.end - shape.start > 180.0)
         return [f'<path d="M{start}A{radius} {radius} 0 {large} 0 {end}"/>']
@@ -112,5 +112,5 @@ def _point(point: Point) -> str:
 
 
 def _number(value: float) -> str:
-    """Return a number as precise as it is."""
+    """Return a number at full precision."""
     return repr(value + 0.0).removesuffix(".0")

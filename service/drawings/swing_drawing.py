@@ -1,4 +1,4 @@
-"""A linkage that swings as a drawing: within its swing, at both ends, with what drives it and its dimensions."""
+"""Drawing of a swinging linkage: within its swing, at both ends, with its drive and dimensions."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ def swing_drawing(
     crank_angle: float | None = None,
     system: System = "metric",
 ) -> Drawing:
-    """Return one linkage that swings at true scale, mm: crank pivot at (0, 0), slider line at y = offset.
+    """Return one swinging linkage at true scale, mm: crank pivot at (0, 0), slider line at y = offset.
 
-    Pivots, ends of the swing, ways of the pins and dimensions are exact. crank_angle: where it is drawn, within the
-    swing but for whole turns; half-way if None. name, design: as for `linkage_drawing`. Raises `InputError` for a crank
-    angle outside, and what `require_swing` raises.
+    Pivots, ends of the swing, paths of the pins and dimensions are exact. crank_angle: crank angle of the drawing,
+    within the swing up to full revolutions; half-way if None. name, design: as for `linkage_drawing`. Raises
+    `InputError` for a crank angle outside, and the errors of `require_swing`.
     """
     drawn = swing_look(mechanism, linkage, swing)
     angle = _angle_in_swing(drawn.swing, crank_angle)
@@ -52,7 +52,7 @@ def swing_drawing(
 
 
 def _angle_in_swing(swing: Swing, angle: float | None) -> float:
-    """Return a crank angle turned by whole turns into a swing."""
+    """Return a crank angle shifted by full revolutions into a swing."""
     if angle is None:
         return 0.5 * (swing.start + swing.end)
     angles = [at for near in (0.0, 1e-9, -1e-9) for at in swing.occurrences(angle + near)]
@@ -66,7 +66,7 @@ def _angle_in_swing(swing: Swing, angle: float | None) -> float:
 
 
 def _dimensions(drawn: SwingLook, angle: float, mechanism: Mechanism, letters: Lettering) -> list[Shape]:
-    """Return the dimension lines: of crank and rod beside them, offset at the left, travel outside, angle within."""
+    """Return the dimension lines: crank and rod beside the links, offset at the left, travel outside, angle within."""
     look, swing, height = drawn.look, drawn.swing, letters.height
     (left, low, _, high), (pin, slider) = drawn.extent, pin_positions(drawn.linkage, angle)
     tolerances = tolerances_of(mechanism, drawn.linkage)

@@ -1,4 +1,4 @@
-"""Shapes of a linkage that swings: both ends, ways of its pins, its cylinder, the body on its crank."""
+"""Shapes of a swinging linkage: both ends, paths of its pins, its cylinder, the body on its crank."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ _BODY = 0.15  # half the side of the body, of the crank
 
 @dataclass(frozen=True)
 class Cylinder:
-    """A cylinder along the slider line, mm, for show: the job says nothing of it but that it drives.
+    """A schematic cylinder along the slider line, mm: the job states only that it drives.
 
-    side: +1 where it stands beyond the slider along +x, -1 where on the other side. face, foot: ends of its barrel, the
-    face towards the slider. width: of the barrel.
+    side: +1 if it is beyond the slider along +x, -1 on the other side. face, foot: ends of its barrel, the face towards
+    the slider. width: width of the barrel.
     """
 
     side: float
@@ -35,9 +35,9 @@ class Cylinder:
 
 @dataclass(frozen=True)
 class SwingLook:
-    """A linkage that swings as it is drawn. swing: between crank angles. cylinder: None where the crank drives.
+    """A drawn swinging linkage. swing: swing between crank angles. cylinder: None if the crank drives.
 
-    body: mass centre of a crank that the job gives by its mass, along it and across it, mm; None of other cranks.
+    body: mass centre of a crank given by its mass, along it and across it, mm; None for other cranks.
     """
 
     linkage: Linkage
@@ -48,7 +48,7 @@ class SwingLook:
 
     @property
     def extent(self) -> tuple[float, float, float, float]:
-        """Left, bottom, right and top of everything that stands or moves, about."""
+        """Approximate left, bottom, right and top of everything fixed or moving."""
         left, low, right, high = self.look.extent
         if self.cylinder is not None:
             ends = (self.cylinder.near_end, self.cylinder.foot)
@@ -62,7 +62,7 @@ class SwingLook:
 
 
 def swing_look(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingLook:
-    """Return how a linkage that swings is drawn. Raises what `require_swing` raises."""
+    """Return the look of a swinging linkage. Raises the errors of `require_swing`."""
     checked = require_swing(mechanism, linkage, swing)
     swing = placed(mechanism, checked, swing)
     turning = [dead_angle for dead in dead_points(checked) for dead_angle in swing.occurrences(dead)]
@@ -89,7 +89,7 @@ def half_body(look: Look) -> float:
 
 
 def _swept(linkage: Linkage, swing: Swing, body: Point | None) -> tuple[float, float, float, float]:
-    """Return the box of the crank's way and of its body's, mm."""
+    """Return the box around the paths of the crank and its body, mm."""
     r = _MM * float(linkage.crank)
     angles = np.linspace(swing.start, swing.end, 181)
     quarters = [angle for k in range(4) for angle in swing.occurrences(0.5 * math.pi * k)]
@@ -106,7 +106,7 @@ def _swept(linkage: Linkage, swing: Swing, body: Point | None) -> tuple[float, f
 
 
 def _cylinder(look: Look) -> Cylinder:
-    """Return a cylinder as long as it must be, on the far side of the slider."""
+    """Return a cylinder of the required length, on the far side of the slider."""
     side = 1.0 if sum(look.slider_range) >= 0.0 else -1.0
     far = side * look.slider_range[1 if side > 0.0 else 0]
     near_end = far + 1.3 * look.block
@@ -115,7 +115,7 @@ def _cylinder(look: Look) -> Cylinder:
 
 
 def swing_scenery(drawn: SwingLook) -> list[Shape]:
-    """Return axes, ways of the pins, both ends, guide, bearing and the barrel of the cylinder."""
+    """Return axes, paths of the pins, both ends, guide, bearing and the barrel of the cylinder."""
     look, swing = drawn.look, drawn.swing
     first, last = sorted(math.degrees(angle) for angle in (swing.start, swing.end))
     ways = (
@@ -142,7 +142,7 @@ def swing_moving(drawn: SwingLook, angle: float) -> list[Shape]:
 
 
 def body_shapes(body: Point, look: Look, angle: float) -> list[Shape]:
-    """Return the body on a crank at an angle, rad: a square about its mass centre, with a cross there."""
+    """Return the body on a crank at an angle, rad: a square about its mass centre, which has a cross."""
     half, mark = half_body(look), 0.5 * half_body(look)
     cosine, sine = math.cos(angle), math.sin(angle)
 
@@ -170,7 +170,7 @@ def _push(layer: Layer, slider: Point, cylinder: Cylinder, look: Look) -> Outlin
 
 
 def cylinder_parts(cylinder: Cylinder, look: Look) -> tuple[Outline, Outline]:
-    """Return the cylinder's rod about the slider pin, whole, and its barrel."""
+    """Return the cylinder's complete rod about the slider pin, and its barrel."""
     near = look.slider_range[0] if cylinder.side > 0.0 else look.slider_range[1]
     rod = box(
         on.ACTUATOR, (cylinder.side * 0.75 * look.block, 0.0), (cylinder.near_end - near, 0.0), 0.3 * cylinder.width
@@ -179,7 +179,7 @@ def cylinder_parts(cylinder: Cylinder, look: Look) -> tuple[Outline, Outline]:
 
 
 def box(layer: Layer, start: Point, end: Point, width: float) -> Outline:
-    """Return a rectangle about a level line."""
+    """Return a rectangle about a horizontal line."""
     half = 0.5 * width
     corners = (
         (start[0], start[1] - half),
@@ -191,7 +191,7 @@ def box(layer: Layer, start: Point, end: Point, width: float) -> Outline:
 
 
 def _barrel(cylinder: Cylinder, look: Look) -> list[Shape]:
-    """Return the barrel of the cylinder, and where it is held."""
+    """Return the barrel of the cylinder, and its mount."""
     y, half = look.offset, 0.8 * cylinder.width
     hatch = [
         Line(

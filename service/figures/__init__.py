@@ -1,1 +1,1 @@
-"""Figures of fronts, designs and topics: what they show, as data, and how it is drawn."""
+"""Figures of fronts, designs and topics: their content as data, and its drawing."""

@@ -38,7 +38,7 @@ _STEP = 1e-5  # of the value: smooth curves change less between these samples
 class Curves:
     """The curves of one design. angles: (n,), deg. inner, outer: dead centres of a turn, deg.
 
-    panels: one a curve, the slow stroke shaded; a marked extremum is a second line, of one point of the curve.
+    panels: one per curve, the slow stroke shaded; a marked extremum is a second line with one point of the curve.
     """
 
     angles: Array
@@ -48,12 +48,12 @@ class Curves:
 
     @property
     def last_turn_end(self) -> float:
-        """End of the last turn, deg."""
+        """End of the last revolution, deg."""
         return 360.0 * round(float(self.angles[-1]) / 360.0)
 
 
 def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True) -> Curves:
-    """Return the curves of one fully turning linkage; all angles that are marked are among the sampled ones.
+    """Return the curves of one fully rotating linkage; all marked angles are among the sampled ones.
 
     Without a crank speed, velocity and acceleration are given for one radian per second: per unit of crank speed.
     """
@@ -74,7 +74,7 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True)
     }
     kappa = crowding(*dimensions[0])
     crowded = [uncrowded(tau, kappa) for tau in np.linspace(0.0, 2.0 * np.pi, SAMPLES // 2)]
-    # Where a load steps, the curve has another value on either side of the peak.
+    # At a step of a load, the curve has different values on the two sides of the peak.
     beside = [extreme[1] + side for extreme in extremes.values() if extreme for side in (-_BESIDE, 0.0, _BESIDE)]
     marked = [inner, outer, *(angle for angle in beside if angle >= 0.0)]
     even, turns = np.linspace(0.0, _TURN, SAMPLES + 1), cycle_turns(mechanism)
@@ -119,7 +119,7 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True)
 
 
 def draw_curves(panels: Sequence[Axes], curves: Curves, system: System = "metric") -> None:
-    """Draw each curve into one of the panels, given from top to bottom, in a system of units."""
+    """Draw each curve into its panel, from top to bottom, in a system of units."""
     for axes, panel in zip(panels, curves.panels, strict=True):
         draw_panel(axes, panel, system, has_x_title=axes is panels[-1])
         ends = (curves.inner, curves.outer)

@@ -1,4 +1,4 @@
-"""The sheet of one design: drawn to scale, its numbers, and its curves over the cycle."""
+"""Datasheet of one design: scale drawing, numbers, and curves over the cycle."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ def design_datasheet(
     torque: bool = True,
     system: System = "metric",
 ) -> Figure:
-    """Return the sheet of one fully turning linkage.
+    """Return the datasheet of one fully rotating linkage.
 
-    numbers: its row of the table of quantities, metric; those that are missing, None or NaN are left out. bold:
-    columns that are always there, in bold, with their titles: the objectives. torque: whether the drive torque is
-    known. system: of the units that all is shown in.
+    numbers: its metric row of the table of quantities; missing numbers, None and NaN are omitted. bold: columns always
+    shown, in bold, with their titles: the objectives. torque: whether the drive torque is known. system: system of
+    units of the sheet.
     """
     figure = new_figure(_WIDTH, _HEIGHT)
     heading(figure, textwrap.shorten(title, 120, placeholder=" ..."), subtitle)
@@ -79,7 +79,7 @@ def design_datasheet(
 
 
 def _rows(numbers: Mapping[str, Any], objectives: Mapping[str, str]) -> list[tuple[str, str]]:
-    """Return column and title of what the table shows: all objectives, and of the others those that fit."""
+    """Return column and title of the table's entries: all objectives, and as many others as fit."""
 
     def has_value(key: str) -> bool:
         value = numbers.get(key)

@@ -1,4 +1,4 @@
-"""A mechanism drawn to scale for people: the linkage of `service.drawings`, with what is told of it."""
+"""A mechanism drawn to scale for people: the linkage of `service.drawings`, with annotations."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .style import BLUE, INK, MUTED, SMALL, VERMILION
 def draw_mechanism(axes: Axes, mechanism: Mechanism, linkage: Linkage, system: System = "metric") -> None:
     """Draw one fully turning linkage, in mm, where its transmission angle is least; its lengths are told in a system.
 
-    The dead centres are outlined in grey. Links described by their section have their true width.
+    The dead centres are outlined in grey. Links with a section have their true width.
     """
     look = look_of(mechanism, linkage)
     (left, low, right, high), size = look.extent, look.size
@@ -44,7 +44,7 @@ def least_transmission_crank_angle(linkage: Linkage) -> float:
 def _rotation(axes: Axes, r: float, speed: float) -> None:
     """Show the direction of rotation on the crank circle, away from the slider.
 
-    r, speed: with the sign turned on the crossed branch.
+    r, speed: with reversed sign on the crossed branch.
     """
     if not speed:
         return
@@ -62,7 +62,7 @@ def _rotation(axes: Axes, r: float, speed: float) -> None:
 
 
 def _transmission_angle(axes: Axes, pin: Point, slider: Point, degrees: float) -> None:
-    """Mark the angle between the rod and the normal of the slider line, at the slider pin."""
+    """Mark the angle between the rod and the normal to the slider line, at the slider pin."""
     rod_angle = math.degrees(math.atan2(pin[1] - slider[1], pin[0] - slider[0]))
     normal = -90.0 if pin[1] < slider[1] else 90.0
     rod = math.dist(pin, slider)

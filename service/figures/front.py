@@ -1,4 +1,4 @@
-"""The figures of a front by their names, each drawn when it is asked for."""
+"""The figures of a front by name, each drawn on request."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from .swing import swing_figure
 
 @dataclass(frozen=True)
 class FrontFigure:
-    """A figure. names: of its files; several where designs coincide. title: what it shows."""
+    """A figure. names: names of its files; several if designs coincide. title: its content."""
 
     names: tuple[str, ...]
     title: str
@@ -38,8 +38,8 @@ class FrontFigure:
 def front_figures(front: ParetoFront, system: System = "metric") -> list[FrontFigure]:
     """Return the figures of a front that has designs, in the units of a system.
 
-    scatter_matrix (two objectives and two designs or more), parallel_coordinates (two designs or more), and one sheet
-    for each extreme, best_<quantity>, and for the knee.
+    scatter_matrix (two objectives and two designs or more), parallel_coordinates (two designs or more), and one
+    datasheet for each extreme design, best_<quantity>, and for the knee.
     """
     figures = []
     if len(front) > 1:
@@ -59,8 +59,8 @@ def front_figures(front: ParetoFront, system: System = "metric") -> list[FrontFi
 def draw_front(front: ParetoFront, folder: Path, system: System = "metric") -> Iterator[Path]:
     """Write the figures of a front that has designs; yield each file as soon as it is written.
 
-    Those of `front_figures`; what coincides is copied. robust.png for a robust problem of two objectives or more, for
-    which the nominal one is solved. system: of the units that they are in.
+    Those of `front_figures`; coinciding ones are copied. Also robust.png for a robust problem with two objectives or
+    more, for which the nominal problem is solved. system: system of units of the figures.
     """
     folder.mkdir(parents=True, exist_ok=True)
     for item in front_figures(front, system):
@@ -81,9 +81,9 @@ def draw_front(front: ParetoFront, folder: Path, system: System = "metric") -> I
 def datasheet_of(
     front: ParetoFront, row: int, label: str, system: System = "metric", changed: Variation | None = None
 ) -> Figure:
-    """Return the sheet of a design of a front. label: what it is among the others. system: of units.
+    """Return the datasheet of a design of a front. label: its role among the others. system: system of units.
 
-    changed: the design with other lengths, if it has others.
+    changed: the design with other lengths, if changed.
     """
     if changed is None:
         design = StoredDesign(front.part(row), tuple(front.dimensions[row].tolist()))

@@ -1,4 +1,4 @@
-"""Designs that every figure of a front marks alike: the best in each objective, and the knee."""
+"""Designs marked alike in every figure of a front: the best in each objective, and the knee."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ BETTER = {"maximise": 1, "minimise": -1, "target": 0}
 
 
 def with_better_arrow(title: str, better: int) -> str:
-    """Return an axis title with the way to better values below it. better: as of `Axis`.
+    """Return an axis title with the direction of better values below it. better: as in `Axis`.
 
-    Also right for titles along y, which are turned: there the arrows point up and down.
+    Also correct for titles along y, which are rotated: there the arrows point up and down.
     """
     return f"{title}\n{'→' if better > 0 else '←'} better" if better else title
 
 
 @dataclass(frozen=True)
 class Mark:
-    """A marked design. row: in the front's table. names: of its figure files. labels: for people. size: in points."""
+    """A marked design. row: row in the front's table. names: its figure files. labels: for people. size: in points."""
 
     row: int
     names: tuple[str, ...]
@@ -72,12 +72,12 @@ class Axis:
 
     @property
     def varies(self) -> bool:
-        """Whether the designs differ in it, beyond rounding."""
+        """Whether its values differ between designs, beyond rounding."""
         return not is_constant(self.values)
 
 
 def marks(front: ParetoFront) -> list[Mark]:
-    """Return the marked designs; one that is best in several ways comes once. The knee comes last."""
+    """Return the marked designs; one that is best in several objectives appears once. The knee comes last."""
     labels: dict[int, list[tuple[str, str]]] = {}
     for name, row in front.extremes().items():
         quantity = front.problem.quantity(name)
@@ -106,7 +106,7 @@ def objective_axis(front: ParetoFront, objective: Objective, system: System = "m
 
 
 def dimension_axes(front: ParetoFront, system: System = "metric") -> list[Axis]:
-    """Return the axes of crank, rod and offset, and of what varies besides them, in the units of a system."""
+    """Return the axes of crank, rod, offset and the extra variables, in the units of a system."""
     columns = ("crank", "rod", "offset")
     length, unit_factor = shown_in("mm", system)
     axes = [

@@ -65,9 +65,9 @@ def drawing_figure(drawing: Drawing) -> Figure:
 
 
 def show_rectangle(axes: Axes, left: float, low: float, right: float, high: float, *, share: float = 1.0) -> None:
-    """Show a rectangle in the middle of axes, and nothing of these, at the same scale in both directions.
+    """Show a rectangle in the middle of hidden axes, at the same scale in both directions.
 
-    share: of width or height that it fills.
+    share: fraction of width or height that it fills.
     """
     box = axes.get_window_extent()
     scale = max((right - left) / box.width, (high - low) / box.height) / share
@@ -80,7 +80,7 @@ def show_rectangle(axes: Axes, left: float, low: float, right: float, high: floa
 
 
 def paint(axes: Axes, shapes: Iterable[Shape]) -> list[Artist]:
-    """Draw lines, circles, outlines and wedges, not texts, later ones above earlier ones; return what was drawn."""
+    """Draw lines, circles, outlines and wedges, not texts, later ones above earlier ones; return the artists."""
     artists: list[Artist] = []
     for order, shape in enumerate(shapes):
         style: dict[str, Any] = {
@@ -108,7 +108,7 @@ def paint(axes: Axes, shapes: Iterable[Shape]) -> list[Artist]:
 
 
 def _arc_points(start: Point, end: Point, bulge: float) -> list[Point]:
-    """Return points along a side, its end left out."""
+    """Return points along a side, without its end."""
     if not bulge:
         return [start]
     # The centre of an arc of the angle 4 atan(bulge) lies to the left of the chord's middle.

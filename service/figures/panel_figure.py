@@ -39,10 +39,10 @@ class Line:
 class Panel:
     """Lines over a common axis.
 
-    title, x_title: of the axes. kind, x_kind: of the numbers y and x, then in SI; without a kind, numbers are drawn
-    unchanged and the title contains their unit. names: (text, x, y) of named points. equal: whether both directions
-    have the same scale. turns: whether x is a crank angle in deg, with ticks at parts of a turn. level: a horizontal
-    line, with its name. shaded: parts of the axis (from, to). note: at the right of the title.
+    title, x_title: titles of the axes. kind, x_kind: kinds of the numbers y and x, then in SI; without a kind, numbers
+    are drawn unchanged and the title contains their unit. names: (text, x, y) of named points. equal: whether both
+    directions have the same scale. turns: whether x is a crank angle in deg, with ticks at fractions of a revolution.
+    level: horizontal line, with its name. shaded: parts of the axis (from, to). note: text at the right of the title.
     """
 
     title: Text
@@ -60,10 +60,10 @@ class Panel:
 
 @dataclass(frozen=True)
 class PanelFigure:
-    """Panels row by row, `columns` in each row. subtitle: what the mechanism is.
+    """Panels row by row, `columns` in each row. subtitle: description of the mechanism.
 
-    width: of a panel with its margins, or of those of each column; height: likewise; inches. stacked: panels of a
-    column have one axis, told at the lowest.
+    width: width of a panel with its margins, or of the panels in each column, inches; height: likewise. stacked:
+    whether the panels of a column share one axis, labelled at the lowest.
     """
 
     title: Text
@@ -78,12 +78,12 @@ class PanelFigure:
 def crank_angle_panel(
     title: Text, *lines: Line, kind: Kind | None = None, level: tuple[str, float] | None = None, note: Text = ""
 ) -> Panel:
-    """Return a panel of lines over the crank angle, deg. kind: of the numbers y, in SI; see `Panel`."""
+    """Return a panel of lines over the crank angle, deg. kind: kind of the numbers y, in SI; see `Panel`."""
     return Panel(title, CRANK_ANGLE, lines, kind, turns=True, level=level, note=note)
 
 
 def panel_in_units(panel: Panel, system: System) -> Panel:
-    """Return a panel as it is drawn: its numbers in the units of a system, its texts with them."""
+    """Return a panel ready to draw: numbers in the units of a system, and texts with these units."""
     x, y = (None if kind is None else kind.display_unit(system) for kind in (panel.x_kind, panel.kind))
     x_factor, y_factor = (1.0 if unit is None else unit.factor for unit in (x, y))
 
@@ -110,7 +110,7 @@ def panel_in_units(panel: Panel, system: System) -> Panel:
 def sampled_turn(*marked: Sequence[float] | Array, samples: int = 720, turns: int = 1) -> Array:
     """Return crank angles, rad, over a turn or two, with those marked just before and just after: jumps stay upright.
 
-    samples: of a turn. What is marked on one turn is so on each.
+    samples: number of samples per revolution. Marks on one revolution apply to each.
     """
     every = [np.asarray(angles) + number * _TURN for angles in marked for number in range(turns)]
     beside_marks = [np.mod(angles + side, turns * _TURN) for angles in every for side in (-1e-9, 1e-9)]

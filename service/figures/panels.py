@@ -24,7 +24,7 @@ FigureSource = PanelFigure | Figure | Callable[[System], Figure]
 """A sheet, or a figure: drawn before, or in a system of units when it is needed."""
 
 GREEN = "#009e73"  # of the same palette
-# Told apart by their dashes where colour is lost.
+# Distinguishable by their dashes without colour.
 _STYLES: dict[int, dict[str, Any]] = {
     0: {"color": style.BLUE, "linewidth": 1.6, "zorder": 3},
     1: {"color": style.VERMILION, "linewidth": 1.5, "linestyle": (0, (5, 2)), "zorder": 3},
@@ -115,7 +115,7 @@ _PLACES = tuple(
 
 
 def _name(axes: Axes, panel: Panel) -> None:
-    """Write each name beside its point, where it covers the least of other names and of lines."""
+    """Write each name beside its point, where it overlaps least with other names and lines."""
     if not panel.names:
         return
     axes.apply_aspect()

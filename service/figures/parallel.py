@@ -1,4 +1,4 @@
-"""Parallel coordinates: dimensions and objectives of every design of a front, one line a design."""
+"""Parallel coordinates: dimensions and objectives of every design of a front, one line per design."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _STEP, _HEIGHT, _SIDE = 1.45, 4.1, 0.75  # inches: between axes, of the axes, be
 
 
 def parallel_coordinates(front: ParetoFront, system: System = "metric") -> Figure:
-    """Return the parallel coordinates of a front of at least one design, in the units of a system."""
+    """Return the parallel coordinates of a front with at least one design, in the units of a system."""
     dimensions = dimension_axes(front, system)
     objectives = [objective_axis(front, objective, system) for objective in front.objectives]
     axes = dimensions + objectives

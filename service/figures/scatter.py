@@ -50,7 +50,8 @@ def triangle(
 ) -> Iterator[tuple[Axes, int, int]]:
     """Yield empty panels with what goes across and what goes up, places in labels; label the outer ones once drawn.
 
-    left, bottom: of the lowest row's first panel. side, gap: of and between panels. All in inches.
+    left, bottom: position of the lowest row's first panel. side: side of a panel. gap: gap between panels. All in
+    inches.
     """
     count = len(labels) - 1
     for row in range(count):

@@ -1,7 +1,7 @@
 """Style of every figure: sizes, colours that survive greyscale and colour blindness, ticks, and saving.
 
 Figures are `matplotlib.figure.Figure` objects with their own Agg canvas. Neither pyplot nor the global settings of
-matplotlib are touched, so that drawing never changes what a caller plots himself.
+matplotlib are touched, so that drawing never affects the caller's own plots.
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ FRAME = "#8c8c8c"
 GRID = "#dedede"
 SHADE = "#ededed"
 LINK = "#cfdce8"
-# Okabe and Ito, "Color Universal Design" (2008): told apart with every kind of colour vision, and by their greys.
+# Okabe and Ito, "Color Universal Design" (2008): distinguishable with every kind of colour vision, and by their greys.
 BLUE, VERMILION = "#0072b2", "#d55e00"
 
 MARKERS = ("^", "v", "s", "D", "P", "X", "<", ">", "h")
 KNEE_MARKER = "*"
-# Parts of a whole, told apart in greyscale too.
+# Parts of a whole, distinguishable in greyscale too.
 GREYS = ("#404040", "#a8a8a8", "#6e6e6e", "#d4d4d4", "#8c8c8c", "#c0c0c0", "#565656", "#ebebeb")
 _HATCHES = ("", "///", "", "...", "xxx", "", "\\\\\\", "ooo")
 
@@ -89,7 +89,7 @@ def write_text(figure: Figure, x: float, y: float, text: str, **style: Any) -> N
 
 
 def heading(figure: Figure, title: str, subtitle: str = "", *, left: float = 0.25) -> None:
-    """Write the title at the upper left of a figure, and below it what it is of."""
+    """Write the title at the upper left of a figure, and its subject below."""
     height = figure.get_size_inches()[1]
     write_text(figure, left, height - 0.3, title, fontsize=TITLE, weight="bold")
     write_text(figure, left, height - 0.5, subtitle, color=MUTED)
@@ -103,20 +103,20 @@ def title_panel(axes: Axes, title: str, note: str = "", colour: str = MUTED) -> 
 
 
 def show_full_turn(axes: Axes) -> None:
-    """Let axes show a turn of the crank, in deg."""
+    """Let axes show a crank revolution, in deg."""
     axes.set_xlim(0, 360)
     axes.set_xticks(range(0, 361, 45))
 
 
 def draw_stack(axes: Axes, x: Array, parts: Array, names: Sequence[str]) -> None:
-    """Draw parts (s, m) over what goes across (m,)."""
+    """Draw stacked parts (s, m) over x values (m,)."""
     stack = axes.stackplot(x, parts, labels=names, colors=GREYS, edgecolor="white", linewidth=0.4)
     for part, hatch in zip(stack, _HATCHES, strict=False):
         part.set_hatch(hatch)
 
 
 def legend_beside(axes: Axes, *, stacked: int = 0) -> None:
-    """Name at the right of axes what they show. stacked: of the first so many the last is on top."""
+    """Write the legend at the right of axes. stacked: number of first entries to list in reverse, the last on top."""
     handles, labels = axes.get_legend_handles_labels()
     order = [*reversed(range(stacked)), *range(stacked, len(handles))]
     place: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (1.02, 1.0), "borderaxespad": 0.0}

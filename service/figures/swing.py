@@ -1,4 +1,4 @@
-"""Figure of a swing: the machine to scale, and drive, slider, angles and error over the crank angle, both ways."""
+"""Figure of a swing: the machine to scale, and drive, slider, angles and error over the crank angle, both strokes."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def swing_figure(
 ) -> Figure:
     """Return the machine half-way between both ends of its swing, which are dashed, above the curves of both strokes.
 
-    title: instead of how it is driven. subtitle: before its dimensions.
+    title: title instead of the kind of drive. subtitle: text before its dimensions.
     """
     panel_figure = swing_panels(mechanism, linkage, swing)
     if title:
@@ -56,7 +56,7 @@ def swing_figure(
 
 
 def swing_panels(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> PanelFigure:
-    """Return the curves of both strokes over the crank angle; the way back is drawn where it differs."""
+    """Return the curves of both strokes over the crank angle; the return stroke is drawn if it differs."""
     ways = curves_of_both_strokes(mechanism, linkage, swing)
     drive = "force on the slider" if swing.driver == "slider" else "torque on the crank"
     driven = "slider position error" if swing.driver == "crank" else "crank angle error"

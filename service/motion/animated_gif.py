@@ -1,4 +1,4 @@
-"""The moving linkage as an animated GIF : one turn, two for a 720 deg cycle, or a swing."""
+"""The moving linkage as an animated GIF: one revolution, two for a 720 deg cycle, or a swing."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ _WHITE = 246  # of 255; the fill of the slider is just below
 def animated_gif(
     mechanism: Mechanism, linkage: Linkage, *, name: str, design: str = "", swing: Swing | None = None
 ) -> bytes:
-    """Return one linkage as an animated GIF, which turns as the machine does, or swings by its law of motion.
+    """Return an animated GIF of one linkage, which rotates as the machine does, or swings by its motion law.
 
-    name: of the run. design: which of it, "design 3". swing: what the crank makes instead of turning fully. Raises
-    `AssemblyError` for a linkage that does not turn fully, or what `require_swing` raises.
+    name: name of the run. design: its design, "design 3". swing: swing of the crank instead of full rotation. Raises
+    `AssemblyError` for a linkage that does not rotate fully, or the errors of `require_swing`.
     """
     scene = _turn_scene(mechanism, linkage) if swing is None else _swing_scene(mechanism, linkage, swing)
     frames = _frames(scene, f"{name}, {design}" if design else name)
@@ -50,7 +50,7 @@ def animated_gif(
 
 @dataclass(frozen=True)
 class _Scene:
-    """Shapes of the pictures: still ones, and of each frame its own and the text. dashed: which are dashed."""
+    """Shapes of the pictures: fixed ones, and those of each frame with its text. dashed: dashed shapes."""
 
     extent: tuple[float, float, float, float]
     size: float
@@ -119,14 +119,14 @@ def _frames(scene: _Scene, title: str) -> list[Picture]:
             if artist is not reading:
                 artist.remove()
         picture = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3])  # type: ignore[attr-defined]
-        # One palette for all, so that what stands still does not flicker.
+        # One palette for all, so that fixed shapes do not flicker.
         palette = palette or _palette(picture)
         pictures.append(picture.quantize(palette=palette, dither=Image.Dither.NONE))
     return pictures
 
 
 def _palette(picture: Picture) -> Picture:
-    """Return the colours of a picture, those near to white as white."""
+    """Return the colours of a picture, with near-white ones as white."""
     from PIL import Image
 
     colours = picture.quantize(_COLOURS).getpalette() or []

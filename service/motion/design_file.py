@@ -15,7 +15,7 @@ ENDINGS = {"dxf": (".dxf",), "svg": (".svg",), "motion": (".html", ".htm"), "gif
 def design_file(kind: str, stored: StoredDesign, angle: float | None, units: System, **named: str) -> bytes:
     """Return a file of one design, one of `ENDINGS`.
 
-    angle: of the crank in drawings, rad; None for the usual one. named: job and design, for titles.
+    angle: crank angle in drawings, rad; None for the default. named: job and design, for titles.
     """
     if kind == "cycle":
         from ..designs.design_curves import design_csv

@@ -1,4 +1,4 @@
-"""The motion of a linkage as a page plays it, and that of one that turns."""
+"""Motion of a linkage for playback on a page, and the playback of a rotating one."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ class PlayerText:
 
 @dataclass(frozen=True)
 class Playback:
-    """A motion as a page plays it, over and over.
+    """A motion that a page plays repeatedly.
 
-    summary: a line on the linkage. record: numbers for the script, with the places of slider and rod. columns: the
-    curves at the same places. marks: places of lines in them, deg. turns: of the crank, after which the motion repeats;
-    1 of a swing. still, moving: shapes of the drawing, those that move by their name, each in its own coordinates.
-    extent: left, bottom, right, top, mm. size: of line types.
+    summary: line on the linkage. record: numbers for the script, with the positions of slider and rod. columns: curves
+    at the same points. marks: positions of lines in them, deg. turns: crank revolutions after which the motion repeats;
+    1 for a swing. still, moving: fixed and moving shapes of the drawing, the moving ones by name, each in its own
+    coordinates. extent: left, bottom, right, top, mm. size: reference length for line types.
     """
 
     summary: str
@@ -76,9 +76,9 @@ _TURNS = PlayerText(
 
 
 def turn_playback(mechanism: Mechanism, linkage: Linkage) -> Playback:
-    """Return the motion of a fully turning linkage. Raises `AssemblyError` for one that does not turn fully.
+    """Return the motion of a fully rotating linkage. Raises `AssemblyError` for one that does not rotate fully.
 
-    It has both turns of a cycle of two.
+    It includes both revolutions of a 720 deg cycle.
     """
     turns = cycle_turns(mechanism)
     curves = cycle_table(mechanism, linkage, angles=turns * ANGLES, turns=turns)
@@ -130,7 +130,7 @@ def _pressures(mechanism: Mechanism, linkage: Linkage, angles: Array) -> list[Cu
 def place_record(look: Look, slider: Any, rod: Any) -> dict[str, Any]:
     """Return crank and offset, mm, and for the places of a motion slider positions, mm, and rod angles, deg.
 
-    slider: m. rod: rad.
+    slider: slider positions, m. rod: rod angles, rad.
     """
     angles = np.degrees(np.unwrap(rod))
     return {

@@ -1,4 +1,4 @@
-"""The moving linkage as one HTML file: drawing, curves and script in it, nothing fetched."""
+"""The moving linkage as one HTML file with embedded drawing, curves and script, without downloads."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ def player_page(
 ) -> bytes:
     """Return one linkage as an HTML file that plays its motion.
 
-    The script turns the crank and looks up everything else in curves that are in the file: one degree apart, or, of a
-    linkage that swings, at even times of its way forth and back. name: of the run. design: which of it, "design 3".
-    swing: what the crank makes instead of turning fully. Raises `AssemblyError` for a linkage that does not turn fully,
-    or what `require_swing` raises.
+    The script turns the crank and looks up everything else in curves in the file: one degree apart, or, for a swinging
+    linkage, at evenly spaced times of its motion back and forth. name: name of the run. design: its design, "design 3".
+    swing: swing of the crank instead of full rotation. Raises `AssemblyError` for a linkage that does not rotate fully,
+    or the errors of `require_swing`.
     """
     play = turn_playback(mechanism, linkage) if swing is None else swing_playback(mechanism, linkage, swing)
     title = f"{name}, {design}" if design else name
@@ -57,7 +57,7 @@ def player_page(
 
 
 def _data(play: Playback) -> str:
-    """Return the data of the script as JSON that may stand in HTML."""
+    """Return the data of the script as JSON that is safe within HTML."""
     curves = {
         column.key: [float(f"{value:.7g}") if math.isfinite(value) else None for value in column.values]
         for column in play.columns

@@ -1,4 +1,4 @@
-"""The motion of a linkage that swings, forth and back by its law of motion."""
+"""Motion of a swinging linkage, back and forth by its motion law."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _LEFT_OUT = ("crank_angle", "load")
 
 
 def swing_playback(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Playback:
-    """Return the motion of a linkage that swings. Raises what `require_swing` raises."""
+    """Return the motion of a swinging linkage. Raises the errors of `require_swing`."""
     drawn = swing_look(mechanism, linkage, swing)
     ways = curves_at_even_times(mechanism, drawn.linkage, drawn.swing, ANGLES)
     angles = np.concatenate([way.crank_angle for way in ways])

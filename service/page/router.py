@@ -64,7 +64,7 @@ async def fetch_page_file(request: Request, name: str) -> Response:
 
 @dataclass(frozen=True)
 class _File:
-    """A file of the page, as it is and compressed. tag: another one for another content."""
+    """A file of the page, plain and compressed. tag: tag that changes with the content."""
 
     media_type: str
     content: bytes
@@ -91,9 +91,9 @@ def response_with_etag(
     make_response: Callable[[], Response],
     headers: Mapping[str, str] = MappingProxyType({}),
 ) -> Response:
-    """Return an answer with an ETag, or 304 to who has it already; made only where it is sent.
+    """Return an answer with an ETag, or 304 if the client has it already; created only if sent.
 
-    tag: another one for another content; None for what no browser shall keep.
+    tag: tag that changes with the content; None for content that browsers must not cache.
     """
     same = tag is not None and request.headers.get("if-none-match") == tag
     response = Response(status_code=304) if same else make_response()
@@ -102,14 +102,14 @@ def response_with_etag(
 
 
 def content_tag(content: bytes) -> str:
-    """Return a tag of a content, in letters and digits."""
+    """Return a tag for a content, in letters and digits."""
     return hashlib.sha256(content).hexdigest()[:16]
 
 
 def files_of(folder: Path) -> dict[str, _File]:
-    """Return the files of a folder by name, read once: no name from a client is ever a path.
+    """Return the files of a folder by name, read once: a name from a client is never used as a path.
 
-    The document asks for two: app.js, which is all modules as one, and style.css. The others are there to be read.
+    The document requests two: app.js, which joins all modules, and style.css. The others are there for reading.
     """
     paths = [path for path in folder.rglob("*") if path.suffix in _TYPES]
     texts = {path.relative_to(folder).as_posix(): path.read_text("utf-8") for path in sorted(paths)}

@@ -1,4 +1,4 @@
-"""A page for browsers that do not carry the token: it asks for it."""
+"""A page that asks for the token in browsers without it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _STYLE = """
 .locked input { flex: 1 1 14rem; }
 .locked code { overflow-wrap: anywhere; }
 """
-# A view is named after the #, which a browser keeps to itself: it goes along with the form, and the redirect keeps it.
+# A view is named after the #, which a browser does not send: it goes along with the form, and the redirect keeps it.
 _SCRIPT = """
 document.documentElement.dataset.scheme = localStorage.getItem("scheme") ?? "auto";
 history.replaceState(null, "", location.pathname + location.hash);  // a token that was wrong does not stay to be read
@@ -30,9 +30,9 @@ _WRONG = '<p class="error" role="alert">That was not the token of this service.<
 
 
 def locked_page(connection: HTTPConnection, *, wrong: bool = False) -> HTMLResponse:
-    """Return the page that asks for the token, with status 401. wrong: another token was given.
+    """Return the page that asks for the token, with status 401. wrong: whether a wrong token was given.
 
-    The address is that of the connection, whose Host is one of the service's names.
+    The address is that of the connection, where Host is one of the service's names.
     """
     page = Template((_STATIC / "locked.html").read_text(encoding="utf-8"))
     address = f"{connection.scope.get('scheme', 'http')}://{connection.headers.get('host', '')}/?token=…"
@@ -49,13 +49,13 @@ def locked_page(connection: HTTPConnection, *, wrong: bool = False) -> HTMLRespo
 
 @cache
 def _style() -> str:
-    """Return the style of all views, and the page's own: its files are not for who has no token."""
+    """Return the style of all views, and that of this page: the style files require the token."""
     return (_STATIC / "style" / "shell.css").read_text(encoding="utf-8") + _STYLE
 
 
 @cache
 def _policy() -> str:
-    """Return the content security policy: only this very style and script, and a form sent to the service itself."""
+    """Return the content security policy: only this exact style and script, and a form sent to the service."""
     digests = (hashlib.sha256(text.encode()).digest() for text in (_style(), _SCRIPT))
     style, script = (f"'sha256-{base64.b64encode(digest).decode()}'" for digest in digests)
     return (

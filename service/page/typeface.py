@@ -1,4 +1,4 @@
-"""The page's typeface: Inter, from the package that brings it, with the characters that the page needs."""
+"""The page's typeface: Inter, from its package, with the characters that the page needs."""
 
 from __future__ import annotations
 
@@ -15,11 +15,10 @@ _ONE = Lock()
 
 
 def typeface() -> bytes:
-    """Return Inter with weights from 100 to 900 as WOFF: a tenth of the whole, made once in a second.
+    """Return Inter with weights from 100 to 900 as WOFF: a tenth of the original, created once in one second.
 
-    Inter is of the Inter Project Authors, under the SIL Open Font License 1.1, whose text lies in its package; the font
-    itself says so to who gets it. WOFF2 would be a third smaller, but takes three times as long to make and a package
-    more.
+    Inter is by the Inter Project Authors, under the SIL Open Font License 1.1, whose text is in its package; the font
+    itself states this. WOFF2 would be a third smaller, but takes three times as long to create and another package.
     """
     with _ONE:
         return _subset_font()

@@ -1,1 +1,1 @@
-"""The shipped jobs, as a form can start from them."""
+"""The shipped jobs as starting points for a form."""

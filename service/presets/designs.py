@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class Design(NamedTuple):
-    """Lengths, mm, and the crank angles between which a crank swings, deg; None of one that turns through."""
+    """Lengths, mm, and the crank angles between which a crank swings, deg; None for full rotation."""
 
     crank_mm: float
     rod_mm: float

@@ -11,9 +11,9 @@ from .. import presets
 
 @cache
 def shipped_jobs() -> dict[str, dict[str, Any]]:
-    """Return the jobs of runs/, which every installation carries, by the names of their files.
+    """Return the jobs in runs/, which every installation includes, by file name.
 
-    With the catalogues that lie beside them: who starts from one has no such file.
+    Includes the catalogues beside them: users who start from a shipped job do not have these files.
     """
     from ...optimise.job import read_job
 

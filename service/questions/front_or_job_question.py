@@ -74,7 +74,7 @@ class FrontOrJobQuestion:
     def read(
         self, inputs: Mapping[str, object], row: int | None, words: Mapping[str, str] | None = None
     ) -> dict[str, Any]:
-        """Return inputs as the answer takes them. Raises `InputError` for others, and for a design out of place."""
+        """Return the inputs in the form for the answer. Raises `InputError` for other inputs or a misplaced design."""
         if (row is None and self.row == "must") or (row is not None and self.row == "none"):
             if row is None:
                 raise InputError(f"{self.name} needs one design of the front; got none; name it")

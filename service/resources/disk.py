@@ -1,4 +1,4 @@
-"""Room on disks: whether an error says that there is none, and how much a place has."""
+"""Disk space: detection of a full disk in an error, and the free space of a place."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ _FULL = (errno.ENOSPC, errno.EDQUOT)
 
 
 def is_full(error: BaseException) -> bool:
-    """Whether an error says that a disk is full, or what a user may have of it."""
+    """Whether an error reports a full disk, or an exhausted user quota."""
     return isinstance(error, OSError) and error.errno in _FULL
 
 
 def free(place: Path) -> int:
-    """Return the free room, bytes, where a file or folder is or would be; very large if unknown."""
+    """Return the free space, bytes, at the place of a file or folder, existing or not; very large if unknown."""
     existing = place.absolute()
     while not existing.exists() and existing != existing.parent:
         existing = existing.parent
@@ -33,12 +33,12 @@ def free(place: Path) -> int:
 
 
 def free_space_text(place: Path) -> str:
-    """Return how much room a place has, in words."""
+    """Return the free space of a place in words."""
     return f"{place} has {size_text(free(place))} free"
 
 
 def full_places(error: OSError) -> str:
-    """Return which places an error of a full disk is of: the one that it names, else those without room."""
+    """Return the places affected by a full-disk error: the one that it names, else those without free space."""
     if isinstance(error.filename, str | os.PathLike):
         return free_space_text(Path(error.filename))
     places = [place for place in _written() if free(place) < LEAST]
@@ -46,7 +46,7 @@ def full_places(error: OSError) -> str:
 
 
 def _written() -> list[Path]:
-    """Return where this software writes besides its runs and its store: compiled kernels and temporary files."""
+    """Return further places that this software writes to: compiled kernels and temporary files."""
     from ... import model
 
     cache = os.environ.get("NUMBA_CACHE_DIR") or Path(model.__path__[0]) / "__pycache__"

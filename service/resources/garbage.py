@@ -1,4 +1,4 @@
-"""Garbage collection, put off where very many objects are made that all stay for a while."""
+"""Garbage collection, postponed while very many lasting objects are created."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def uncollected() -> Iterator[None]:
-    """Collect no garbage meanwhile: of the time to load matplotlib, or to draw a figure, that is a fifth."""
+    """Suspend garbage collection: it takes a fifth of the time to load matplotlib or to draw a figure."""
     collecting = gc.isenabled()
     gc.disable()
     try:

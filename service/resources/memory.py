@@ -1,4 +1,4 @@
-"""Memory: amounts as people write them, and how much of it jobs of a worker take and have left."""
+"""Memory: amounts as people write them, and the memory that jobs of a worker use and leave behind."""
 
 from __future__ import annotations
 
@@ -15,34 +15,34 @@ _FORM = re.compile(r"\s*(\d+(?:\.\d+)?)\s*([A-Za-z]*)\s*", re.ASCII)
 
 
 class Memory:
-    """Memory that this process and its children take, told apart by jobs.
+    """Memory used by this process and its children, distinguished by jobs.
 
-    What is there when a job begins, beyond what was when the first one did, was left by others: caches, compiled
-    kernels, memory that the allocator keeps. It does not count, and less of it once some is given back.
+    Memory in use at the start of a job, beyond that at the start of the first job, was left by earlier ones: caches,
+    compiled kernels, memory kept by the allocator. It does not count for the job, and shrinks once some is freed.
     """
 
     def __init__(self) -> None:
         self._fresh = self._least = 0
 
     def begin(self) -> None:
-        """Take note that a job begins."""
+        """Record the start of a job."""
         self._least = memory_taken()
         self._fresh = min(self._fresh or self._least, self._least)
 
     @property
     def left_behind(self) -> int:
-        """Memory that earlier jobs have left behind, in bytes."""
+        """Memory left behind by earlier jobs, bytes."""
         return self._least - self._fresh
 
     def of_the_job(self) -> int:
-        """Return the memory that the job takes now, in bytes, including that of a fresh process."""
+        """Return the memory that the job uses now, bytes, including that of a fresh process."""
         total = memory_taken()
         self._least = min(self._least, total)
         return total - self.left_behind
 
 
 def memory_taken() -> int:
-    """Return the memory of this process and its children, in bytes, as far as it is in main memory."""
+    """Return the resident memory of this process and its children, bytes."""
     import psutil
 
     process = psutil.Process()
@@ -54,7 +54,7 @@ def memory_taken() -> int:
 
 
 def size_of(text: str, option: str) -> int:
-    """Return an amount in bytes. Raises `InputError` that names the option for anything else."""
+    """Return an amount in bytes. Raises `InputError`, which names the option, for invalid text."""
     match = _FORM.fullmatch(text)
     factor = _UNITS.get(match[2].upper()) if match else None
     size = int(float(match[1]) * factor) if match and factor else 0

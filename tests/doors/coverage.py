@@ -1,4 +1,4 @@
-"""What the doors offer, by the program's own description, and which case exercises it."""
+"""Options that the interfaces offer, by the program's own description, and the cases that exercise them."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def names_of(option: Any) -> list[str]:
 
 
 def untried_options(cases: Iterable[Case]) -> Iterator[str]:
-    """Yield every option that no case has, and each of two systems of units and kinds of output that none has."""
+    """Yield every option, system of units and kind of output that no case has."""
     typed = [case.words for case in cases if case.is_command]
     for command, options in commands().items():
         lines = [words for words in typed if (words[0] if words and not words[0].startswith("-") else "") == command]

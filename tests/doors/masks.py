@@ -1,4 +1,4 @@
-"""What differs from one recording to the next, and what stands in its place: the one list of it."""
+"""The only list of texts that differ between recordings, and their replacements."""
 
 from __future__ import annotations
 

@@ -119,7 +119,7 @@ def _filled(value: Any) -> Any:
 
 
 def read_script(file: Path) -> dict[str, Case]:
-    """Return the cases of a script in their order, by name; what is there again has a number after its name."""
+    """Return the cases of a script in order, by name; repeated names get a number."""
     cases: dict[str, Case] = {}
     for line in file.read_text(encoding="utf-8").splitlines():
         if line and not line.startswith("#"):
