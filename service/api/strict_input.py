@@ -65,7 +65,7 @@ class StrictInput:
         await self.app(scope, _again(body, receive), send)
 
     async def _body(self, headers: Headers, receive: Receive) -> bytes | None:
-        """Return the whole body; None if it is too large. It is counted as it comes: a length may lie, or be absent."""
+        """Return the whole body; None if too large. It is counted on arrival: a stated length may be wrong."""
         length = headers.get("content-length", "0")
         if not length.isdecimal() or len(length) > 15 or int(length) > self.most_body:
             return None

@@ -27,7 +27,7 @@ class TurnQueue:
 
     @contextlib.asynccontextmanager
     async def turn(self) -> AsyncIterator[None]:
-        """Wait for a turn; refuse with a 503 that gives the reason if too many wait, or no turn comes soon."""
+        """Wait for a turn; refuse with a 503 and its reason if too many wait or no turn comes soon."""
         if self._waiting >= _MOST:
             raise self._busy(f"{_MOST} others wait")
         self._waiting += 1

@@ -141,7 +141,7 @@ def optimise(
 
 @contextlib.contextmanager
 def _store_or_own(places: Places) -> Iterator[tuple[Store, bool]]:
-    """Yield the store, or a temporary one for this run if it cannot be used, and which of the two it is."""
+    """Yield the store, or a temporary one for this run if it is unusable, and which of the two."""
     from ..store import Store
 
     with contextlib.ExitStack() as opened:

@@ -35,7 +35,7 @@ class DesignCurves:
 
 
 def design_curves(design: StoredDesign, count: int) -> DesignCurves:
-    """Return the curves at a number of points: crank angles from 0 deg, or even times of a swing back and forth.
+    """Return the curves at N points: crank angles from 0 deg, or even times of a swing back and forth.
 
     A cycle of 720 deg has both revolutions. For a swing the first point is its start, the middle one its end, and the
     number is even. Raises `InputError` for too few or too many points, and the errors of the design's motion.

@@ -40,7 +40,7 @@ def read_measured(text: str, mechanism: Mechanism, linkage: Linkage) -> Measured
 
 
 def _any_unit(text: str, kind: Kind) -> float | None:
-    """Return the size of a unit in SI, for any unit known to jobs; None if it is not a unit of the kind."""
+    """Return the size of any unit known to jobs, in SI; None for a unit of another kind."""
     from ...objectives.units import symbol_in, to_si
 
     symbol = symbol_in(text.replace("_", " "), kind)

@@ -38,7 +38,7 @@ class Requirement:
         return f"slack_{self.column}"
 
     def missed_by(self, row: Row) -> float | None:
-        """Return the amount by which a design misses it, zero if it is met; None for a design without the number."""
+        """Return the amount by which a design misses it, zero if met; None for a design without the number."""
         value = _number(row.get(self.column))
         if value is None:
             return None

@@ -38,7 +38,7 @@ _EXAMPLE = '"transmission_angle >= 40 deg"'
 
 @dataclass(frozen=True)
 class Condition:
-    """Comparison of a column or a formula with a value in its unit, or with a word for columns of words.
+    """Comparison of a column or a formula with a value in its unit, or of a column with a word.
 
     column: column of the table, or a new column whose values the formula gives, SI.
     """

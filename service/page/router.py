@@ -107,7 +107,7 @@ def content_tag(content: bytes) -> str:
 
 
 def files_of(folder: Path) -> dict[str, _File]:
-    """Return the files of a folder by name, read once: a name from a client is never used as a path.
+    """Return the files of a folder by name, read once: a client's name is never used as a path.
 
     The document requests two: app.js, which joins all modules, and style.css. The others are there for reading.
     """

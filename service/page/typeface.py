@@ -15,7 +15,7 @@ _ONE = Lock()
 
 
 def typeface() -> bytes:
-    """Return Inter with weights from 100 to 900 as WOFF: a tenth of the original, created once in one second.
+    """Return Inter with weights from 100 to 900 as WOFF: a tenth of the original, created once, in a second.
 
     Inter is by the Inter Project Authors, under the SIL Open Font License 1.1, whose text is in its package; the font
     itself states this. WOFF2 would be a third smaller, but takes three times as long to create and another package.

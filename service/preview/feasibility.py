@@ -299,7 +299,7 @@ def _middle_of(designs: Array) -> Array:
 
 
 def run_within(seconds: float, work: Callable[[], T]) -> T | None:
-    """Return the result of the work, or None if it takes longer or earlier work is still running in the background."""
+    """Return the result of the work; None if it takes longer or earlier work still runs in the background."""
     results: list[T] = []
     failed: list[Exception] = []
 

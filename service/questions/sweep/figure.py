@@ -105,7 +105,7 @@ def sweep_figure(
 
 
 def _axis_title(axis: Axis, system: System) -> tuple[str, float]:
-    """Return the title of an axis with its unit, and the size of that unit in the unit of its column."""
+    """Return the title of an axis with its unit, and the size of that unit in its column's unit."""
     symbol, factor = shown_in("rpm" if axis.parameter == "speed" else "mm", system)
     return with_unit(axis.parameter, symbol), factor
 
