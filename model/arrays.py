@@ -1,4 +1,4 @@
-"""Types of arrays by what they hold: numbers, truth values, whole numbers."""
+"""Types of arrays by content: numbers, truth values, whole numbers."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ Whole = NDArray[np.int64]
 def distinct(values: Whole, axis: int | None = None) -> Whole:
     """Return whole numbers, or rows of them along axis 0, each once, ascending.
 
-    As `np.unique`, which without counts loads `numpy.ma` first: a thirtieth of the time of a command.
+    Like `np.unique`, which without counts first loads `numpy.ma`: a thirtieth of a command's time.
     """
     return np.unique(values, axis=axis, return_counts=True)[0]
 
 
 def row_lengths(rows: Array) -> Array:
-    """Return the Euclidean length (n,) of each row: the bits of `np.linalg.norm`, sooner for few rows."""
+    """Return the Euclidean length (n,) of each row: bit for bit `np.linalg.norm`, but faster for few rows."""
     return np.asarray(np.sqrt(np.add.reduce(rows * rows, axis=1)))

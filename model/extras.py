@@ -1,6 +1,6 @@
 """Optional parts of the software: packages that come with an extra, `pip install "slidercrank[EXTRA]"`.
 
-Which extra brings a package is read from the metadata of the installation, hence from pyproject.toml.
+The metadata of the installation, hence pyproject.toml, says which extra installs a package.
 """
 
 from __future__ import annotations
@@ -48,17 +48,17 @@ def is_installed(package: str) -> bool:
     """Whether a package can be imported."""
     try:
         return find_spec(package) is not None
-    except (ModuleNotFoundError, ValueError):  # the latter where an import of it is under way or forbidden
+    except (ModuleNotFoundError, ValueError):  # the latter where its import is in progress or forbidden
         return False
 
 
 def extra_of(package: str) -> str | None:
-    """Return the extra that brings a package, by the name it is imported under; None if none does."""
+    """Return the extra that installs a package, by the package's import name; None if there is none."""
     from importlib.metadata import PackageNotFoundError, requires
 
     try:
         lines = requires("slidercrank") or []
-    except PackageNotFoundError:  # the sources are used where they are, without an installation
+    except PackageNotFoundError:  # the sources are used in place, without an installation
         return None
     for line in lines:
         match = _REQUIREMENT.fullmatch(line)

@@ -15,10 +15,10 @@ _MAKERS = ("dataclasses", "copy")
 
 
 def warn_user(sentence: str) -> None:
-    """Warn by `InputWarning` in the name of the line that calls the caller's module, if that line is a user's.
+    """Warn with `InputWarning` at the line that calls the caller's module, if that line is a user's.
 
-    No warning where this software itself calls: its numbers come from values with units, or from where they have had
-    their warning.
+    There is no warning if this software itself calls: its numbers come from values with units, or have already been
+    checked.
     """
     frame, modules = inspect.currentframe(), list[str]()
     while frame is not None:
@@ -31,9 +31,9 @@ def warn_user(sentence: str) -> None:
 
 
 def both_readings(name: str, number: float, unit: str, usual: str, factor: float) -> str:
-    """Return a number in SI as it is read and as it was probably meant, in a usual unit.
+    """Return a number in SI as read, and as probably meant in a usual unit.
 
-    unit: SI. usual: the unit in which people have such values. factor: what one SI unit is in it.
+    unit: SI unit. usual: usual unit for such values. factor: one SI unit in the usual unit.
 
     >>> both_readings("crank", 40.0, "m", "mm", 1e3)
     'crank 40 is 40 m = 40000 mm; write 0.04 for 40 mm'

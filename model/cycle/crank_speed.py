@@ -1,4 +1,4 @@
-"""Speed and acceleration of a crank over its angle: constant, or along the profile of its machine."""
+"""Speed and acceleration of a crank over its angle: constant, or along its machine's profile."""
 
 from __future__ import annotations
 

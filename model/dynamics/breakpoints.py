@@ -1,4 +1,4 @@
-"""Breakpoints of many designs: where the cycle of each is cut into segments on which every curve is smooth."""
+"""Breakpoints of many designs: crank angles that cut each cycle into segments on which every curve is smooth."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .segments import Cuts, CycleWindow, cut_cycle, room_for
 class Breakpoints(NamedTuple):
     """Breakpoints (n, k) of n designs in ascending crank angle, the first `many` (n,) of each; see `segments.Cuts`.
 
-    Where friction locks a design there are none.
+    A design that friction locks has none.
     """
 
     angle: Table
@@ -45,7 +45,7 @@ def _cut(blocks: Cube, loads: Loads, watch: CycleWindow, breakpoints: Breakpoint
 
 
 def breakpoints_of(blocks: Array, loads: Loads, watch: CycleWindow, *, rubbing: bool) -> Breakpoints:
-    """Return the breakpoints of designs by their blocks (n, rows, 1), each turning fully."""
+    """Return the breakpoints of designs by their blocks (n, rows, 1), each rotating fully."""
     shape = len(blocks), room_for(loads)
     breakpoints = Breakpoints(
         np.empty(shape),

@@ -1,7 +1,7 @@
-"""Torques of loads on the crank: what they take off the drive torque.
+"""Torques of loads on the crank, subtracted from the drive torque.
 
 By virtual work a torque M on the crank changes the drive torque by -M and no joint force: T = T_linkage - M(theta).
-Where the slider drives, the crank's moments about the pivot have -M beside the couple of its weight and inertia.
+Where the slider drives, -M adds to the couple of weight and inertia in the crank's moments about the pivot.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ _CRANK_TORQUE = int(Enters.CRANK_TORQUE)
 def beside_crank_loads(
     torque: Any, d: Any, block: Any, j: int, theta: Any, way: float, loads: Any, piece: Any, shift: Any
 ) -> Any:
-    """Return a torque, N m, less those of the loads on the crank, in a segment entered before.
+    """Return a torque less those of the loads on the crank, N m, in a previously entered segment.
 
     way: 1 where the crank turns counter-clockwise, -1 clockwise.
     """
-    # Taken off one by one within the loop, so that machines without such a load keep their last digits.
+    # Subtracted one by one within the loop, so that machines without such a load keep their last digits.
     for k in range(loads.kind.shape[0]):
         q = DESIGN + LOAD_ROWS * k
         if loads.kind[k] == _CRANK_TORQUE:
@@ -45,7 +45,7 @@ def beside_crank_loads(
 
 @analytic
 def on_crank(loads: Any) -> bool:
-    """Return whether there are loads on the crank."""
+    """Return whether any load acts on the crank."""
     is_loaded = False
     for k in range(loads.kind.shape[0]):
         is_loaded = is_loaded or loads.factor[k, 2] != 0.0

@@ -1,4 +1,4 @@
-"""The speed of a crank over its angle within kernels: a share of the mean, with its derivatives."""
+"""Crank speed over its angle, for kernels: a fraction of the mean, with its derivatives."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ def arcsine(z: Any) -> Any:
 def magnitude(z: Any) -> Any:
     """Return z or -z, whichever has a real part that is not negative: |z| with its derivative away from zero.
 
-    What stands for more than one number (an enclosure over a box) brings a `magnitude` of its own.
+    An object for more than one number (an enclosure over a box) provides its own `magnitude`.
     """
     if hasattr(z, "magnitude"):
         return z.magnitude()

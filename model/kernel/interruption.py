@@ -1,4 +1,4 @@
-"""Interruption of waits, for a function of your own or a kernel: a callback polled meanwhile ends them by raising."""
+"""Interruption of waits, for a custom function or a kernel: a callback polled meanwhile ends them by raising."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ FAREWELL = 0.5
 class Interruption:
     """Callback that may end calls by raising.
 
-    between_parts: callback between the parts of work that ends by itself. farewell: time that calls still have then, s.
-    killed: whether a call did not end in that time.
+    between_parts: callback between the parts of work that ends by itself. farewell: time that calls have left after an
+    interruption, s. killed: whether a call did not end in that time.
     """
 
     poll: Poll
@@ -33,11 +33,11 @@ _CURRENT: ContextVar[Interruption | None] = ContextVar("interruption", default=N
 def interrupted_by(
     poll: Poll, *, between_parts: Poll | None = None, farewell: float = FAREWELL
 ) -> Iterator[Interruption]:
-    """While entered, let `poll` be called several times a second during every call that this thread waits for.
+    """Context in which `poll` is called several times a second during every call that this thread waits for.
 
-    between_parts: called between the parts of long work of its own.
+    between_parts: callback between the parts of long work in this thread.
 
-    A search cannot hand its own question down: quantities are evaluated in a hundred places that know of no search.
+    A search cannot pass its callback down: a hundred places evaluate quantities without knowing of a search.
     """
     interruption = Interruption(poll, between_parts, farewell)
     token = _CURRENT.set(interruption)
@@ -48,27 +48,27 @@ def interrupted_by(
 
 
 def ask() -> None:
-    """Raise whatever ends the call under way, if anything does."""
+    """Raise the exception that ends the current call, if any."""
     interruption = _CURRENT.get()
     if interruption is not None:
         interruption.poll()
 
 
 def ask_between() -> None:
-    """Raise whatever ends long work between two of its parts, if anything does."""
+    """Raise the exception that ends long work between two of its parts, if any."""
     interruption = _CURRENT.get()
     if interruption is not None and interruption.between_parts is not None:
         interruption.between_parts()
 
 
 def farewell() -> float:
-    """Return how long a call that is to end may still take, s."""
+    """Return the time that an interrupted call may still take, s."""
     interruption = _CURRENT.get()
     return FAREWELL if interruption is None else interruption.farewell
 
 
 def killed() -> None:
-    """Take note that a call did not end in the time that it still had."""
+    """Record that a call did not end in its remaining time."""
     interruption = _CURRENT.get()
     if interruption is not None:
         interruption.killed = True

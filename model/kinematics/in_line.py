@@ -1,4 +1,4 @@
-"""Offsets that are nothing but rounding: such a linkage is in-line."""
+"""Offsets that are only rounding errors: such a linkage is in-line."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ _ROUNDING = 1e-15
 
 
 def in_line(rod: Any, offset: Any) -> Any:
-    """Return whether linkages have no offset but for rounding, |e| <= 1e-15 l; arguments in m, broadcast."""
+    """Return whether linkages have no offset beyond rounding, |e| <= 1e-15 l; arguments in m, broadcast."""
     return np.abs(offset) <= _ROUNDING * np.asarray(rod)
 
 
 def without_rounding(rod: Any, offset: Any) -> Any:
-    """Return offsets, m, with those that are only rounding at zero; arguments broadcast."""
+    """Return offsets, m, with those of rounding size set to zero; arguments broadcast."""
     return np.where(in_line(rod, offset), 0.0, offset)

@@ -1,4 +1,4 @@
-"""Refusals of loads on the crank where an analysis has no place for them."""
+"""Checks for analyses that do not support loads on the crank."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from .mechanism import Mechanism
 
 
 def require_no_winding(mechanism: Mechanism) -> None:
-    """Refuse a load that is another one after a turn of the crank."""
+    """Raise an error for a load that differs after a turn of the crank."""
     for load in mechanism.fullest.loads:
         if load.winds:
             raise InputError(
@@ -17,7 +17,7 @@ def require_no_winding(mechanism: Mechanism) -> None:
 
 
 def require_no_crank_load(mechanism: Mechanism, subject: str) -> None:
-    """Refuse loads on the crank where an analysis has those on the slider alone; subject: the analysis."""
+    """Raise an error for loads on the crank if an analysis supports only loads on the slider; subject: the analysis."""
     for load in mechanism.fullest.loads:
         if load.on_crank:
             raise InputError(f"{subject} takes loads on the slider; got {load.size}; leave that load out")

@@ -1,4 +1,4 @@
-"""Where a swing starts, for a start that designs choose."""
+"""Start of a swing, if designs choose it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ..checks import require_numbers
 
 @dataclass(frozen=True, kw_only=True)
 class Start:
-    """Start of a swing: of the crank, rad, or of the slider, m. None where it is that of the swing itself."""
+    """Start of a swing: crank angle, rad, or slider position, m. None keeps the start of the swing itself."""
 
     angle: float | None = None
     place: float | None = None

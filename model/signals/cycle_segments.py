@@ -15,8 +15,8 @@ from ..dynamics.segments import angle_within
 class Segments:
     """The cycles of n designs between breakpoints: s segments in order of design and place, with smooth curves.
 
-    row: design. low, high: places, of the crank angle or of the time. cut: the breakpoint at its start. next_segment:
-    -1 where none follows. unit: of the place, which panels are counted in.
+    row: design. low, high: places (crank angle or time) of the ends. cut: breakpoint at its start. next_segment: -1
+    where none follows. unit: unit of place for counting panels.
     """
 
     row: Whole
@@ -28,13 +28,13 @@ class Segments:
 
     @property
     def probe(self) -> Array:
-        """A place in each that tells strokes and pieces."""
+        """A place in each segment that identifies strokes and pieces."""
         low: Any = self.low
         high: Any = self.high
         return np.asarray(angle_within(low, high))
 
     def panels(self, fineness: Array) -> tuple[Whole, Array, Array, Array, Whole]:
-        """Return design, a place inside, start, width and segment of panels, at least `fineness` (n,) a unit."""
+        """Return design, a place inside, start, width and segment of panels, at least `fineness` (n,) per unit."""
         width = self.high - self.low
         count = np.maximum(1, np.ceil(width / self.unit * fineness[self.row])).astype(np.int64)
         segment = np.repeat(np.arange(len(width)), count)

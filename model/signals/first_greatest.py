@@ -1,4 +1,4 @@
-"""The crank angle reported for a greatest value: of equal ones the first in the cycle, counted from zero.
+"""The crank angle reported for a greatest value: for equal values, the first in the cycle, counted from zero.
 
 Symmetric machines reach their greatest value more than once. These values differ by rounding, so that different
 computations would choose different angles.
@@ -23,7 +23,7 @@ _APART = 1e-3  # rad: an equally high point closer to a peak than this is the sa
 
 
 def first_greatest(values: Array, angles: Array, period: float) -> Whole:
-    """Return the indices (...) of the greatest values (..., k); of equal ones the first by crank angle, rad.
+    """Return the indices (...) of the greatest values (..., k); for equal values, the first by crank angle, rad.
 
     Angles count from zero. The index is 0 if no value is finite.
     """

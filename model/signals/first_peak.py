@@ -11,13 +11,13 @@ from .first_greatest import angle_in_cycle, first_greatest
 from .peaks import find_peaks
 from .signals import Signal
 
-_MOST = 256  # peaks: more than 24 cylinders have at one height
+_MOST = 256  # peaks: more than 24 cylinders have at equal height
 
 
 def first_peaks(mechanism: Mechanism, kind: Signal, designs: Array) -> tuple[Array, Array]:
     """Return the greatest values (n,) of a signal over the cycle, and their first crank angles (n,), rad.
 
-    Designs (n, 3 + k), values and angles are those of `find_peaks`.
+    Designs (n, 3 + k), values and angles are as in `find_peaks`.
     """
     peaks = find_peaks(mechanism, kind, designs, limit=_MOST)
     period = cycle_turns(mechanism) * TURN

@@ -16,8 +16,8 @@ NOTHING = 1e-12
 def shaft_peaks(shaft: Shaft, *, limit: int, stroke: bool | None = None) -> tuple[Array, Array, Array]:
     """Return values, crank angles (n, kept) and derivatives of the highest local maxima of the curve's size.
 
-    stroke: whether the outward one alone counts, or the inward one; None for both. Where friction locks a design the
-    value is infinite.
+    stroke: whether only the outward stroke counts, or only the inward one; None for both. The value is infinite where
+    friction locks a design.
     """
     segments = segments_of(shaft.breaks, shaft.period)
     live = None if stroke is None else shaft.outward(segments) == stroke

@@ -17,9 +17,9 @@ _THIN = 1e-13  # rad: breakpoints closer than this are one
 
 @dataclass(frozen=True)
 class Breaks:
-    """Breakpoints, c of them: design, angle, cylinder, half, and what it is, as `segments.Cuts` has it.
+    """Breakpoints, c in total: design, angle, cylinder, half, and kind, as in `segments.Cuts`.
 
-    code: `FIXED` for one that no design moves, `CONTACT` where a guide's force changes sides.
+    code: `FIXED` for a breakpoint that no design moves, `CONTACT` where a guide's force changes sides.
     """
 
     row: Whole
@@ -38,7 +38,7 @@ def joined(parts: list[Breaks]) -> Breaks:
 
 
 def segments_of(breaks: Breaks, period: float) -> Segments:
-    """Return the segments between breakpoints, thin ones left out."""
+    """Return the segments between breakpoints, omitting thin ones."""
     order = np.lexsort((breaks.angle, breaks.row))
     row, low = breaks.row[order], breaks.angle[order]
     first = np.searchsorted(row, row, side="left")
@@ -53,7 +53,8 @@ def segments_of(breaks: Breaks, period: float) -> Segments:
     ends = np.searchsorted(row, row, side="right") - 1
     begins = np.searchsorted(row, row, side="left")
     after = np.where(place == ends, begins, place + 1)
-    # What is thin is one breakpoint with the next, around the cycle too: designs move it if they move either.
+    # The ends of a thin segment count as one breakpoint, also around the cycle: designs move it if they move either
+    # end.
     next_break = np.where(
         next_break > np.searchsorted(row, thin_row, side="right") - 1, np.searchsorted(row, thin_row), next_break
     )

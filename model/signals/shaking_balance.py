@@ -1,4 +1,4 @@
-"""Curves that the cylinders of a crankshaft leave together, whatever its dimensions."""
+"""Curves that remain in total from the cylinders of a crankshaft, for any dimensions."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from collections.abc import Callable
 from ..machine.arrangement import Arrangement
 from ..machine.mechanism import Mechanism
 
-_SAME = 1e-9  # rad, and share of a sum that has cancelled
+_SAME = 1e-9  # rad, and fraction of a sum that counts as cancelled
 
 
 def has_shaking_force(mechanism: Mechanism) -> bool:
-    """Return whether the shaking forces of a machine's cylinders leave something for some design."""
+    """Return whether a shaking force of a machine's cylinders remains for some design."""
     arrangement = mechanism.arrangement
     return arrangement is None or is_unbalanced(arrangement, lambda k: cmath.exp(1j * arrangement.bank(k)))
 
 
 def has_rocking_couple(mechanism: Mechanism) -> bool:
-    """Return whether the shaking forces of a machine's cylinders leave a couple for some design."""
+    """Return whether the shaking forces of a machine's cylinders leave a rocking couple for some design."""
     arrangement = mechanism.arrangement
     if arrangement is None or not any(arrangement.places):
         return False
@@ -27,7 +27,7 @@ def has_rocking_couple(mechanism: Mechanism) -> bool:
 
 
 def is_unbalanced(arrangement: Arrangement, weight: Callable[[int], complex]) -> bool:
-    """Return whether shares add up to something over the cylinders that stand alike.
+    """Return whether contributions do not cancel over cylinders with equal crank angles from their lines.
 
     A curve of period 2 pi with every harmonic cancels only among cylinders with the same crank angle from their lines.
     """

@@ -13,7 +13,7 @@ from .signals import Signal
 
 
 def cycle_window(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> CycleWindow:
-    """Return which part of the cycle counts for a signal of a mechanism."""
+    """Return the part of the cycle that counts for a mechanism's signal."""
     strokes = {"cycle": 0, "outward stroke": 1, "inward stroke": 2}
     friction = mechanism.fullest.friction
     split = kind.needs_forces and (stroke_dependent(mechanism) or friction.guide > 0.0)
@@ -25,7 +25,7 @@ def cycle_window(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -
 
 
 def signal_inputs(mechanism: Mechanism, kind: Signal) -> tuple[Array, Loads]:
-    """Return raw numbers and loads as far as a signal needs them: loads that do not matter make no breakpoints."""
+    """Return the raw numbers and loads that a signal needs: irrelevant loads create no breakpoints."""
     if kind.needs_forces:
         require_no_winding(mechanism)
         return fullest_inputs(mechanism)
@@ -37,7 +37,7 @@ def stroke_dependent(mechanism: Mechanism) -> bool:
     """Whether a load changes at the dead centres."""
     if any(load.by_stroke for load in mechanism.fullest.loads):
         return True
-    # Forces of the two strokes that vary apart from each other may agree at one value only.
+    # Forces of the two strokes that vary independently may agree at one value only.
     forces: dict[str, list[tuple[str, float]]] = {}
     for item in mechanism.varying:
         for path, factor in item.sets:

@@ -18,10 +18,10 @@ _TURN = 2.0 * np.pi
 
 @dataclass(frozen=True)
 class BarStress:
-    """Stress of the two faces of a bar. None of a design that friction locks: its angles are empty.
+    """Stress at the two faces of a bar. For a design that friction locks, the angles are empty.
 
-    theta: (s,), rad, over a cycle. shares: (k,), of the length from the crank pin. stress: (2, k, s), Pa, tension
-    positive, of the face where bending adds to tension first.
+    theta: (s,), rad, over a cycle. shares: fractions of the length from the crank pin, (k,). stress: (2, k, s), Pa,
+    tension positive; first the face where bending adds to tension.
     """
 
     theta: Array
@@ -30,12 +30,12 @@ class BarStress:
 
     @property
     def envelope(self) -> tuple[Array, Array]:
-        """Least and greatest stress over the cycle at every share, (k,)."""
+        """Least and greatest stress over the cycle at every place, (k,)."""
         return self.stress.min(axis=(0, 2)), self.stress.max(axis=(0, 2))
 
     @property
     def worst(self) -> int:
-        """Number of the share where the stress is greatest, of either sign."""
+        """Index of the place with the greatest stress of either sign."""
         return int(np.abs(self.stress).max(axis=(0, 2)).argmax())
 
 
@@ -50,7 +50,7 @@ def bar_stress(mechanism: Mechanism, part: int, design: Array) -> BarStress:
     shares = np.linspace(0.0, 1.0, _STATIONS)
     stress = Stress(*samples.stress[:, base : base + 7].T)
     both_sides = [at_share(stress, side, shares[:, None]) for side in (1.0, -1.0)]
-    # Samples run a turn on from the first breakpoint: those beyond a whole turn come first, in their order at jumps.
+    # Samples cover a turn from the first breakpoint: those beyond a whole turn come first, in their order at jumps.
     turned = int(np.searchsorted(samples.theta, _TURN))
     theta = np.roll(np.where(samples.theta < _TURN, samples.theta, samples.theta - _TURN), -turned)
     return BarStress(theta, shares, np.roll(np.array(both_sides), -turned, axis=2))

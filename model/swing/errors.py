@@ -13,7 +13,7 @@ from .swing import Swing
 
 @dataclass(frozen=True)
 class ErrorShare:
-    """A source of an error. limit: how far it may be off, m, the crank angle rad. error: what it adds, m or rad."""
+    """A source of an error. limit: its tolerance, m, or rad for the crank angle. error: its contribution, m or rad."""
 
     source: str
     limit: float
@@ -21,9 +21,9 @@ class ErrorShare:
 
 
 def error_shares(mechanism: Mechanism, linkage: Linkage, swing: Swing, crank_angle: float) -> tuple[ErrorShare, ...]:
-    """Return the share of each source in the worst case of the driven side at a crank angle, rad.
+    """Return each source's contribution to the worst case of the driven side at a crank angle, rad.
 
-    Where the crank drives, |dx/di| T_i of the slider's position; where the slider does, that over |x'|, of the crank
+    Where the crank drives: |dx/di| T_i for the slider's position. Where the slider drives: that over |x'| for the crank
     angle, with the actuator among the sources. Sources without tolerance are left out.
     """
     checked = one_linkage(mechanism, linkage)

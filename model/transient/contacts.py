@@ -1,6 +1,6 @@
 """Crank angles at which a guide's force changes sides in a motion.
 
-They move with the motion. Two within one spacing of the points, where the force is next to nothing, are passed over.
+They depend on the motion. Two within one spacing of the points, where the force is almost zero, are ignored.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _CLOSE = 1e-12
 def contacts(span: Span, motion: Motion, angles: Array, speeds: Array, accelerations: Array) -> list[float]:
     """Return the crank angles within a span, rad, in the order of its points.
 
-    angles: (n,), rad. speeds, accelerations: the motion there.
+    angles: (n,), rad. speeds, accelerations: motion at these angles.
     """
     from scipy.optimize import brentq
 

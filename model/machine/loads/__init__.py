@@ -4,5 +4,5 @@ Forces are positive outward (away from the crank pivot), torques counter-clockwi
 
 Where a load depends on the slider position, the position is counted from a `Datum`:
 the crank pivot (distance along the slider line), the inner dead centre (outward), or the outer dead centre (inward).
-Each module but `load`, `cylinder` and `registry` is one kind of load; `cylinder` is what compressors and engines share.
+Each module except `load`, `cylinder` and `registry` is one kind of load; compressors and engines share `cylinder`.
 """

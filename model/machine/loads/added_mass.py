@@ -1,4 +1,4 @@
-"""A mass that moves with the slider: fluid in a pipe, rollers, or a flywheel that the slider turns."""
+"""A mass that moves with the slider: fluid in a pipe, rollers, or a flywheel driven by the slider."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ class AddedMass(Load):
     """A force = -mass times the slider's acceleration. mass: kg.
 
     A column of fluid of density rho, length L and area A before a piston of area A_p: rho L A_p^2 / A. A roller of
-    inertia I that the slider turns without slip at radius r: I / r^2. It has no weight here and its reaction is
-    closed within the machine, so it does not shake the frame. It is part of the kinetic energy and of the inertia
-    reflected to the crank, hence of start-up and flywheel too, and not of the curve of the loads.
+    inertia I driven by the slider without slip at radius r: I / r^2. The added mass has no weight here and its reaction
+    is closed within the machine, so it does not shake the frame. It adds to the kinetic energy and to the inertia
+    reflected to the crank, hence also to start-up and flywheel, but not to the load curve.
     """
 
     mass: float
@@ -40,7 +40,7 @@ class AddedMass(Load):
 
     @property
     def resists(self) -> bool:
-        """True: it gives back what it takes."""
+        """True: it returns what it takes."""
         return True
 
     @property

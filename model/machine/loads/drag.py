@@ -18,7 +18,7 @@ def _force(position: Any, velocity: Any, way: Any, first: Any, second: Any) -> A
 
 @dataclass(frozen=True, kw_only=True)
 class Drag(Load):
-    """A resistance of turbulent flow: force = -drag v |v|, v the slider's velocity, N. drag: N s^2/m^2.
+    """A resistance from turbulent flow: force = -drag v |v|, v the slider's velocity, N. drag: N s^2/m^2.
 
     Within a stroke it is -drag v^2 or +drag v^2, which is smooth; at the dead centres its second derivative jumps.
     """
@@ -55,7 +55,7 @@ class Drag(Load):
 
     @property
     def range(self) -> str:
-        """How it follows the speed."""
+        """Dependence on the speed."""
         return "with the square of the speed"
 
 

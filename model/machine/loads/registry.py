@@ -26,14 +26,14 @@ def kinds() -> tuple[type[Load], ...]:
 
 
 def code_of(kind: type[Load]) -> int:
-    """Return the number by which kernels know a kind of load."""
+    """Return the number that identifies a kind of load in kernels."""
     return kinds().index(kind) if kind.enters == Enters.FORMULA else int(kind.enters)
 
 
 def _choice() -> Any:
-    """Return the formula of all kinds that have one: of their code first, then as `Load.formula`.
+    """Return the combined formula of all kinds that have one: arguments are the code, then those of `Load.formula`.
 
-    Composed when kernels are compiled, which inline it: there is no call at run time.
+    It is composed when kernels are compiled and inlined into them, without a call at run time.
     """
 
     @analytic

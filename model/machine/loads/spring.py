@@ -14,8 +14,8 @@ from .load_text import spring_effect
 class Spring(Load):
     """A linear spring: force = -stiffness (position - free_position), N, position counted outward from the datum.
 
-    stiffness: N/m. free_position: m. datum: a dead centre moves with the design. From the outer dead centre the
-    position counts inward and so does the force that pulls it back: the spring is the same, only its rest point moves.
+    stiffness: N/m. free_position: m. datum: a dead centre moves with the design. From the outer dead centre both the
+    position and the restoring force count inward: the spring is the same, only its rest point moves.
     """
 
     stiffness: float

@@ -44,7 +44,7 @@ class Viscous(Load):
 
     @property
     def range(self) -> str:
-        """How it follows the speed."""
+        """Dependence on the speed."""
         return "in proportion to the speed"
 
 
