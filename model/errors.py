@@ -16,15 +16,15 @@
         |-- QueueFull       as many jobs wait as may wait
         `-- ServiceError    a service elsewhere refuses, or does not answer
 
-Every message says the rule, the value and the remedy. `InputWarning` is the warning for a valid input that is probably
-not meant.
+Every message states the rule, the value and the remedy. `InputWarning` warns of a valid input that is probably a
+mistake.
 """
 
 from __future__ import annotations
 
 
 class SlidercrankError(Exception):
-    """Anything that this software refuses or cannot do."""
+    """Base class of all errors of this software."""
 
 
 class InputError(SlidercrankError, ValueError):
@@ -32,11 +32,11 @@ class InputError(SlidercrankError, ValueError):
 
 
 class AssemblyError(InputError):
-    """A linkage that cannot be assembled at some crank angle that is asked for."""
+    """A linkage that cannot be assembled at a requested crank angle."""
 
 
 class ForeignRecords(InputError):
-    """Records of another search, or of other versions, from which this one cannot go on."""
+    """Records of another search, or of other versions, from which this one cannot continue."""
 
 
 class JobError(InputError):
@@ -55,7 +55,7 @@ class InfeasibleError(JobError):
 
 
 class NotFound(InputError):
-    """The object that a name or number asks for does not exist."""
+    """The object with this name or number does not exist."""
 
 
 class MissingExtra(SlidercrankError, ImportError):
@@ -63,7 +63,7 @@ class MissingExtra(SlidercrankError, ImportError):
 
 
 class OutputLost(SlidercrankError):
-    """Standard output is closed, or what it goes to is full."""
+    """Standard output is closed, or its destination is full."""
 
 
 class EngineError(SlidercrankError):
@@ -79,11 +79,11 @@ class StoreError(RunError):
 
 
 class LeaseLost(RunError):
-    """A job that is another worker's by now, or may be: nothing was written of it."""
+    """A job that now belongs, or may belong, to another worker: nothing was written for it."""
 
 
 class QueueFull(RunError):
-    """As many jobs wait as may wait."""
+    """The queue already holds the greatest allowed number of jobs."""
 
 
 class ServiceError(RunError):

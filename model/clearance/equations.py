@@ -3,7 +3,7 @@ r"""Equations of motion of a linkage with one pin loose in its bearing and a ste
 Whichever pin is loose, the linkage keeps two degrees of freedom besides the crank angle theta: slider position x and
 rod angle phi. With complex numbers for vectors in the plane, the loop of the ideal linkage fails to close by the *gap*
 
-    C = x + i e - l exp(i phi) - r exp(i theta),        |C| <= radial clearance, but for the penetration.
+    C = x + i e - l exp(i phi) - r exp(i theta),        |C| <= radial clearance, apart from penetration.
 
 A crank pivot that is loose lets the crank translate while a coupling keeps turning it steadily: then the crank's
 origin is at C; the crank pin is at C + r exp(i theta). A loose crank pin is C away from the rod's end, a loose slider

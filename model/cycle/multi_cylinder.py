@@ -38,7 +38,7 @@ _TORQUE, _X, _Y, _FORCE, _MOMENT, _COUPLE, _TIME = range(7)
 
 @dataclass(frozen=True)
 class MultiCylinderCurves:
-    """Curves of all cylinders together at crank angles of the shaft, each (n,), SI, axes as those of zero bank.
+    """Curves of all cylinders together at crank angles of the shaft, each (n,), SI, in the axes of zero bank.
 
     torque: drive torque, N m, counter-clockwise. force_x, force_y, moment: shaking force, N, and moment about the
     shaft, N m, on the frame. couple_x, couple_y: rocking couple, N m. torques: torque of each cylinder, (k, n).

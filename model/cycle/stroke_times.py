@@ -85,7 +85,7 @@ def _elapsed_time(profile: Profile, crank_angle: Any) -> Any:
 def time_ratio(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the time of the slower stroke over that of the faster one, 1 or more.
 
-    With several cylinders it is that of the first one.
+    With several cylinders, the ratio is the first cylinder's.
     """
     if mechanism.speed_profile is None:
         return linkage.time_ratio

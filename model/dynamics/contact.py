@@ -94,7 +94,7 @@ def cut_contacts(
         points = max(3, int(_SAMPLES * (high - low) / _TURN) + 1)
         left, before, right, after = a, 0.0, a, 0.0
         p, q, halvings, i = a, a, 0, 0
-        # Samples and bisection share one call: it is inlined, and with it all loads.
+        # Samples and bisection share one call, which is inlined together with all loads.
         while i <= points:
             sampled = a if i == 0 else b if i == points else uncrowded(low + (high - low) * i / points, kappa)
             theta = sampled if halvings == 0 else 0.5 * (p + q)

@@ -17,7 +17,7 @@ _TURN = 2.0 * math.pi
 
 
 class SpeedRatio(NamedTuple):
-    """A profile p(theta) of the crank speed, 1 on the mean: harmonics, or the pieces of a periodic cubic spline.
+    """A profile p(theta) of the crank speed, with mean 1: harmonics, or the pieces of a periodic cubic spline.
 
     cosines, sines: (h,). knots: (k + 1,), increasing, spanning a turn, rad; none for harmonics. pieces: (4, k), by
     falling power of the distance from the knot before.

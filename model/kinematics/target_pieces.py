@@ -117,7 +117,7 @@ class _Sides(NamedTuple):
         return cls(values, slope, bend, gradients.reshape(n, -1, 3), labels.reshape(n, -1))
 
     def settling(self) -> Array:
-        """Return Newton's step (n,) of the phase for designs whose highest deviation turns by itself, else zero."""
+        """Return Newton's step (n,) of the phase where the highest deviation has its own turning point, else zero."""
         top = np.argmax(self.values, axis=1)[:, None]
         value, slope, bend = (
             np.take_along_axis(getattr(self, name), top, axis=1)[:, 0] for name in ("values", "slope", "bend")
@@ -130,7 +130,7 @@ class _Sides(NamedTuple):
         return np.where(after_step.max(axis=1) < value, step, 0.0)
 
     def crossed(self) -> _Sides:
-        """Return the pairs of a falling and a rising deviation, and the highest one where it turns by itself."""
+        """Return pairs of a falling and a rising deviation, and the highest one where it has a turning point."""
         few = self._take_highest(_CROSSED)
         n, k = few.values.shape
         turning = (np.abs(few.slope) < _SETTLED * few.bend) & (np.arange(k) == 0)

@@ -145,7 +145,7 @@ class Drive:
 
     @property
     def inertia(self) -> float:
-        """Inertia turning with the crank besides the mechanism, seen at the crank: flywheel + ratio^2 motor, kg m^2."""
+        """Inertia of flywheel and motor, reflected to the crank: flywheel + ratio^2 motor, kg m^2."""
         return self.flywheel + self.gear_ratio**2 * self.motor_inertia
 
     def torque(self, crank_speed: ArrayLike, direction: float) -> Array:

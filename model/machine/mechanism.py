@@ -111,7 +111,7 @@ _KINDS = {
 
 @dataclass(frozen=True, kw_only=True)
 class Mechanism:
-    """A slider-crank but for crank, rod and offset.
+    """A slider-crank without crank, rod and offset.
 
     `problem({...}).mechanism` gives the mechanism of a job's tables.
 

@@ -15,8 +15,8 @@ DeadCentre = Literal["outer", "inner"]
 class SliderDistances:
     """Distances of the slider from a dead centre, m.
 
-    touch: distance at which it meets its work. dwell: distance within which it counts as at rest. guide: from the slider pin
-    at its outer dead centre, outward, to the centre of the guide, which the frame holds.
+    touch: distance at which it meets its work. dwell: distance within which it counts as at rest. guide: from the
+    slider pin at its outer dead centre, outward, to the centre of the guide, which the frame holds.
     """
 
     dead_centre: DeadCentre = "outer"

@@ -1,4 +1,4 @@
-"""A crank speed that repeats with every turn: the mechanism's speed times a smooth function of the crank angle.
+"""A crank speed with the period of a turn: the mechanism's speed times a smooth function of the crank angle.
 
 The speed of the mechanism is the mean over the crank angle. With w = speed p(theta) the crank's angular acceleration is
 w dw/d(theta) = speed^2 p p'.
@@ -83,7 +83,7 @@ class Harmonics:
 
     @property
     def over_time(self) -> float:
-        """Mean speed over time, as a share of that over the crank angle."""
+        """Mean speed over time divided by that over the crank angle."""
         return _TURN / self.elapsed_time.whole_turn
 
     @property
@@ -189,7 +189,7 @@ class SpeedTable:
 
     @property
     def over_time(self) -> float:
-        """Mean speed over time, as a share of that over the crank angle."""
+        """Mean speed over time divided by that over the crank angle."""
         return _TURN / self.elapsed_time.whole_turn
 
     @property

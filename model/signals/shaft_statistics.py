@@ -41,7 +41,7 @@ _STROKES = {"cycle": None, "outward stroke": True, "inward stroke": False}
 
 
 def equivalent_single_cranks(mechanism: Mechanism, kind: Signal) -> tuple[Mechanism, ...]:
-    """Return machines of one crank at constant speed whose highest peak is that of the shaft, if any."""
+    """Return machines of one crank at constant speed with the same highest peak as the shaft, if any."""
     if kind in _GEOMETRY:
         return (single_cylinder(mechanism),)
     banked = any(cylinder.bank for cylinder in cylinders_of(mechanism))

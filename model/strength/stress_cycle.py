@@ -40,15 +40,15 @@ from .stress_search import LISTED, STATIONS, Candidates, choose, climb, first_ca
 
 KEPT = 8
 """Maxima kept of a design, highest first."""
-_NEAR, _WIDE = 0.05, 0.2  # how far below the highest sample a maximum is refined: for the value, for pieces
+_NEAR, _WIDE = 0.05, 0.2  # depth below the highest sample down to which maxima are refined: for the value, for pieces
 _TURN = 2.0 * math.pi
 _EDGE = 1e-11  # rad, from a breakpoint: on it
 _OTHER = 7.0  # weight of the second angle in a label, more than a turn
 _EQUAL = 1e-6  # relative; accuracy of cubics between samples when comparing maxima, with two digits to spare
-# Of the spacing of samples: how far off the ends of a cubic are, and within how much of its foretold place a maximum is
-# then taken as it is: such a cubic is off by a millionth of what the last one was. Then how much closer the next is.
+# Fractions of the spacing of samples: distance of the ends of a cubic, and of a maximum from its predicted place within
+# which it is accepted (such a cubic has a millionth of the last one's error); then the ratio to the next distance.
 _CLOSE, _FORETOLD, _CLOSER, _ROUNDS = 0.01, 1e-3, 30.0, 10
-_SECOND_TURN = 1e5  # of a label, more than all parts of a quantity take
+_SECOND_TURN = 1e5  # step between labels, more than all parts of a quantity take
 APART, CLASSES = 60.0, 12
 """Distance of the labels of maxima that are no neighbours, more than a turn; how many classes there are of these."""
 
@@ -70,7 +70,7 @@ class StressPeaks:
 
 @dataclass
 class _Maxima:
-    """Maxima of places, c of them: bar, number of side and criterion (c,); share of the length, value (c,).
+    """Maxima of places, c of them: bar, number of side and criterion (c,); fraction of the length, value (c,).
 
     angle: (c, 2). segment: (c, 2). is_counted: (c, 2), whether the angle counts. spacing: (c, 2), between samples, rad.
     """

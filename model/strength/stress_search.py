@@ -20,7 +20,7 @@ STATIONS = 9
 LISTED = 6
 """Local maxima of a place's stress over the cycle."""
 _ITERATIONS = 60
-_SETTLED = 1e-11  # share of the length
+_SETTLED = 1e-11  # fraction of the length
 _TURN = 2.0 * math.pi
 _PLACE, _ANGLE = 1e-5, 1e-9  # fraction of the length, 1 - cosine of crank angles: maxima this near are one
 

@@ -36,7 +36,7 @@ class Swing:
     The crank turns from start towards end: clockwise where end is less. stated_for: "crank" where start and end are
     crank angles, "slider" where they are slider positions; then `side` says on which side of the line from crank pivot
     to slider pin the crank pin is, and `placed` gives the crank angles. follows: whether the end moves along with a
-    start that designs choose (`machine.start`). driver: what moves the linkage, a torque on the crank or a force on the
+    start that designs choose (`machine.start`). driver: driver of the linkage, a torque on the crank or a force on the
     slider along its line. law: law of the driver's motion over time, each way. duration: time of one way, s; none for
     slow motion. actuator_tolerance: tolerance of the slider position where the slider drives, m. points: points of a
     tabulated law: fractions of time and travel, see `law.spline`.

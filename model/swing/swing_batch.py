@@ -55,7 +55,7 @@ class Pieces:
 
     @property
     def probe(self) -> Array:
-        """A share within each piece (n, c - 1)."""
+        """A fraction of the time within each piece (n, c - 1)."""
         return np.asarray(self.cuts[:, :-1] + 0.382 * np.diff(self.cuts, axis=1))
 
 
@@ -96,7 +96,7 @@ class SwingBatch:
         self.ways_differ = self.rubs or self.swing.law == "table" or not alike
 
     def states(self, designs: Any, share: Any, probe: Any, back: Any, slip: Any = 0.0, step: int | None = None) -> Any:
-        """Return states (..., 8) at shares of any shape. designs: numbers. step: raw number of the slope."""
+        """Return states (..., 8) at fractions of the time. designs: indices. step: raw number of the slope."""
         shape = np.broadcast_shapes(*(np.shape(argument) for argument in (designs, share, probe, back, slip)))
         share, slip, probe, back = (
             np.ascontiguousarray(np.broadcast_to(argument, shape), dtype=np.float64).ravel()

@@ -1,4 +1,4 @@
-"""Words of a swing: what is driven, by which law of motion, and how its ends are stated."""
+"""Types of a swing's options: driven link, law of motion, and statement of its ends."""
 
 from __future__ import annotations
 

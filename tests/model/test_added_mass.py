@@ -137,7 +137,7 @@ def test_weight_is_that_of_the_slider_alone() -> None:
 
 
 def test_water_in_a_suction_pipe_needs_the_torque_of_its_kinetic_energy() -> None:
-    """With a 100 mm piston and a 50 mm pipe, 6 m long, 11.781 kg of water act as 188.5 kg."""
+    """A 100 mm piston on a 50 mm pipe, 6 m long: 11.781 kg of water act as 188.5 kg."""
     area, pipe = np.pi * 0.05**2, np.pi * 0.025**2
     mass = 1000.0 * 6.0 * area**2 / pipe
     assert mass == pytest.approx(188.496, abs=1e-3)

@@ -18,7 +18,7 @@ _TYPED = 5e-6  # of a pressure that is written with six digits
 
 @analytic
 def burning_share(clearance: Any, low: Any, high: Any, exponent: Any, heat: Any, kappa: Any) -> Any:
-    """Return the share of the stroke over which gas burns at its peak pressure, high.
+    """Return the fraction of the stroke over which gas burns at its peak pressure, high.
 
     Of the heat q per swept volume, (p_h - p_2) c / (kappa - 1) is added at constant volume, from the pressure p_2 at
     the end of compression. The rest expands the gas by (kappa - 1) / (kappa p_h) times that heat.
@@ -132,7 +132,7 @@ class LimitedPressure(Engine):
 
     @property
     def burning_share(self) -> float:
-        """Share of the stroke over which it burns at peak pressure."""
+        """Fraction of the stroke over which it burns at peak pressure."""
         numbers = self.clearance, self.low, self.high, self.compression_exponent, self.heat, self.heat_capacity_ratio
         return float(burning_share(*numbers))
 
