@@ -43,10 +43,10 @@ STATES = 7
 class System(NamedTuple):
     """Numbers of a linkage with a loose joint. SI; sums over the bodies with mass m, inertia I and k, a, b as above.
 
-    start: crank angle at time zero. clearance to slip_speed: of the contact. journal_turns: whether the journal turns
-    with the crank. bearing_turns: whether the bearing turns with the rod.
-    m_xx: sum k m. m_x_rod, m_x_crank: sums k m a, k m b. m_rod, m_crank: sums m |a|^2 + I, m |b|^2 + I.
-    m_rod_crank: sum m a conj(b). first_rod, first_crank: sums m a, m b.
+    start: crank angle at time zero. clearance to slip_speed: parameters of the contact. journal_turns: whether the
+    journal turns with the crank. bearing_turns: whether the bearing turns with the rod. m_xx: sum k m. m_x_rod,
+    m_x_crank: sums k m a, k m b. m_rod, m_crank: sums m |a|^2 + I, m |b|^2 + I. m_rod_crank: sum m a conj(b).
+    first_rod, first_crank: sums m a, m b.
     """
 
     r: float
@@ -149,7 +149,7 @@ def accelerate(
 ) -> tuple[complex, float, float]:
     """Return the second derivative of the gap, the acceleration of the slider, and the drive torque.
 
-    force: generalised force of the gap. on_crank, on_rod: further moments. load: on the slider along x, N.
+    force: generalised force of the gap. on_crank, on_rod: further moments. load: load on the slider along x, N.
     """
     w, u = s.speed, p.rod_t
     m_x_rod, m_x_crank = 1j * p.rod * s.m_x_rod, 1j * p.crank * s.m_x_crank

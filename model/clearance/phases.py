@@ -52,9 +52,9 @@ class Trace:
 class Integrator:
     """Integration of one linkage over time.
 
-    system, block, loads: from `system.build`. hysteresis, slow_impact: of the clearance. tolerance: relative error of a
-    step in gap and gap velocity; absolute tolerance relates to the clearance and the speed of a slow impact. time,
-    state (7,), rate: current values. trace: past values.
+    system, block, loads: results of `system.build`. hysteresis, slow_impact: values of the clearance. tolerance:
+    relative error of a step in gap and gap velocity; absolute tolerance relates to the clearance and the speed of a
+    slow impact. time, state (7,), rate: current values. trace: past values.
     """
 
     system: System

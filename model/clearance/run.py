@@ -39,14 +39,14 @@ class ClearanceProgress:
 class ClearanceRun:
     """Motion of a linkage with a loose joint, at the samples of the integration, (n,) each, SI and radians.
 
-    times: from zero, not equidistant; twice the same where contact begins or ends. crank_angle: from the start, not
-    wrapped. ideal_*: the same linkage without clearance. contact_force: normal force in the joint, N.
+    times: times from zero, s, not equidistant; repeated where contact begins or ends. crank_angle: angle from the
+    start, not wrapped. ideal_*: the same linkage without clearance. contact_force: normal force in the joint, N.
     friction_force: tangential one, on the journal, counter-clockwise positive. penetration: m, negative in flight.
     journal_x, journal_y: centre of the journal relative to that of the bearing, m. in_contact: whether they touch.
-    torque: on the crank, N m. input_work, load_work, dissipated: from the start, J, by the drive, by the loads on
-    the slider, in the contact. stored: kinetic, potential and elastic energy, J.
-    impact_times, impact_speeds: at every start of a contact, (k,). cycles: complete turns; status says whether these
-    are all. discard: initial turns that the statistics leave out.
+    torque: torque on the crank, N m. input_work, load_work, dissipated: energy since the start, J, from the drive, from
+    the loads on the slider, and lost in the contact. stored: kinetic, potential and elastic energy, J. impact_times,
+    impact_speeds: at every start of a contact, (k,). cycles: complete turns; status says whether these are all.
+    discard: initial turns that the statistics leave out.
     """
 
     mechanism: Mechanism

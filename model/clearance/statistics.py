@@ -51,9 +51,9 @@ class ClearanceSummary:
     ideal slider position in a turn, as a fraction of the stroke. velocity_deviation: likewise for the velocity, m/s.
     impacts: contacts begun per turn. contact_share: fraction of the time in contact. peak_contact_force: greatest in a
     turn, N. penetration: greatest in a turn, m. fastest_impact: greatest of all, m/s; None if there was none.
-    input_work, load_work, dissipated, stored: in a turn, J: work of the drive, work of the loads on the slider, loss in
-    the joint, gain of kinetic, potential and elastic energy. energy_residual: greatest energy balance error in a turn,
-    J.
+    input_work, load_work, dissipated, stored: energies per turn, J: work of the drive, work of the loads on the slider,
+    loss in the joint, gain of kinetic, potential and elastic energy. energy_residual: greatest energy balance error in
+    a turn, J.
     """
 
     turns: int

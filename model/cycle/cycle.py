@@ -39,8 +39,9 @@ class Cycle:
     """Curves of one design, each (n,), SI and radians; forces as components along x and y.
 
     load: load on the slider, N, positive outward. torque: drive torque, N m, counter-clockwise.
-    pivot: force of the frame on the crank; crank_pin: of the crank on the rod; slider_pin: of the rod on the slider;
-    guide: of the guide on the slider, along +y. crank_load: torque of the loads on the crank, N m, counter-clockwise.
+    pivot: force of the frame on the crank; crank_pin: force of the crank on the rod; slider_pin: force of the rod on
+    the slider; guide: force of the guide on the slider, along +y. crank_load: torque of the loads on the crank, N m,
+    counter-clockwise.
     """
 
     crank_angle: Array

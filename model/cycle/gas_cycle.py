@@ -38,10 +38,10 @@ _SERIES = 1e-4  # |x| below which f is its series: x^4 / 120 is then below round
 class GasCycle(NamedTuple):
     """Sums over the cylinders of n designs, each (n,), real or complex.
 
-    swept, clearance: volumes, m^3. work: of the gas on the pistons over a cycle of the machine, one turn or two, J.
-    cycle_work: the same over one cycle of each cylinder, two turns for four strokes, J. delivers: for compressors only,
-    intake volume divided by swept volume; zero or less where nothing is delivered. delivered: their intake volume per
-    turn, m^3, without those that deliver nothing.
+    swept, clearance: volumes, m^3. work: work of the gas on the pistons over a cycle of the machine, one turn or two,
+    J. cycle_work: the same over one cycle of each cylinder, two turns for four strokes, J. delivers: for compressors
+    only, intake volume divided by swept volume; zero or less where nothing is delivered. delivered: their intake volume
+    per turn, m^3, without those that deliver nothing.
     """
 
     swept: Any

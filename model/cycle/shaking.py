@@ -23,7 +23,8 @@ from .crank_speed import crank_speed
 class ShakingCurves:
     """Curves of one design, each (n,), SI and radians: on the frame, without gravity and load.
 
-    force_x, force_y: N. moment: about the crank pivot, N m, counter-clockwise. reflected_inertia: kg m^2.
+    force_x, force_y: shaking force, N. moment: moment about the crank pivot, N m, counter-clockwise. reflected_inertia:
+    kg m^2.
     """
 
     crank_angle: Array

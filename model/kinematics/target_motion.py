@@ -43,7 +43,7 @@ _TURN = 2.0 * math.pi
 class TargetMotion:
     """A desired slider motion.
 
-    crank_angles: rad, increasing, within one turn. positions: of the slider, m, outward from the crank pivot.
+    crank_angles: rad, increasing, within one turn. positions: slider positions, m, outward from the crank pivot.
     phase: whether the crank may sit on its shaft at any angle. shift: whether positions may be counted from any origin.
     """
 

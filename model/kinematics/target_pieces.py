@@ -87,7 +87,8 @@ def fit_pieces(target: TargetMotion, branch: float, measure: Measure, designs: A
 class _Sides(NamedTuple):
     """Candidates (n, m) for the greatest deviation at a phase, -inf where there are fewer.
 
-    values, slope, bend: with the derivatives by the phase. gradients: (n, m, 3). labels: as in `FitPieces`.
+    values, slope, bend: deviations and their first and second derivatives by the phase. gradients: (n, m, 3). labels:
+    as in `FitPieces`.
     """
 
     values: Array

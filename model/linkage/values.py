@@ -20,7 +20,7 @@ class Kinematics:
     """Motion at given crank angles; arrays of the broadcast shape, SI and radians.
 
     rod_angle: angle of the rod from +x, counter-clockwise; near 180 deg on the crossed branch.
-    transmission_angle: between rod and the normal of the slider line, 90 deg - |phi| from the slider line.
+    transmission_angle: angle between rod and the normal of the slider line, 90 deg - |phi| from the slider line.
     """
 
     crank_angle: Array

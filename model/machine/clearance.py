@@ -35,10 +35,10 @@ class Clearance:
     friction: coefficient between journal and bearing, with the tangential force
     mu F v / sqrt(v^2 + slip_speed^2) against the sliding velocity v. slip_speed: m/s, below which friction fades;
     the default is small next to the sliding of any pin that turns.
-    law: damping law, see above. elastic_modulus, poisson: of journal and bearing, Pa; steel by default. stiffness: K,
-    N/m^1.5; Hertz's if None. slow_impact: impact speed below which the damping stays constant, m/s. It keeps the
-    damping finite where a contact begins softly, and lets e rise towards one for slow impacts. Below it, this is the
-    law that Hunt and Crossley found (Journal of Applied Mechanics 42 (1975) 440-445).
+    law: damping law, see above. elastic_modulus, poisson: modulus, Pa, and Poisson's ratio of journal and bearing;
+    steel by default. stiffness: K, N/m^1.5; Hertz's if None. slow_impact: impact speed below which the damping stays
+    constant, m/s. It keeps the damping finite where a contact begins softly, and lets e rise towards one for slow
+    impacts. Below it, this is the law that Hunt and Crossley found (Journal of Applied Mechanics 42 (1975) 440-445).
     """
 
     joint: Joint

@@ -86,7 +86,7 @@ class Panels:
         return float(np.sum(self.width * self.coefficients[:, 0, curve]))
 
     def swing(self, curve: int) -> float:
-        """Return the range of the integral of the curve minus its mean: of a torque, J."""
+        """Return the range of the integral of the curve minus its mean; J for a torque."""
         c = self.coefficients[:, :, curve].copy()
         c[:, 0] -= self.mean(curve)
         integrals = np.array([legendre.legint(row, lbnd=-1) for row in c]) * (0.5 * self.width)[:, None]

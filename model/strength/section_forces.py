@@ -58,7 +58,7 @@ def stress_along(
     depth: Any,
     density: Any,
 ) -> Stress:
-    """Return the `Stress` of the rod (`ROD`) or the crank under joint forces. turn: of `rubbing.Sides`."""
+    """Return the `Stress` of the rod (`ROD`) or the crank under joint forces. turn: `turn` of `rubbing.Sides`."""
     w2 = d.speed * d.speed
     pin_x = -d.r * (cosine * w2 + sine * d.acceleration) - d.gravity_x
     pin_y = -d.r * (sine * w2 - cosine * d.acceleration) - d.gravity_y

@@ -17,16 +17,16 @@ from .swing_cycle import SwingCycle, SwingPoint
 class SwingSummary:
     """One linkage over a swing, SI and radians.
 
-    driver_ends: crank angles or slider positions. swing_angle, travel: of crank and slider, sizes. peak_drive: greatest
-    size of the driver's torque or force, either way. drive_start, drive_end: drive at each end on the forward and on
-    the return stroke, without inertia. With negligible friction both hold the linkage at rest; with friction, any force
-    between them does. holds: whether friction alone holds the linkage at rest throughout the swing. energy_forth,
-    energy_back: energy of the driver on the forward and return strokes, J. stored: energy of the slow forward stroke
-    without friction, J. efficiency: energy without friction over energy with friction, on the slow forward stroke,
-    otherwise the slow return stroke; None where neither is driven. peak_power: W, None for a slow swing.
-    least_transmission: least transmission angle of the driven side. position_error: greatest over the swing, None
-    without tolerances. Where friction may lock the linkage, `locked` is the first such place, and peaks and energies
-    are NaN.
+    driver_ends: crank angles or slider positions. swing_angle, travel: sizes of the motion of crank and slider.
+    peak_drive: greatest size of the driver's torque or force, either way. drive_start, drive_end: drive at each end on
+    the forward and on the return stroke, without inertia. With negligible friction both hold the linkage at rest; with
+    friction, any force between them does. holds: whether friction alone holds the linkage at rest throughout the swing.
+    energy_forth, energy_back: energy of the driver on the forward and return strokes, J. stored: energy of the slow
+    forward stroke without friction, J. efficiency: energy without friction over energy with friction, on the slow
+    forward stroke, otherwise the slow return stroke; None where neither is driven. peak_power: W, None for a slow
+    swing. least_transmission: least transmission angle of the driven side. position_error: greatest over the swing,
+    None without tolerances. Where friction may lock the linkage, `locked` is the first such place, and peaks and
+    energies are NaN.
     """
 
     swing: Swing

@@ -231,7 +231,7 @@ def states(
     points: tuple[Whole, Whole, Array, Array, Array, Array],
     ends: Complexes,
 ) -> Complexes:
-    """Return states (p, 8) at points: indices of block and stepped block, time fraction, its imaginary part, piece, way.
+    """Return states (p, 8) at points: indices of block and stepped block, time fraction, imaginary part, piece, way.
 
     blocks: (n, rows, 1), of designs that close over the swing. steps: (k, rows, 1), of the same ones with imaginary
     steps. ends: crank angles (k, 2) of both ends of the swing, with them. A fraction of the time within the piece

@@ -43,11 +43,11 @@ def spread(shape: Shape = "normal", *, sigmas: float = 3.0) -> Any:
 class Spreads:
     """The distributions of all sources; errors of different sources are independent.
 
-    crank, rod, offset, crank_angle: in units of the limit, from `spread` or any frozen distribution of `scipy.stats`.
-    contact: position of a pin in its clearance c. "along the rod": pressed to either side with equal probability by the
-    force in the rod (variance of its addition to the rod: c^2). "any direction": in contact, in a uniformly distributed
-    direction (c^2 / 2). "anywhere" within the clearance circle, uniform over its area (c^2 / 4). The slider touches
-    either side of its guide (c^2), or with "anywhere" is uniform between them (c^2 / 3).
+    crank, rod, offset, crank_angle: distributions in units of the limit, from `spread` or any frozen one of
+    `scipy.stats`. contact: position of a pin in its clearance c. "along the rod": pressed to either side with equal
+    probability by the force in the rod (variance of its addition to the rod: c^2). "any direction": in contact, in a
+    uniformly distributed direction (c^2 / 2). "anywhere" within the clearance circle, uniform over its area (c^2 / 4).
+    The slider touches either side of its guide (c^2), or with "anywhere" is uniform between them (c^2 / 3).
     """
 
     crank: Any = field(default_factory=spread)

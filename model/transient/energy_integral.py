@@ -50,7 +50,7 @@ class Coasting:
 
 
 def coasting(turn: PeriodicTurn, inertia: float, speed: float) -> Coasting:
-    """Return the periodic turn by the energy integral. inertia: of the drive, kg m^2. speed: size of the mean, rad/s.
+    """Return the periodic turn by the energy integral. inertia: drive's, kg m^2. speed: size of the mean, rad/s.
 
     Between nodes the energy must not fall below zero: see `cut_where_least`.
     """

@@ -58,9 +58,9 @@ class Senses(NamedTuple):
 class FrictionState(NamedTuple):
     """State of motion at crank angles (n,), with friction.
 
-    torque: on the crank, N m, without the drive's inertia. by_acceleration: its derivative, kg m^2. by_speed: its
-    derivative, N m s, if requested. least: lower bound of by_acceleration at any acceleration. heat: friction power of
-    all joints, W. guides: forces of the guides on their sliders, N, (cylinders, n).
+    torque: torque on the crank, N m, without the drive's inertia. by_acceleration: its derivative, kg m^2. by_speed:
+    its derivative, N m s, if requested. least: lower bound of by_acceleration at any acceleration. heat: friction power
+    of all joints, W. guides: forces of the guides on their sliders, N, (cylinders, n).
     """
 
     torque: Array

@@ -32,10 +32,10 @@ class Transient:
     """Motion of the crank over time, arrays (n,), SI and radians; closest where the crank turns fast.
 
     verdict: reason for the end. turned_back: times at which the crank reversed, s. angle: crank angle including full
-    turns, rad. motor_torque: on the crank, N m, counter-clockwise. torque: part that the mechanism takes; flywheel and
-    rotor take the rest. power: motor power, W. kinetic, potential: energies of mechanism and drive, and of gravity, J.
-    motor_work, load_work: work since the start by the motor and on the loads, springs included, J. friction_work: heat
-    of the joints since the start, J.
+    turns, rad. motor_torque: motor torque on the crank, N m, counter-clockwise. torque: part that the mechanism takes;
+    flywheel and rotor take the rest. power: motor power, W. kinetic, potential: energies of mechanism and drive, and of
+    gravity, J. motor_work, load_work: work since the start by the motor and on the loads, springs included, J.
+    friction_work: heat of the joints since the start, J.
     """
 
     verdict: Verdict

@@ -143,7 +143,7 @@ class ShaftEquation(Equation):
 
 
 def equation_of(mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> Equation:
-    """Return the equation of motion of a machine: of its crank, or of a shaft with cylinders or two turns.
+    """Return the equation of motion for a machine's crank, or for its shaft with cylinders or two turns.
 
     marks: further crank angles to use as breakpoints, rad.
     """

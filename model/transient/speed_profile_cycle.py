@@ -53,7 +53,8 @@ class SpeedProfileCycle:
     """Numbers over a turn, SI.
 
     period: time of a turn, s. mean_speed: mean over time, rad/s. fluctuation: range of speed over the mean speed.
-    peaks: greatest magnitudes by name. mean_torque: over the crank angle. rms_torque: over time. work: of torque, J.
+    peaks: greatest magnitudes by name. mean_torque: mean over the crank angle, N m. rms_torque: RMS value over time, N
+    m. work: work of the torque, J.
     """
 
     least_speed: Extreme

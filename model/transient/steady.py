@@ -26,11 +26,11 @@ _ROUNDING = 1e-13  # fraction of greatest torque times cycle angle: a smaller ch
 class SteadyRunning:
     """One cycle of steady running, arrays (n,) in order of time, SI and radians; extremes of speed included.
 
-    crank_angle: from the first breakpoint on, falling if the crank turns clockwise. motor_torque: on the crank, N m,
-    counter-clockwise. torque: part that the mechanism takes. mean_speed: 2 pi / period, with its sign. work: work of
-    the motor per turn, J. inertia: inertia of flywheel and motor at the crank, kg m^2. memory: fraction of a small
-    change of w^2 that remains after a turn (below 1: stable; 1: any speed persists, because nothing depends on it).
-    turns: turns per cycle.
+    crank_angle: from the first breakpoint on, falling if the crank turns clockwise. motor_torque: motor torque on the
+    crank, N m, counter-clockwise. torque: part that the mechanism takes. mean_speed: 2 pi / period, with its sign.
+    work: work of the motor per turn, J. inertia: inertia of flywheel and motor at the crank, kg m^2. memory: fraction
+    of a small change of w^2 that remains after a turn (below 1: stable; 1: any speed persists, because nothing depends
+    on it). turns: turns per cycle.
     """
 
     crank_angle: Array
