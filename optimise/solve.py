@@ -1,4 +1,4 @@
-"""From a problem to its front: eliminate, search by the chosen method, deliver."""
+"""From a problem to its front: eliminate, search by the chosen method, assemble the front."""
 
 from __future__ import annotations
 
@@ -47,14 +47,15 @@ def solve(
 ) -> ParetoFront:
     """Return the Pareto front of a problem.
 
+    The same problem with the same seed gives the same designs, bit for bit.
+
     progress: called after every round; True shows a live bar, in a notebook too. stages: called about twice a second in
     a long stage between two rounds, or after the last. fronts: called just before `progress` with the objectives of the
-    front so far, see `Run.latest`. cancelled: called many times a second; once it returns True, the front
-    so far is returned with status "cancelled". The same problem with the same seed gives the same designs, bit for bit.
-    keep: called with the records that a later run resumes from: after every round, before its progress is reported, and
-    about every second of a long one. resume: all records that an earlier run of this problem kept, in order, however
-    many; the run continues from them and returns the same front as without the interruption, bit for bit.
-    engine: does the expensive evaluations, by default in this process; the front is the same. The caller closes it.
+    front so far, see `Run.latest`. cancelled: called many times a second; once it returns True, `solve` returns the
+    front so far with status "cancelled". keep: called with records from which a later run can resume: after every
+    round, before its progress is reported, and about every second in a long one. resume: all records of an earlier run
+    of this problem, in order, any number; the run continues and returns the same front, bit for bit. engine: engine of
+    the expensive evaluations, by default this process; it does not change the front. The caller closes it.
 
     Raises `InputError` for a method that does not fit the problem, and `ForeignRecords` for records of another search.
     """
@@ -76,7 +77,7 @@ def solve(
 
 
 def require_records(problem: Problem, records: Sequence[Record]) -> None:
-    """Raise `ForeignRecords` unless a search of the problem can resume from the records, before it begins."""
+    """Raise `ForeignRecords` unless a search of the problem can resume from the records."""
     if records:
         require_records_of(records, identity_of(problem))
 
@@ -94,7 +95,7 @@ class _ContinuousSolver:
     runs: list[Run] = field(default_factory=list)
 
     def start_run(self, problem: Problem) -> Run:
-        """Return the run of a problem, before anything is computed."""
+        """Return a new run of a problem, with nothing computed yet."""
         has_listener = self.fronts is not None or self.listener is not None
 
         def with_front(entry: Progress) -> None:

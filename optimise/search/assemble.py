@@ -1,4 +1,4 @@
-"""From polished designs to a front: the best of them, each with all its quantities."""
+"""Assembly of the front from polished designs: the best of them, each with all its quantities."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ from .search import Run
 
 SELECTING, FINISHING = "selecting designs", "finishing designs"
 """Stages after the rounds: selecting the best designs, then computing all their quantities."""
-_AT_ONCE = 100  # designs analysed between two questions whether to end
+_AT_ONCE = 100  # designs analysed between two polls for cancellation
 _GLIMPSE = 40  # designs of a round that count in the history of a search that was told to end: all would take seconds
 
 
 def assemble(
     problem: Problem, evaluators: list[Evaluator], candidates: FrontCandidates, run: Run, rows: Whole | None = None
 ) -> ParetoFront:
-    """Return the front of the best of finished designs, at least one.
+    """Return the front of the best candidates, of which there is at least one.
 
-    rows: those to deliver, of a search that was told to end.
+    rows: rows of the designs to return from a cancelled search.
     """
     status: Status = "done" if rows is None else "cancelled"
     best = candidates[_rows_to_deliver(problem, candidates, run.stage_reporter(SELECTING)) if rows is None else rows]
@@ -52,7 +52,7 @@ def assemble(
             for (owner, slopes), edges in zip(goals, active, strict=True)
         ]
     )
-    if problem.without_gradient():  # nothing is known of slopes: neither whether a design is optimal nor its rates
+    if problem.without_gradient():  # slopes are unknown, hence optimality and trade-off rates too
         residual[:] = np.inf
         goals = [(owner, slopes[:, :0]) for owner, slopes in goals]
         active = [edges[:, :0] for edges in active]
@@ -83,10 +83,10 @@ def assemble(
 
 
 def _on_unseen_kink(problem: Problem, variants: Whole, dimensions: Array) -> Mask:
-    """Return which designs (n,) lie on a kink that their slopes do not tell all of.
+    """Return which designs (n,) lie on a kink that their slopes describe only in part.
 
-    Of a formula with kinks of both kinds, such as a difference of peaks, slopes tell those of one kind with the active
-    piece of the other: where two of these tie, nothing is proven.
+    For a formula with kinks of both kinds, such as a difference of peaks, slopes cover the kinks of one kind with the
+    active piece of the other: where two of these tie, nothing is proven.
     """
     is_torn = np.zeros(len(dimensions), np.bool_)
     is_maximised = {item.quantity: item.sense == "maximise" for item in problem.objectives}
@@ -116,9 +116,9 @@ def _rows_to_deliver(problem: Problem, candidates: FrontCandidates, report: Repo
 def columns_of(
     problem: Problem, variants: Whole, dimensions: Array, report: ReportProgress = ignore_progress
 ) -> Columns:
-    """Return all quantities of designs and what was chosen for them, with the slacks of their constraints.
+    """Return all quantities of designs, their chosen options, and the slacks of their constraints.
 
-    variants: (n,). dimensions: (n, 3 + v). report: called every second or sooner, with the designs done.
+    variants: (n,). dimensions: (n, 3 + v). report: called at least every second, with the number of designs done.
     """
     from ...objectives.tables import analysis, swinging
 
@@ -181,7 +181,7 @@ def _slack_columns(problem: Problem, dimensions: Array) -> Columns:
 
 
 def empty_front(problem: Problem, evaluators: list[Evaluator], run: Run, status: Status, message: str) -> ParetoFront:
-    """Return a front without designs, which says why."""
+    """Return a front without designs, with the reason."""
     m = len(problem.objectives)
     return ParetoFront(
         problem=problem,
@@ -202,11 +202,11 @@ def empty_front(problem: Problem, evaluators: list[Evaluator], run: Run, status:
 
 
 def span_of(problem: Problem, values: Array) -> Array:
-    """Return the ranges (m,) that objectives (n, m) are scaled by; sizes where a single objective has no front."""
+    """Return the ranges (m,) that scale the objectives (n, m); for a single objective, its size."""
     _, span = scaling(values)
     sizes = np.array([abs(objective.target or 0.0) for objective in problem.objectives])
     if values.shape[1] == 1:
         best = np.abs(values.min(axis=0))
         return np.asarray(np.maximum(np.maximum(best, sizes), np.ptp(values, axis=0)) + 1e-300)
-    # A target that the whole front meets has no range but rounding.
+    # A target that the whole front meets has no range except rounding.
     return np.maximum(span, 1e-6 * sizes)

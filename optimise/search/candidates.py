@@ -73,8 +73,9 @@ def ragged(parts: Iterable[object]) -> NDArray[np.object_]:
 class Candidates(Table):
     """Designs with their objectives.
 
-    branch: (n,), index. u: (n, k), unit-box points, padded to as many columns as any branch has. values: (n, m), SI, as
-    minimised. is_feasible: (n,), which of them meet every constraint; the others are near enough to be moved there.
+    branch: (n,), index. u: (n, k), unit-box points, padded to the greatest number of columns of any branch. values:
+    (n, m), SI, as minimised. is_feasible: (n,), whether each meets every constraint; the others are near enough to move
+    there.
     """
 
     branch: Whole
@@ -88,11 +89,11 @@ class Candidates(Table):
         return cls(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, objectives)), np.zeros(0, np.bool_))
 
     def groups(self) -> list[Self]:
-        """Return the feasible designs and those to be moved onto the constraints, as separate groups."""
+        """Return the feasible designs and those to move onto the constraints, as separate groups."""
         return [group for group in (self[self.is_feasible], self[~self.is_feasible]) if len(group)]
 
     def leading(self, column: int, count: int) -> Whole:
-        """Return at most `count` rows that meet every constraint, and as many others.
+        """Return at most `count` rows that meet every constraint, and at most `count` others.
 
         The best in an objective come first, each `apart` from the better ones.
         """
@@ -139,7 +140,7 @@ class Polished(Table):
 class FrontCandidates(Candidates):
     """Candidates for the front: feasible polished designs, and those of branches without free unknowns.
 
-    residual: (n,). goals, active: (n,), see `Polished`. span: (m,), what objectives are scaled by.
+    residual: (n,). goals, active: (n,), see `Polished`. span: (m,), scale of the objectives.
     """
 
     residual: Array
@@ -170,9 +171,9 @@ class FrontCandidates(Candidates):
         return replace(self[~self.free], span=span)
 
     def best(self, report: ReportProgress = ignore_progress) -> Whole:
-        """Return the non-dominated rows, ascending, fewer where they hardly differ. report: called for each row.
+        """Return the non-dominated rows, ascending, thinned out where they hardly differ. report: called for each row.
 
-        None of them is as good as another one to `EQUAL` everywhere and better somewhere.
+        None of them is as good as another to within `EQUAL` everywhere and better somewhere.
         """
         values, several, free = self.values, len(self.span) > 1, self.free
         range_ = np.ptp(values[nondominated(values)], axis=0) if several and len(values) else self.span
@@ -183,7 +184,7 @@ class FrontCandidates(Candidates):
         doubtful = self.residual > STATIONARY
         deserves = ~doubtful
         proven = np.ascontiguousarray(values[~doubtful].T)
-        least = proven.min(axis=1, initial=np.inf) - same  # what is best in an objective is an end, proven or not
+        least = proven.min(axis=1, initial=np.inf) - same  # the best in an objective is an end, proven or not
         for row in np.flatnonzero(doubtful).tolist():
             report(0, len(values))
             deserves[row] = (values[row] < least).any() or not _as_good(proven, values[row], covered).any()
@@ -191,7 +192,7 @@ class FrontCandidates(Candidates):
         rows = rows[nondominated(values[rows])]
         chosen: list[int] = []
         theirs = np.empty((len(self.span), len(rows)))
-        # What is proven first, then what is best in an objective.
+        # Proven designs first, then the best in an objective.
         scaled = values[rows] / self.span
         leads = np.isin(np.arange(len(rows)), np.argmin(scaled, axis=0) if len(rows) else [])
         order = np.lexsort([scaled.sum(axis=1), ~leads, doubtful[rows]])
@@ -200,7 +201,7 @@ class FrontCandidates(Candidates):
             if not _as_good(theirs[:, : len(chosen)], values[row], same if free[row] else equal).any():
                 theirs[:, len(chosen)] = values[row]
                 chosen.append(row)
-        # Nobody kept is as good as one before it; one after it may be, where that one is best by rounding alone.
+        # No kept design is as good as one before it; one after it may be, if that one is best only by rounding.
         theirs, alone = theirs[:, : len(chosen)], []
         for row in chosen:
             report(len(rows), len(rows))
@@ -210,5 +211,5 @@ class FrontCandidates(Candidates):
 
 
 def _as_good(values: Array, row: Array, tolerance: Array) -> Mask:
-    """Return which designs are nowhere worse than one (m,) by more than these differences; values: (m, n), of them."""
+    """Return which designs, values (m, n), are nowhere worse than one (m,) by more than these tolerances."""
     return np.asarray((values - row[:, None] <= tolerance[:, None]).all(axis=0))

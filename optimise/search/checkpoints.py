@@ -1,12 +1,12 @@
-"""Checkpoints of a search, step by step: given them, a run resumes where it was stopped, bit for bit.
+"""Checkpoints of a search, step by step: with them, an interrupted run resumes, bit for bit.
 
-A search is a function of its problem and of what its costly steps gave: a batch that was screened or polished, a local
-solver from one start, a brood that was bred. Given these again it takes the same way without computing them, and from
-where they end it computes. So every method can go on without knowing of it, and what must be kept is little: what a
-step gave, not the hundreds of evaluations that it took.
+A search is a function of its problem and of the results of its costly steps: screening or polishing a batch, running a
+local solver from one start, breeding a population. Given these results, it repeats the same path without computing
+them, and computes from where they end. So every method can resume without code of its own, and little must be stored:
+the result of a step, not the hundreds of evaluations behind it.
 
-Each step is kept with a digest of what it was given. A search that asks for another one is another search, or computes
-otherwise: of another job, of other versions, on another kind of processor. It is refused, not mixed.
+Each step is stored with a digest of its inputs. If a search requests a step with another digest, it is another search
+or computes differently: another job, other versions, another kind of processor. It is refused, not mixed.
 """
 
 from __future__ import annotations
@@ -45,10 +45,10 @@ class Identity:
 
 @dataclass(frozen=True)
 class Record:
-    """Some steps of a search, the next ones after those of the record before.
+    """Some steps of a search, following those of the previous record.
 
-    identity: whose. number: counted from zero. told: rounds told up to here. seconds: of the search up to here. words:
-    the steps end to end, numbers of 64 bits as they lie in memory; see `Checkpoints`.
+    identity: identity of the search. number: index from zero. told: number of rounds reported so far. seconds: duration
+    of the search so far. words: the steps end to end, as 64-bit numbers in memory order; see `Checkpoints`.
     """
 
     identity: Identity
@@ -65,13 +65,14 @@ class EvaluationCounter(Protocol):
 
 
 class Checkpoints:
-    """The steps of one search: first those of an earlier run, then those that are computed now, which it keeps.
+    """The steps of one search: first those of an earlier run, then those computed now, which it stores.
 
-    told: rounds told so far. before: those that the earlier run told. repeated: records of the earlier run that are
-    gone through, of `resumed`. ended: when the search was first told to end, by `time.perf_counter`; else None.
+    told: number of rounds reported so far. before: number reported by the earlier run. repeated: number of records of
+    the earlier run replayed so far, out of `resumed`. ended: time of the first request to end the search, by
+    `time.perf_counter`; else None.
 
-    In `Record.words` a step is two words of digest, the evaluations that it took, and the number of its arrays; then
-    of each array its kind (0 for floats, 1 for integers), its dimensions' number and sizes, and its numbers.
+    In `Record.words` a step is two words of digest, its number of evaluations, and its number of arrays. For each array
+    follow its kind (0 for floats, 1 for integers), the number and sizes of its dimensions, and its numbers.
     """
 
     def __init__(
@@ -82,10 +83,11 @@ class Checkpoints:
         past: Sequence[Record] = (),
         identity: Callable[[], Identity] | None = None,
     ) -> None:
-        """Go on after `past`, all records that an earlier run of the same search kept, in order, however many.
+        """Continue after `past`, all records of an earlier run of the same search, in order, any number.
 
-        cancelled: asked many times a second whether the search is to end. keep: called with every new record. identity:
-        whose search this is; needed to keep and to go on only. Raises `ForeignRecords` for records of another one.
+        cancelled: called many times a second; returns whether the search must end. keep: called with every new record.
+        identity: identity of this search; needed only to store records or to resume. Raises `ForeignRecords` for
+        records of another search.
         """
         self._cancelled = cancelled
         self._keep = keep
@@ -105,27 +107,27 @@ class Checkpoints:
 
     @property
     def replaying(self) -> bool:
-        """Whether steps of the earlier run are left."""
+        """Whether steps of the earlier run remain."""
         return self._next is not None
 
     @property
     def seconds(self) -> float:
-        """Time since the search started, that of the earlier run included."""
+        """Time since the search started, s, including the earlier run."""
         return time.perf_counter() - self._start
 
     def poll(self) -> None:
-        """Raise `Cancelled` if the search is to end. To be called wherever it computes, every second or sooner."""
+        """Raise `Cancelled` if the search must end. Call it in every computation, at least every second."""
         if self._next is None:
             self.interrupt()
 
     def interrupt(self) -> None:
-        """Raise `Cancelled` if the search is to end, also while it replays; for what may never end by itself."""
+        """Raise `Cancelled` if the search must end, even during replay; for code that may never end by itself."""
         if self._cancelled is not None and self._cancelled():
             self.ended = time.perf_counter() if self.ended is None else self.ended
             raise Cancelled
 
     def close(self) -> None:
-        """Neither ask nor keep from now on: what follows belongs to no step."""
+        """Stop polling and storing: no later computation belongs to a step."""
         self._cancelled = self._keep = self._next = None
 
     def step(
@@ -133,8 +135,8 @@ class Checkpoints:
     ) -> Arrays:
         """Return the result of a step: that of the earlier run, else computed now.
 
-        kind, inputs: what tells it from other steps, all that it depends on besides the problem. counts: takes the
-        evaluations. Raises `ForeignRecords` if the earlier run did something else here.
+        kind, inputs: identification of the step by all that it depends on besides the problem. counts: counter of
+        evaluations. Raises `ForeignRecords` if the earlier run had another step here.
         """
         if self._next is None and self._keep is None:
             return compute()
@@ -153,20 +155,20 @@ class Checkpoints:
         return arrays
 
     def end_round(self) -> bool:
-        """Keep the steps of a round that has ended; return whether the earlier run had not told it."""
+        """Store the steps of a finished round; return whether the earlier run had not reported it."""
         self.rounds += 1
         unreported = self.rounds > self.earlier_rounds
         self._flush(ends=unreported)
         return unreported
 
     def _gone_through(self, past: Sequence[Record]) -> Iterator[Record]:
-        """Yield records, and count those whose steps have all been taken."""
+        """Yield records, and count those whose steps have all been replayed."""
         for record in past:
             yield record
             self.repeated += 1
 
     def _flush(self, *, ends: bool = False) -> None:
-        """Pass on the pending steps as a record. ends: also without any, at the end of a round."""
+        """Pass on the pending steps as a record. ends: whether a round ends; then even without steps."""
         if self._keep is not None and (self._pending or ends) and self._identity is not None:
             words, self._pending = np.concatenate([np.zeros(0, np.int64), *self._pending]), []
             self._number += 1

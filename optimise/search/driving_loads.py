@@ -1,9 +1,9 @@
 """Warning about loads that drive a machine that is not an engine: a sign is easily reversed.
 
 The net work that the loads on slider and crank do on the machine over a cycle, W = integral of F dx + M d theta, is
-negative if the machine is driven, and zero for springs, weights and tables over position. It is positive for engines
-alone. A job says that it has one by a load that `drives`, gas or a force that helps, whose work does not count here, or
-by requiring a delivered work of zero or more.
+negative if the machine is driven, and zero for springs, weights and tables over position. It is positive only for
+engines. A job declares an engine by a load that `drives`, gas or a helping force, whose work does not count here, or by
+requiring a delivered work of zero or more.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ _NAMED = 3
 
 
 def driven_by_loads(problem: Problem) -> list[str]:
-    """Return the warning of loads that do positive net work on samples of the designs of a problem, or none."""
+    """Return the warning about loads that do positive net work on sampled designs of a problem, or none."""
     return _warning(samples(problem), "sampled design") if any(map(_may_be_driven, problem.parts())) else []
 
 
 def front_driven_by_loads(front: ParetoFront) -> list[str]:
-    """Return the warning of loads that do positive net work on designs of a front, or none."""
+    """Return the warning about loads that do positive net work on designs of a front, or none."""
     variants = front.variants or (0,) * len(front)
     rows = [
         [row for row, rows_of_variant in enumerate(variants) if rows_of_variant == variant]
@@ -54,10 +54,10 @@ def front_driven_by_loads(front: ParetoFront) -> list[str]:
 
 
 def net_work(problem: Problem, designs: Array, loads: Collection[int] | None = None) -> Array:
-    """Return the net work (n,), J a cycle, that loads do on designs (n, 3 + k).
+    """Return the net work (n,), J per cycle, that loads do on designs (n, 3 + k).
 
-    loads: places of those that count; if None, all that do not say that they drive. NaN for a design that cannot move
-    as asked.
+    loads: indices of the loads that count; if None, all that are not declared to drive. NaN for a design that cannot
+    make the required motion.
     """
     if loads is None:
         loads = [k for k, load in enumerate(problem.mechanism.loads) if not load.drives]
@@ -72,7 +72,7 @@ def net_work(problem: Problem, designs: Array, loads: Collection[int] | None = N
 
 
 def _with_counted_loads(mechanism: Mechanism, counted: Collection[int]) -> Mechanism:
-    """Return the machine with nothing in the place of the loads that do not count."""
+    """Return the machine with empty loads in place of those that do not count."""
     ignored = set(range(len(mechanism.loads))).difference(counted)
     if not ignored:
         return mechanism
@@ -87,9 +87,9 @@ def _with_counted_loads(mechanism: Mechanism, counted: Collection[int]) -> Mecha
 
 
 def _may_be_driven(problem: Problem) -> bool:
-    """Whether loads may drive the machine that neither say so nor are excused by delivered work that is required.
+    """Whether undeclared loads may drive the machine, with no delivered work required.
 
-    It spares most problems the kernels of the torque.
+    This check saves most problems from compiling the torque kernels.
     """
     delivers = any(
         constraint.quantity == DELIVERED_WORK.name and constraint.lower is not None and constraint.lower >= 0.0
@@ -99,7 +99,7 @@ def _may_be_driven(problem: Problem) -> bool:
 
 
 def _warning(parts: Iterable[tuple[Problem, Array]], design: str) -> list[str]:
-    """Return the warning of designs, each with the problem of their choices. design: noun for one of them."""
+    """Return the warning about designs, each with the problem for its choices. design: noun for one of them."""
     works: list[float] = []
     subject, named, count = "loads", "", 0
     for part, designs in parts:

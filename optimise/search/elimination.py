@@ -1,8 +1,8 @@
-"""Equality requirements eliminated exactly: the search moves only in what they leave free.
+"""Exact elimination of equality requirements: the search moves only in the remaining free unknowns.
 
 Unknowns are crank r, rod l and a = |offset|. Each requirement is a rule that computes one of them from others. A set of
-free unknowns is chosen from which the rules, applied one after the other, give the rest. Requirements that no rule
-covers stay with the solver as equality constraints. Other numbers that vary are free: no rule computes them.
+free unknowns is chosen such that the rules, applied in turn, give the rest. Requirements without a rule stay with the
+solver as equality constraints. Extra variables are free: no rule computes them.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class ClosedRule(Rule):
 
 
 class LinearRule(Rule):
-    """One of the rules that linear equalities give together. wanted: numbers of `linear_rules.solution`."""
+    """One of the rules from a set of linear equalities. wanted: numbers of `linear_rules.solution`."""
 
     def formula(self, *sources: Any) -> Any:
         """Return the target for the sources."""
@@ -55,12 +55,12 @@ class LinearRule(Rule):
 
 @dataclass(frozen=True)
 class EliminationBranch:
-    """One sign of the offset with the free unknowns and the steps that give the others.
+    """One sign of the offset with the free unknowns and the steps that compute the others.
 
-    sign: of the offset. free: names; crank, rod and offset come before other varying numbers. lower, upper:
-    of the free unknowns, SI. bounds: of all unknowns, SI. names: of all unknowns, in the order of a design's numbers.
-    variant: which combination of the problem's choices, see `Problem.part`.
-    eliminated: requirements that hold exactly wherever the roots taken are not spurious, which `evaluation` checks.
+    sign: sign of the offset. free: names of the free unknowns; crank, rod and offset precede extra variables. lower,
+    upper: bounds of the free unknowns, SI. bounds: bounds of all unknowns, SI. names: names of all unknowns, in the
+    order of a design's numbers. variant: index of the combination of the problem's choices, see `Problem.part`.
+    eliminated: requirements that hold exactly unless a chosen root is spurious, which `evaluation` checks.
     remaining: constraints left to the solver.
     """
 
@@ -76,9 +76,9 @@ class EliminationBranch:
     variant: int = 0
 
     def dimensions(self, u: Any) -> Any:
-        """Return designs (n, 3 + v) for points (n, k) of the unit box; NaN where no linkage fulfils it.
+        """Return designs (n, 3 + v) for points (n, k) of the unit box; NaN where no linkage meets the requirements.
 
-        Columns: crank, rod, offset, m, and the numbers that vary besides them, SI. Complex points give complex designs.
+        Columns: crank, rod, offset, m, and extra variables, SI. Complex points give complex designs.
         """
         u = np.atleast_2d(u)
         unknowns: dict[str, Any] = {
@@ -103,7 +103,7 @@ class EliminationBranch:
     def coordinates(self, designs: Array) -> Array:
         """Return the points (n, k) of the unit box with the free unknowns of designs (n, 3 + v).
 
-        What lies outside of its range comes to the end of it. A design that fulfils what is eliminated is given back.
+        Values outside their range move to its end. A design that meets the eliminated requirements is reproduced.
         """
         sizes = np.concatenate([np.abs(designs[:, :3]), designs[:, 3:]], axis=1)
         columns = [sizes[:, self.names.index(name)] for name in self.free]
@@ -121,10 +121,10 @@ class EliminationBranch:
 def elimination_branches(problem: Problem, *, eliminate: bool = True) -> tuple[EliminationBranch, ...]:
     """Return the branches of a problem: one for each possible sign of the offset, in every variant of its choices.
 
-    Each solution of a rule has its own. Those that leave something free come first: the search moves on them; of each
-    other one its only design is all.
-    eliminate: whether equality constraints are eliminated (fixed dimensions always are). A slow stroke that is asked
-    leaves one sign at constant speed. Raises `InfeasibleError` if the ranges have no offset of that sign.
+    Each solution of a rule has its own branch. Branches with free unknowns come first, for the search; each of the
+    others has a single design.
+    eliminate: whether equality constraints are eliminated (fixed dimensions always are). At constant speed, a required
+    slow stroke leaves one sign. Raises `InfeasibleError` if the ranges have no offset of that sign.
     """
     parts = problem.parts()
     require_slow_side(problem, parts)
@@ -139,7 +139,7 @@ def elimination_branches(problem: Problem, *, eliminate: bool = True) -> tuple[E
 
 
 def require_slow_side(problem: Problem, parts: tuple[Problem, ...]) -> None:
-    """Raise `InfeasibleError` if no offset in the range of any part has the required slow stroke."""
+    """Raise `InfeasibleError` if no offset within the range of any part gives the required slow stroke."""
     if any(signs(part) for part in parts):
         return
     part = parts[0]
@@ -211,9 +211,9 @@ def _eliminate(problem: Problem, sign: float, offset: Range, *, eliminate: bool,
 
 
 def _requested_values(problem: Problem) -> tuple[dict[str, float], dict[str, str]]:
-    """Return the values that equalities require by quantity, and the quantity of each equality.
+    """Return the values required by equalities, by quantity, and the quantity of each equality.
 
-    A formula that restates a known quantity requires that quantity, unless another value of it is required too.
+    A formula that restates a known quantity counts as that quantity, unless another value of it is required too.
     """
     equalities = {c.quantity: float(c.lower) for c in problem.constraints if c.equality and c.lower is not None}
     required: dict[str, float] = {}
@@ -237,10 +237,10 @@ def _requested_values(problem: Problem) -> tuple[dict[str, float], dict[str, str
 
 
 def _rule_orders(computed: set[str], rules: list[Rule], steps: tuple[Rule, ...] = ()) -> Iterator[tuple[Rule, ...]]:
-    """Yield every order of rules that gives the unknowns which are not known yet.
+    """Yield every order of rules that computes the remaining unknowns.
 
-    Each requirement is one equation: a rule is spent once. A combination of two requirements may be followed by one of
-    them alone, which completes the pair.
+    Each requirement is one equation, so each rule is used once. A combination of two requirements may be followed by
+    one of them alone, which completes the pair.
     """
     if computed.issuperset(DIMENSIONS):
         yield steps
@@ -251,7 +251,7 @@ def _rule_orders(computed: set[str], rules: list[Rule], steps: tuple[Rule, ...] 
 
 
 def _linear_rules(block: Block) -> Iterator[LinearRule]:
-    """Yield the rules that linear equalities give once they are solved, one for each target."""
+    """Yield the rules from solved linear equalities, one for each target."""
     for target, row in zip(block.targets, block.rows, strict=True):
         yield LinearRule(f"{_LINEAR}{target}", target, *solution(row, target))
 
@@ -259,8 +259,8 @@ def _linear_rules(block: Block) -> Iterator[LinearRule]:
 def _fulfilled_requirements(steps: tuple[Rule, ...], block: Block) -> set[str]:
     """Return the requirements that hold exactly after these steps.
 
-    One rule of a combination alone fulfils one relation between two requirements, hence neither of them. Linear
-    equalities hold once all their rules are used.
+    A combination's rule alone fulfils one relation between two requirements, hence neither of them. Linear equalities
+    hold once all their rules are used.
     """
     single = {step.origin for step in steps if "+" not in step.origin and not isinstance(step, LinearRule)}
     if sum(isinstance(step, LinearRule) for step in steps) == len(block.targets):

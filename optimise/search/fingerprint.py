@@ -17,12 +17,12 @@ from ..problem.problem import Problem
 from .checkpoints import Identity
 
 _COMPUTE = ("slidercrank", "numpy", "scipy", "numba", "moocore", "optuna", "cmaes")
-_LEFT_OUT = ("folders",)  # where the function of an own quantity lies: a job may be moved
+_LEFT_OUT = ("folders",)  # folders of a custom function: a job may be moved
 
 
 @cache
 def version_of(name: str) -> str:
-    """Return the version of an installed package; "unknown" where it is not installed."""
+    """Return the version of an installed package; "unknown" if it is not installed."""
     try:
         return version(name)
     except PackageNotFoundError:
@@ -30,12 +30,12 @@ def version_of(name: str) -> str:
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of this software and of what computes its numbers."""
+    """Return the versions of this software and of its numerical libraries."""
     return {"python": python_version(), **{name: version_of(name) for name in (*_COMPUTE, "pandas")}}
 
 
 def identity_of(problem: Problem) -> Identity:
-    """Return whose records a search of this problem keeps. In between its name may change and its budget be raised."""
+    """Return the identity of a search of this problem. Its name may change and its budget rise before it resumes."""
     settings = replace(problem.settings, evaluations=None)
     digest = hashlib.blake2b(digest_size=16)
     for part in _parts(replace(problem, settings=settings, name="")):
@@ -44,7 +44,7 @@ def identity_of(problem: Problem) -> Identity:
 
 
 def _parts(value: Any) -> Iterator[bytes]:
-    """Yield a value's type and content, the parts of one that has parts after their number."""
+    """Yield a value's type and content; for a composite value, the number of parts, then the parts."""
     yield f"{type(value).__qualname__}:".encode()
     if is_dataclass(value) and not isinstance(value, type):
         for item in fields(value):

@@ -18,20 +18,20 @@ _OF_TARGET = 0.01  # the same of a target: designs that meet it differ by roundi
 class Growth:
     """Volume that the designs found so far dominate.
 
-    It is measured from a corner that stays where it is, in boxes of a size that stays as it is: what designs dominate
-    there only grows as more are found. Of very many designs some tell, evenly spread, and other ones every time; none
-    of them is lost again, so the most that any of these parts dominated is a volume that is dominated still.
+    It is measured from a fixed corner in boxes of fixed size, so that it only grows as more designs are found. From
+    very many designs an evenly spread subset counts, a different one each time. No design is lost again, so the
+    greatest volume of any subset is still dominated.
 
-    box: ideal and span (m,); the corner lies 1.1 spans beyond the ideal. Without one it is that of the first designs,
-    and the volume may exceed one box, as later designs may be better than the ideal of those. With one, volume beyond
-    its ideal does not count. targets: (m,), of the objectives, zero where there is none. front: (n, m), the designs
-    that told last, objectives as minimised.
+    box: ideal and span (m,); the corner is 1.1 spans beyond the ideal. Without a box, that of the first designs counts,
+    and the volume may exceed one box, as later designs may be better than their ideal. With a box, volume beyond its
+    ideal does not count. targets: (m,), targets of the objectives, zero for none. front: (n, m), the subset counted
+    last, objectives as minimised.
     """
 
     def __init__(
         self, targets: Array, *, box: tuple[Array, Array] | None = None, max_designs: int | None = None
     ) -> None:
-        """Begin without designs. max_designs: how many tell; as many as take a moment if None."""
+        """Begin without designs. max_designs: number of designs that count; if None, as many as are fast."""
         self.front: Array = np.zeros((0, len(targets)))
         self._targets = targets
         self._box = box
@@ -40,7 +40,7 @@ class Growth:
         self._volume = 0.0
 
     def add(self, values: Array) -> float:
-        """Take in feasible designs, objectives (n, m), and return the volume that all together dominate, in boxes."""
+        """Add feasible designs, objectives (n, m), and return the volume that all designs dominate, in boxes."""
         values = np.concatenate([self.front, self._thin_out(values[np.isfinite(values).all(axis=1)])])
         if not len(values):
             return 0.0

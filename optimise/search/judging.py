@@ -1,4 +1,4 @@
-"""Quantities of many designs: what an evaluator asks for, row by row, so that rows can be judged anywhere."""
+"""Quantities of many designs for an evaluator, row by row, so that any process can judge rows."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Judged(Protocol):
         ...
 
     def quantity(self, name: str) -> Quantity:
-        """Return the quantity of a name."""
+        """Return the quantity with a name."""
         ...
 
 
@@ -44,7 +44,7 @@ def screen_quantities(problem: Judged, names: tuple[str, ...], dimensions: Array
 
 
 def _estimate_robust(quantity: RobustQuantity, mechanism: Mechanism, dimensions: Array) -> Array:
-    """Return the first-order estimate of a robust quantity: one evaluation a design in place of a dozen."""
+    """Return the first-order estimate of a robust quantity: one evaluation per design instead of a dozen."""
     inner = quantity.inner
     if isinstance(inner, CyclePeak):
         values = screen_peaks([inner], mechanism, dimensions, gradients=True)[0]
@@ -59,7 +59,7 @@ def evaluate_pieces(problem: Judged, names: tuple[str, ...], dimensions: Array) 
 
 
 def join_batches(parts: list[list[Pieces]]) -> list[Pieces]:
-    """Return the pieces of consecutive designs as those of all, what some have fewer of filled up with absent ones."""
+    """Return the joined pieces of consecutive designs, padded with absent pieces where some have fewer."""
     return [_join_pieces(batch) for batch in zip(*parts, strict=True)] if len(parts) > 1 else parts[0]
 
 
@@ -84,7 +84,7 @@ def _join_pieces(parts: Sequence[Pieces]) -> Pieces:
 
 
 def _opposite_pieces(part: Pieces) -> Pieces:
-    """Return a quantity from its other side, where some designs have no kink on it: its active piece alone."""
+    """Return a quantity from its other side, for designs without a kink there: only its active piece."""
     if part.opposite is not None:
         return part.opposite
     active = (np.argmin if part.least else np.argmax)(part.values, axis=1)

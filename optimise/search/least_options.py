@@ -1,4 +1,4 @@
-"""The least option of a catalogue that serves a design: the cheapest gearmotor that can take what it asks for."""
+"""The least sufficient option of a catalogue for a design: the cheapest gearmotor that meets its demands."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _SAME = 1e-9  # relative: a dimension that an option sets
 
 
 def least_options(problem: Problem, variants: Whole, dimensions: Array) -> Columns:
-    """Return for each catalogue the least option (n,) that meets all requirements, all else being equal, and its row.
+    """Return the least option (n,) of each catalogue that meets all requirements, all else equal, and its row.
 
-    variants: (n,), of each design. dimensions: (n, 3 + v). An option with which designs have other numbers, such as a
-    mass of its own, may change what they are judged by; it must meet every requirement then.
+    variants: (n,), variant of each design. dimensions: (n, 3 + v). An option that changes other numbers of a design,
+    such as a mass, may change its quantities; it must then meet every requirement.
     """
     columns: Columns = {}
     for place in problem.catalogues:
@@ -55,7 +55,7 @@ def least_options(problem: Problem, variants: Whole, dimensions: Array) -> Colum
 
 
 def _single_swaps(problem: Problem, labels: tuple[str, ...], place: int) -> list[Variant]:
-    """Return the combinations that differ from one in a single choice at most."""
+    """Return the combinations that differ from `labels` at most in the choice at `place`."""
 
     def without_place(all_labels: tuple[str, ...]) -> tuple[str, ...]:
         return all_labels[:place] + all_labels[place + 1 :]
@@ -71,12 +71,12 @@ class _Serving:
         self._known: dict[tuple[int, int], tuple[Quantity, Array]] = {}  # with the quantity, so that its id stays
 
     def __call__(self, option: Variant) -> Mask:
-        """Return which of the designs an option serves."""
+        """Return for which designs an option suffices."""
         designs = self.dimensions
         served = np.ones(len(designs), np.bool_)
         try:
             part = self.problem.with_variant(option)
-        except InputError:  # of limits that leave nothing
+        except InputError:  # its limits exclude every design
             return ~served
         for column, ends in enumerate((option.crank, option.rod, option.offset)):
             tolerance = _SAME * max(abs(ends.lower), abs(ends.upper))

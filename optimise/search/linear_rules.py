@@ -1,4 +1,4 @@
-"""Linear equalities between dimensions, solved for as many of them as there are equalities, in exact fractions."""
+"""Linear equalities between dimensions, each solved for one of them, in exact fractions."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 
 @dataclass(frozen=True)
 class Block:
-    """Equalities solved for some unknowns, the targets. origins: all of them, those that follow from others too.
+    """Equalities solved for some unknowns, the targets. origins: all equalities, including redundant ones.
 
-    rows: of each target, what is zero; its own factor is not zero, and those of the other targets are.
+    rows: for each target, a sum that is zero; the target's own factor is not zero, those of the other targets are.
     """
 
     origins: tuple[str, ...]
@@ -34,8 +34,8 @@ NOTHING = Block(())
 def linear_equations(required: Mapping[Quantity, float], sign: float) -> dict[str, Linear]:
     """Return the equalities that are linear in crank, rod, |offset| and varying numbers, as sums that are zero.
 
-    required: quantities with their values. sign: of the offset. None where no formula is among them: proportions by
-    themselves have rules of their own.
+    required: quantities with their values. sign: sign of the offset. Empty if no formula is among them: proportions
+    alone have their own rules.
     """
     equations: dict[str, Linear] = {}
     for quantity, value in required.items():
@@ -52,7 +52,7 @@ def linear_equations(required: Mapping[Quantity, float], sign: float) -> dict[st
 
 
 def with_offset_size(row: Linear, sign: float) -> Linear:
-    """Return an equality in |offset|, which the sign of the offset allows."""
+    """Return an equality in terms of |offset|, using the sign of the offset."""
     size = Linear((("offset", Fraction(1)),), Fraction(0))
     rewritten = Linear((), row.constant)
     for name, factor in row.factors:
@@ -64,9 +64,9 @@ def with_offset_size(row: Linear, sign: float) -> Linear:
 
 
 def blocks(equations: Mapping[str, Linear], loose: Sequence[str]) -> Iterator[Block]:
-    """Yield every way to solve equalities for loose unknowns; one without targets where there is none.
+    """Yield every way to solve equalities for loose unknowns; one without targets if there is none.
 
-    Equalities that contradict those before them are left out of all: whoever checks the problem says so.
+    Equalities that contradict earlier ones are left out everywhere: the check of the problem reports them.
     """
     origins, rows, reduced = list[str](), list[Linear](), list[Linear]()
     for name, row in equations.items():
@@ -109,7 +109,7 @@ def target_of(*numbers: Any) -> Any:
 
 
 def _linear_proportion(quantity: Quantity, value: float) -> Linear | None:
-    """Return a rule of proportion as a linear equality; None for what is none."""
+    """Return a proportion as a linear equality; None for any other quantity."""
     rod, crank, offset = unknown("rod"), unknown("crank"), unknown("offset")
     if quantity.name == ROD_TO_OFFSET.name:
         return rod.plus(offset, -Fraction(value))
@@ -121,13 +121,13 @@ def _linear_proportion(quantity: Quantity, value: float) -> Linear | None:
 
 
 def _eliminate_name(row: Linear, pivot: Linear, name: str) -> Linear:
-    """Return an equality less as much of another one as rids it of a name."""
+    """Return an equality minus the multiple of another one that eliminates a name."""
     factor = dict(row.factors).get(name)
     return row if factor is None else row.plus(pivot, -factor / dict(pivot.factors)[name])
 
 
 def _solve_for(rows: Sequence[Linear], targets: Sequence[str]) -> tuple[Linear, ...] | None:
-    """Return the equalities with one target in each; None where they do not determine these."""
+    """Return the equalities with one target in each; None if they do not determine the targets."""
     left, solved = list(rows), list[Linear]()
     for target in targets:
         place = next((n for n, row in enumerate(left) if target in row.names), None)

@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 
 def expected_warnings(problem: Problem, *, certain: bool = False) -> list[str]:
-    """Return the warnings of a problem: loaded strokes that are fast within its ranges, and offsets that are left out.
+    """Return the warnings of a problem: fast loaded strokes within its ranges, and excluded offsets.
 
-    The first only where the problem does not say which stroke is to be the slow one, the second only where it does.
-    certain: only of strokes that are fast in every sampled design.
+    The first applies only if the problem requires no slow stroke, the second only if it does. certain: whether to warn
+    only about strokes that are fast in every sampled design.
     """
-    if problem.motion is not None:  # forth and back are told apart by their drive alone
+    if problem.motion is not None:  # forward and return differ only in their drive
         return []
     if problem.slow_stroke is not None or all(load.drives for load in problem.mechanism.loads):  # it spares the samples
         return _offset_warnings(problem)
@@ -47,7 +47,7 @@ def expected_warnings(problem: Problem, *, certain: bool = False) -> list[str]:
 
 
 def front_warnings(front: ParetoFront) -> list[str]:
-    """Return the warnings of a front: loaded strokes of its designs that are fast, and offsets that were left out."""
+    """Return the warnings of a front: fast loaded strokes of its designs, and excluded offsets."""
     if not len(front):
         return []
     free = np.array([front.part(row).slow_stroke is None for row in range(len(front))])
@@ -66,7 +66,7 @@ def front_warnings(front: ParetoFront) -> list[str]:
 
 
 def _offset_warnings(problem: Problem) -> list[str]:
-    """Return the warning of a slow stroke that leaves the lesser part of a range of offsets."""
+    """Return the warning about a slow stroke that leaves the smaller part of a range of offsets."""
     for part in problem.parts():
         side, lower, upper = part.slow_side(), part.offset.lower, part.offset.upper
         if side is None or not lower < 0.0 < upper:

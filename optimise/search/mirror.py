@@ -1,9 +1,9 @@
-"""Branches that are mirror images of each other: one of the two has all that there is to find.
+"""Branches that are mirror images of each other: searching one of the two is enough.
 
-Mirrored about the slider's direction and run backwards, a machine with offset e is one with offset -e that turns the
-same way. Accelerations and whatever depends on the position alone are the same in both, velocities change sign. So the
-two are equal in everything unless gravity across the slider line, a load or friction that depends on the motion,
-several cylinders, a speed profile, or what is asked for tells them apart.
+Mirrored about the slider's direction and run backwards, a machine with offset e becomes one with offset -e that rotates
+the same way. Accelerations and all functions of position alone are the same in both; velocities change sign. So the two
+are equal unless one of these distinguishes them: gravity across the slider line, a load or friction that depends on the
+motion, several cylinders, a speed profile, or a requested quantity.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ from ..problem.violation import constraints_of
 from .elimination import EliminationBranch
 from .sampling import generator
 
-_TRIED = 512  # random designs, of which those that turn fully count
+_TRIED = 512  # random designs, of which those that rotate fully count
 _COMPARED = 8
 _EQUAL = 1e-8  # relative: accuracy of a peak near locking
 _STREAM = 4000  # of the seed
 
 
 def drop_mirrored_branches(problem: Problem, branches: tuple[EliminationBranch, ...]) -> tuple[EliminationBranch, ...]:
-    """Return the branches without those whose designs are mirror images of designs of another one.
+    """Return the branches without those whose designs are mirror images of another branch's designs.
 
-    Of two with the same range the one of positive offsets stays, otherwise the one with the wider range.
+    Of two branches with the same range, the one with positive offsets stays; otherwise the one with the wider range.
     """
     parts = problem.parts()
     groups: dict[Hashable, list[EliminationBranch]] = {}
@@ -56,7 +56,7 @@ def drop_mirrored_branches(problem: Problem, branches: tuple[EliminationBranch, 
 def _wider_and_narrower(
     one: EliminationBranch, other: EliminationBranch
 ) -> tuple[EliminationBranch, EliminationBranch] | None:
-    """Return two branches of opposite sign, first the one whose sizes of the offset include those of the second."""
+    """Return two branches of opposite sign, first the one whose range of |offset| includes the other's."""
     if one.sign == other.sign:
         return None
     first, second = (one, other) if one.sign > 0.0 else (other, one)
@@ -75,7 +75,7 @@ def _tells_signs_apart(part: Problem, branches: list[EliminationBranch]) -> bool
     if is_shaft(part.mechanism):
         return True
     if not all(load.by_position or load.inertial for load in machine.loads):
-        return True  # what differs at some crank angles only would be seen in some designs only
+        return True  # a difference at some crank angles only would show in some designs only
     designs = np.concatenate([_random_designs(part, branch) for branch in branches])
     if not len(designs):
         return True
@@ -94,9 +94,9 @@ def _tells_signs_apart(part: Problem, branches: list[EliminationBranch]) -> bool
 
 
 def _may_differ(quantity: Quantity) -> bool:
-    """Whether a quantity may tell offsets e and -e apart where random designs do not.
+    """Whether a quantity may distinguish offsets e and -e where random designs do not.
 
-    All of a job's own may but formulas, unless these have the offset's sign in them.
+    All custom quantities of a job may, except formulas without the offset's sign.
     """
     if quantity.constant:
         return False
@@ -106,7 +106,7 @@ def _may_differ(quantity: Quantity) -> bool:
 
 
 def _random_designs(part: Problem, branch: EliminationBranch) -> Array:
-    """Return some random designs (n, 3 + v) within a branch's ranges that turn fully, whatever is required."""
+    """Return some random, fully rotating designs (n, 3 + v) within a branch's ranges, whatever is required."""
     ends = [branch.bounds[name] for name in branch.names]
     lower, upper = (np.array([getattr(item, end) for item in ends]) for end in ("lower", "upper"))
     designs = lower + (upper - lower) * generator(part.settings.seed, _STREAM).random((_TRIED, len(ends)))

@@ -1,4 +1,4 @@
-"""Rows of smooth pieces: which are active, and which of two designs' rows are the same piece."""
+"""Rows of smooth pieces: which are active, and which rows of two designs are the same piece."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ class Rows:
     """Smooth rows of n designs in the free unknowns: `value <= 0` for constraints, "greatest of" for objectives.
 
     values: (n, r), -inf for absent rows. gradients: (n, r, k). labels: (n, r). owner: (r,), the constraint or
-    objective that a row belongs to. constant: owners that are the same for every design, of which nothing can be told
-    by slopes; none if all are.
+    objective that a row belongs to. constant: owners with the same value for every design, for which slopes prove
+    nothing; empty if all have.
     """
 
     values: Array
@@ -30,7 +30,7 @@ class Rows:
 
     @classmethod
     def absent(cls, n: int, k: int) -> Rows:
-        """Return no rows of n designs in k unknowns."""
+        """Return an empty set of rows for n designs in k unknowns."""
         return cls(np.zeros((n, 0)), np.zeros((n, 0, k)), np.zeros((n, 0)), np.zeros(0, np.int64))
 
     def overwrite(self, row: int, replacement: Rows, source: int) -> None:
@@ -67,10 +67,10 @@ def active_pieces(goals: Rows, chosen: tuple[int, ...], *, tolerance: float = AC
 
 
 def partners(rows: Rows, others: Rows, columns: Whole) -> tuple[Whole, Mask]:
-    """Return for rows (p,) of one design the same rows of others (..., p), and whether these have them.
+    """Return the rows of other designs (..., p) that match rows (p,) of one design, and whether they exist.
 
-    Matched by labels, since peaks may swap their order. Rows of one owner with equal labels (lower and upper bound)
-    keep their place.
+    Rows match by label, since peaks may swap their order. Rows of one owner with equal labels (lower and upper bound)
+    keep their order.
     """
     same = (rows.owner[columns, None] == rows.owner) & np.isfinite(others.values)[..., None, :]
     distances = np.abs(others.labels[..., None, :] - rows.labels[columns, None])
@@ -98,7 +98,7 @@ def difference(rows: Rows, others: Rows, weight: Array) -> Array:
 
 
 def bent(rows: Rows, end_rows: Rows, step: Array) -> Array:
-    """Return the values of rows whose linearisation meets their values at the end of a step."""
+    """Return values such that the linearised rows agree with the true rows at the end of a step."""
     values = rows.values.copy()
     columns = np.flatnonzero(np.isfinite(values))
     if len(columns):

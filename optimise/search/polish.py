@@ -1,15 +1,15 @@
 """Sequential quadratic programming that moves designs onto the Pareto front.
 
-Each design solves Benson's problem from where it stands, min sum_i f_i with no objective made worse and all constraints
-held, whose solutions are Pareto-optimal (H. P. Benson, "Existence of efficient solutions for vector maximization
-problems", JOTA 26(4), 1978). Merely mutual non-dominance, or a vanishing convex combination of some gradients, is not
-enough: where two objectives do not change with the size of the linkage, a smaller copy may be better in all others.
+Each design solves Benson's problem from its present position: min sum_i f_i with no objective made worse and all
+constraints held. The solutions are Pareto-optimal (H. P. Benson, "Existence of efficient solutions for vector
+maximization problems", JOTA 26(4), 1978). Mutual non-dominance, or a vanishing convex combination of some gradients, is
+not enough: if two objectives do not change with the size of the linkage, a smaller copy may be better in all others.
 
 `programme` states the steps. Their Hessian is that of the Lagrangian, by differences of exact gradients, with the
-multipliers that the programme itself gives, made convex across what holds the step before anything else. A full step
-that bends out of what it is to hold is corrected to second order before it is shortened (Nocedal and Wright, "Numerical
+multipliers from the programme itself. It is first made convex across the active rows. A full step that curves away from
+rows that it must hold is corrected to second order before it is shortened (Nocedal and Wright, "Numerical
 Optimization", 2006, ch. 18.3): otherwise designs creep along curved constraints. A design that starts outside the
-constraints is first moved onto them the shortest way. Peaks that tie enter as separate pieces: a kink is a minimax, not
+constraints first moves onto them by the shortest step. Tied peaks enter as separate pieces: a kink is a minimax, not
 noise. Designs advance together, so that every evaluation is a batch.
 """
 
@@ -34,9 +34,9 @@ _NOISE = 1e-15  # of the objectives: rounding of the merit
 _STALLED = 1e-13  # gain (objectives scaled by their range) of two steps in a row that ends a design's polish
 _DIFFERENCE = 1e-6  # of the unit box, for differences of gradients
 _CURVATURE = 1e-6  # least eigenvalue of the step's Hessian, objectives and box scaled to one
-_APART = 1e-6  # of unit vectors: less is no direction of its own, or none in common
+_APART = 1e-6  # of unit vectors: a smaller part is not an independent, or a common, direction
 _HEAVIEST = 1e8  # largest penalty of a violation
-_PASSES = 5  # at a step where only the sum counts: a small gain along a kink is worth no way off it
+_PASSES = 5  # at a step where only the sum counts: a small gain along a kink does not justify leaving it
 _SHORTEST = 1e-13  # radius at which a design's polish ends
 _RESTORING = 12  # steps onto the constraints; Newton's method needs 3 to 6
 
@@ -65,10 +65,10 @@ def polish(
 ) -> Polished:
     """Return designs improved to stationarity from `start` (n, k) in the unit box.
 
-    scale: range of each objective over the front. chosen: improve these objectives only (all by default). iterations:
-    None only moves designs that violate constraints onto them, the shortest way. hold: False lets an objective become
-    worse where the sum gains. best_in: (n,), the objective that each design is the best in, and stays the best in.
-    A design that was feasible once is feasible in the end.
+    scale: range of each objective over the front. chosen: objectives to improve (all by default). iterations: greatest
+    number of steps; None only moves designs that violate constraints onto them by the shortest step. hold: False lets
+    an objective become worse if the sum improves. best_in: (n,), the objective in which each design is best, and
+    remains best. A design that has been feasible once is feasible in the end.
     """
     batch = _Batch(evaluator, start, scale, chosen, hold)
     if best_in is not None:
@@ -82,7 +82,7 @@ def polish(
 
 
 class _Batch:
-    """Designs under polish: where they report, their rows, and which still move."""
+    """Designs under polish: their positions, their rows, and which still move."""
 
     def __init__(
         self, evaluator: Evaluates, start: Array, scale: Array, chosen: tuple[int, ...] | None, hold: bool
@@ -109,7 +109,7 @@ class _Batch:
         self.held = greatest(self.goals, len(self.scale))
 
     def restore(self) -> None:
-        """Move designs that violate constraints onto them, the shortest way."""
+        """Move designs that violate constraints onto them by the shortest step."""
         for _ in range(_RESTORING):
             outside = np.flatnonzero(self.open & ~self._feasible())
             if not len(outside):
@@ -128,7 +128,7 @@ class _Batch:
             return False
         fresh = rows[self.moved[rows]]
         if len(fresh):
-            # The multipliers that the Hessian needs hardly depend on the Hessian: those of the last one serve.
+            # The multipliers that the Hessian needs hardly depend on the Hessian: those of the last one suffice.
             drafts = [self._programme(row, self.chosen) for row in fresh.tolist()]
             self.roots[fresh] = roots(self._hessians(fresh, drafts))
         steps = [self._programme(row, self.chosen).move for row in rows.tolist()]
@@ -140,7 +140,7 @@ class _Batch:
         return True
 
     def result(self) -> Polished:
-        """Return where the designs stand."""
+        """Return the designs at their present positions."""
         n, m = len(self.u), len(self.scale)
         lost = np.flatnonzero(~self._feasible() & np.isfinite(self.safe).all(axis=1))
         if len(lost):
@@ -175,7 +175,7 @@ class _Batch:
         self.limits.overwrite(row, limits, source)
 
     def _residual(self, row: int) -> float:
-        """Return the residual of Benson's problem; what is not quite active does not count, so that it becomes so."""
+        """Return the residual of Benson's problem; only fully active rows count, so that the polish reaches them."""
         goals, limits = alone(self.goals, row), alone(self.limits, row)
         pieces = active_pieces(goals, self.chosen, tolerance=_TIGHT)
         edges = np.concatenate([limits.gradients[limits.values > -_TIGHT], box(self.u[row], tolerance=_TIGHT)])
@@ -192,7 +192,7 @@ class _Batch:
         if self.weight[row] > light and _violation_after(limits, step.move) > max(
             0.5 * _violation_after(limits, first.move), ROUNDING
         ):
-            # A violation that no step within the radius removes: weight would only stiffen what follows.
+            # No step within the radius removes the violation: weight would only stiffen the next steps.
             self.weight[row] = light
             return first
         return step
@@ -214,7 +214,7 @@ class _Batch:
         n, k = u.shape
         hessians = np.zeros((n, k, k))
         steps = np.where(u < 0.5, _DIFFERENCE, -_DIFFERENCE)
-        still = np.tile(u, (k, 1))  # all coordinates in one batch: with few designs most of a batch's time is its own
+        still = np.tile(u, (k, 1))  # all coordinates in one batch: with few designs, overhead dominates a batch
         moved = still + (np.eye(k)[:, None, :] * steps).reshape(k * n, k)
         goals, limits = self._evaluate(np.where(self.evaluator.valid(moved)[:, None], moved, still))
         for i, (row, draft) in enumerate(zip(rows.tolist(), drafts, strict=True)):
@@ -228,7 +228,7 @@ class _Batch:
         return np.stack([convex(hessian, draft.normals) for hessian, draft in zip(hessians, drafts, strict=True)])
 
     def _search(self, rows: Whole, steps: Array, chosen: tuple[int, ...], *, correct: bool) -> None:
-        """Take the steps that lower the merit, after correction where necessary; shrink the radius of the rest.
+        """Take the steps that lower the merit, corrected if necessary; shrink the radius for the others.
 
         The merit is the sum of the objectives, plus penalised losses and greatest violation.
         """
@@ -252,7 +252,7 @@ class _Batch:
                 penalty = self.loss[at][:, columns] * loss if self.hold else 0.0
                 merit = (after - before[at] + penalty).sum(axis=1) + self.weight[at] * worse
             distance = np.abs(trial - self.u[at]).max(axis=1)
-            # Where the objectives are flat to rounding the programme still knows the way to where the slope vanishes.
+            # Where the objectives are flat to rounding, the programme still finds the point of zero slope.
             accepted = valid & (merit < _NOISE * (1.0 + np.abs(before[at]).sum(axis=1)))
             for i in np.flatnonzero(accepted).tolist():
                 row = int(at[i])
@@ -270,13 +270,13 @@ class _Batch:
             if not len(pending):
                 break
         lost = rows[pending]
-        # Nothing along short steps helps any more: rounding, or a kink that was not seen; the residual will tell.
+        # Short steps no longer help: rounding, or an unseen kink; the residual will tell.
         size = np.abs(steps[pending]).max(axis=1, initial=0.0)
         self.radius[lost] = 0.25 * np.minimum(self.radius[lost], size)
         self.open[lost] &= self.radius[lost] > _SHORTEST
 
     def _corrected(self, row: int, step: Array, goals: Rows, limits: Rows, chosen: tuple[int, ...]) -> Array:
-        """Return the step that also holds what the first one bends out of; rows are those at its end."""
+        """Return the step that also holds the rows from which the first one curves away; rows are those at its end."""
         goals, limits = [
             replace(present, values=bent(present, trial_rows, step))
             for present, trial_rows in ((alone(self.goals, row), goals), (alone(self.limits, row), limits))
@@ -285,7 +285,7 @@ class _Batch:
 
 
 def convex(hessian: Array, normals: Array) -> Array:
-    """Return a positive definite matrix that agrees with the Hessian along what holds the step, if that can be."""
+    """Return a positive definite matrix that agrees with the Hessian along the active rows, if possible."""
     if not np.isfinite(hessian).all():
         return np.eye(len(hessian))
     values, vectors = np.linalg.eigh(hessian)
@@ -294,7 +294,7 @@ def convex(hessian: Array, normals: Array) -> Array:
         _, sizes, directions = np.linalg.svd(normals[lengths > 0.0] / lengths[lengths > 0.0, None])
         held_directions = directions[: len(sizes)][sizes > _APART]
         flat = values < _CURVATURE
-        # Directions that nothing held depends on stay as flat as they are: weight would only stiffen the others.
+        # Directions on which no held row depends stay flat: weight would only stiffen the others.
         dull = int((np.abs(held_directions @ vectors[:, flat]).max(axis=0, initial=0.0) <= _APART).sum())
         if dull < flat.sum():
             for weight in (1.0, 10.0, 100.0):
@@ -306,7 +306,7 @@ def convex(hessian: Array, normals: Array) -> Array:
 
 
 def _violation_after(limits: Rows, move: Array) -> float:
-    """Return the greatest violation after a step, as far as slopes tell."""
+    """Return the greatest violation after a step, to first order."""
     near = np.isfinite(limits.values)
     return float(np.max(limits.values[near] + limits.gradients[near] @ move, initial=0.0))
 

@@ -7,7 +7,7 @@ With scaled objective pieces p of gradient g, constraint rows c <= 0 of gradient
                 c + a d <= w,   0 <= w,   0 <= u + d <= 1,   |d| <= radius,
 
 where F_i is the objective's present value (the greatest of its pieces) and B is positive definite. A loss t_i <= v_i
-has room for rounding, so that a gain too small to show is not weighed as a loss. v and w are exact penalties: where an
+has a margin for rounding, so that an imperceptible gain does not count as a loss. v and w are exact penalties: where an
 objective and a constraint oppose each other exactly, rounding would leave a hard-bounded programme without a solution.
 Without objectives the step is the shortest one that fulfils the constraints. Where only the sum counts, v is left out.
 """
@@ -72,7 +72,7 @@ def solve_step(
     violation: float,
     aim: Aim,
 ) -> Step:
-    """Return the step from u (k,) with the rows of one design; no move where the programme cannot be solved.
+    """Return the step from u (k,) with the rows of one design; a zero step if the programme cannot be solved.
 
     root: transposed inverse of L with B = L L', see `roots`. violation: C.
 
@@ -137,7 +137,7 @@ def roots(hessians: Array) -> Array:
 
 
 def _least_distance(rows: Array, bounds: Array, root: Array, weights: Array) -> tuple[Array, Array]:
-    """Return d and the multipliers of all rows; zeros where rounding leaves no solution."""
+    """Return d and the multipliers of all rows; zeros if rounding leaves no solution."""
     k, size = len(root), rows.shape[1]
     scale = np.zeros((size, size))  # z = scale x + shift
     scale[:k, :k] = root
@@ -159,7 +159,7 @@ def _least_distance(rows: Array, bounds: Array, root: Array, weights: Array) -> 
     if rest[-1] == 0.0:
         return np.zeros(k), np.zeros(len(rows))
     x, is_binding = -rest[:-1] / rest[-1], dual > 0.0
-    # Between pieces that oppose each other large multipliers cancel: what holds the step places it more exactly.
+    # Between opposing pieces large multipliers cancel: the active rows place the step more exactly.
     holding = g[is_binding]
     x = x + np.linalg.lstsq(holding, h[is_binding] - holding @ x, rcond=1e-12)[0]
     return (scale @ x)[:k], dual / lengths / -rest[-1]

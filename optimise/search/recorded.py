@@ -1,4 +1,4 @@
-"""Polish and projection as recorded steps of a search, on its engine where that pays."""
+"""Polish and projection as recorded steps of a search, on its engine where worthwhile."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def polished(
     viewed_evaluator: Evaluates | None = None,
     best_in: Whole | None = None,
 ) -> Polished:
-    """Return the result of `polish`. viewed_evaluator: the evaluator in another light, which it is to see instead."""
+    """Return the result of `polish`. viewed_evaluator: a view of the evaluator that the polish uses instead."""
     inputs: tuple[Numbers, ...] = (start, scale, np.array([-1] if chosen is None else chosen, dtype=np.int64))
     inputs = inputs if best_in is None else (*inputs, best_in)
 
@@ -39,7 +39,7 @@ def polished(
 
 
 def projected(evaluator: Evaluator, start: Array, scale: Array) -> Polished:
-    """Return designs from `start` (n, k), those that violate constraints moved onto them the shortest way, no more."""
+    """Return designs from `start` (n, k), only moved onto violated constraints by the shortest step."""
     return _recorded_polish(
         evaluator, "projection", (start, scale), lambda: polish(evaluator, start, scale, iterations=None)
     )
@@ -54,9 +54,9 @@ def polish(
     iterations: int | None = ITERATIONS,
     best_in: Whole | None = None,
 ) -> Polished:
-    """Return the result of `polish.polish`, on the engine where that pays; no record is kept.
+    """Return the result of `polish.polish`, on the engine where worthwhile; no record is stored.
 
-    Every design is polished by itself, so that many are shared out among workers.
+    Every design is polished independently, so that workers can share many of them.
     """
     if not isinstance(evaluator, Evaluator) or isinstance(evaluator.engine, Serial):
         return polish_here(evaluator, start, scale, chosen=chosen, iterations=iterations, best_in=best_in)
@@ -70,7 +70,7 @@ def polish(
 
 
 def _polish_rows(evaluator: Evaluator, options: _Asked, start: Array) -> tuple[Polished, int]:
-    """Return polished designs and how many were evaluated for them."""
+    """Return polished designs and the number of evaluations for them."""
     before, (scale, chosen, iterations, ends) = evaluator.evaluations, options
     best_in = start[:, -1].astype(np.int64) if ends else None
     start = start[:, :-1] if ends else start

@@ -9,9 +9,9 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Rule(ABC):
-    """One way to compute an unknown: `target` from `sources`. origin: the requirements that it is of, joined by "+".
+    """One way to compute an unknown: `target` from `sources`. origin: its requirements, joined by "+".
 
-    values: their values.
+    values: values of the requirements.
     """
 
     origin: str
@@ -25,5 +25,5 @@ class Rule(ABC):
 
     @property
     def solutions(self) -> tuple[Rule, ...]:
-        """The rule for each solution that its equation has: a branch each."""
+        """One rule for each solution of its equation: a branch each."""
         return (self,)

@@ -1,4 +1,4 @@
-"""Designs within the ranges of a problem that a warning before a search is judged by."""
+"""Sampled designs within the ranges of a problem, for warnings before a search."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ _NARROW = 0.1
 
 
 def samples(problem: Problem) -> Iterator[tuple[Problem, Array]]:
-    """Yield designs (n, 3 + k) that move as asked, with the problem of their choices.
+    """Yield designs (n, 3 + k) that make the required motion, with the problem for their choices.
 
-    They meet what is required of lengths, stroke and whatever else needs no cycle computed. Where no point does, those
-    are taken that miss it least.
+    They meet the requirements on lengths, stroke and all else that needs no cycle computed. If no point does, those
+    with the least violation count.
     """
     branches = elimination_branches(problem)[:_BRANCHES]
     count = max(_SAMPLES, _TRIED // len(branches))

@@ -17,9 +17,9 @@ APART = 0.1
 
 
 def distant_rows(merits: Array, points: Array, branch: Whole, count: int) -> Whole:
-    """Return rows of at most `count` points (n, k): the least finite worth (n,) first, each `APART` from those before.
+    """Return rows of at most `count` points (n, k): least finite merit (n,) first, each `APART` from those before.
 
-    Points of different branches are apart.
+    Points of different branches count as apart.
     """
     rows = np.argsort(merits, kind="stable")
     rows = rows[np.isfinite(merits[rows])]

@@ -1,4 +1,4 @@
-"""The search's first half: many screened designs, first everywhere, then around sparse parts of the front."""
+"""First half of the search: many screened designs, first everywhere, then around sparse parts of the front."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ LEAST = 1024
 """Designs of a round on each of many branches."""
 _ROUND = 100  # branches without free unknowns
 _CROWD = 2000  # parents of a round
-_RANKED, _LEAST_RANKED = 256, 64  # samples of which the best lead down, of all branches and at least of each
+_RANKED, _LEAST_RANKED = 256, 64  # samples whose best start a descent, over all branches and at least in each
 _STARTS = 8  # the same of those that do
 _BEST = 1000  # designs kept of a single objective
 _FRONT_SAMPLE = 400  # designs of a front so far, and of that of a round in the history
@@ -52,7 +52,7 @@ Callback = Callable[[Progress], None]
 class Archive(Candidates):
     """Non-dominated designs found so far; a feasible design is displaced only by another feasible one.
 
-    band: by how much the others may violate constraints, relative. feasible: designs seen that meet every constraint.
+    band: relative violation of constraints allowed to infeasible designs. feasible: number of feasible designs seen.
     """
 
     band: float = field(default=0.0, kw_only=True)
@@ -63,7 +63,7 @@ class Archive(Candidates):
         return self.screen_all([(index, evaluator, u)])
 
     def screen_all(self, points: Iterable[tuple[int, Evaluator, Array]]) -> int:
-        """Screen points of several branches, then compare them with the archive once: that is what takes time."""
+        """Screen points of several branches, then compare them with the archive once, which takes most of the time."""
         fresh: list[Candidates] = []
         for index, evaluator, u in points:
             _, values, violation = evaluator.screen(u, band=self.band)
@@ -77,7 +77,7 @@ class Archive(Candidates):
     def add_points(self, index: int, u: Array, values: Array, is_feasible: Mask | None = None) -> None:
         """Add points (n, k) of a branch with their objectives (n, m) as minimised.
 
-        is_feasible: (n,), which meet every constraint, all by default; the others are near enough to be moved there.
+        is_feasible: (n,), which points meet every constraint, all by default; the others are near enough to move there.
         """
         self.add(
             Candidates(
@@ -107,7 +107,7 @@ def _rows_to_keep(candidates: Candidates) -> Whole:
 
 
 def _best_rows(values: Array) -> Whole:
-    """Return the rows to keep: the non-dominated ones, or many of a single objective, best first."""
+    """Return the rows to keep: the non-dominated ones, or the best many for a single objective, best first."""
     alone = values.shape[1] == 1
     return np.argsort(values[:, 0], kind="stable")[:_BEST] if alone else nondominated(values)
 
@@ -123,11 +123,11 @@ def samples_per_branch(samples: int, evaluators: list[Evaluator]) -> int:
 class Run:
     """State of a running search: its rounds, the front at the end of each, and the result so far.
 
-    checkpoints: of its steps, which its evaluators have too. enumerated: evaluators of the branches without free
-    unknowns. archive: designs found on the others. candidates: the designs of the enumerated branches, and the polished
-    ones of the archive. fronts: objectives of feasible designs of each round, of many some hundreds. progress:
-    called after every round. stages: called in long stages between two. Without either, a round's hypervolume is
-    not computed but reported as 0. previous: an earlier run for the same answer, whose rounds and hypervolume continue.
+    checkpoints: checkpoints of its steps, shared with its evaluators. enumerated: evaluators of the branches without
+    free unknowns. archive: designs found on the other branches. candidates: the designs of the enumerated branches, and
+    the polished ones of the archive. fronts: objectives of feasible designs in each round, at most some hundreds.
+    progress: called after every round. stages: called in long stages between two rounds. Without either, a round's
+    hypervolume is reported as 0, not computed. previous: an earlier run for the same answer, continued by this one.
     """
 
     problem: Problem
@@ -151,9 +151,9 @@ class Run:
         )
 
     def report_round(self, stage: str, evaluators: list[Evaluator], archive: Archive) -> None:
-        """Record the end of a round; evaluators: those that the archive's designs are from.
+        """Record the end of a round; evaluators: the evaluators of the archive's designs.
 
-        A cancelled search makes its front from the last archive with designs. Rounds reported before an interruption
+        A cancelled search builds its front from the last archive with designs. Rounds reported before an interruption
         are not reported again, only that they are repeated.
         """
         self.archive = archive if len(archive) else self.archive
@@ -178,14 +178,14 @@ class Run:
             self.report_stage(stage, 0, 1)
 
     def latest(self) -> Array:
-        """Return the objectives (n, m) of the front after the last round, SI, as minimised; of many some hundreds."""
+        """Return the objectives (n, m) of the front after the last round, SI, as minimised; at most some hundreds."""
         if self.archive.is_feasible.all() and not len(self.candidates):
             return _thin_out(self.archive.values)
         values = np.concatenate([self.archive.values, self.candidates.values])
         return _thin_out(values[nondominated(values)])
 
     def stage_reporter(self, name: str) -> ReportProgress:
-        """Return the callback of a long stage, which ends a cancelled search and reports progress."""
+        """Return the callback for a long stage, which ends a cancelled search and reports progress."""
 
         def report(done: int, total: int) -> None:
             self.checkpoints.poll()
@@ -212,9 +212,10 @@ class Run:
     def history(
         self, ideal: Array, span: Array, max_designs: int | None = None, poll: Callable[[], None] = lambda: None
     ) -> tuple[Progress, ...]:
-        """Return the rounds with hypervolumes of one scaling, so that they compare; they do not fall either.
+        """Return the rounds with hypervolumes in one scaling, which are comparable and never decrease.
 
-        max_designs: designs of each round that count; the others would add little. poll: called for each round.
+        max_designs: number of designs of each round that count; the others would add little. poll: called for each
+        round.
         """
         growth = Growth(self._targets, box=(ideal, span), max_designs=max_designs)
         rounds: list[Progress] = []
@@ -230,9 +231,9 @@ def searched_evaluators(evaluators: list[Evaluator]) -> list[Evaluator]:
 
 
 def enumerate_branches(problem: Problem, evaluators: list[Evaluator], run: Run) -> FrontCandidates:
-    """Return the feasible designs of all branches without free unknowns, and give them to the run.
+    """Return the feasible designs of all branches without free unknowns, and add them to the run.
 
-    Each of these branches has one design, which is evaluated exactly, not sampled.
+    Each of these branches has one design, which is evaluated exactly instead of sampled.
     """
     free, candidates = searched_evaluators(evaluators), run.candidates
     run.enumerated = evaluators[len(free) :]
@@ -255,7 +256,7 @@ def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = Non
     bands = BANDS[1:] if loose else BANDS[:-1]
     for attempt, band in enumerate(bands):
         archive.band = band
-        # A small feasible region wants more points before it is given up.
+        # A small feasible region needs more points before the search gives it up.
         count = samples_per_branch(samples * 4**attempt, evaluators)
         hits = archive.screen_all(
             (index, evaluator, first_samples(count, evaluator.dimension, problem.settings.seed, index))
@@ -272,7 +273,7 @@ def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = Non
 
 
 def zoom(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> None:
-    """Sample around sparse parts of the front, closer in every round."""
+    """Sample around sparse parts of the front, more closely in every round."""
     samples = problem.settings.samples or SAMPLES
     for step in range(len(WIDTHS)):
         random = generator(problem.settings.seed, 1000, step)
@@ -298,8 +299,8 @@ def _samples_around(
 def is_out_of_reach(problem: Problem, evaluators: list[Evaluator], band: float) -> bool:
     """Whether descent from the best samples stays outside the band of the last samples.
 
-    Sixteen times as many samples in that band would cost more and say less, as their best are not local optima. False
-    for robust quantities: samples estimate them at a fraction of the cost of a descent.
+    Sixteen times as many samples in that band would cost more and prove less, as their best are not local optima. False
+    for robust quantities: samples estimate them at a fraction of a descent's cost.
     """
     robust = any(isinstance(quantity, RobustQuantity) for quantity in problem.own)
     if robust or problem.without_gradient():

@@ -1,4 +1,4 @@
-"""Scrambled Sobol points, those of `scipy.stats.qmc`, without that import: it takes as long as a search.
+"""Scrambled Sobol points, equal to those of `scipy.stats.qmc`, without its import, which takes as long as a search.
 
 I. M. Sobol, USSR Comput. Math. Math. Phys. 7(4), 1967; primitive polynomials and first direction numbers of S. Joe and
 F. Y. Kuo, SIAM J. Sci. Comput. 30(5), 2008; scrambled by a random lower triangular matrix and a digital shift,

@@ -1,9 +1,9 @@
-"""Lengths that give a swing its exact travel, or its exact angle of the crank, in closed form.
+"""Lengths that give a swing its exact travel, or its exact crank angle, in closed form.
 
-A pin is at a rod's length from two places at once, so it lies on the perpendicular bisector of these. Of the travel S
-between two crank angles: the slider pin, at the start, is as far from the crank pin there as from the crank pin at the
-end moved back by S. Of the angle between two slider positions: the crank pin, at the start, is as far from the slider
-pin there as from the slider pin at the end turned back by the angle.
+A pin at a rod's length from two places lies on their perpendicular bisector. For the travel S between two crank angles:
+the slider pin at the start is as far from the crank pin there as from the crank pin at the end moved back by S. For the
+angle between two slider positions: the crank pin at the start is as far from the slider pin there as from the slider
+pin at the end turned back by the angle.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .rule import Rule
 
 @dataclass(frozen=True)
 class SwingRule(Rule):
-    """A rule of a swing. solve: its formula. root: which of `roots` solutions it gives."""
+    """A rule of a swing. solve: its formula. root: index of its solution among `roots`."""
 
     solve: Callable[..., Any]
     roots: int
@@ -39,7 +39,7 @@ class SwingRule(Rule):
 
 
 def swing_rules(problem: Problem, required: Mapping[str, float], sign: float) -> Iterator[Rule]:
-    """Yield the rules of the equalities of a swing. required: their values. sign: of the offset."""
+    """Yield the rules for the equalities of a swing. required: their values. sign: sign of the offset."""
     motion = problem.motion
     if motion is None:
         return
@@ -63,7 +63,7 @@ def _ends(start: float, end: float, follows: float, free: tuple[Any, ...]) -> tu
 
 
 def _sides(root: int) -> tuple[float, float]:
-    """Return the two signs that a root stands for: of the way, and of the solution."""
+    """Return the two signs that a root stands for: of the direction, and of the solution."""
     return (1.0, -1.0)[root % 2], (1.0, -1.0)[root // 2]
 
 

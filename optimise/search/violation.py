@@ -1,4 +1,4 @@
-"""Designs that come nearest to all requirements: the greatest violation made as small as possible."""
+"""Designs nearest to meeting all requirements: minimisation of the greatest violation."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from .pieces import Rows
 from .recorded import polished
 from .sampling import distant_rows
 
-_AT_ONCE = 256  # points looked at between two questions whether the best are among them
+_AT_ONCE = 256  # points examined between two checks whether the best are among them
 
 
 class _Violations:
-    """Presents all constraint rows as the pieces of one objective, to be made as small as possible."""
+    """View of all constraint rows as the pieces of one objective, to be minimised."""
 
     def __init__(self, evaluator: Evaluator) -> None:
         self.inner = evaluator
@@ -31,9 +31,9 @@ class _Violations:
 
 
 def least_violation(evaluator: Evaluator, u: Array, *, ranked: int, starts: int) -> Polished:
-    """Return designs of locally least violation, their only value, from points (n, k) of a branch; none if none turns.
+    """Return designs of locally least violation, their only value, from points (n, k); none if none rotates fully.
 
-    ranked: how many of the points are looked at, evenly spread. starts: how many of them lead down, the best first.
+    ranked: number of points of the branch examined, evenly spread. starts: number of descents, from the best points.
     """
     u = u[evaluator.valid(u)]
     u = u[:: max(1, len(u) // ranked)]
@@ -42,9 +42,9 @@ def least_violation(evaluator: Evaluator, u: Array, *, ranked: int, starts: int)
 
 
 def greatest_of_starts(evaluator: Evaluator, u: Array, count: int) -> Array:
-    """Return the greatest relative violation (n,) of points; infinite of some that are not among the best `count`.
+    """Return the greatest relative violation (n,) of points; infinite for some that are not among the best `count`.
 
-    Those that violate what needs no cycle the least come first, until the best of them are better than any other.
+    Points are examined in order of their violation of requirements that need no cycle, until the best are certain.
     """
 
     def greatest() -> tuple[Array]:
