@@ -1,7 +1,7 @@
 """Limits on connections of the web server: their number, and the size, duration and form of a request.
 
-Requests rejected here never reach the application: opening a connection needs no token, and without these limits one
-client could hold all connections, or keep the server busy with an endless request.
+Requests rejected here never reach the application: opening a connection needs no token. Without these limits one client
+could hold all connections, or keep the server busy with an endless request.
 """
 
 from __future__ import annotations

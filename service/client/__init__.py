@@ -38,8 +38,8 @@ _PAUSES = (0.1, 1.0)  # s between two looks at a job that is waited for: at firs
 class Client(Designs):
     """A service. Threads may share it. Also a context manager, which closes it.
 
-    Every method raises `NotFound` for a missing job, design or figure, `InputError` for an invalid request, and
-    `RunError` for a request that the state of a job does not allow. It raises `ServiceError` if the service refuses or
+    Every method raises `NotFound` for a missing job, design or figure and `InputError` for an invalid request. It
+    raises `RunError` for a request that the state of a job does not allow, and `ServiceError` if the service refuses or
     does not answer. All errors have the words of the service. Requests that are safe to send twice are retried while
     the service does not answer.
     """

@@ -145,7 +145,7 @@ def refusal(response: httpx.Response) -> SlidercrankError:
     """Return the exception for a refusal by a service, with its sentence.
 
     `NotFound` for 404, `InputError` for an invalid request, `InfeasibleError` for a valid one that no design can
-    meet, `RunError` for a request that the state of a job does not allow, `ServiceError` for all others, of which
+    meet, `RunError` for a request that the state of a job does not allow. All others give `ServiceError`, of which
     `Away` is temporary.
     """
     kind = None

@@ -20,7 +20,7 @@ from .style import BLUE, INK, MUTED, SMALL, VERMILION
 
 
 def draw_mechanism(axes: Axes, mechanism: Mechanism, linkage: Linkage, system: System = "metric") -> None:
-    """Draw one fully turning linkage, in mm, where its transmission angle is least; its lengths are told in a system.
+    """Draw one fully rotating linkage, in mm, at its least transmission angle; lengths are labelled in a system.
 
     The dead centres are outlined in grey. Links with a section have their true width.
     """

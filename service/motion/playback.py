@@ -35,7 +35,7 @@ _READOUT = (
 
 @dataclass(frozen=True)
 class PlayerText:
-    """Words of a page. control: label of what sets the place. times: of the speeds. over: what the curves are over."""
+    """Words of a page. control: label of the position control. times: speed factors. over: variable of the curves."""
 
     control: str
     times: str

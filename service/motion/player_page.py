@@ -30,10 +30,10 @@ def player_page(
 ) -> bytes:
     """Return one linkage as an HTML file that plays its motion.
 
-    The script turns the crank and looks up everything else in curves in the file: one degree apart, or, for a swinging
-    linkage, at evenly spaced times of its motion back and forth. name: name of the run. design: its design, "design 3".
-    swing: swing of the crank instead of full rotation. Raises `AssemblyError` for a linkage that does not rotate fully,
-    or the errors of `require_swing`.
+    The script turns the crank and looks up everything else in curves in the file. Their points are one degree apart,
+    or, for a swinging linkage, at evenly spaced times of its motion back and forth. name: name of the run. design: its
+    design, "design 3". swing: swing of the crank instead of full rotation. Raises `AssemblyError` for a linkage that
+    does not rotate fully, or the errors of `require_swing`.
     """
     play = turn_playback(mechanism, linkage) if swing is None else swing_playback(mechanism, linkage, swing)
     title = f"{name}, {design}" if design else name

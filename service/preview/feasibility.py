@@ -58,8 +58,8 @@ class Possible:
     """Values that the ranges of a job allow. turning: fraction of the designs in the box that rotate fully.
 
     stroke (m), time_ratio, transmission_angle (rad): ends of their ranges while all other requirements on the
-    dimensions hold, including the floor of the transmission angle if it has no other requirement; None if no sample
-    meets these. slow_strokes: slow strokes of the designs that meet every checked requirement, else of those that
+    dimensions hold; None if no sample meets these. They include the floor of the transmission angle if it has no other
+    requirement. slow_strokes: slow strokes of the designs that meet every checked requirement, else of those that
     rotate fully; "equal" only if no design has a slow stroke. feasible: fraction of the `sampled` designs that meet
     every checked requirement. hardest: requirement that the fewest fully rotating designs meet, and their fraction.
     example: crank, rod and offset, m, near the middle of the feasible designs, else the nearest to it; None if no

@@ -1,7 +1,7 @@
 """Types of the answers to questions, the source of JSON Schemas: keys, their kinds, reasons for null.
 
-The function `numbers` of a question returns the answer: a `Record`, a typed dictionary that mypy checks, or, if its
-keys follow from data, a dictionary with `Keys`. The key of a number ends with its unit.
+The function `numbers` of a question returns the answer: a `Record`, a typed dictionary that mypy checks. If its keys
+follow from data, it is a dictionary with `Keys`. The key of a number ends with its unit.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ def format_number(value: float, digits: int = 4, *, zeros: bool = False) -> str:
 
 
 def on_scale(value: float, low: float, high: float, *, digits: int = 4) -> str:
-    """Return a number as text for an axis from low to high; below a millionth of the range it is zero."""
+    """Return a number as text for an axis from low to high; zero below a millionth of the range."""
     return format_number(0.0 if abs(value) < 1e-6 * abs(high - low) else value, digits)
 
 

@@ -80,7 +80,7 @@ def file_of(address: str | PathLike[str]) -> Path | None:
 def is_there(file: Path) -> bool:
     """Whether the file of a store exists.
 
-    Raises `StoreError` if it cannot be such a file, or was deleted or emptied and has left its write-ahead log: SQLite
+    Raises `StoreError` if it cannot be such a file, or was deleted or emptied and has left its write-ahead log. SQLite
     would delete the log too, with the latest jobs in it.
     """
     try:

@@ -71,7 +71,7 @@ class Heartbeat:
     """While entered, a thread that keeps the lease of a claim and learns whether its job is to be cancelled.
 
     budget: budget of the job. Beyond its memory, as `memory` measures it, the job is set aside as failed and the
-    process ends with exit code `EXHAUSTED`: nothing else frees the memory reliably. If the search does not end within a
+    process ends with exit code `EXHAUSTED`. Nothing else frees the memory reliably. If the search does not end within a
     minute after another limit or a cancellation, the job ends without it and the process with exit code `DEAF`; only if
     there is a grace, too. grace: time that a search may continue after `stop` is true, s; unlimited if None. The job is
     then handed back and the process ends with 0. patience: time that a cancelled job waits for a search that has not

@@ -45,9 +45,9 @@ class _Place:
 class Supervisor:
     """While entered, keeps a number of worker processes running, watched by a thread.
 
-    A worker that ends is replaced: immediately, if it had run for a minute or ended because of its jobs, else after
-    half a second, doubled each time up to 30 s. On leaving, all are asked to stop; those that do not within their grace
-    are killed. A worker whose supervisor is gone, however that ended, stops in the same way.
+    A worker that ends is replaced: immediately, if it had run for a minute or ended because of its jobs. Otherwise it
+    is replaced after half a second, doubled each time up to 30 s. On leaving, all are asked to stop; those that do not
+    within their grace are killed. A worker whose supervisor is gone, however that ended, stops in the same way.
     """
 
     def __init__(self, settings: WorkerSettings, processes: int, *, program: Sequence[str] = WORKER) -> None:
