@@ -11,7 +11,7 @@ LONGEST = 10.0
 """m. A longer link whose length has no unit was probably meant in mm."""
 _OURS = __name__.partition(".")[0]
 _MAKERS = ("dataclasses", "copy")
-"""Modules of Python that make objects anew for whoever calls them."""
+"""Modules of Python that create objects again on behalf of callers."""
 
 
 def warn_user(sentence: str) -> None:

@@ -22,7 +22,8 @@ from ..errors import InputError
 from ..linkage.linkage import Linkage
 
 _LAST_STEP = 1e-10
-"""A step that ends the iteration, rad and shares of the rod: what is left is half its square times tan(phi)."""
+"""A step that ends the iteration, rad and fractions of the rod: the remaining error is half its square times
+tan(phi)."""
 
 
 @dataclass(frozen=True)

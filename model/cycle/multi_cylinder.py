@@ -32,7 +32,7 @@ _PIECES = 12  # least number of panels in a turn
 _SAMPLES = 256
 _ROUNDING = 1e-14  # remainder of forces that cancel, as a fraction of their sizes
 _NOTHING = 1e-12
-"""Share of what the cylinders do one by one below which the whole does nothing: they cancel but for rounding."""
+"""Fraction of the cylinders' individual sizes below which the total counts as zero: they cancel up to rounding."""
 _TORQUE, _X, _Y, _FORCE, _MOMENT, _COUPLE, _TIME = range(7)
 
 

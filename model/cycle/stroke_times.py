@@ -22,7 +22,7 @@ from ..machine.speed_profile import Profile
 
 _EQUAL = 1e-12  # fraction of their sum: a smaller difference between stroke times is rounding
 DIFFERS = "differs"
-"""Reported as slow stroke where not all cylinders have the same one."""
+"""Reported as the slow stroke if cylinders differ."""
 
 
 class ScaledStrokeTimes(NamedTuple):

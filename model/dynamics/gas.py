@@ -25,7 +25,7 @@ from ..machine.loads.load import Enters
 _BURNING_CYLINDER = int(Enters.BURNING_CYLINDER)
 
 _NEAR = 1e-12
-"""Share of the stroke: nearer to a valve event than this is beyond it."""
+"""Fraction of the stroke: a place nearer to a valve event than this counts as beyond it."""
 
 
 @analytic

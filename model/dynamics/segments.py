@@ -28,10 +28,9 @@ _OUTER, _INNER, _FIXED, _KNOT, _FRACTION = range(5)
 _EXPANDED, _COMPRESSED, _TURNED, _BURNT = 6, 7, 8, 9  # 5: `contact.CONTACT`
 _TURN = 2.0 * math.pi
 _STILL = 1e-13
-"""|x'| over crank below which the slider is on a dead centre, as nearly as a crank angle can be written."""
+"""|x'| over crank below which the slider is at a dead centre, to the precision of a crank angle."""
 ROOM = 40
-"""Breakpoints there is room for, besides two for each knot and four for each cylinder: 8 at most, and those that
-friction makes."""
+"""Room for breakpoints, besides two for each knot and four for each cylinder: 8 at most, plus those from friction."""
 
 
 class CycleWindow(NamedTuple):

@@ -20,7 +20,7 @@ from .folder import kernel_folder
 from .kernel import KERNELS, Kernel
 
 _MOSTLY = 0.7
-"""Share of a kernel's formulas that are compiled with another one, from which on it is cheap to compile after that."""
+"""Fraction of formulas shared with another kernel from which a kernel is cheap to compile after that one."""
 
 
 class _Task(NamedTuple):

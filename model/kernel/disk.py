@@ -32,9 +32,9 @@ _PATIENCE = 300.0  # s; a process that compiles for longer has stopped or failed
 _TICK = 0.05  # s
 _TELL = 3.0  # s
 _SIDE_BY_SIDE = 4
-"""Compiling processes at most; each takes 200 MB."""
+"""Greatest number of compiling processes; each takes 200 MB."""
 _STATES = 8
-"""Machine codes kept of a kernel, the latest ones: of other formulas, versions and processors."""
+"""Number of latest machine codes stored per kernel, for other formulas, versions and processors."""
 
 
 class KernelSource(NamedTuple):
@@ -112,7 +112,7 @@ def read(file: Path) -> MachineCode | None:
 
 
 _refusing: set[Path] = set()
-"""Folders that have not kept what was compiled: each process compiles what it needs, and nothing beside."""
+"""Folders in which storing has failed: each process compiles only the kernels it needs."""
 
 
 def keep(file: Path, code: MachineCode) -> bool:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 Poll = Callable[[], None]
 FAREWELL = 0.5
-"""s that a call which is to end may still take: a process that answers is kept."""
+"""Time that an interrupted call may still take, s: a process that answers survives."""
 
 
 @dataclass

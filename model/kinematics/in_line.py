@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 _ROUNDING = 1e-15
-"""Share of the rod. An offset this small moves no closed form and no position by more than rounding does."""
+"""Fraction of the rod. An offset this small changes closed-form values and positions by no more than rounding."""
 
 
 def in_line(rod: Any, offset: Any) -> Any:

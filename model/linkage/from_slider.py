@@ -16,7 +16,8 @@ from .inverse import ROUNDING, Dimensions, Solution, crank_angle_at, crank_motio
 
 _DIGITS = 9  # of a position in messages: nanometres of a machine
 _LOCKED = 1e-7
-"""Share of the rod. Nearer to an end where the rod is normal to the slider line, rounding decides whether it is locked.
+"""Fraction of the rod. Nearer to an end where the rod is normal to the slider line, rounding decides whether it is
+locked.
 
 There l - |e - r sin(theta)| is half the square of the distance, and 1e-8 squared is the rounding of a double.
 """

@@ -30,7 +30,7 @@ from .values import first_marked, numbers
 Solution = Literal["outward", "inward"]
 
 ROUNDING = 1e-14
-"""Share of crank + rod within which a position is taken for a dead centre.
+"""Fraction of crank + rod within which a position counts as a dead centre.
 
 Rounding of the position, 1e-16 of it, turns the crank there by its square root, some 1e-8 rad; at 1e-14 the angle from
 the dead centre, some 1e-7 rad, is known to a tenth at best.

@@ -19,7 +19,7 @@ from ..machine.mechanism import Mechanism
 from .linkage import Linkage
 
 MORE = 0.01
-"""Of the greater work: strokes whose works differ by less are loaded alike."""
+"""Fraction of the greater work: strokes whose works differ by less are equally loaded."""
 _STEPS = 256  # steps per stroke: sums accurate to 1e-3
 
 

@@ -77,11 +77,11 @@ class Design(NamedTuple):
 
 
 DESIGN = len(Design._fields)
-"""Rows of a derived block before those of the loads."""
+"""Rows in a derived block before those for the loads."""
 LOAD_ROWS, AREA = 10, 2
 """Rows of each load: sign and origin of a table's or a cylinder's own coordinate, or the two numbers of a formula; then
-of a cylinder, from AREA on: piston area, height of the clearance, low and high pressure, exponents of compression and
-expansion, back pressure, where burning ends, from the top; of a torque on the crank the numbers of its slots."""
+for a cylinder, from AREA on: piston area, height of the clearance, low and high pressure, exponents of compression and
+expansion, back pressure, end of burning from the top; for a torque on the crank, the numbers of its slots."""
 _OUTWARD = Design._fields.index("outward_force")
 _MOVING_MASS = Design._fields.index("moving_mass")
 _RUBBING = Design._fields.index("guide_friction")

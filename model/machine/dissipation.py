@@ -18,7 +18,7 @@ from .memoise import memoise_by_machine
 from .varying import Varying
 
 _ROUNDING = 1e-12
-"""Share of the forces that their sum may be off by, as decimal numbers add up."""
+"""Fraction of the forces by which their sum may be off, as decimal numbers add up inexactly."""
 
 
 def works_over_a_turn(mechanism: Mechanism) -> bool:

@@ -58,7 +58,7 @@ for _index, _name in enumerate(("crank_pivot", "crank_pin", "slider_pin", "guide
         _SLOTS[f"friction.{_name}.radius"] = (Raw.CRANK_PIVOT_RADIUS + 2 * _index, "m")
         _SLOTS[f"friction.{_name}.coefficient"] = (Raw.CRANK_PIVOT_RADIUS + 2 * _index + 1, "")
 PINS = {"crank_pivot": 10**8, "crank_pin": 10**8 + 1, "slider_pin": 10**8 + 2}
-"""Slots of the pins' diameters: behind all that kernels take, so that no kernel differentiates by them."""
+"""Slots of the pins' diameters: after all slots that kernels use, so that no kernel differentiates by them."""
 _SLOTS |= {f"strength.{name}": (slot, "m") for name, slot in PINS.items()}
 _SLOTS |= {"start.angle": (10**8 + 3, "rad"), "start.place": (10**8 + 4, "m")}  # for a swing, which reads its own
 _POLAR = {"counterweight.radius": "m", "counterweight.angle": "rad"}

@@ -39,7 +39,7 @@ Raw = IntEnum(
     start=0,
 )
 LOAD_SLOTS = 13
-"""Raw numbers of each load: factor in the outward stroke, factor in the inward stroke, and those of its own."""
+"""Raw numbers of each load: factor in the outward stroke, factor in the inward stroke, and its own numbers."""
 
 _DATUMS = {"crank pivot": 0, "zero crank angle": 0, "inner dead centre": 1, "outer dead centre": 2}
 

@@ -46,14 +46,14 @@ from .signals import Signal, design_motion, signal
 from .two_turns import highest
 
 ANGLES = 128
-"""Sampled angles a turn. Alone they miss the higher of two close peaks on 3 of 750,000 random machines with all kinds
-of loads (64 angles: on 19), then off by up to 2e-4; hence the finer row of samples around near-highest tops."""
+"""Sampled angles per turn. Alone they miss the higher of two close peaks on 3 of 750,000 random machines with all kinds
+of loads (64 angles: on 19), with errors up to 2e-4; hence the finer row of samples around near-highest tops."""
 _FINER, _NEAR = 16, 0.95  # samples of that row, and how near the highest a sample must be to get one
 _HOPELESS = 0.8
-"""Share of the highest sample below which none is followed where one peak is asked for: of a million random peaks of
-all signals, on machines with all loads, long tables, cylinders and friction, not one was lost."""
+"""Fraction of the highest sample below which no sample is followed if one peak is requested. Of a million random peaks
+of all signals, on machines with all loads, long tables, cylinders and friction, none was lost."""
 KEPT = 6
-"""Peaks kept of a design, highest first."""
+"""Peaks stored per design, highest first."""
 _ITERATIONS = 60
 _TURN = 2.0 * math.pi
 _STRAY = 1e-11  # relative difference below which the two sides of a breakpoint count as continuous

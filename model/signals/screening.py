@@ -36,7 +36,7 @@ from .signal_inputs import cycle_window
 from .signals import Signal, design_motion, signal
 
 ANGLES = 64
-"""Sampled angles a turn, where thousands of designs are only sorted."""
+"""Sampled angles per turn if thousands of designs are only sorted."""
 
 _STEPS = 7
 _SETTLED = 3e-7  # a step of the refinement, rad, whose cube does not show in the value

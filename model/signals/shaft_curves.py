@@ -27,8 +27,8 @@ from ..machine.raw import Loads
 from .signals import Signal, design_motion, guide_lever
 
 TOUCH, WORK = 100, 101
-"""Curves besides signals: what has the sign of the guide's force (`rubbing.touch`), and those of `turn_work` from
-`WORK` on, in their order."""
+"""Curves in addition to signals: one with the sign of the guide's force (`rubbing.touch`), and those of `turn_work`
+from `WORK` on, in their order."""
 CURVES = 5
 VECTORS = (
     Signal.PIVOT_FORCE,
@@ -37,7 +37,7 @@ VECTORS = (
     Signal.SHAKING_FORCE,
     Signal.ROCKING_COUPLE,
 )
-"""Signals that are the size of a vector; the others are of one component, with its sign."""
+"""Signals that are the size of a vector; the others are one component, with its sign."""
 _TORQUE, _PIVOT, _CRANK_PIN, _SLIDER_PIN, _GUIDE, _GUIDE_MOMENT, _POWER, _LINE, *_OTHERS = map(int, Signal)
 _SPEED, _ACCELERATION, _JERK, _, _, _INERTIA, _SHAKING_FORCE, _SHAKING_MOMENT, _ROCKING_COUPLE = _OTHERS
 _ROW_SPEED, _ROW_ACCELERATION, _ROW_X, _ROW_Y = (

@@ -10,7 +10,7 @@ from .shaft import Shaft
 from .shaft_segments import segments_of
 
 NOTHING = 1e-12
-"""Share of what cylinders do one by one below which the whole does nothing: they cancel but for rounding."""
+"""Fraction of the cylinders' individual sizes below which the total counts as zero: they cancel up to rounding."""
 
 
 def shaft_peaks(shaft: Shaft, *, limit: int, stroke: bool | None = None) -> tuple[Array, Array, Array]:

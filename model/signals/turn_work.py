@@ -54,14 +54,12 @@ from .signals import Signal
 LOAD, GUIDE, CRANK_PIVOT, CRANK_PIN, SLIDER_PIN = range(5)
 """Places of the curves."""
 _CURVES, _POINTS = 5, 16
-_WATCH = CycleWindow(
-    0, 0.0, 1.0, True, True
-)  # |x'| and |phi'| have kinks at the dead centres and where the rod turns back
+_WATCH = CycleWindow(0, 0.0, 1.0, True, True)  # |x'|, |phi'|: kinks at the dead centres and where the rod turns back
 _TURN = 2.0 * math.pi
 _SHARE = 0.1
-"""Of what may be left of a curve, what a panel may leave of its mean: the narrower a panel, the less its tail counts.
+"""Permissible tail in a panel's mean, as a fraction of that in a curve: the narrower a panel, the less its tail counts.
 
-Else rounding, which no halving lessens, would halve every panel of a linkage that nearly locks.
+Otherwise rounding, which halving does not reduce, would halve every panel of a linkage that nearly locks.
 """
 
 

@@ -39,7 +39,7 @@ from .stress_points import field_of
 from .stress_search import LISTED, STATIONS, Candidates, choose, climb, first_candidates, propose, room_for
 
 KEPT = 8
-"""Maxima kept of a design, highest first."""
+"""Maxima stored per design, highest first."""
 _NEAR, _WIDE = 0.05, 0.2  # depth below the highest sample down to which maxima are refined: for the value, for pieces
 _TURN = 2.0 * math.pi
 _EDGE = 1e-11  # rad, from a breakpoint: on it
@@ -50,7 +50,7 @@ _EQUAL = 1e-6  # relative; accuracy of cubics between samples when comparing max
 _CLOSE, _FORETOLD, _CLOSER, _ROUNDS = 0.01, 1e-3, 30.0, 10
 _SECOND_TURN = 1e5  # step between labels, more than all parts of a quantity take
 APART, CLASSES = 60.0, 12
-"""Distance of the labels of maxima that are no neighbours, more than a turn; how many classes there are of these."""
+"""Distance between labels of maxima that are not neighbours, more than a turn; number of their classes."""
 
 
 @dataclass(frozen=True)

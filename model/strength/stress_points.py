@@ -29,7 +29,7 @@ from ..signals.signals import Signal, design_motion
 from .section_forces import stress_along
 
 ANGLES = 128
-"""Samples a turn, at least three a segment."""
+"""Samples per turn, at least three per segment."""
 WIDE = 14
 """Columns of a link: seven coefficients of its `Stress`, and their derivatives."""
 _TURN = 2.0 * math.pi

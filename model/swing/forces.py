@@ -39,7 +39,7 @@ from .push import PinRows, PinSides, bend, free_pin, newton_step, pin_rows
 from .swing import Swing
 
 _STILL = 1e-200
-"""A crank speed, rad/s, that says which way the crank turns and has no inertia."""
+"""A crank speed, rad/s, that only gives the sense of rotation, with negligible inertia forces."""
 _NOTHING = 1e-150
 _ITERATIONS = 50
 _SETTLED = 1e-14

@@ -24,7 +24,7 @@ from .swing_batch import Pieces, SwingBatch
 from .swing_states import DRIVE, ERROR
 
 KEPT = 6
-"""Peaks kept of a design, highest first."""
+"""Peaks stored per design, highest first."""
 _PANELS = 2.0  # of a way, to begin with
 _CHUNK = 128
 

@@ -24,7 +24,7 @@ from .law import NO_TABLE, spline
 from .swing_types import Driver, Law, Side, Stated
 
 STARTS = {"crank": "start.angle", "slider": "start.place"}
-"""Which number of a machine says where a swing starts, by what its ends are stated of."""
+"""Number of a machine that states the start of a swing, by the link for which the ends are stated."""
 _TURN = 2.0 * math.pi
 _LEAST, _MOST = 1e-6, 1e9  # s
 

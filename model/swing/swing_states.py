@@ -28,7 +28,7 @@ Complexes = NDArray[np.complex128]
 
 DRIVE, POWER, ERROR, GUIDE, PLACE, PACE, ANGLE, RATE = range(8)
 """Columns of states: drive, power, error of the driven side, guide force, slider position and its derivative by crank
-angle, crank angle, derivative of the driver's place by the share."""
+angle, crank angle, derivative of the driver's place by the fraction of the time."""
 _STATES = 8
 _STILL = 1e-200  # rad/s: gives the sense of rotation, with negligible inertia
 _NEWTON = 40

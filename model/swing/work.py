@@ -26,7 +26,7 @@ _PANELS, _GRADED = 8, 1
 _CHUNK = 64
 _EQUAL = 1e-12
 _EVEN = 1e-9
-"""Of the work of a way: of what is given back on the other one no more than rounding is left."""
+"""Fraction of the work in one direction: remainder of work returned in the other, due to rounding."""
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ from .sources import counted_angles, limits, source_influences
 from .spreads import Draw, Spreads
 
 CHUNK = 1024
-"""Machines at a time: each chunk has its own random stream, so that any number of them begins alike."""
+"""Machines at a time: each chunk has its own random stream, so that runs of any length begin alike."""
 _MOST = 100_000_000  # greatest number of stored errors: 0.8 GB
 
 

@@ -22,7 +22,7 @@ SOURCES = (
 PINS = slice(4, 7)
 GUIDE = 7
 ANGLES = 256
-"""Crank angles a turn that a search starts from."""
+"""Crank angles per turn from which a search starts."""
 _TURN = 2.0 * math.pi
 
 

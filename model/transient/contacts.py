@@ -15,7 +15,7 @@ from .equation import Span
 Motion = Callable[[float], tuple[float, float]]
 """Speed, rad/s, and acceleration, rad/s^2, at a crank angle, rad."""
 _CLOSE = 1e-12
-"""rad; how closely an angle is found."""
+"""rad; accuracy of the angles."""
 
 
 def contacts(span: Span, motion: Motion, angles: Array, speeds: Array, accelerations: Array) -> list[float]:

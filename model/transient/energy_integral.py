@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from .turn import Guess, PeriodicTurn
 
 _STOPS = 1e-12
-"""Least share of the energies at work that is told from none: a millionth of the greatest speed."""
+"""Least fraction of the energies at work that differs from zero: a millionth of the greatest speed."""
 _NEAR = 1e-2
-"""Share of the range of W within which several least values may each bring the crank close to stopping."""
+"""Fraction of the range of W within which several least values may each bring the crank close to stopping."""
 _ROUNDS, _SETTLED = 60, 1e-6
-"""Rounds of taking viscous loads and friction anew, and the change of speed, of the greatest, that ends them."""
+"""Number of re-evaluations of viscous loads and friction, and the relative change of speed that ends them."""
 _GRADES = 10
 """Panels on either side of a least value, each a quarter of the last: down to a millionth of a radian."""
 

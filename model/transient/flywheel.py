@@ -26,9 +26,10 @@ from ..machine.mechanism import Mechanism
 from .steady import Runner, SteadyRunning
 
 _WIDEST = 60
-"""Times that the greatest flywheel tried is enlarged."""
+"""Number of times that the greatest trial flywheel is enlarged."""
 _BETWEEN = 12
-"""Flywheels tried between none and one that is enough: the least one is wanted, and more need not mean steadier."""
+"""Trial flywheels between none and a sufficient one: the least is sought, and a larger one need not run more
+steadily."""
 
 
 @dataclass(frozen=True, kw_only=True)

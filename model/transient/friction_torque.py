@@ -39,9 +39,9 @@ from ..machine.raw import Loads
 from ..signals.signals import design_motion
 
 ITERATIONS = 100
-"""Steps of Newton's iteration at most."""
+"""Greatest number of steps of Newton's iteration."""
 _SETTLED, _ROUNDING = 1e-15, 1e-9
-"""Steps that end it: the first, or one below the second that is not much smaller than the last, hence rounding."""
+"""Steps that end it: below the first value, or below the second and not much smaller than the last, hence rounding."""
 _STEP = 1e-170
 """Imaginary step whose square is zero: where no force acts, its size must not be the root of a negative number."""
 _SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acceleration")

@@ -24,9 +24,9 @@ from .equation import TURN
 Function = Callable[[Array], ArrayLike]
 
 _CLOSE = 1e-4
-"""Greatest error of a given derivative against its function's slope, as a share of the greatest: finds mistakes."""
+"""Greatest error of a stated derivative against its function's slope, as a fraction of the greatest: finds mistakes."""
 _STEP = 1e-4
-"""Step of the differences that check it, as a share of the distance between points."""
+"""Step of the differences that check it, as a fraction of the distance between points."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -174,7 +174,7 @@ PRESSURES = (
     PISTON_ROD,
     BACK_PRESSURE,
 )
-"""Entries of a table of pressures, besides where they are."""
+"""Entries in a table of pressures, in addition to their places."""
 
 
 def piston_forces(
