@@ -198,19 +198,19 @@ def main() -> None:
     """Run the command line and exit."""
     # Before NumPy is loaded: its other threads busy-wait for matrices that are never large enough.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # else all installed packages are asked for some
-    gc.set_threshold(200_000, 20, 20)  # what imports leave is no garbage: a tenth of a short command
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # else all installed packages are searched for plugins
+    gc.set_threshold(200_000, 20, 20)  # imports leave no garbage: saves a tenth of a short command
     guard_streams()
     try:
         app(prog_name="slidercrank")
     except OutputLost as error:  # of the help, which no command prints
         print_message(f"slidercrank: {error}")
         sys.exit(WRONG_INPUT)
-    except MemoryError:  # in telling of another error
+    except MemoryError:  # while reporting another error
         print_message(_MORE_MEMORY)
         sys.exit(WRONG_INPUT)
     finally:
-        try:  # while a failure can still be told
+        try:  # while a failure can still be reported
             sys.stdout.flush()
         except OutputLost:
             give_up_output()

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ..store import Store
 
 Job = str | dict[str, Any]
-_LONGEST = 255  # characters of a name; no file has more
+_LONGEST = 255  # characters in a name; no file name is longer
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class Call:
     def _require_inside(self, path: Path, name: str) -> None:
         try:
             is_inside = len(name) <= _LONGEST and path.resolve().is_relative_to(self.runs.resolve())
-        except (OSError, ValueError, RuntimeError):  # no name of a file, a circle of links
+        except (OSError, ValueError, RuntimeError):  # not a file name, or a loop of links
             is_inside = False
         if not is_inside:
             raise InputError(

@@ -105,7 +105,7 @@ def create_app(store: Store, settings: Settings = DEFAULT, computing: Computing 
     )
     app.state.store = store
     app.state.settings = settings
-    app.state.told = {}  # faults that were logged, and when
+    app.state.told = {}  # logged faults with their times
     app.state.reading = asyncio.Lock()
     app.state.computing = computing
     app.state.turn_here = asyncio.Lock()
@@ -168,7 +168,7 @@ def _version() -> str:
 def _completed(schema: dict[str, Any], *, secured: bool) -> dict[str, Any]:
     """Return the description of the API (OpenAPI 3.1), completed with facts that FastAPI cannot infer."""
     if "parquet" not in exports.formats():
-        schema["paths"].pop(f"{_NUMBER}/export.parquet")  # it says what to install
+        schema["paths"].pop(f"{_NUMBER}/export.parquet")  # it reports what to install
     parts = schema.setdefault("components", {})
     shapes = parts.setdefault("schemas", {})
     shapes["Problem"] = Problem.model_json_schema()

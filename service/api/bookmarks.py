@@ -107,7 +107,7 @@ def list_bookmarks(stored_front: FrontDep, store: StoreDep) -> BookmarkList:
 def add_bookmark(stored_front: FrontDep, request: NewBookmark, store: StoreDep) -> BookmarkedDesign:
     """Keep a design with a name, a note and a star."""
     design = _requested_design(stored_front, request)
-    _varied(stored_front, design)  # refuse what cannot be computed before storing it
+    _varied(stored_front, design)  # reject what cannot be computed before storing it
     fields: dict[str, Any] = {
         "name": request.name,
         "note": request.note,

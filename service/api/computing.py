@@ -30,7 +30,7 @@ from .throttle import TurnQueue
 
 MOST = Limits(seconds=60.0, memory=10**9)
 """What an answer may take: time of the processor, and memory beyond that of a process at rest."""
-_FAREWELL = 1.0  # s that an answer may still take when its client has gone: a process that ends in time is kept
+_FAREWELL = 1.0  # s left for an answer after its client has gone: a process that finishes in time is kept
 _SENT = ("type", "asgi", "http_version", "method", "scheme", "path", "raw_path", "query_string", "root_path", "headers")
 _REMEDY = "ask for less, or use a command such as slidercrank analyse, which has no limits"
 
@@ -82,7 +82,7 @@ class Computing:
     async def handle(self, turns: str, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request in a free process, and kill the process if the client leaves early."""
         question = {key: scope[key] for key in _SENT if key in scope}, await Request(scope, receive).body()
-        messages = asyncio.Queue[Message | None]()  # no process waits for a client that takes nothing
+        messages = asyncio.Queue[Message | None]()  # no process waits for a client that does not read
         answering = asyncio.create_task(self._compute(turns, question, messages.put_nowait))
         leaving = asyncio.create_task(_wait_for_disconnect(receive))
         for task in (answering, leaving):

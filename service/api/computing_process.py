@@ -25,7 +25,7 @@ NICENESS = 5
 """Niceness of an answer: it yields to requests that only read, and is ahead of the workers."""
 OUT_OF_TIME = -27 if os.name == "nt" else -signal.SIGPROF
 """Exit code of a process that took more time of the processor than an answer may."""
-_IDLE = 600.0  # s without a question after which it ends, and gives back its memory
+_IDLE = 600.0  # s without a request after which it ends, and frees its memory
 
 
 def answer_questions(connection: Connection, make: ApplicationFactory, limits: Limits) -> None:
@@ -48,7 +48,7 @@ def answer_questions(connection: Connection, make: ApplicationFactory, limits: L
     except SlidercrankError as error:
         connection.send(error)
     except (EOFError, OSError):
-        pass  # the other end is gone, or wants no answer any more
+        pass  # the other end is gone, or no longer needs an answer
 
 
 def is_last(message: Message) -> bool:
@@ -63,7 +63,7 @@ async def _run_request(app: ASGIApp, scope: dict[str, Any], body: bytes, give: C
 
     async def receive() -> Message:
         if not parts:
-            await asyncio.Event().wait()  # for a client to go: then this process is ended
+            await asyncio.Event().wait()  # for a client to leave: then this process is killed
         return parts.popleft()
 
     async def send(message: Message) -> None:

@@ -99,7 +99,7 @@ class Gate:
         if not waiting:
             self.log(f"refused: {self.most} connections were being answered")
             return False
-        for least in waiting[: 1 + self.most // _SHARE]:  # several, so that a flood is not looked through each time
+        for least in waiting[: 1 + self.most // _SHARE]:  # several, so that a flood is not scanned each time
             self.log(f"closed because there were more than {self.most}")
             least.transport.abort()
             least.connections.discard(least)
@@ -130,7 +130,7 @@ class Connection(HttpToolsProtocol):
         self.since = self.loop.time()
         self._gate = gate
         self._backlog = b""
-        self._part: Literal["rest", "head", "body"] = "rest"  # what is coming
+        self._part: Literal["rest", "head", "body"] = "rest"  # the part being received
         self._size = 0  # bytes of it without content
         self._deadline: asyncio.TimerHandle | None = None
 
@@ -272,7 +272,7 @@ class Connection(HttpToolsProtocol):
 
     def _refuse(self, status: HTTPStatus, text: str, headers: dict[str, str] | None = None) -> None:
         self._gate.log(f"refused with {status}")
-        if self.is_at_rest or not (self.pipeline or self.cycle.response_started):  # it would break another answer
+        if self.is_at_rest or not (self.pipeline or self.cycle.response_started):  # it would corrupt another answer
             response = problem(status, text, {**(headers or {}), "Connection": "close"})
             lines = b"".join(b"%s: %s\r\n" % header for header in response.raw_headers)
             start = f"HTTP/1.1 {status} {status.phrase}\r\n".encode()

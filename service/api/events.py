@@ -48,7 +48,7 @@ _STREAMED: dict[int | str, dict[str, Any]] = {
 _log = logging.getLogger(__name__)
 POLL = 0.1
 """Seconds between two looks."""
-_PATIENCE = 2.0  # s until the next look after the store could not be reached
+_PATIENCE = 2.0  # s until the next try after the store was unreachable
 _RECENT = 256  # events of a job that are kept
 _PAGE = 500
 
@@ -164,7 +164,7 @@ class Feed:
             for number, last in after.items():
                 channel = self._channels.get(number)
                 if channel is None or channel.last != last:
-                    continue  # it was left meanwhile, and perhaps followed anew
+                    continue  # streams left it meanwhile, and perhaps follow it again
                 if number in news:
                     channel.publish(news[number].events, ended=news[number].is_over)
                 else:

@@ -119,7 +119,7 @@ async def requested_job(request: Request) -> RequestedJob:
     try:
         content = (
             request.scope[PARSED_BODY] if PARSED_BODY in request.scope else read_json(body, settings.most_depth)
-        )  # of no body
+        )  # without a body
         stated = Submission.model_validate(content)
     except ValidationError as error:
         errors = error.errors(include_url=False)

@@ -28,13 +28,13 @@ from ...model.errors import (
 
 _log = logging.getLogger(__name__)
 MEDIA_TYPE = "application/problem+json"
-_MOST = 8  # problems of one request that are listed
+_MOST = 8  # problems listed for one request
 _LONGEST = 4000  # characters of a sentence
 FAULT = "this is a bug in the service, not in the request; its log has the details; tell its operator"
 _STATUS: tuple[tuple[type[SlidercrankError], HTTPStatus], ...] = (
     (QueueFull, HTTPStatus.SERVICE_UNAVAILABLE),
     (StoreError, HTTPStatus.SERVICE_UNAVAILABLE),
-    (RunError, HTTPStatus.CONFLICT),  # what is asked of a job is not there yet
+    (RunError, HTTPStatus.CONFLICT),  # the requested result does not exist yet
     (NotFound, HTTPStatus.NOT_FOUND),
     (MissingExtra, HTTPStatus.NOT_IMPLEMENTED),
     (InputError, HTTPStatus.UNPROCESSABLE_ENTITY),

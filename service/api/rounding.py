@@ -109,7 +109,7 @@ def round_design(
         yield "rounded", RoundedModel(job=stored_front.job.id, number=design, rounded=record).model_dump_json()
 
     events = search()
-    first = next(events)  # a wrong request is refused before anything is sent
+    first = next(events)  # an invalid request is refused before anything is sent
     if STREAM not in request.headers.get("accept", ""):
         *_, (_, data) = itertools.chain([first], events)
         return Response(data, media_type="application/json")

@@ -67,7 +67,7 @@ def listen(host: str, port: int) -> socket.socket:
 def _why(error: OSError | UnicodeError) -> str:
     if isinstance(error, UnicodeError):
         return str(error)
-    has_number = error.errno is not None and error.errno > 0  # those of a name that is not found are negative
+    has_number = error.errno is not None and error.errno > 0  # negative if a name is not found
     return os.strerror(error.errno or 0) if has_number else error.strerror or str(error)
 
 
@@ -92,7 +92,7 @@ def config_of(app: FastAPI) -> Config:
 
     return Config(
         app,
-        http=cast("Any", partial(Connection, Gate(room_for_connections()))),  # anything that makes a protocol will do
+        http=cast("Any", partial(Connection, Gate(room_for_connections()))),  # any factory of protocols works
         log_config=None,
         access_log=False,  # the address that carries the token would be in it
         server_header=False,

@@ -40,7 +40,7 @@ DEFAULT = Settings()
 def part_of_app(name: str) -> Any:
     """Return the dependency that provides a part of the application's state."""
 
-    async def part(request: Request) -> Any:  # not in a thread of its own, as for plain functions
+    async def part(request: Request) -> Any:  # not in a separate thread, as for plain functions
         return getattr(request.app.state, name)
 
     return Depends(part)

@@ -43,7 +43,7 @@ class StrictInput:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Refuse a request, or pass it on."""
-        if KNOWN not in scope:  # nobody without the token has a body kept
+        if KNOWN not in scope:  # bodies are kept only with the token
             await self.app(scope, receive, send)
             return
         if "\0" in scope["path"] or b"%00" in scope["query_string"] or b"\0" in scope["query_string"]:
@@ -166,7 +166,7 @@ def _no_number(text: str) -> None:
 
 
 def _parse_integer(text: str) -> int:
-    if len(text) > _DIGITS:  # long ones take a time that grows with the square of their length
+    if len(text) > _DIGITS:  # the time grows with the square of the length
         raise _too_large()
     return int(text)
 

@@ -32,7 +32,7 @@ JobSource = str | PathLike[str] | Mapping[str, Any]
 
 _PAGE = 1000
 _ENDED = ("done", "infeasible", "cancelled", "failed")
-_PAUSES = (0.1, 1.0)  # s between two looks at a job that is waited for: at first, at most
+_PAUSES = (0.1, 1.0)  # s between two checks of an awaited job: first, longest
 
 
 class Client(Designs):
@@ -186,7 +186,7 @@ class Client(Designs):
         keys = [column["key"] for column in page["columns"]]
         table = pd.DataFrame(rows, index=pd.Index(numbers, name="number"), columns=keys)
         undefined = [key for key in keys if rows and table[key].isna().all()]
-        return table.astype(dict.fromkeys(undefined, "float64"))  # JSON has null for them, which is no number
+        return table.astype(dict.fromkeys(undefined, "float64"))  # JSON has null for them, which is not a number
 
     def design(self, number: int, design: int) -> Row:
         """Return a design by its number in the front, counted from 1; the number comes first."""

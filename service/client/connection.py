@@ -53,7 +53,7 @@ class Connection:
             headers={} if token is None else {"Authorization": f"Bearer {token}"},
             timeout=_TIMEOUT,
             verify=parts.scheme == "https",  # else certificates would be read for nothing, 15 ms
-            trust_env=parts.hostname not in _LOOPBACK,  # what is on this machine is not asked for through a proxy
+            trust_env=parts.hostname not in _LOOPBACK,  # no proxy for this machine
         )
 
     def close(self) -> None:
@@ -77,7 +77,7 @@ class Connection:
             if response.status_code == _AWAY and again and tries.has_patience:
                 tries.pause()
             elif response.status_code == 404 and method == "DELETE" and tries.made:
-                return response  # an earlier try, whose answer was lost, has done it
+                return response  # done by an earlier attempt whose answer was lost
             elif response.is_success:
                 return response
             else:

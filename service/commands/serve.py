@@ -96,7 +96,7 @@ def serve(
         set_up_logs(work.log_format)
         with closing(computing), Supervisor(work, processes) as supervisor:
             run_server(app, socket, stop_requested=termination.requested, stopping=supervisor.leave)
-    end_children()  # the fork server, which takes half a second to end by itself
+    end_children()  # the fork server takes half a second to end by itself
     _leave_requests()
 
 

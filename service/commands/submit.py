@@ -24,8 +24,8 @@ from .ending import EXIT_CODES
 if TYPE_CHECKING:
     from ..store import Artefact, Event, Job, Store
 
-_LOOK = 0.25  # s between two looks for new events
-_AWAY = 1.0  # s between two tries while the database is away
+_LOOK = 0.25  # s between two checks for new events
+_AWAY = 1.0  # s between two attempts while the database is unreachable
 _SELDOM = 5.0  # s between two lines of a long stage
 _MEDIA = {".toml": "application/toml", ".json": "application/json"}
 
@@ -152,7 +152,7 @@ def events_until_end(store: Store, number: int) -> Iterator[Event]:
     last, away = 0, False
     while True:
         try:
-            ended = store.job(number).state in ENDED  # asked first: an ended job has all its events
+            ended = store.job(number).state in ENDED  # checked first: an ended job has all its events
             events = store.events(number, after=last)
         except Unavailable as error:
             if not away:

@@ -63,7 +63,7 @@ def wish(
     with show_activity("wishing"):
         row = None if number is None else number - 1
         solved = QUESTION.ask(front, inputs, row=row, words=QUESTION.flags)
-    with contextlib.suppress(StoreError):  # a store that cannot be written keeps nobody from the answer
+    with contextlib.suppress(StoreError):  # the answer is shown even if the store cannot be written
         keep_wish(folder, stated_wishes(front, solved.search_result.wishes), number)
     if json:
         wishes = QUESTION.read(inputs, row, QUESTION.flags)["at"]

@@ -83,12 +83,12 @@ def worker(
     Ctrl-C and SIGTERM let each job finish its round, or hand it back if that takes longer than --grace; another worker
     then continues after its last round. With a store on PostgreSQL workers may run on any number of machines.
     """
-    required("psutil", "workers need")  # they end what a job leaves behind with it
+    required("psutil", "workers need")  # it is used to end processes that a job leaves behind
     from ..workers.supervisor import Supervisor
 
     settings = options.settings(store_address(store), engine, processes, drain=drain)
     with Interruption(service=True) as termination:
-        with open_store(store) as opened:  # what is wrong with it is told at once, and by nobody but this process
+        with open_store(store) as opened:  # only this process reports faults, immediately
             opened.require_writable()
         set_up_logs(options.log_format)
         with Supervisor(settings, processes) as supervisor:

@@ -78,7 +78,7 @@ def _trade_offs(problem: Problem, result: Result, system: System) -> list[str]:
     try:
         design = stored_design(problem, result, result.knee + 1)
         return trade_offs_of(front_of(problem, result), result.knee, design, system)
-    except SlidercrankError:  # nothing is to be said of them
+    except SlidercrankError:  # they are omitted
         return []
 
 

@@ -108,7 +108,7 @@ def _column_and_formula(name: str, keys: Collection[str]) -> tuple[Column, RowFo
     if not _SIGN.search(name.strip()):
         return find_column(name, keys), None
 
-    from .row_formulas import find_formula  # brings what computes
+    from .row_formulas import find_formula  # imports the computing modules
 
     formula = find_formula(name, keys)
     if isinstance(formula, Column):

@@ -18,7 +18,7 @@ from .find_run import find_folder
 LEASE = 3600.0
 """s. A run that is stopped by Ctrl-Z for less goes on where it was; one that was killed is free again after this, or
 when it is resumed."""
-_PATIENCE = 2.0  # s that it waits for room on the disk of the store: somebody sits before it
+_PATIENCE = 2.0  # s to wait for disk space of the store: a user is waiting
 _WORKER = "command line"
 _MEDIA = {".toml": "application/toml", ".json": "application/json"}
 
@@ -118,7 +118,7 @@ def end_job_on_error(claim: Claim, *, again: str = "") -> Iterator[None]:
     except LeaseLost:
         raise
     except BaseException as error:
-        with contextlib.suppress(LeaseLost, StoreError):  # the error that is under way matters more
+        with contextlib.suppress(LeaseLost, StoreError):  # the pending error matters more
             claim.fail(str(error) or "interrupted", again=False)
         raise
 

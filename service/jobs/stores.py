@@ -71,7 +71,7 @@ def has_store(option: str | None, runs: Path | None = None) -> bool:
     address = store_address(option, runs)
     with disk(Path(address).parent):
         if not is_named(option) and not any(Path(f"{address}{end}").exists() for end in ("", "-wal")):
-            return False  # as is usual, and then without SQLAlchemy
+            return False  # the usual case, without importing SQLAlchemy
     from ..store.address import file_of, has_content
 
     file = file_of(address)

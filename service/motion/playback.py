@@ -35,7 +35,7 @@ _READOUT = (
 
 @dataclass(frozen=True)
 class PlayerText:
-    """Words of a page. control: label of the position control. times: speed factors. over: variable of the curves."""
+    """Words of a page. control: position control. times: unit of the speed. span_name: range of the curves."""
 
     control: str
     times: str

@@ -165,7 +165,7 @@ def screened(problem: Problem) -> tuple[Array, Array]:
     return np.concatenate(designs), np.concatenate(violations)
 
 
-@lru_cache(maxsize=48)  # most of what is typed between two looks leaves ranges and requirements as they are
+@lru_cache(maxsize=48)  # most edits between previews leave ranges and requirements unchanged
 def _possible_ends(problem: Problem, name: str) -> Ends | None:
     """Return the ends of the range of a closed-form quantity while the other requirements on the dimensions hold."""
     constraints = tuple(c for c in constraints_of(problem) if is_closed(c.quantity) and c.quantity != name)
@@ -192,7 +192,7 @@ def _ends(problem: Problem, name: str, branch: EliminationBranch, index: int) ->
             rows = rows[np.isfinite(merits[rows])]
             children = np.repeat(best[rows], _CHILDREN, axis=0)
             step = width * random.standard_normal(children.shape)
-            stays = random.random(children.shape) < _STAYS  # extremes lie on faces and edges, along which one moves
+            stays = random.random(children.shape) < _STAYS  # extremes lie on faces and edges; moves follow these
             children = np.clip(children + np.where(stays, 0.0, step), 0.0, 1.0)
             child_values = _values(problem, name, branch.dimensions(children)[:, :3])
             best = np.concatenate([best[rows], children])

@@ -100,7 +100,7 @@ def _findings(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Pro
     full_problem, wrong, rest = None, list[Wrong](), tables
     checked_ratios = [] if stated is None else [(ratio.name, beyond_both(stated, ratio)) for ratio in STROKE_RATIOS]
     sentences_by_name = {name: sentence for name, sentence in checked_ratios if sentence is not None}
-    if sentences_by_name:  # it is said once; the rest of the job is checked without it
+    if sentences_by_name:  # reported once; the rest of the job is checked without it
         wrong += [
             Wrong(f"constraints.{name}", sentence, infeasible=True) for name, sentence in sentences_by_name.items()
         ]

@@ -100,7 +100,7 @@ class AnswerSchema:
         from pydantic import TypeAdapter
 
         cores = [{"type": "list", "items_schema": TypeAdapter(type_).core_schema} for type_ in self.types()]
-        answers = [handler(type_)["items"] for type_ in cores]  # what is in a list is described once, and referred to
+        answers = [handler(type_)["items"] for type_ in cores]  # list items are described once, and referenced
         if self.names:
             return {**handler(core), "properties": dict(zip(self.names, answers, strict=True))}
         inches = {"type": "object", "description": "in inch units: the same with keys that end in those"}

@@ -54,7 +54,7 @@ def _template_blocks(blocks: Sequence[Block], folder: Path, section: int) -> lis
     for number, (block, after) in enumerate(zip(blocks, (*blocks, None)[1:], strict=True)):
         if isinstance(block, Picture):
             content = _drawn(block, folder / f"{section}-{number}")
-        elif isinstance(block, Paragraph):  # what is said of a table stays with it
+        elif isinstance(block, Paragraph):  # a note on a table stays with it
             content = {"tone": block.tone, "text": _unbreakable_text(block.text), "stays": isinstance(after, Table)}
         elif isinstance(block, Facts):
             content = {"rows": {name: list(map(_unbreakable_text, lines)) for name, lines in block.rows.items()}}

@@ -69,7 +69,7 @@ class RunFolder:
             place.mkdir(mode=0o700, parents=True, exist_ok=True)
             # Prepared out of sight, then renamed: nobody sees the folder without its mark.
             hidden = place / f".new-{os.getpid()}-{secrets.token_hex(4)}"
-            hidden.mkdir(mode=0o700)  # its log has what was typed
+            hidden.mkdir(mode=0o700)  # its log contains the command as typed
             try:
                 _write(hidden / MARK, f"Started {self.started}. The run continues, or was interrupted.\n")
                 self.path = _rename(hidden, place / run_name(name))
@@ -166,7 +166,7 @@ class RunFolder:
         elif isinstance(error, (InputError, MissingExtra)) and not self._has_result:
             shutil.rmtree(self.path, ignore_errors=True)
         elif error is not None and not self._is_as_before:
-            with contextlib.suppress(RunError, OSError):  # the error that is under way matters more
+            with contextlib.suppress(RunError, OSError):  # the pending error matters more
                 self._stop(error)
         self._release()
 

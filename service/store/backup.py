@@ -30,12 +30,12 @@ def back_up(database: Database, target: Path) -> None:
         raise InputError(f"a backup is a new file; {target} is there already; name another one, or move it away")
     draft = target.with_name(f".{target.name}.{os.getpid()}")
     try:
-        os.close(os.open(draft, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o600))  # it has all that the store has
+        os.close(os.open(draft, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o600))  # it has all data of the store
         with (
             contextlib.closing(sqlite3.connect(source, timeout=_PATIENCE)) as original,
             contextlib.closing(sqlite3.connect(draft)) as copy,
         ):
-            original.backup(copy)  # in one step, so that no writer makes it begin again
+            original.backup(copy)  # in one step, so that no writer makes it restart
             copy.execute("PRAGMA journal_mode=DELETE")  # so that the copy is one file
             verdict = copy.execute("PRAGMA integrity_check").fetchone()[0]
         if verdict != "ok":

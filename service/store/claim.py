@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from ...optimise.search.checkpoints import Record
 
 _log = logging.getLogger(__name__)
-_TOLD = 1.0  # s after which it is told that a write has to wait
-_PAUSE = 0.25  # s between two tries of a write that the database refused
+_TOLD = 1.0  # s after which a waiting write is reported
+_PAUSE = 0.25  # s between two attempts of a write that the database refused
 Rest = Callable[[Connection], None]
 Patience = Callable[[float], bool]
 """Whether a write that found no room on the disk waits for some; asked with the time that it has waited, s."""
@@ -160,7 +160,7 @@ class Claim:
             if content is not None:
                 connection.execute(insert(exact), {"job": self.job.id, "content": content})
             put_files(connection, self.job.id, files)
-            if result.status != "cancelled":  # a cancelled one can go on
+            if result.status != "cancelled":  # a cancelled job can continue
                 connection.execute(delete(records).where(records.c.job == self.job.id))
 
         self._end(result.status, result.message, {**texts, **left}, rest)
@@ -260,7 +260,7 @@ class Claim:
             "records": self._records + len(rows),
         }
         if rows:
-            values["attempts"] = 0  # it goes forward: whatever ended earlier attempts does not hold it up
+            values["attempts"] = 0  # it progresses: earlier failures do not block it
         condition = and_(self._mine, jobs.c.state == "running", jobs.c.writes == self._writes)
         if self.age > self.lease and not self.waits:
             condition = and_(condition, jobs.c.lease_until > now())
@@ -278,7 +278,7 @@ class Claim:
                 if rest is not None:
                     rest(connection)
             elif not tried or connection.scalar(select(jobs.c.writes).where(self._mine)) != self._writes + 1:
-                raise self._lost()  # else it is there already: only the answer to an earlier try was lost
+                raise self._lost()  # else already written: only the answer to an earlier try was lost
         self._renewed, self.astray = started, False
         self._writes += 1
         self._records += len(rows)

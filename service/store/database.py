@@ -27,7 +27,7 @@ from ..resources.disk import LEAST, free, free_space_text
 from .address import HIDDEN, file_of, is_there, secrets_of, shown_url, url_of
 
 _PATIENCE = 30.0  # s to wait for other writers
-_POOL = {"pool_size": 20, "pool_use_lifo": True}  # as many stay open as threads of the API ask at once
+_POOL = {"pool_size": 20, "pool_use_lifo": True}  # as many stay open as API threads use simultaneously
 _SNAPSHOT = {"isolation_level": "REPEATABLE READ"}  # of PostgreSQL; a transaction of SQLite has one anyway
 _IDLE = 0.1  # s after which a connection has to prove that it is alive: no server restarts sooner
 _POSTGRESQL = {
@@ -69,7 +69,7 @@ class Database:
         alone = False
         if self._file is not None:
             is_there(self._file)
-            with contextlib.suppress(OSError):  # where it cannot be made, opening it says why
+            with contextlib.suppress(OSError):  # if it cannot be created, opening it reports why
                 # The files beside it, of the write-ahead log, get its permissions. One that is there is left alone: to
                 # close it would end the locks that SQLite has on it for other connections of this process.
                 os.close(os.open(self._file, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o600))
@@ -161,7 +161,7 @@ class Database:
             )
         if (
             self._file is not None and self._open and not may_use(self._file)
-        ):  # what is open goes on, nothing else could begin
+        ):  # open transactions continue, no other could begin
             raise StoreError(
                 f"the file of a store stays readable and writable while it is used; {self.name} is not any more; "
                 f"{remedy_of_rights(self._file)}"
@@ -266,7 +266,7 @@ def _postgresql(url: URL) -> Engine:
     def prove(connection: Any, record: Any, _proxy: Any) -> None:
         # Not each time, as the pool itself would: that takes as long as the use of the connection.
         if time.monotonic() - record.info.get("since", math.inf) > _IDLE and not _alive(engine, connection):
-            raise InvalidatePoolError  # by which the pool gives up its connections and makes another one
+            raise InvalidatePoolError  # makes the pool drop its connections and open a new one
 
     return engine
 

@@ -26,12 +26,10 @@ def damages(database: Database) -> list[str]:
     try:
         with database.reading() as connection:
             damage = _of_sqlite(connection) if database.sqlite else _of_postgresql(connection)
-            return (
-                damage or _miscounts(connection) or _damaged_results(connection)
-            )  # what is damaged need not be counted
+            return damage or _miscounts(connection) or _damaged_results(connection)  # damaged data need not be counted
     except Unavailable:
         raise
-    except StoreError as error:  # a file may be too damaged to be looked through
+    except StoreError as error:  # a file may be too damaged to be searched
         return [str(error)]
 
 

@@ -32,7 +32,7 @@ from ...optimise.search.driving_loads import driven_by_loads
 from ...optimise.search.elimination import EliminationBranch, elimination_branches
 from ...optimise.search.loaded_stroke import expected_warnings
 
-_MOST_VALUES = 6  # of a variable that are all told
+_MOST_VALUES = 6  # values of a variable that are all shown
 
 
 def summarise(problem: Problem) -> dict[str, Any]:
@@ -322,7 +322,7 @@ def _option(name: str, label: str, speed: float) -> str:
     return f"{label} ({rpm})" if name == "speed" and label != rpm else label
 
 
-_MOST_LISTED = 12  # combinations whose limits are told one by one
+_MOST_LISTED = 12  # combinations whose limits are listed individually
 
 
 def _limits(problem: Problem) -> list[str]:

@@ -53,7 +53,7 @@ class EngineOptions:
             if file is not None and not file.is_file():
                 raise InputError(f"the files of an encrypted connection must exist; got {file}; correct the path")
         if self.scheduler is not None:
-            _make_engine(self)  # refuses an address that cannot be one
+            _make_engine(self)  # raises an error for an invalid address
             required("distributed", "a Dask cluster needs")
         return self
 

@@ -27,7 +27,7 @@ EXHAUSTED = 75
 """Exit code of a process whose job took more memory than it may; another process is to take its place."""
 DEAF = 76
 """Exit code of a process whose search did not end when it was told to; another process is to take its place."""
-_HEARS = 60.0  # s that a search has to end once it is told to: a kernel that is being compiled hears of nothing
+_HEARS = 60.0  # s for a search to end once asked: a compiling kernel notices nothing
 Stop = Callable[[], bool]
 
 
@@ -118,10 +118,10 @@ class Heartbeat:
                     self.claim.look()
                 self._look_at_cancel()
             except LeaseLost:
-                if not self._end.is_set():  # at the end of a job it is given up as it should be
+                if not self._end.is_set():  # at the end of a job the claim is released on purpose
                     self.lost = "its lease has expired; another worker continues from the last committed round"
             except StoreError:
-                pass  # the writes of the search find out whether it stays so
+                pass  # the writes of the search find out whether it lasts
 
     def _waited(self, condition: str) -> float:
         """Return the time that a condition has held, s, since the first call."""

@@ -32,9 +32,9 @@ if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
 
 _log = logging.getLogger(__name__)
-_AWAY = 1.0  # s between two tries while the database cannot be reached
-_FULL = 10.0  # s until a job is tried again that found a disk full
-_PARTS = 2  # that are loaded before a search: what it computes with, then the job with its records
+_AWAY = 1.0  # s between two attempts while the database is unreachable
+_FULL = 10.0  # s until a job that found a disk full is retried
+_PARTS = 2  # loaded before a search: its functions, then the job with its records
 _PATIENCE = 1.0  # s that a cancelled job waits for a search that has not begun
 MOST = 64
 """Designs of an interim front that are shown: enough for its shape, and some kB at most."""
@@ -200,7 +200,7 @@ def _end(claim: Claim, solve: Callable[[], None]) -> None:
     except Exception as error:  # noqa: BLE001 - whatever it is, the job and not the worker ends
         _stumble(claim, error)
     except BaseException:
-        with contextlib.suppress(LeaseLost, StoreError):  # what interrupts matters more
+        with contextlib.suppress(LeaseLost, StoreError):  # the interruption matters more
             claim.hand_back("its worker was interrupted; another one continues")
         raise
 

@@ -31,7 +31,7 @@ _EXAMPLE = f"{QUESTION.inputs[0].flag} {QUESTION.inputs[0].example}"
 
 def answer(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> Answer:
     """Return the nearest design that meets the conditions. Raises the errors of `optimise.decisions.like.nearest`."""
-    front.part(row)  # refuses what is no row
+    front.part(row)  # raises an error for an invalid row
     before = rows_of(front.columns)[row]
     constraints, ranges = _added_constraints(where, before, front.problem)
     values, span = front.values[row], scaling(front.values)[1]

@@ -175,7 +175,7 @@ def _blocks(rounded: Rounded, record: dict[str, Any], row: int) -> list[Block]:
     for key in original:
         title, unit = title_and_unit(key, original)
         if key in objectives:
-            title = objectives[key].title  # of a formula as it is written
+            title = objectives[key].title  # of a formula as written
         rows.append((title, unit, recorded(original, key), *(recorded(design, key) for design in designs)))
         if key in objectives:
             stem = objectives[key].stem

@@ -61,7 +61,7 @@ class StaticForces(Record):
 
 _JOB_LOADS = "loads of the job"
 _STEP = 30
-_MOST_ADVANTAGE = 10.0  # beyond it the curve only says that a dead centre is near
+_MOST_ADVANTAGE = 10.0  # beyond it the curve shows only that a dead centre is near
 
 
 def massless(mechanism: Mechanism, load: float | None = None) -> Mechanism:

@@ -106,7 +106,7 @@ def _extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str, fl
         (peak,) = stress_peaks(mechanism, stress_path, row_of(linkage), np.array([criterion]), limit=1)
         share, _, *angles = peak.places[0, 0]
         value = peak.values[0, 0]
-        if not value > 0.0:  # of the other sign all along and all the time
+        if not value > 0.0:  # the other sign everywhere and always
             share, angles = math.nan, [math.nan, math.nan]
             value = math.nan
         extremes |= {
