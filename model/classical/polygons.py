@@ -84,7 +84,7 @@ def _quarter_turned(vector: Array) -> Array:
 
 
 def _meet_slider_line(start: Array, rod: Array) -> tuple[Array, Array]:
-    """Return the point where the normal to the rod through `start` meets y = 0, and its signed distance in rods."""
+    """Return where the normal to the rod through `start` meets y = 0, and its signed distance in rods."""
     turns = -start[..., 1] / rod[..., 0]
     x = start[..., 0] - turns * rod[..., 1]
     return np.stack([x, np.zeros_like(x)], axis=-1), turns

@@ -50,7 +50,7 @@ class _FormulaCompiler(CompilerBase):
 _FORMULA: Any = _OPTIONS | {"forceinline": True, "_nrt": False, "pipeline_class": _FormulaCompiler}
 _KERNEL: Any = _OPTIONS | {"nogil": True}
 
-_TRIED = "0.68."  # of numba: `_linked` and `_resolved_once` reach into it
+_TRIED = "0.68."  # tested numba version: `_linked` and `_resolved_once` use its internals
 
 _registered: dict[Callable[..., Any], None] = {}
 _resolved: dict[Any, Any] = {}

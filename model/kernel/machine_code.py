@@ -72,7 +72,9 @@ def _entry(code: MachineCode, leaves: list[Leaf]) -> str:
         lines.append(f"{name}p = getelementptr i8, ptr {base}, i64 {offset}\n  {name} = load {kind}, ptr {name}p")
         return name
 
-    head = object.__basicsize__  # of every Python object; an array's address, dimensions, shape and strides follow
+    head = (
+        object.__basicsize__
+    )  # header of every Python object; an array's address, dimensions, shape and strides follow
     for number, leaf in enumerate(leaves):
         if not leaf.item:
             arguments.append((leaf.type, read(leaf.type, "%block", 8 * number)))
@@ -122,7 +124,7 @@ def _prepare() -> None:
 
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
-    llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())  # which opens the process's own functions
+    llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())  # gives access to the functions of this process
     for name, address in _library("_helperlib").c_helpers.items():
         llvm.add_symbol(f"numba_{name}", address)
         llvm.add_symbol(name, address)

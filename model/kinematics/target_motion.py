@@ -30,10 +30,10 @@ from .position import motion
 Freedom = Literal["fixed", "free"]
 Measure = Literal["greatest", "rms"]
 
-_PHASES = 96  # of the grid
-_HALVINGS = 14  # of its cells: 4e-6 rad
-_STRETCHES = 3  # of the grid that are searched on
-_SECTIONS = 60  # from two spacings of the grid to rounding
+_PHASES = 96  # phases in the grid
+_HALVINGS = 14  # halvings of its cells: to 4e-6 rad
+_STRETCHES = 3  # best stretches of the grid that are searched further
+_SECTIONS = 60  # golden sections from two grid spacings to rounding
 _NEWTON = 4
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 _TURN = 2.0 * math.pi

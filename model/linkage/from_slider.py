@@ -14,7 +14,7 @@ from ..errors import AssemblyError, InputError
 from ..kinematics.position import motion
 from .inverse import ROUNDING, Dimensions, Solution, crank_angle_at, crank_motion, finite
 
-_DIGITS = 9  # of a position in messages: nanometres of a machine
+_DIGITS = 9  # decimals of a position in messages: nanometres
 _LOCKED = 1e-7
 """Fraction of the rod. Nearer to an end where the rod is normal to the slider line, rounding decides whether it is
 locked.

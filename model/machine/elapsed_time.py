@@ -12,7 +12,7 @@ from numpy.polynomial import legendre
 from ..arrays import Array
 
 _TURN = 2.0 * math.pi
-_NODES = 20  # in each panel
+_NODES = 20  # nodes in each panel
 _TAIL = 2  # last coefficients of a series, which show whether it has converged
 _SETTLED = 1e-14  # relative size of the last coefficients of a converged series
 _NOISE = 32.0 * np.finfo(np.float64).eps  # error of p, so that 1 / p has p^-2 times this error

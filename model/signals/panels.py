@@ -22,7 +22,7 @@ Curves = Callable[[Array], Array]
 
 _DEGREE = 15
 _PRODUCT = 24  # nodes that integrate the product of three polynomials exactly
-_TAIL = 3  # coefficients that tell whether a panel is resolved ...
+_TAIL = 3  # coefficients that show whether a panel is resolved ...
 _RESOLVED = 1e-12  # ... and their remaining size then, relative to the curve's size
 _DEEPEST = 24  # halvings of a panel
 _MOST = 20_000  # panels that halving may add: beyond that, only rounding of the curves remains

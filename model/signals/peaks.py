@@ -258,7 +258,7 @@ def _find(
                 theta[start + i] = uncrowded(low + (high - low) * i / (points - 1), kappa)
             for i in range(0 if listed == 1 else 1, points if listed == 1 else points - 1):
                 at_angle = theta[start + i]
-                if i > 0 or not has_motion:  # else at the end of the segment before
+                if i > 0 or not has_motion:  # otherwise at the end of the previous segment
                     sine, cosine = math.sin(at_angle), math.cos(at_angle)
                     m = design_motion(sine, cosine, d)
                 load = load_on_slider(m, d, block, 0, at_angle, outward, loads, piece, shift)

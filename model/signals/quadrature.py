@@ -16,11 +16,11 @@ from ..kernel.arithmetic import analytic
 PANELS = 24
 EVEN = 0.21
 DEEPEST = 24  # halvings of a panel
-_TAIL = 3  # Legendre coefficients that tell whether a panel is resolved ...
+_TAIL = 3  # Legendre coefficients that show whether a panel is resolved ...
 RESOLVED = 1e-12, 1e-10  # ... and their size then, relative to the greatest values of the curve and its derivatives
 MOST_HALVINGS = 20_000  # panels halved for one design: beyond that, only rounding of the curves remains
 ANGLE_ROUNDING = 1e-13  # rad, shift of a curve by rounding of angles and positions: halving does not reduce its effect
-NOISE = 0.004  # of a curve's rounding, in units of RESOLVED, times kappa^2: that of the crank angle itself
+NOISE = 0.004  # rounding of a curve from the crank angle itself, in units of RESOLVED, times kappa^2
 
 
 @analytic

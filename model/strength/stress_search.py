@@ -104,7 +104,7 @@ def propose(
     best: Cube,
     candidates: Candidates,
 ) -> int:
-    """List the samples next to maxima that fall short of the greatest by at most `margin` of it; return their number.
+    """List the samples next to maxima within the fraction `margin` of the greatest; return their number.
 
     stress: (s, 2 WIDE). base: first column of the link. criteria: (m, 2), p and q. space: (STATIONS, samples of a
     design), listed: (2, LISTED), best: (sides, m, STATIONS), work space. candidates: with room for all possible ones.

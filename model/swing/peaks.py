@@ -25,7 +25,7 @@ from .swing_states import DRIVE, ERROR
 
 KEPT = 6
 """Peaks stored per design, highest first."""
-_PANELS = 2.0  # of a way, to begin with
+_PANELS = 2.0  # initial panels per stroke
 _CHUNK = 128
 
 

@@ -95,7 +95,7 @@ class AngleTable(Load):
         return 2 if self.cycle == "720 deg" and not self.turn else 1
 
     def on_turn(self, turn: int) -> Load:
-        """Return the table of turn 1 or 2 alone, which need not close; the table itself where all turns are alike."""
+        """Return the table of turn 1 or 2 alone, which need not close; itself if all turns are alike."""
         return replace(self, turn=turn) if self.cycle_turns > 1 else self
 
     def numbers(self) -> tuple[float, float, float, float]:
@@ -110,7 +110,7 @@ class AngleTable(Load):
         return self._of_turn(np.array(at), np.array(forces)) if self.turn else (at, forces)
 
     def _of_turn(self, at: Array, forces: Array) -> tuple[Sequence[float], Sequence[float]]:
-        """Return the knots of one of two turns, from 0 to a turn; its ends have the forces on the inside."""
+        """Return the knots of one of two turns, from 0 to a turn, with the inside forces at its ends."""
         begin = _TURN * (self.turn - 1)
         shift = self._period * math.floor((begin - at[0]) / self._period) - begin
         if forces[-1] == forces[0]:

@@ -13,7 +13,7 @@ from ...kernel.arithmetic import analytic, inverse, power
 from .cylinder import BACK_PRESSURE, BORE, EXPONENTS, HEAD, PISTON_ROD, Cylinder
 from .load import CYCLE, CycleAngle, Enters, Entry, Load, Passage, Table
 
-_TYPED = 5e-6  # of a pressure that is written with six digits
+_TYPED = 5e-6  # relative rounding of a pressure written with six digits
 
 
 @analytic
