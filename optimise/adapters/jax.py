@@ -21,7 +21,7 @@ def jax_function(problem: Problem, quantities: Sequence[str] | None = None) -> J
     """Return a function from designs (..., 3 + k) to quantities (..., q), SI, for `jax.grad`, `jax.vmap`, `jax.jit`.
 
     quantities: names; the objectives if None. The derivatives are those of `Problem.evaluate` (`jax.custom_vjp`), of
-    first order and in reverse mode. Raises `InputError` without JAX, and unless JAX counts in double precision.
+    first order and in reverse mode. Raises `InputError` without JAX, and unless JAX uses double precision.
     """
     require_problem(problem, "jax_function")
     try:
@@ -35,7 +35,7 @@ def jax_function(problem: Problem, quantities: Sequence[str] | None = None) -> J
         )
     width = 3 + len(problem.mechanism.varying)
     names = [o.quantity for o in problem.objectives] if quantities is None else list(quantities)
-    problem.evaluate(np.zeros((1, width)), names)  # refuses what it must before anything is traced
+    problem.evaluate(np.zeros((1, width)), names)  # raises errors before tracing
 
     def outside(x: jax.Array) -> jax.Array:
         shape = jax.ShapeDtypeStruct((*x.shape[:-1], len(names)), np.float64)

@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 
 
 def openmdao_component(problem: Problem, quantities: Sequence[str] | None = None) -> ExplicitComponent:
-    """Return an `ExplicitComponent` from the numbers of one design to quantities, each with its SI unit.
+    """Return an `ExplicitComponent` that maps the numbers of one design to quantities, each with its SI unit.
 
     Inputs: crank, rod, offset, and the varying numbers with underscores in place of dots (mechanism_slider_mass).
     Outputs: quantities by name; None stands for the objectives and the constrained ones. Partials are exact. A design
-    that does not turn fully has NaN outputs, which an optimiser's line search has to survive: bound the model so that
+    that does not rotate fully has NaN outputs, which an optimiser's line search must survive: bound the model so that
     rod exceeds crank + |offset|. Raises `InputError` without OpenMDAO.
     """
     require_problem(problem, "openmdao_component")
@@ -42,7 +42,7 @@ def openmdao_component(problem: Problem, quantities: Sequence[str] | None = None
     ranges = [problem.crank, problem.rod, problem.offset]
     starts = [0.5 * (ends.lower + ends.upper) for ends in ranges]
     starts += [0.5 * (item.lower + item.upper) for item in varying]
-    problem.evaluate(np.zeros((1, len(starts))), names)  # refuses what it must
+    problem.evaluate(np.zeros((1, len(starts))), names)  # raises errors early
 
     class SliderCrank(ExplicitComponent):  # type: ignore[misc]
         def setup(self) -> None:

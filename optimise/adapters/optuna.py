@@ -20,10 +20,10 @@ _FAR = 1e30
 def optuna_objective(
     problem: Problem, *, eliminate: bool = True, elimination_branch: int | None = None
 ) -> Callable[[Trial], tuple[float, ...]]:
-    """Return an objective for `study.optimize`: those of a trial as minimised, its requirements as constraints.
+    """Return an objective function for `study.optimize`, with minimised objectives and requirements as constraints.
 
-    Create the study with a direction "minimize" for each objective. eliminate: equality constraints are eliminated, see
-    `standard_form`; the parameters then run from 0 to 1. elimination_branch: which of several solutions of the
+    Create the study with a direction "minimize" for each objective. eliminate: whether to eliminate equalities, see
+    `standard_form`; the parameters then run from 0 to 1. elimination_branch: index of one of several solutions of the
     equalities. Each trial has its design as user attribute "design": crank, rod, offset, m, extra variables, SI.
     Raises `InputError` as `standard_form` does.
     """

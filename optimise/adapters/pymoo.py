@@ -22,9 +22,9 @@ _FAR = 1e30
 def pymoo_problem(problem: Problem, *, eliminate: bool = True, elimination_branch: int | None = None) -> PymooProblem:
     """Return a pymoo `Problem` that evaluates whole populations: F as minimised, G <= 0, H = 0.
 
-    eliminate: equality constraints are eliminated, see `standard_form`; genetic algorithms meet them hardly otherwise.
-    elimination_branch: which of several solutions of the equalities.
-    The variables then run from 0 to 1; `found.form.designs(X)` gives the designs. Raises `InputError` without pymoo.
+    eliminate: whether to eliminate equalities, see `standard_form`; genetic algorithms hardly meet them otherwise. The
+    variables then run from 0 to 1; `found.form.designs(X)` gives the designs. elimination_branch: index of one of
+    several solutions of the equalities. Raises `InputError` without pymoo.
     """
     try:
         from pymoo.core.problem import Problem as PymooProblem

@@ -22,7 +22,7 @@ def torch_function(problem: Problem, quantities: Sequence[str] | None = None) ->
     """Return a function from a tensor of designs (..., 3 + k) to quantities (..., q), SI, for `backward`.
 
     quantities: names; the objectives if None. The derivatives are those of `Problem.evaluate`, of first order. Tensors
-    have double precision and lie on the processor. Raises `InputError` without PyTorch, and for other tensors.
+    must have double precision and be on the CPU. Raises `InputError` without PyTorch, and for other tensors.
     """
     require_problem(problem, "torch_function")
     try:
@@ -30,7 +30,7 @@ def torch_function(problem: Problem, quantities: Sequence[str] | None = None) ->
     except ImportError as error:
         raise require("torch", error) from None
     names = [objective.quantity for objective in problem.objectives] if quantities is None else list(quantities)
-    problem.evaluate(np.zeros((1, 3 + len(problem.mechanism.varying))), names)  # refuses what it must
+    problem.evaluate(np.zeros((1, 3 + len(problem.mechanism.varying))), names)  # raises errors early
 
     class Quantities(torch.autograd.Function):  # type: ignore[misc]
         @staticmethod

@@ -26,16 +26,17 @@ class Step:
 
 @dataclass(frozen=True)
 class Certificate:
-    """A proof of how far a front can be from the true one.
+    """A proof of the greatest distance of a front from the true one.
 
-    asked: epsilon asked for. epsilon: proven for the front completed by the added designs. delivered: proven for the
-    front alone. gap: what the front alone misses for certain, the excess of the design `hole` (crank, rod, offset, m;
-    None if no design lies beyond the front). All in units of the objectives' ranges `span` (m,), SI.
-    hypervolume_gap: by how much at most the true front's hypervolume exceeds the front's, in its units; beyond the
-    front's ideal point counts too. added: (n, 3), m, the designs that complete the front; added_values: (n, m), SI,
-    minimised; table: all their quantities. boxes: bounded. open: left open. remaining: their share of the design box.
-    where: the range of crank, rod and offset, m, in the open box of the largest excess, (3, 2); None if none is open.
-    notes: requirements that the bounds did not use. The proof holds without them, but is harder to get.
+    asked: requested epsilon. epsilon: proven for the front completed by the added designs. delivered: proven for the
+    front alone. gap: certain gap of the front alone, the excess of the design `hole` (crank, rod, offset, m; None if no
+    design lies beyond the front). All in units of the objectives' ranges `span` (m,), SI.
+    hypervolume_gap: greatest possible excess of the true front's hypervolume over the front's, in its units, including
+    volume beyond the front's ideal point. added: (n, 3), m, the designs that complete the front; added_values: (n, m),
+    SI, minimised; table: all their quantities. boxes: number of boxes bounded. open: number of open boxes. remaining:
+    their fraction of the design box. where: the range of crank, rod and offset, m, in the open box with the largest
+    excess, (3, 2); None if none is open. notes: requirements that the bounds did not use. The proof holds without them,
+    but is harder to obtain.
     """
 
     status: Status
@@ -59,7 +60,7 @@ class Certificate:
 
     @property
     def proven(self) -> bool:
-        """Whether the epsilon asked for is proven."""
+        """Whether the requested epsilon is proven."""
         return self.epsilon <= self.asked
 
 

@@ -1,18 +1,18 @@
 """Distance of a front from the true one: bounded by branch and bound on the whole design box.
 
-What is proven, for an epsilon e and objectives scaled by their range over the front: **for every feasible design there
-is a design of the set that is worse than it by at most e of the range in no matter which objective**. No design that
-the job permits can therefore beat all designs of the set by more than e. The set is the front as delivered, or the
-front completed by designs that the search for the proof adds: a front of few designs leaves gaps between neighbours,
-and no proof can be better than the widest gap. Both numbers are given, and the design that shows the widest gap.
+The statement proven, for an epsilon e and objectives scaled by their range over the front: **for every feasible design,
+some design of the set is worse by at most e of the range in every objective**. Hence no design that the job permits can
+beat all designs of the set by more than e. The set is the front as delivered, or the front completed by designs that
+the search for the proof adds: a front of few designs leaves gaps between neighbours, and no proof can be better than
+the widest gap. The certificate has both numbers, and the design that shows the widest gap.
 
 A box of designs is closed when none of them can be feasible, or when one design of the set covers the box's lower
 corner (`cover`): it then covers every feasible design of the box. Other boxes are halved, those of the largest excess
 first, so that at any time the largest excess of the open boxes is a proven epsilon. Where a box is small enough that a
 feasible design of its own covers its corner, and no other does, that design is added.
 
-What the proof rests on: bounds as in `boxes`, whose rounding is accounted for; the values of the set's own designs, as
-the model computes them; requirements taken as met where they are to 1e-9 of their size, as everywhere else.
+The proof relies on bounds as in `boxes`, which account for rounding, and on the values of the set's designs as the
+model computes them. Requirements count as met to 1e-9 of their size, as everywhere else.
 """
 
 from __future__ import annotations
@@ -36,12 +36,13 @@ def certify_designs(
     progress: Callable[[Step], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Certificate:
-    """Return a proof of how far a set of designs can be from the true front.
+    """Return a proof of the greatest distance of a set of designs from the true front.
 
-    dimensions: (n, 3), crank, rod, offset, m, that meet the job's requirements. epsilon: to be proven, of the
-    objectives' ranges over these designs. seconds: budget; what is proven by then is returned. progress: called between
-    rounds. cancelled: asked between rounds. Raises `InputError` without designs, for jobs in which more than the three
-    dimensions varies, for objectives that cannot be bounded over a range of designs (`boxes.covered`), and for a swing.
+    dimensions: (n, 3), crank, rod, offset, m, of designs that meet the job's requirements. epsilon: requested epsilon,
+    a fraction of the objectives' ranges over these designs. seconds: time limit, s; returns what is proven so far.
+    progress: called between rounds. cancelled: called between rounds. Raises `InputError` without designs, for jobs
+    with extra variables, for objectives that cannot be bounded over a range of designs (`boxes.covered`), and for a
+    swing.
     """
     if problem.motion is not None:
         raise InputError(

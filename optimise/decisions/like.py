@@ -1,12 +1,13 @@
-"""A design like a given one that also meets further requirements: the nearest point of the front that they leave.
+"""A design like a given one that also meets further requirements: the nearest point of the remaining front.
 
-The requirements are added to the problem. Wanted is the design that is Pareto-optimal for the extended problem and
+The requirements are added to the problem. The result is the Pareto-optimal design of the extended problem that is
 nearest to the given one, by Euclidean distance of the objectives, each divided by its range over the given front.
 
-The Pareto-optimal designs are no set that a solver can be given, but the polish maps every point onto one of them and
-leaves them as they are. So: the extended problem is sampled everywhere, the samples nearest to the given design are
-polished, then points around the nearest results, closer in every round. Every result is a polished design, stationary
-and on its constraints to rounding; "nearest" is as good as the sampling, checked against dense fronts in the tests.
+A solver cannot search the set of Pareto-optimal designs directly, but the polish maps every point onto one of them and
+leaves them unchanged. So the extended problem is sampled everywhere and the samples nearest to the given design are
+polished, then points around the nearest results, more closely in every round. Every result is a polished design,
+stationary and on its constraints to rounding; "nearest" is as good as the sampling, checked against dense fronts in the
+tests.
 """
 
 from __future__ import annotations
@@ -62,13 +63,13 @@ def nearest(
     constraints: Sequence[Constraint] = (),
     ranges: Mapping[str, Ends] | None = None,
 ) -> ParetoFront:
-    """Return a front of the one Pareto-optimal design of the extended problem that is nearest to a given one.
+    """Return a front with the Pareto-optimal design of the extended problem that is nearest to a given one.
 
     row: the given design in the table of its front. values: its objectives (m,) as minimised, SI. span: (m,), the
-    objectives' ranges over its front. constraints: to add. ranges: least and greatest of crank, rod or offset, m, None
-    for open. Residuals are scaled by `span`. Without a feasible design the front is empty and its message says which
-    requirements contradict each other. Raises `InputError` if nothing is added, the design already meets it, or
-    a quantity has no gradient.
+    objectives' ranges over its front. constraints: constraints to add. ranges: least and greatest crank, rod or offset,
+    m, None for open. Residuals are scaled by `span`. Without a feasible design the front is empty and its message says
+    which requirements contradict each other. Raises `InputError` if nothing is added, if the design already meets all
+    requirements, or if a quantity has no gradient.
     """
     ranges = ranges or {}
     _require_new(problem, row, constraints, ranges)
@@ -95,12 +96,12 @@ def nearest(
 def like(
     front: ParetoFront, row: int, *constraints: Constraint, ranges: Mapping[str, Ends] | None = None
 ) -> ParetoFront:
-    """Return the design most like one of a front that also meets further requirements, as a front of its own.
+    """Return the design most like one of a front that also meets further requirements, as a separate front.
 
-    It is Pareto-optimal for the problem with them, and of those designs the nearest; empty, with the reason
-    in its message, where they contradict the rest. ranges: least and greatest of crank, rod, offset, m:
+    It is the nearest of the Pareto-optimal designs for the extended problem. If the requirements contradict the rest,
+    the front is empty and its message has the reason. ranges: least and greatest crank, rod, offset, m:
     `like(front, 3, Constraint(quantity="transmission_angle", lower=0.8), ranges={"crank": (0.04, None)})`.
-    Warns of ends that were probably meant in mm.
+    Warns about ends that were probably meant in mm.
     """
     require_front(front, "like")
     for item in constraints:
@@ -110,7 +111,7 @@ def like(
                 'Constraint(quantity="time_ratio", lower=1.2)'
             )
     ranges = {name: pair(name, ends) for name, ends in (ranges or {}).items()}
-    front.part(row)  # refuses what is no row
+    front.part(row)  # refuses an unknown row
     ends = (np.array(ranges.get(name, ()), dtype=np.float64) for name in DIMENSIONS)
     if (doubt := in_both_units(ends)) is not None:
         warn_user(f"ranges of lengths are in m: {doubt}")
@@ -121,7 +122,7 @@ def like(
 def extended(
     problem: Problem, constraints: Sequence[Constraint], ranges: Mapping[str, Ends]
 ) -> tuple[Problem, str | None]:
-    """Return the problem with added requirements, merged with its own; what leaves nothing is said, and left out."""
+    """Return the problem with added requirements, merged with its own, and the omitted contradiction, if any."""
     constraints_by_name = {constraint.quantity: constraint for constraint in problem.constraints}
     dimensions = {name: getattr(problem, name) for name in DIMENSIONS}
     contradictions, keys = [], []
@@ -150,7 +151,7 @@ def extended(
             assert ends[1] is not None
             dimensions[name] = Range(lower=ends[0], upper=ends[1])
     remedy = [f"choose other values, or change {' and '.join(keys)} in the job and solve it again"] if keys else []
-    # The search serves to come near, whatever method made the front.
+    # This search only needs to come near, whatever method made the front.
     settings = Settings(designs=problem.settings.designs, seed=problem.settings.seed)
     return (
         replace(problem, constraints=tuple(constraints_by_name.values()), settings=settings, **dimensions),
@@ -159,7 +160,7 @@ def extended(
 
 
 def common(first: Ends, second: Ends) -> Ends | None:
-    """Return the range that two have in common, None if there is none."""
+    """Return the intersection of two ranges, None if it is empty."""
     lower = max((end for end in (first[0], second[0]) if end is not None), default=None)
     upper = min((end for end in (first[1], second[1]) if end is not None), default=None)
     return None if lower is not None and upper is not None and lower > upper else (lower, upper)
@@ -204,7 +205,7 @@ def _lies_within(value: object, ends: Ends, factor: float) -> bool:
 
 
 def _zoom(finished: FrontCandidates, evaluators: list[Evaluator], archive: Archive, values: Array, seed: int) -> None:
-    """Add polished designs around the nearest ones, closer and closer."""
+    """Add polished designs around the nearest ones, ever more closely."""
     random = generator(seed, 2000)
     width = _WIDEST
     for _ in range(_ROUNDS):
@@ -218,7 +219,7 @@ def _zoom(finished: FrontCandidates, evaluators: list[Evaluator], archive: Archi
             if len(points):
                 finished.add(index, polish(evaluator, points, finished.span))
         after = distance(finished.values[_ranked(finished, archive, values)[:1]], values, finished.span)[0]
-        # What still comes nearer by about a step has a way to go.
+        # A design that still comes nearer by about a step has farther to go.
         if before - after < 0.5 * width:
             width *= 0.5
         if width < _CLOSEST:
@@ -226,7 +227,7 @@ def _zoom(finished: FrontCandidates, evaluators: list[Evaluator], archive: Archi
 
 
 def _ranked(finished: FrontCandidates, archive: Archive, values: Array) -> Whole:
-    """Return the rows of designs that nothing dominates, nearest first; stationary ones before all others."""
+    """Return the rows of non-dominated designs, nearest first; stationary ones before all others."""
     rows = finished.best()
     if archive.is_feasible.any():  # samples within a band around the constraints prove nothing
         scaled, screened = finished.values[rows] / finished.span, archive.values[archive.is_feasible] / finished.span
@@ -237,7 +238,7 @@ def _ranked(finished: FrontCandidates, archive: Archive, values: Array) -> Whole
 
 
 def _nearest(front: ParetoFront, values: Array, span: Array) -> ParetoFront:
-    """Return the nearest design of a front, alone; an empty front as it is."""
+    """Return a front with only its nearest design; an empty front unchanged."""
     if not len(front):
         return front
     row = int(np.argmin(distance(front.values, values, span)))

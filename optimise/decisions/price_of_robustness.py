@@ -16,10 +16,11 @@ from ..solve import solve
 
 @dataclass(frozen=True)
 class RobustCost:
-    """A robust front and the nominal one, objectives (n, m) in shown units.
+    """A robust front and the nominal one, objectives (n, m) in display units.
 
-    nominal: of the nominal designs, as drawn. toleranced: of the same designs, within tolerances. robust: of the robust
-    designs, within tolerances. keeps: number of nominal designs that meet all requirements within tolerances.
+    nominal: objectives of the nominal designs, as drawn. toleranced: of the same designs, within tolerances. robust: of
+    the robust designs, within tolerances. keeps: number of nominal designs that meet all requirements within
+    tolerances.
     """
 
     nominal: Array
@@ -28,7 +29,7 @@ class RobustCost:
     keeps: int
 
     def cost(self, column: int, *, maximised: bool) -> float:
-        """Return by how much the best promised value of an objective falls short of the nominal best, shown unit."""
+        """Return the shortfall of the best promised value of an objective from the nominal best, in display units."""
         best = np.max if maximised else np.min
         away = float(best(self.nominal[:, column]) - best(self.robust[:, column]))
         return away if maximised else -away

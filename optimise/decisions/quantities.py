@@ -13,8 +13,8 @@ def quantities(problem: Problem | None = None) -> pd.DataFrame:
     """Return a table of quantities by name: title, display unit, column in tables of designs, good side, needs.
 
     problem: adds its own quantities. In Python values are in SI; `factor` converts SI to the display unit. better: the
-    good side, low or high, on which a requirement usually asks for it; empty where there is none. needs: what
-    a job must contain; empty if every job has it.
+    good side, low or high, as usual in requirements; empty if there is none. needs: required contents of a job; empty
+    if every job has them.
 
     >>> from slidercrank import quantities
     >>> quantities().loc["peak_torque", "title"]

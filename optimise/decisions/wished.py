@@ -1,4 +1,4 @@
-"""The answer to a wish: the design, and in words what was wished and what is reached for each objective."""
+"""The answer to a wish: the design, and in words the desired and the reached value of each objective."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """One objective of the design that a wish led to.
+    """One objective of the design found for a wish.
 
-    objective: it. quantity: its quantity. kind: of the wish. wished, reached, before: the value that was wished or is
-    allowed, that of the design found, and that of the design from which classes were told, SI; None where there is
-    none. short: by how much the design found is worse than wished or allowed, in the objective as it is minimised, SI;
-    below zero where it is better; None without such a value. changed: by how much it is worse than before. range_: of
-    the objective over the front.
+    objective: the objective. quantity: its quantity. kind: kind of the wish. wished, reached, before: the desired or
+    allowed value, that of the design found, and that of the design to which classes refer, SI; None if there is none.
+    short: shortfall from the desired or allowed value, in the objective as minimised, SI; negative if the design is
+    better; None without such a value. changed: the same against the value before. range_: range of the objective over
+    the front.
     """
 
     objective: Objective
@@ -41,12 +41,12 @@ class Outcome:
 
     @property
     def met(self) -> bool:
-        """Whether the design found has what was wished, or stays within what is allowed."""
+        """Whether the design found reaches the desired value, or stays within the allowed one."""
         return self.short is None or self.short <= _ROUNDING * self.range_
 
     @property
     def gained(self) -> bool:
-        """Whether the design found is better than the one before."""
+        """Whether the design found is better than the previous one."""
         return self.changed is not None and self.changed < -_ROUNDING * self.range_
 
     def text(self, system: System = "metric") -> str:
@@ -91,10 +91,10 @@ class Outcome:
 class Wished:
     """The answer to wishes for the objectives of a front.
 
-    found: the design, as a front of its own, with all columns of a front's table, its stationarity residual and
-    trade-off rates; empty where no design stays within what is allowed. row: of the design from which classes were
-    told. wishes: for each objective. value: of the achievement function that `wish` explains, at the design; NaN
-    without one. outcomes: of each objective; none without a design. message: why there is no design, or empty.
+    found: the design, as a separate front with all columns of a front's table, its stationarity residual and trade-off
+    rates; empty if no design stays within the allowed values. row: row of the design to which classes refer. wishes:
+    wish for each objective. value: value at the design of the achievement function that `wish` explains; NaN without a
+    design. outcomes: outcome of each objective; empty without a design. message: reason for a missing design, or empty.
     """
 
     found: ParetoFront
@@ -112,11 +112,11 @@ class Wished:
 
     @property
     def possible(self) -> bool:
-        """Whether the design has everything that was wished."""
+        """Whether the design meets every wish."""
         return bool(self.outcomes) and all(outcome.met for outcome in self.outcomes)
 
     def sentences(self, system: System = "metric") -> list[str]:
-        """Return in words whether the wish can be had, then wish and outcome of each objective."""
+        """Return in words whether the wish can be met, then wish and outcome of each objective."""
         if not self.outcomes:
             return [self.message]
         return [self._head(), *(outcome.text(system) for outcome in self.outcomes)]
@@ -142,7 +142,7 @@ def outcomes_of(
 ) -> tuple[Outcome, ...]:
     """Return the outcome of each objective.
 
-    aims: the values of wishes as objectives are minimised, SI. found: the design, as a front of its own.
+    aims: wished values as minimised, SI. found: the design, as a separate front.
     """
     return tuple(
         Outcome(

@@ -1,9 +1,9 @@
 """Wishes for the objectives of a front: values, or classes relative to one of its designs.
 
-A value is wished, "110 N m", and no bound: the design comes as near as can be. The classes are those of NIMBUS
-(K. Miettinen and M. M. Mäkelä, "Synchronous approach in interactive multiobjective optimization", Eur. J. Oper. Res.
-170(3), 2006): an objective is to improve on the design, to keep at least what the design has, may worsen to a value,
-or is free, as is what is not named.
+A value, "110 N m", is an aspiration level, not a bound: the design comes as near as possible. The classes are those of
+NIMBUS (K. Miettinen and M. M. Mäkelä, "Synchronous approach in interactive multiobjective optimization", Eur. J. Oper.
+Res. 170(3), 2006): an objective must improve on the design, must keep the design's value or better, may worsen to a
+value, or is free. Unnamed objectives are free.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _WORDS = 'a value such as "{example}", "improve", "keep", "may worsen to {exampl
 
 @dataclass(frozen=True)
 class Wish:
-    """A wish for one objective. value: of its quantity, SI, that is wished or that it may worsen to; else None."""
+    """A wish for one objective. value: desired value of its quantity, or the one it may worsen to, SI; else None."""
 
     kind: Kind
     value: float | None = None
@@ -40,11 +40,11 @@ FREE = Wish("free")
 
 
 def read_wishes(front: ParetoFront, texts: Mapping[str, object], row: int | None) -> tuple[Wish, ...]:
-    """Return the wish for every objective, in their order.
+    """Return the wish for every objective, in order.
 
-    texts: by objective, a number in SI, "110 N m", "improve", "keep", "may worsen to 120 N m" or "free". row: of the
-    design that improve, keep and worsen speak of. Raises `InputError` for an unknown objective, a value of another
-    unit, what wishes nothing, and what contradicts itself.
+    texts: by objective, a number in SI, "110 N m", "improve", "keep", "may worsen to 120 N m" or "free". row: row of
+    the design to which improve, keep and worsen refer. Raises `InputError` for an unknown objective, a value in another
+    unit, and empty or contradictory wishes.
     """
     if not isinstance(texts, Mapping):
         raise InputError(
@@ -93,7 +93,7 @@ def _read(front: ParetoFront, column: int, text_or_value: object) -> Wish:
     turning = front.problem.motion is None or isinstance(quantity, SwingQuantity)  # below one, proportions may swing
     if (
         turning and quantity.domain is not None and value > quantity.domain.upper
-    ):  # degrees without their unit, a share in percent
+    ):  # degrees without their unit, a ratio in percent
         shown_value = f"{value * quantity.unit.factor:.6g} {quantity.unit.symbol}".rstrip()
         raise InputError(
             f"the wish for {quantity.name}: {quantity.domain.rule}; got {shown_value}; {quantity.domain.remedy}"
@@ -102,7 +102,7 @@ def _read(front: ParetoFront, column: int, text_or_value: object) -> Wish:
 
 
 def _require_sense(front: ParetoFront, wishes: tuple[Wish, ...], row: int | None) -> None:
-    """Refuse wishes that wish nothing, or that no design can have by what they say alone."""
+    """Raise `InputError` for empty wishes, or wishes that by themselves no design can meet."""
     kinds = [wish.kind for wish in wishes]
     names = [objective.quantity for objective in front.objectives]
     if "value" not in kinds and "improve" not in kinds:
@@ -133,6 +133,6 @@ def _require_sense(front: ParetoFront, wishes: tuple[Wish, ...], row: int | None
 
 
 def aimed(front: ParetoFront, column: int, wish: Wish) -> float:
-    """Return a wish's value as the objective is minimised, SI: negated, or the distance from a target."""
+    """Return a wish's value as minimised, SI: negated if maximised, or the distance from a target."""
     assert wish.value is not None
     return float(minimised(front.objectives[column], np.array([wish.value]))[0])

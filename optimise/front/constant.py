@@ -1,4 +1,4 @@
-"""Whether numbers that were computed are all the same."""
+"""Test whether computed numbers are all the same."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ times greater.
 def is_constant(values: ArrayLike, *, size: ArrayLike = 0.0) -> Mask:
     """Return whether the numbers of each column are equal to rounding: () or (m,) of values (n,) or (n, m).
 
-    The spread is compared with the greatest magnitude, at least with `size`: of a distance from a target that is the
-    target. NaN and infinity do not count; a column without numbers is constant. Zero needs a size: nothing is near it.
+    The spread is compared with the greatest magnitude, or with `size` if that is greater: the target, for a distance
+    from it. NaN and infinity do not count; a column without numbers is constant. Zero needs a size, having no scale.
     """
     return np.asarray(spread(values, size=size) == 0.0)
 
 
 def spread(values: ArrayLike, *, size: ArrayLike = 0.0) -> Array:
     """Return the range of each column of values, as `is_constant` takes them; exactly 0 where it is constant."""
-    values = np.ascontiguousarray(np.moveaxis(np.asarray(values, dtype=np.float64), 0, -1))  # ten times as quick
+    values = np.ascontiguousarray(np.moveaxis(np.asarray(values, dtype=np.float64), 0, -1))  # ten times faster
     finite = np.where(np.isfinite(values), values, np.nan)
     low = np.fmin.reduce(finite, axis=-1, initial=np.inf)
     high = np.fmax.reduce(finite, axis=-1, initial=-np.inf)

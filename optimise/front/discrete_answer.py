@@ -1,4 +1,4 @@
-"""Answer of a search among discrete values: how far it goes, and what the values cost."""
+"""Answer of a search among discrete values: its extent, and the cost of the values."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, kw_only=True)
 class DiscreteAnswer:
-    """How the front of a problem with discrete numbers was found.
+    """Origin of the front of a problem with discrete numbers.
 
     exact: whether every combination was judged; else those next to the designs of the continuous front were.
-    combinations: how many there are. judged: how many of them were looked at. rules: of the discrete numbers by name,
+    combinations: number of combinations. judged: number of those judged. rules: rules of the discrete numbers by name,
     in words. continuous: best value of each objective in the continuous front, (m,), as minimised, SI; empty without
     one.
     """
@@ -24,5 +24,5 @@ class DiscreteAnswer:
 
     @property
     def how(self) -> str:
-        """How far the answer goes, in words."""
+        """Extent of the search, in words."""
         return "exact" if self.exact else "neighbours of the continuous front"

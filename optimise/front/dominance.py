@@ -10,17 +10,17 @@ from ...model.arrays import Array, Mask, Whole
 from ...model.kernel.batches import in_chunks
 from ...model.kernel.kernel import Cube, Flags, IntegerTable, Table, kernel
 
-_WORD = 63  # designs told by the bits of one integer, whose sign is left alone
+_WORD = 63  # designs marked by the bits of one integer, whose sign is unused
 _CHUNK = 2048  # designs that one thread filters at a time
-_OBJECTIVES, _MANY = 4, 40_000  # of fewer objectives, and of more designs, a filter of n log n steps is quicker
+_OBJECTIVES, _MANY = 4, 40_000  # for fewer objectives, and for more designs, a filter of n log n steps is faster
 
 
 def nondominated(values: Array) -> Whole:
     """Return the indices of designs that no other dominates, ascending; of equals, the first.
 
-    Designs are put in order, by the first objective first: only those before one may dominate it. For each other
-    objective bits say which designs come up to some place in its order; where those of all objectives meet are the few
-    that may be as good as the design that has these places. They are compared with it.
+    Designs are sorted, by the first objective first: only earlier designs may dominate a later one. For each other
+    objective, bits mark the designs up to a given place in its order. The intersection over all objectives contains the
+    few designs that may be as good as the one with these places. These are compared with it.
     """
     count, objectives = values.shape
     if not count:
@@ -52,7 +52,7 @@ def nondominated(values: Array) -> Whole:
 def _mark_prefixes(ordered: Table, ranked: IntegerTable, bits: IntegerTable, upto: IntegerTable) -> None:
     """Set, for each word of the order by an objective, the bits of the designs up to its end.
 
-    upto: the row of bits of the last design that is as good as this one in an objective.
+    upto: row of bits for the last design that is as good as this one in an objective.
     """
     count, words = ranked.shape[1], bits.shape[1]
     for column in range(ranked.shape[0]):
@@ -73,7 +73,7 @@ def _mark_prefixes(ordered: Table, ranked: IntegerTable, bits: IntegerTable, upt
 
 @kernel
 def _filter(by_word: Cube, bits: IntegerTable, upto: IntegerTable, begin: int, end: int, undominated: Flags) -> None:
-    """Say of which designs from `begin` to `end` one before them is as good in all of these objectives."""
+    """Mark the designs from `begin` to `end` for which no earlier one is as good in all of these objectives."""
     candidates = np.empty(bits.shape[1], np.int64)
     for i in range(begin, end):
         words, first, second = 1 + i // _WORD, upto[0, i], upto[1, i]
@@ -115,9 +115,9 @@ def _mark_dominating(points: Table, rivals: Table, clearly: float, slightly: flo
 
 
 def dominating(points: Array, rivals: Array, *, clearly: float, slightly: float = np.inf) -> Mask:
-    """Return which points (n, m) dominate one of some others (k, m) and are better by more than `clearly` somewhere.
+    """Return which points (n, m) dominate one of the rivals (k, m) and are better by more than `clearly` somewhere.
 
-    slightly: where they are better by more than that, they may be worse by up to `clearly` elsewhere.
+    slightly: a point that is better by more than this somewhere may be worse by up to `clearly` elsewhere.
     """
     dominates = np.zeros(len(points), dtype=bool)
     points, rivals = np.ascontiguousarray(points), np.ascontiguousarray(rivals)

@@ -1,4 +1,4 @@
-"""Hypervolume, non-dominance, and the choice of few designs that keep most of it."""
+"""Hypervolume, non-dominance, and the choice of a few designs that preserve most of it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .constant import spread
 
 REFERENCE = 1.1
 """Reference point in the scaled space, where ideal is 0 and nadir 1."""
-_BOUNDED = 4096  # designs: of more it takes longer to bound all gains than to compute some again
+_BOUNDED = 4096  # designs: for more, bounding all gains takes longer than recomputing some
 _ROUNDING = 1e-12  # of a scaled volume, whose computation it exceeds by far
 
 ReportProgress = Callable[[int, int], None]
@@ -20,19 +20,19 @@ ReportProgress = Callable[[int, int], None]
 
 
 def ignore_progress(done: int, total: int) -> None:
-    """Take no note of where work stands."""
+    """Ignore reports of progress."""
 
 
 def scaling(values: Array) -> tuple[Array, Array]:
-    """Return ideal and range of objective values (n, m); of an objective that is constant, its size for a range."""
+    """Return ideal and range of objective values (n, m); a constant objective has its size as range."""
     ideal, span = np.ascontiguousarray(values.T).min(axis=1), spread(values)
     return ideal, np.where(span > 0.0, span, np.maximum(np.abs(ideal), 1e-12))
 
 
 def hypervolume(values: Array, ideal: Array, span: Array, *, clip_at_ideal: bool = True) -> float:
-    """Return the share of the box from ideal to 1.1 times the range beyond it that the designs dominate.
+    """Return the fraction of the box from the ideal to 1.1 ranges beyond it that the designs dominate.
 
-    clip_at_ideal: what they dominate on the far side of the ideal does not count; else the share may exceed 1.
+    clip_at_ideal: whether to ignore volume on the far side of the ideal; else the fraction may exceed 1.
     """
     if not len(values):
         return 0.0
@@ -50,7 +50,7 @@ def hypervolume(values: Array, ideal: Array, span: Array, *, clip_at_ideal: bool
 
 @kernel
 def _shared_corners(chosen: Table, count: int, point: Row, corners: Table) -> int:
-    """Put the corners of what a point dominates with the first taken ones, without dominated ones; how many."""
+    """Store the undominated corners of the region that a point shares with the chosen ones; return their number."""
     count_kept = 0
     for i in range(count):
         covered = False
@@ -80,14 +80,14 @@ def _shared_corners(chosen: Table, count: int, point: Row, corners: Table) -> in
 
 
 class Bounds:
-    """Upper bounds of what designs (n, m), scaled, add to the hypervolume of those chosen.
+    """Upper bounds of the hypervolume that scaled designs (n, m) add to the chosen ones.
 
-    That is the box of the design less what it shares with those chosen. Two of the shared boxes and a third one share
-    no less than by inclusion and exclusion: the two largest so far, and that of the design that is chosen last.
+    The gain is the design's box minus the part that it shares with the chosen ones. Inclusion and exclusion over three
+    shared boxes bounds this part from below: the two largest so far, and that of the last chosen design.
     """
 
     def __init__(self, scaled: Array) -> None:
-        """Begin with none chosen."""
+        """Begin without chosen designs."""
         self.room = np.ascontiguousarray(REFERENCE - scaled.T)
         self.boxes = self.room.prod(axis=0)
         self.largest, self.second = np.zeros(self.room.shape), np.zeros(self.room.shape)
@@ -95,7 +95,7 @@ class Bounds:
         self.most, self.more, self.both = np.zeros(n), np.zeros(n), np.zeros(n)
 
     def with_design(self, index: int) -> Array:
-        """Return the bounds (n,) once another design is chosen, too."""
+        """Return the bounds (n,) after choosing another design."""
         shared = np.minimum(self.room, self.room[:, index : index + 1])
         size = shared.prod(axis=0)
         with_largest = np.minimum(self.largest, shared)
@@ -118,11 +118,11 @@ def choose(
 ) -> Whole:
     """Return `count` indices of non-dominated designs, greedily by hypervolume, `always` included; ascending.
 
-    The hypervolume is submodular: the gain of a design only shrinks as others join, so a design whose old gain already
-    lies below the best fresh one need not be computed again (lazy greedy; Minoux, 1978), nor one of which some of those
-    chosen leave less. The gain is the box of the design less what it shares with those chosen, whose corners are few
-    (L. While et al., "A fast way of calculating exact hypervolumes", IEEE Trans. Evol. Comput. 16(1), 2012). report:
-    called for every design and gain, with the designs chosen.
+    The hypervolume is submodular: the gain of a design only shrinks as others join. So a gain need not be recomputed if
+    its old value is already below the best new one (lazy greedy; Minoux, 1978), or if its upper bound is. The gain is
+    the design's box minus the part shared with the chosen ones, which has few corners (L. While et al., "A fast way of
+    calculating exact hypervolumes", IEEE Trans. Evol. Comput. 16(1), 2012). report: called for every design and gain,
+    with the number of designs chosen.
     """
     n = len(values)
     if n <= count:

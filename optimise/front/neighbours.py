@@ -10,9 +10,9 @@ from ...model.kernel.kernel import Integers, Table, kernel
 
 
 def neighbours(points: Array, count: int) -> tuple[Array, Whole]:
-    """Return distances and rows (n, count) of the nearest of points (n, m), nearest first, each its own first one.
+    """Return distances and rows (n, count) of the nearest of points (n, m), nearest first, beginning with itself.
 
-    count: n at most.
+    count: number of neighbours, at most n.
     """
     order = np.argsort(points[:, 0], kind="stable")
     distance = np.full((len(points), count), np.inf)
@@ -26,13 +26,13 @@ def neighbours(points: Array, count: int) -> tuple[Array, Whole]:
 
 @kernel
 def _search(points: Table, begin: int, end: int, distance: Table, nearest: Integers) -> None:
-    """Points in the order of their first coordinate: beyond the farthest of the nearest there, none is nearer."""
+    """Search points sorted by first coordinate: beyond the farthest neighbour's distance there, none is nearer."""
     n, m = points.shape
     count = distance.shape[1]
     for i in range(begin, end):
         distance[i, 0], nearest[i * count] = 0.0, i
         worst, before, after = distance[i, count - 1], i - 1, i + 1
-        while before >= 0 or after < n:  # in turn, so that near ones on either side end the way of both
+        while before >= 0 or after < n:  # alternating, so that near points on either side end both directions
             for k in (before, after):
                 if not 0 <= k < n:
                     continue

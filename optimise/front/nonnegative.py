@@ -1,7 +1,7 @@
 """Non-negative least squares: the active-set method of Lawson and Hanson, compiled.
 
 min |A x - b| with x >= 0 (C. L. Lawson and R. J. Hanson, "Solving Least Squares Problems", 1974, algorithm 23.10).
-Every polishing step, multiplier and trade-off rate is such a problem, of some dozen rows and columns.
+Every polishing step, multiplier and trade-off rate is such a problem, with some dozen rows and columns.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _INDEPENDENT = 1e-2  # a column counts as independent of others if this share of
 
 
 def nonnegative_least_squares(matrix: Array, target: Array) -> Array | None:
-    """Return the x >= 0 (n,) of least |A x - b|; None where rounding leaves no end in sight.
+    """Return the x >= 0 (n,) with the least |A x - b|; None if it does not converge because of rounding.
 
     matrix: A (m, n). target: b (m,).
     """

@@ -1,7 +1,7 @@
-"""Choosing one design of a front: nearest to the ideal, by weights (TOPSIS), or by ranked objectives.
+"""Choice of one design from a front: nearest to the ideal, by weights (TOPSIS), or by ranked objectives.
 
-Everything works on objective values (n, m) as they are minimised, in any units: it depends on proportions only.
-size: (m,), what the values of an objective are rounded against besides their own magnitude: a target, of distances.
+All functions take objective values (n, m) as minimised, in any units: only proportions matter.
+size: (m,), scale for rounding an objective's values besides their own magnitude: the target, for distances from it.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ _TIE = 1e-9  # of a range, of a closeness: nearer together is rounding
 
 @dataclass(frozen=True, kw_only=True)
 class Priority:
-    """An objective in a ranking, and the loss from its best value allowed for the sake of the next.
+    """An objective in a ranking, and the loss from its best value allowed in favour of the next one.
 
-    absolute: in the quantity's SI unit. share: of the objective's range over the designs. The two add up.
+    absolute: loss in the quantity's SI unit. share: fraction of the objective's range over the designs. The two add up.
     """
 
     quantity: str
@@ -64,12 +64,12 @@ def closeness(
 
     C = d_worst / (d_best + d_worst), where d are Euclidean distances of the weighted normalised objectives from the
     best and from the worst value of each. C. L. Hwang and K. Yoon, "Multiple Attribute Decision Making", Springer 1981,
-    the section on TOPSIS. They divide each objective by its Euclidean norm over the designs ("vector"): then an
-    objective that varies little around a large value hardly counts, whatever its weight, and adding a constant changes
-    the choice. By default objectives are divided by their range over the designs, so that weights are the worth of
-    whole ranges.
+    the section on TOPSIS. They divide each objective by its Euclidean norm over the designs ("vector"). An objective
+    that varies little around a large value then hardly counts, whatever its weight, and adding a constant changes the
+    choice. By default objectives are divided by their range over the designs, so that weights rate whole ranges.
 
-    weights: (m,), zero or more, of any sum. Where all designs are alike in what has weight, all are 1.
+    weights: (m,), zero or more, with any sum. If all designs are equal in the weighted objectives, all closenesses
+    are 1.
     """
     require_word("normalisation", normalisation, Normalisation)
     _require_designs(values)
@@ -94,17 +94,17 @@ def closeness(
 def topsis(
     values: Array, weights: Sequence[float], *, normalisation: Normalisation = "range", size: ArrayLike = 0.0
 ) -> int:
-    """Return the row of the greatest `closeness`; ties go to the better in the other objectives."""
+    """Return the row with the greatest `closeness`; ties go to the better in the other objectives."""
     scores = closeness(values, weights, normalisation=normalisation, size=size)
     return _least_total(values, np.flatnonzero(scores >= scores.max() - _TIE), size)
 
 
 def lexicographic(values: Array, order: Sequence[tuple[int, float, float]], *, size: ArrayLike = 0.0) -> int:
-    """Return the row that is left when objectives decide in turn.
+    """Return the row that remains when objectives decide in turn.
 
-    order: objectives as (column, absolute, share). Each in turn keeps those of the designs left that lose at most
-    `absolute + share * range` against the best of them, the range being that over all designs; the last one keeps its
-    best, whatever its tolerance. Ties go to the better in the other objectives. (Fishburn, "Lexicographic orders,
+    order: objectives as (column, absolute, share). Each in turn keeps the remaining designs that lose at most
+    `absolute + share * range` against the best of them, with the range over all designs. The last one keeps its best,
+    whatever its tolerance. Ties go to the better in the other objectives. (Fishburn, "Lexicographic orders,
     utilities and decision rules", Management Science 20(11), 1974; with tolerances: Waltz, "An engineering approach:
     hierarchical optimization criteria", IEEE Trans. Automatic Control 12(2), 1967.)
     """

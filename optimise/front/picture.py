@@ -17,7 +17,7 @@ _WIDTH, _HEIGHT, _ROOM = 320.0, 200.0, 30.0  # px of the SVG
 
 
 def svg(values: Array, labels: Sequence[str]) -> str:
-    """Return an SVG scatter of the first two columns; of a single column over its row number."""
+    """Return an SVG scatter plot of the first two columns, or of a single column over its row number."""
     x = values[:, 0]
     y = values[:, 1] if values.shape[1] > 1 else np.arange(len(values), dtype=np.float64)
     names = [*labels, "design"][:2]
@@ -42,9 +42,9 @@ def svg(values: Array, labels: Sequence[str]) -> str:
 
 
 def figure(values: Array, labels: Sequence[str], title: str) -> Figure:
-    """Return every objective against the first as a matplotlib figure; of one alone its values in turn.
+    """Return a matplotlib figure of every objective against the first; of a single one, its values in turn.
 
-    values: (n, m), as shown.
+    values: (n, m), in display units.
     """
     from ...model.notebook_figure import NotebookFigure
 

@@ -20,10 +20,10 @@ REPEATING = "repeating rounds"
 class Progress:
     """Progress of a search after one of its rounds, or in a long stage between two.
 
-    round, rounds: this one and how many are planned. feasible: designs found so far that meet every constraint.
-    hypervolume: what those dominate; it never falls. During the search it is reported in boxes spanned by the
-    first feasible designs, and may exceed 1; in the history of a front, as a share of the box of that front. Not
-    comparable between runs. step, steps: how far the stage is, 0 of 0 at the end of a round.
+    round, rounds: number of this round and of planned ones. feasible: number of feasible designs found so far.
+    hypervolume: hypervolume of these designs; it never decreases. During the search it is in boxes spanned by the first
+    feasible designs, and may exceed 1; in the history of a front, a fraction of the front's box. Not comparable between
+    runs. step, steps: progress of the stage, 0 of 0 at the end of a round.
     """
 
     stage: str
@@ -43,9 +43,9 @@ class Progress:
 
 
 def stage_text(progress: Mapping[str, Any]) -> str:
-    """Return the stage of a search and how far it is: "polishing 12/66", "selecting designs 1,200/3,000".
+    """Return the stage of a search and its progress: "polishing 12/66", "selecting designs 1,200/3,000".
 
-    progress: fields of `Progress`; those of early stores have no steps.
+    progress: fields of `Progress`; early stores have no steps.
     """
     total = progress.get("steps", 0)
     count, total = (progress["step"], total) if total else (progress["round"], progress["rounds"])
@@ -54,7 +54,7 @@ def stage_text(progress: Mapping[str, Any]) -> str:
 
 @contextlib.contextmanager
 def progress_bar() -> Iterator[Callable[[Progress], None]]:
-    """Show a live bar while entered, on standard error or in a notebook; yield the callback that moves it.
+    """Show a live bar within the context, on standard error or in a notebook; yield the callback that moves it.
 
     Its clock keeps running between reports.
     """
@@ -82,7 +82,7 @@ def progress_bar() -> Iterator[Callable[[Progress], None]]:
 
 
 def _terminal_size() -> tuple[int | None, int | None]:
-    """Return columns and rows to assume for a terminal that reports none, as some remote ones do; else None."""
+    """Return assumed columns and rows for a terminal that reports none, like some remote ones; else None."""
     try:
         columns, rows = os.get_terminal_size(sys.stderr.fileno())
     except (OSError, ValueError, AttributeError):

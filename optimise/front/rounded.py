@@ -1,4 +1,4 @@
-"""Designs of round numbers with what they cost, which requirement is tightest, and by how much each is missed."""
+"""Designs with round numbers: their costs, their tightest requirement, and by how much they miss each one."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 class Miss:
     """Distance of a value beyond a bound of a requirement.
 
-    quantity: its name in the job. kind: of the value, "length". amount: above zero, in `unit`, which is that of the
-    column of the quantity. side: where the value lies. allowed: amount that was allowed, in `unit`.
+    quantity: its name in the job. kind: kind of the value, "length". amount: distance above zero, in `unit`, the unit
+    of the quantity's column. side: side of the bound on which the value is. allowed: allowed amount, in `unit`.
     """
 
     quantity: str
@@ -43,19 +43,19 @@ class Miss:
 
 @dataclass(frozen=True, kw_only=True)
 class Rounded:
-    """Designs of round numbers near a design of a front, the best first.
+    """Designs with round numbers near a design of a front, best first.
 
-    Those that meet every requirement within what is allowed, the least loss first, none dominated by another, then
-    those that miss little but lose clearly less. Where `met` is False the nearest: that of the least relative violation
-    beyond what is allowed first, then those that miss more but lose clearly less. See `rounding.rounded`.
+    First come non-dominated designs that meet every requirement within the allowed misses, least loss first; then
+    designs that miss little but lose clearly less. If `met` is False, these are the nearest designs: first that with
+    the least relative violation beyond the allowed misses, then those that miss more but lose clearly less. See
+    `rounding.rounded`.
 
-    problem: that they answer, its choices in place. given: (3 + v,), the design. steps: of the numbers that were
-    rounded, SI. allowed: how far requirements may be missed, SI, by quantity. dimensions: (n, 3 + v). before: (m,), the
-    design's objectives, SI. values: (n, m). losses: (n, m), by how much each objective is worse, as a share of its
-    range over the front; below zero where it is better. constraints: c of them, floors included. held: (n, c), their
-    values. reach: multiples of a step looked at on either side. judged: how many combinations turned fully and were
-    judged. kept: how many of them meet every requirement within what is allowed. notes: what stayed as it was, in
-    words.
+    problem: the problem that they answer, with its choices in place. given: (3 + v,), the design. steps: steps of the
+    rounded numbers, SI. allowed: allowed misses of requirements, SI, by quantity. dimensions: (n, 3 + v). before: (m,),
+    the design's objectives, SI. values: (n, m). losses: (n, m), loss of each objective as a fraction of its range over
+    the front; negative for a gain. constraints: c constraints, including floors. held: (n, c), their values. reach:
+    multiples of a step tried on either side. judged: number of movable combinations, all judged. kept: number of those
+    that meet every requirement within the allowed misses. notes: unchanged numbers, in words.
     """
 
     problem: Problem
@@ -81,7 +81,7 @@ class Rounded:
 
     @property
     def met(self) -> bool:
-        """Whether the designs meet every requirement within what is allowed."""
+        """Whether the designs meet every requirement within the allowed misses."""
         return self.kept > 0
 
     @property
@@ -90,7 +90,7 @@ class Rounded:
         return self.message_in("metric")
 
     def message_in(self, system: System) -> str:
-        """Return the result of the search in words. system: of its units."""
+        """Return the result of the search in words. system: system of its units."""
         if not self.judged:
             return f"no rounded design within {counted(self.reach, 'step')} rotates fully; give smaller steps"
         near = f"{counted(self.judged, 'rounded design')} within {counted(self.reach, 'step')}"
@@ -112,19 +112,19 @@ class Rounded:
 
     @cached_property
     def violations(self) -> Array:
-        """Relative violation (n, c) of every constraint, zero or less where it is met."""
+        """Relative violation (n, c) of every constraint; zero or less if it is met."""
         columns = [violated_by(constraint, self.held[:, j]) for j, constraint in enumerate(self.constraints)]
         return np.stack(columns, axis=1) if columns else np.zeros((len(self), 0))
 
     def tightest(self, row: int) -> str | None:
-        """Return the quantity that a design is nearest to break, relative, an equality first; None without one."""
+        """Return the quantity with the tightest requirement, relative, equalities first; None without requirements."""
         rest = [(item.equality, self.violations[row, j], item.quantity) for j, item in enumerate(self.constraints)]
         return max(rest)[2] if rest else None
 
     def misses(self, row: int) -> list[Miss]:
-        """Return by how much a design misses each requirement that it does not meet, the worst first, relative.
+        """Return a design's misses of all requirements that it does not meet, the relatively worst first.
 
-        What is allowed counts as a miss too.
+        Allowed misses count too.
         """
         misses = []
         for place in np.argsort(-self.violations[row], kind="stable").tolist():
@@ -147,7 +147,7 @@ class Rounded:
         return misses
 
     def missed(self, row: int) -> list[str]:
-        """Return the quantities whose requirement a design misses, the worst first."""
+        """Return the quantities whose requirements a design misses, the worst first."""
         return [miss.quantity for miss in self.misses(row)]
 
     def _allowed_in_words(self, system: System) -> str:
@@ -160,7 +160,7 @@ class Rounded:
         return " and ".join(texts)
 
     def _excessive_misses(self, row: int) -> list[str]:
-        """Return the quantities whose requirement a design misses by more than is allowed."""
+        """Return the quantities whose requirements a design misses by more than allowed."""
         return [miss.quantity for miss in self.misses(row) if miss.amount > miss.allowed * (1.0 + FEASIBLE)]
 
     @property
@@ -197,11 +197,11 @@ class Rounded:
 
     @cached_property
     def designs(self) -> pd.DataFrame:
-        """The designs as a table of pandas, one row a design.
+        """The designs as a pandas DataFrame, one row per design.
 
         Columns: crank, rod, offset and varying numbers; each objective, its change from the design of the front,
-        `change_...`, and that in percent; `loss_percent`, the greatest loss in percent of the objective's range over
-        the front; `slack_...` of every requirement, below zero where it is missed; `tightest` requirement.
+        `change_...`, and the same in percent; `loss_percent`, the greatest loss in percent of the objective's range
+        over the front; `slack_...` for every requirement, negative if it is missed; `tightest` requirement.
         """
         import pandas as pd
 
@@ -209,5 +209,5 @@ class Rounded:
 
 
 def drop_conversion_rounding(value: float) -> float:
-    """Return a round number without the rounding of its conversion: 73.5, not 73.50000000000001."""
+    """Return a round number without the rounding error of its conversion: 73.5, not 73.50000000000001."""
     return float(f"{value:.12g}")

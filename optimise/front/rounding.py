@@ -1,8 +1,8 @@
-"""Designs of round numbers near a design of a front: the best ones that meet every requirement, or the nearest.
+"""Designs with round numbers near a design of a front: the best ones that meet every requirement, or the nearest.
 
-Each number is not rounded on its own: of every combination of the multiples of a step around the design, each is judged
-exactly. Those that meet all requirements, ranges and full rotation are ranked by what they lose at most in an
-objective, in units of its range over the front; those that another one dominates are left out.
+Numbers are not rounded one by one: every combination of the multiples of a step around the design is judged exactly.
+Those that meet all requirements, ranges and full rotation are ranked by their greatest loss in an objective, in units
+of its range over the front. Dominated ones are left out.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from .rounded import Rounded
 from .rounding_search import RoundingSearch, Steps, shown_number
 
 _SMALLEST = 1e-9  # of the greatest number of a range: a step below is rounding
-_LARGE = 0.1  # of a bound: a miss without a unit that was probably meant in another one
+_LARGE = 0.1  # of a bound: a miss without a unit that was probably meant in another unit
 _PERCENT = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*%\s*")
 
 
@@ -44,23 +44,23 @@ def rounding(
     allow: Mapping[str, float | str] | None = None,
     notes: Sequence[str],
 ) -> Steps[Rounded]:
-    """Return the best designs of round numbers near a given one; where none meets all requirements, the nearest.
+    """Return the best designs with round numbers near a given one; if none meets all requirements, the nearest.
 
-    Where the best loses more than 1 % of a range and fewer than `count` meet all, those follow that miss a requirement
-    by 1 % of its bound at most and lose at least a quarter less.
+    If the best loses more than 1 % of a range and fewer than `count` meet all requirements, further designs follow.
+    They miss a requirement by at most 1 % of its bound and lose at least a quarter less.
 
-    The nearest: first the design whose greatest relative miss is least; a miss is the distance of a value beyond a
-    bound and what is allowed there, divided by the bound. Of equal misses the least loss comes first, then the least
-    distance from the given design in steps. After it come those that miss more but lose at least a quarter less than
-    the one before, until nothing is lost.
+    The nearest designs: first that with the least greatest relative miss. A miss is the distance of a value beyond a
+    bound plus the allowed miss, divided by the bound. Among equal misses the least loss comes first, then the least
+    distance from the given design in steps. Next come those that miss more but lose at least a quarter less than the
+    previous one, until nothing is lost.
 
-    part: a problem without choices. given: (3 + v,), its design. span: (m,), what the loss of each objective is counted
-    in. to: a step for crank, rod and offset, m, or steps by name, of varying numbers too, SI; what has no step, or is
-    fixed, stays as it is. allow: how far designs may miss requirements, by quantity: a number in SI, or "0.1 mm".
-    notes: to add to those of the answer. Yields a `Stage` several times a second; closing it ends the search.
+    part: a problem without choices. given: (3 + v,), its design. span: (m,), unit of each objective's loss. to: a step
+    for crank, rod and offset, m, or steps by name, SI, also for varying numbers; numbers that are fixed or have no step
+    stay unchanged. allow: allowed misses of requirements, by quantity: a number in SI, or "0.1 mm". notes: notes to add
+    to those of the answer. Yields a `Stage` several times a second; closing it ends the search.
 
-    Raises `InputError` for a step that is not above zero, one without a multiple in the range, an unknown name, what
-    may not be allowed, and a count below one.
+    Raises `InputError` for a step that is not above zero or has no multiple in the range, an unknown name, a miss that
+    cannot be allowed, and a count below one.
     """
     if isinstance(count, bool) or not isinstance(count, Integral) or count < 1:
         raise InputError(f"count must be a whole number of 1 or more; got {count!r}")
@@ -100,9 +100,9 @@ def rounding(
 
 
 def ranges_or_sizes(values: Array, reference: Array, sizes: Sequence[float]) -> Array:
-    """Return the ranges (m,) of objectives over a front (n, m); of a constant one the size.
+    """Return the ranges (m,) of objectives over a front (n, m); for a constant one, its size.
 
-    reference: (m,), the objectives of a design, whose size then counts. sizes: (m,), the targets, if greater.
+    reference: (m,), the objectives of a design, which give the size. sizes: (m,), targets, which count if greater.
     """
     span = spread(values, size=sizes)
     sizes_of_reference = np.maximum(np.where(np.isfinite(reference), np.abs(reference), 0.0), sizes)
@@ -110,7 +110,7 @@ def ranges_or_sizes(values: Array, reference: Array, sizes: Sequence[float]) -> 
 
 
 def doubtful_misses(part: Problem, allow: Mapping[str, float | str]) -> list[str]:
-    """Return both readings of allowed misses without a unit that are a great part of what is required."""
+    """Return both readings of allowed misses without a unit that are a large part of the required value."""
     plain_misses, doubts = (
         {name: value for name, value in _require_names(allow).items() if not isinstance(value, str)},
         [],
@@ -124,7 +124,7 @@ def doubtful_misses(part: Problem, allow: Mapping[str, float | str]) -> list[str
 
 
 def _allowed(part: Problem, misses: Mapping[str, float | str]) -> dict[str, float]:
-    """Return how far requirements may be missed, SI, by quantity. A slow stroke that is required is not one of them."""
+    """Return the allowed misses of requirements, SI, by quantity. A required slow stroke cannot be missed."""
     constraints = {item.quantity: item for item in constraints_of(replace(part, slow_stroke=None))}
     quantities = {name: part.quantity(name) for name in constraints}
     names = {alias: name for name, quantity in quantities.items() for alias in (quantity.field, quantity.stem, name)}
@@ -145,7 +145,7 @@ def _allowed(part: Problem, misses: Mapping[str, float | str]) -> dict[str, floa
 
 
 def _require_names(misses: Mapping[str, float | str]) -> Mapping[str, float | str]:
-    """Return allowed misses. Raises `InputError` where they do not come by quantity."""
+    """Return allowed misses. Raises `InputError` unless they are by quantity."""
     if not isinstance(misses, Mapping):
         raise InputError(
             f'allowed misses must be a dict by quantity; got {misses!r}; write it like {{"stroke": "0.1 mm"}}'
@@ -154,7 +154,7 @@ def _require_names(misses: Mapping[str, float | str]) -> Mapping[str, float | st
 
 
 def _miss(value: float | str, quantity: Quantity, constraint: Constraint) -> float:
-    """Return how far a requirement may be missed, SI. Raises `InputError`, with the amount that a percentage is."""
+    """Return the allowed miss of a requirement, SI. Raises `InputError`, with the amount meant by a percentage."""
     percent = _PERCENT.fullmatch(value) if isinstance(value, str) else None
     if percent is not None and quantity.kind.unit:
         bound = max(abs(bound) for _, bound in constraint.sides) * quantity.unit.factor
@@ -165,7 +165,7 @@ def _miss(value: float | str, quantity: Quantity, constraint: Constraint) -> flo
 
 
 def _steps(to: float | Mapping[str, float], part: Problem) -> dict[str, float]:
-    """Return the step of each number that is to be rounded."""
+    """Return the step of each number to round."""
     ranges = part.ranges
     steps = dict(to) if isinstance(to, Mapping) else dict.fromkeys(DIMENSIONS, to)
     if not steps:
@@ -186,7 +186,7 @@ def _steps(to: float | Mapping[str, float], part: Problem) -> dict[str, float]:
 
 
 def _stays(given: Array, ranges: Mapping[str, Range], steps: Mapping[str, float]) -> list[str]:
-    """Return in words what stays as it is though it is no multiple of a step."""
+    """Return in words the numbers that stay unchanged though they are not multiples of a step."""
     notes = []
     for value, (name, ends) in zip(given.tolist(), ranges.items(), strict=True):
         if name not in steps:

@@ -34,15 +34,15 @@ REACHES = (16, 32)
 _MOST, _MOST_ROBUST = 1 << 18, 1 << 13  # combinations judged at once
 _NEAREST = 8192  # designs whose cycle is computed at most, for those that miss more but lose less
 _BLOCK, _SLOW_BLOCK = 1 << 15, 1 << 8  # designs between two reports; of those whose cycle is computed
-_LITTLE = 0.01  # of a bound: what may be missed by designs that are listed after those that meet all
-_WORTH = 0.01  # of a range: a loss that is worth to look for them
-_CLEARLY = 0.75  # of the loss before: what is worth to miss more for
-_TIE = 9  # decimals of a share of a range: nearer together is rounding
+_LITTLE = 0.01  # of a bound: greatest miss of designs listed after those that meet all
+_WORTH = 0.01  # of a range: least loss that justifies looking for them
+_CLEARLY = 0.75  # of the previous loss: greatest loss that justifies a larger miss
+_TIE = 9  # decimals of a fraction of a range: smaller differences are rounding
 
 
 @dataclass(frozen=True)
 class Stage:
-    """Progress of the search. stage: what is done. step, steps: how many designs so far, and of how many."""
+    """Progress of the search. stage: current activity. step, steps: number of designs so far, and in total."""
 
     stage: str
     step: int
@@ -55,7 +55,7 @@ Steps = Generator[Stage, None, T]
 
 
 def shown_number(part: Problem, name: str, value: float) -> str:
-    """Return a value, SI, of a number of a problem's designs in the unit that is shown for it."""
+    """Return the value, SI, of a number in a problem's designs as text in its display unit."""
     unit = columns_of_numbers(part.mechanism.varying)[name][1]
     return f"{value * unit.factor:.6g} {unit.symbol}".rstrip()
 
@@ -83,7 +83,7 @@ class RoundingSearch:
         self._ladders(1)
 
     def best(self, count: int) -> Steps[Array]:
-        """Return the best designs (n, 3 + v) of the least window where some meet all; else the nearest.
+        """Return the best designs (n, 3 + v) from the smallest window with feasible ones; else the nearest.
 
         Yields a `Stage` before every block of designs.
         """
@@ -121,14 +121,14 @@ class RoundingSearch:
         return self.part.evaluate(designs) if len(designs) else np.zeros((0, len(self.part.objectives)))
 
     def losses(self, values: Array) -> Array:
-        """Return by how much objectives (n, m) are worse than the design's, in units of `span`."""
+        """Return the losses of objectives (n, m) against the design's, in units of `span`."""
         now = all_minimised(self.part, values)
         with np.errstate(invalid="ignore"):
             lost = np.where(now == self.before, 0.0, now - self.before) / self.span
         return np.asarray(np.where(np.isnan(lost), np.inf, lost))
 
     def constrained_values(self, designs: Array, constraints: Sequence[Constraint]) -> Array:
-        """Return the values (n, c) of what is constrained."""
+        """Return the values (n, c) of the constrained quantities."""
         if not (len(designs) and len(constraints)):
             return np.zeros((len(designs), len(constraints)))
         return self.part.evaluate(designs, [constraint.quantity for constraint in constraints])
@@ -149,7 +149,7 @@ class RoundingSearch:
         return np.concatenate(blocks)
 
     def _ladders(self, reach: int) -> list[list[float]]:
-        """Return for each number of a design the values that it may take."""
+        """Return the possible values of each number of a design."""
         ladders = [[float(value)] for value in self.given]
         for place, name in enumerate(self.ranges):
             if name in self.steps:
@@ -163,7 +163,7 @@ class RoundingSearch:
         low, high = (round(place), round(place)) if is_multiple else (math.floor(place), math.ceil(place))
         slack = FEASIBLE * max(abs(lower), abs(upper))
         exact, side = Decimal(repr(step)), self.part.slow_side() if name == "offset" else None
-        # A multiple as it is written: the step's decimals times a whole number, rounded once.
+        # A multiple as written: the step's decimals times a whole number, rounded once.
         every = [float(exact * k) for k in range(low - reach + 1, high + reach)]
         multiples = [x for x in every if lower - slack <= x <= upper + slack and (side is None or side * x > 0.0)]
         if not multiples and reach == 1:
@@ -176,7 +176,7 @@ class RoundingSearch:
         return multiples
 
     def _reaches(self) -> list[int]:
-        """Return the widths of the windows, each wider; fewer than usual where there are very many numbers."""
+        """Return the increasing widths of the windows; fewer than usual for very many numbers."""
         every = (*range(1, REACHES[0]), *REACHES)
         fitting = [reach for reach in every if math.prod(map(len, self._ladders(reach))) <= self.most]
         if not fitting:
@@ -187,7 +187,7 @@ class RoundingSearch:
         return [reach for reach in fitting if reach >= REACHES[0]] or fitting[-1:]
 
     def _window(self, reach: int) -> Array:
-        """Return the combinations (n, 3 + v) of the multiples around the design that turn fully or make the swing."""
+        """Return the combinations (n, 3 + v) of multiples near the design that rotate fully or make the swing."""
         grid = np.meshgrid(*self._ladders(reach), indexing="ij")
         designs = np.stack([values.ravel() for values in grid], axis=1)
         if self.part.motion is not None:
@@ -195,16 +195,16 @@ class RoundingSearch:
         return np.asarray(designs[clearly_turning(designs)])
 
     def _steps_away(self, designs: Array) -> Array:
-        """Return the greatest distance (n,) of designs from the given one in steps."""
+        """Return the greatest distance (n,) of designs from the given one, in steps."""
         steps = np.array([self.steps.get(name, np.inf) for name in self.ranges])
         return np.asarray((np.abs(designs - self.given) / steps).max(axis=1))
 
     def _ranked(self, designs: Array, values: Array) -> Array:
-        """Return designs in order of their greatest loss, then of the sum of losses, then of the way in steps."""
+        """Return designs in order of greatest loss, then of the sum of losses, then of the distance in steps."""
         losses = self.losses(values)
         total = np.clip(losses, 0.0, None).sum(axis=1)
         order = np.lexsort((self._steps_away(designs), np.round(total, _TIE), np.round(losses.max(axis=1), _TIE)))
-        if losses.shape[1] == 1:  # one dominates all others: the next best are worth to be known
+        if losses.shape[1] == 1:  # one dominates all others: the next best are worth knowing
             return designs[order]
         free = nondominated(all_minimised(self.part, values)[order])
         return np.asarray(designs[order[free]])
@@ -214,8 +214,8 @@ class RoundingSearch:
     ) -> Steps[Array]:
         """Return the nearest designs, see `rounding.rounding`; only those that lose no more than `max_loss`.
 
-        misses: (n,), exact in the rows `exact`; elsewhere what closed forms give, which is never more. So designs are
-        judged in that order, and one is placed once all that may miss less or as much are judged.
+        misses: (n,), exact in the rows `exact`; elsewhere a lower bound from closed forms. So designs are judged in
+        that order, and one is placed once all that may miss less or as much are judged.
         """
         is_exact = np.zeros(len(designs), dtype=bool)
         is_exact[exact] = True
@@ -244,7 +244,7 @@ class RoundingSearch:
         return np.asarray(designs[ranked])
 
     def _least_losses(self, designs: Array) -> Array:
-        """Return the greatest loss (n,) of the objectives that closed forms give."""
+        """Return the greatest loss (n,) of the objectives with closed forms."""
         losses = np.full(len(designs), -np.inf)
         for place, objective in enumerate(self.part.objectives):
             if not costly(self.part.quantity(objective.quantity)):
@@ -253,7 +253,7 @@ class RoundingSearch:
         return losses
 
     def _staircase(self, designs: Array, rows: Whole, misses: Array, losses: Array) -> Whole:
-        """Return of rows the one that misses least, then those that miss more but lose clearly less."""
+        """Return the row that misses least, then those that miss more but lose clearly less."""
         order = np.lexsort((self._steps_away(designs[rows]), np.round(losses, _TIE), np.round(misses, _TIE)))
         ranked: list[int] = []
         least = np.inf

@@ -11,9 +11,9 @@ from .constant import is_constant
 
 
 def slack_of(constraint: Constraint, values: Array) -> Array:
-    """Return the distances (n,) of values from the nearer bound, SI: 0 on it, below 0 where it is missed.
+    """Return the distances (n,) of values from the nearer bound, SI: 0 on it, negative beyond it.
 
-    Infinite where the value is, NaN where there is none.
+    Infinite for infinite values, NaN for missing ones.
     """
     slack = np.full(len(values), np.inf)
     if constraint.equality:
@@ -25,6 +25,6 @@ def slack_of(constraint: Constraint, values: Array) -> Array:
 
 
 def _clear(values: Array, bound: float | None, slack: Array) -> Array:
-    """Return distances from a bound; 0 where a value differs from it by rounding."""
+    """Return distances from a bound; 0 where a value differs from it only by rounding."""
     on_it = is_constant(np.stack([values, np.full(len(values), bound or 0.0)]), size=0.0 if bound else 1.0)
     return np.where(on_it & np.isfinite(values), 0.0, slack)

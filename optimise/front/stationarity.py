@@ -1,6 +1,6 @@
 """Stationarity of a design: the least-norm convex combination of objective gradients, less active constraints.
 
-A design is Pareto-stationary when no direction improves every objective at once while the active constraints hold:
+A design is Pareto-stationary if no direction improves every objective while the active constraints hold, that is, if
 
     min | sum_i lambda_i g_i + sum_j mu_j a_j |   with lambda >= 0, sum lambda = 1, mu >= 0
 
@@ -49,9 +49,9 @@ def strict_multipliers(
 
         min | sum_p lambda_p g_p + sum_j mu_j a_j |   with the weights lambda of each objective's pieces adding to >= 1.
 
-    A design that only a zero weight makes stationary (two objectives oppose each other, a third could still be had for
-    nothing) fails here. The residual is not divided by the sum of the weights, which may grow without bound. exactly:
-    the weights of each objective add to 1, the conditions of the least sum with none held.
+    A design that only a zero weight makes stationary (two objectives oppose each other, a third could still improve for
+    free) fails here. The residual is not divided by the sum of the weights, which may grow without bound. exactly:
+    whether the weights of each objective add to exactly 1, the conditions of the least sum with none held.
     """
     names = sorted(set(owner.tolist()))
     p, q, m = len(goals), len(active), len(names)
@@ -74,7 +74,7 @@ def strict_multipliers(
 
 
 def _sizes(goals: Array, active: Array) -> tuple[float, Array]:
-    """Return one size for all objective rows and the length of each active one: sums weigh alike at any scale."""
+    """Return one size for all objective rows and the length of each active row, for equal weights at any scale."""
     lengths = row_lengths(active)
     lengths[lengths == 0.0] = 1.0
     return float(row_lengths(goals).max(initial=0.0)) or 1.0, lengths

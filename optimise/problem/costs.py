@@ -21,8 +21,8 @@ class Cost:
     survey of K. W. Chase and W. H. Greenwood, "Design issues in mechanical tolerance analysis", Manufacturing Review
     1(1), 1988. Any currency, the same in all costs.
 
-    cost: of the part that depends on the tolerance, where that is `at`. at: m, of the crank angle rad. fixed: the rest.
-    least, greatest: between which the process can be set, m or rad.
+    cost: variable cost at the tolerance `at`. at: reference tolerance, m, or rad for the crank angle. fixed: fixed
+    cost. least, greatest: range of the process, m or rad.
     """
 
     cost: float
@@ -61,7 +61,7 @@ class Cost:
 
 @dataclass(frozen=True, kw_only=True)
 class Costs:
-    """The costs of the tolerances; None: that tolerance is not to be chosen but what the mechanism has."""
+    """The costs of the tolerances; None leaves a tolerance at the mechanism's value."""
 
     crank: Cost | None = None
     rod: Cost | None = None
@@ -74,7 +74,7 @@ class Costs:
 
     @property
     def by_name(self) -> dict[str, Cost]:
-        """The costs that there are, by name, in the order of `NAMES`."""
+        """The stated costs by name, in the order of `NAMES`."""
         return {name: cost for name in NAMES if (cost := getattr(self, name)) is not None}
 
 

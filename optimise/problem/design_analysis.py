@@ -1,4 +1,4 @@
-"""Everything about one design: its quantities, why some are not defined, and its cycle."""
+"""Analysis of one design: its quantities, reasons for undefined ones, and its cycle."""
 
 from __future__ import annotations
 
@@ -53,10 +53,10 @@ _PLOTTED = ("slider_position", "slider_velocity", "slider_acceleration", "torque
 class Analysis(Mapping[str, float]):
     """One design with all its quantities: `analysis["peak_torque"]` is a number in SI.
 
-    A mapping from the names of job files. Quantities that the machine does not define are no part of it: asking for one
-    raises `InputError` with the reason, and `undefined` has the reasons of all. mechanism: the machine of this design.
-    linkage: its dimensions. found: the mapping itself. title: of the problem that it is a design of, "" without one.
-    swing: what its crank makes in place of a full turn.
+    A mapping from the names of job files. It excludes quantities that the machine does not define: accessing one raises
+    `InputError` with the reason, and `undefined` has the reasons for all. mechanism: the machine of this design.
+    linkage: its dimensions. found: the mapping itself. title: title of the problem, "" without one. swing: motion of
+    its crank in place of a full turn.
     """
 
     mechanism: Mechanism
@@ -68,7 +68,7 @@ class Analysis(Mapping[str, float]):
     swing: Swing | None = None
 
     def __getitem__(self, name: str) -> float:
-        """Return a quantity or formula, SI. Raises `InputError` for one that is not defined, or not known."""
+        """Return a quantity or formula, SI. Raises `InputError` if it is undefined or unknown."""
         if name in self.found:
             return self.found[name]
         if name in self.undefined:
@@ -94,7 +94,7 @@ class Analysis(Mapping[str, float]):
     @overload
     def get(self, name: str, /, default: float | Default) -> float | Default: ...
     def get(self, name: str, /, default: object = None) -> object:
-        """Return a quantity, SI, or `default` for one that is not defined or not known."""
+        """Return a quantity, SI, or `default` if it is undefined or unknown."""
         return self.found.get(name, default)
 
     def __contains__(self, name: object) -> bool:
@@ -108,15 +108,15 @@ class Analysis(Mapping[str, float]):
 
     @property
     def violated(self) -> dict[str, float]:
-        """By how much the design goes beyond each allowable value that it violates, SI, by the name of its quantity.
+        """Excess over each allowable value that the design violates, SI, by the name of its quantity.
 
-        At the pins these are the bearing pressure and the shear yield strength S_y / sqrt(3) of the material, in the
-        bars safeties of 1. Without material there are none.
+        Allowable values are the bearing pressure and the shear yield strength S_y / sqrt(3) of the material at the
+        pins, and safeties of 1 in the bars. Without a material there are none.
         """
         return {name: float(beyond[0]) for name, beyond in violations(self.mechanism, self.found.get).items()}
 
     def table(self) -> pd.DataFrame:
-        """Return a table with a row for each quantity, by name: title, value and unit as shown, reason if undefined."""
+        """Return a table with a row for each quantity, by name: title, value, display unit, reason if undefined."""
         rows = {
             item.name: {
                 "title": item.title,
@@ -133,8 +133,8 @@ class Analysis(Mapping[str, float]):
     def cycle(self, angles: int | ArrayLike = 360) -> pd.DataFrame:
         """Return the curves over the cycle, a row for each crank angle, in SI.
 
-        angles: how many, evenly spaced over the cycle from 0, which is of two turns where a load has a cycle of 720
-        deg; or crank angles (n,), rad. Columns carry their unit: crank_angle_rad, slider_position_m,
+        angles: number of crank angles, evenly spaced over the cycle from 0 (two turns if a load has a cycle of 720
+        deg); or crank angles (n,), rad. Columns carry their unit: crank_angle_rad, slider_position_m,
         slider_velocity_m_s, slider_acceleration_m_s2, slider_jerk_m_s3, rod_angle_rad, transmission_angle_rad,
         torque_Nm, power_W, load_N, the joint forces, position errors. See `cycle_curves`.
         Raises `InputError` for a design that swings.
@@ -143,13 +143,13 @@ class Analysis(Mapping[str, float]):
         return cycle_table(self.mechanism, self.linkage, angles)
 
     def deviations(self, measured: Mapping[str, ArrayLike] | pd.DataFrame) -> pd.DataFrame:
-        """Return how measured curves deviate from the computed ones, a row for each curve by its name, in SI.
+        """Return the deviations of measured curves from the computed ones, a row for each curve by name, in SI.
 
-        measured: columns with their units in their names: crank_angle_deg, or time_s at constant speed, and curves of
-        `cycle` in SI, metric or inch units, such as slider_position_mm; NaN where nothing was measured. Columns: title,
-        unit, samples, rms, mean, largest (with its sign) and largest_at_rad; best_shift_rad and best_shift, which,
-        added to the measured crank angles and values, leave the least rms_left. Raises `InputError` for a table
-        without crank angle or curve, units that do not fit, values that no machine has, and a design that swings.
+        measured: columns with units in their names: crank_angle_deg, or time_s at constant speed, and curves of `cycle`
+        in SI, metric or inch units, such as slider_position_mm; NaN where nothing was measured. Columns of the result:
+        title, unit, samples, rms, mean, largest (with its sign) and largest_at_rad; best_shift_rad and best_shift,
+        which, added to the measured crank angles and values, leave the least rms_left. Raises `InputError` for a table
+        without crank angle or curve, wrong units, values that no machine has, and a design that swings.
         """
         self._require_turning("a deviation from measured curves")
         import pandas as pd
@@ -233,11 +233,11 @@ def analyse(
     title: str = "",
     swing: Swing | None = None,
 ) -> Analysis:
-    """Return everything about one design (3 + k,): crank, rod, offset, m, and the machine's k varying numbers, SI.
+    """Return the analysis of one design (3 + k,): crank, rod, offset, m, and the machine's k varying numbers, SI.
 
-    own: quantities besides those of the product. swing: what the design need only make, in place of a full turn.
-    Raises `AssemblyError` for a design that does not turn fully, and `InputError` for one that is not 3 + k finite
-    numbers or that cannot swing as asked. Warns once for each machine of lengths that are probably in mm.
+    own: custom quantities besides the built-in ones. swing: motion that the design must make in place of a full turn.
+    Raises `AssemblyError` for a design that does not rotate fully, and `InputError` for one that is not 3 + k finite
+    numbers or cannot make the swing. Warns once for each machine about lengths that are probably in mm.
 
     >>> from slidercrank import Mechanism, analyse
     >>> analysis = analyse(Mechanism(slider_mass=0.8, speed=30.0), [0.04, 0.1, 0.02])
@@ -258,7 +258,7 @@ def analysed(
     title: str = "",
     swing: Swing | None = None,
 ) -> Analysis:
-    """Return the analysis of `analyse`. machine: of the design with the numbers `sizes` (3 + k,)."""
+    """Return the result of `analyse`. machine: machine of the design with the numbers `sizes` (3 + k,)."""
     given = Linkage(sizes[0], sizes[1], sizes[2], machine.branch)
     linkage = single(machine, given) if swing is None else require_swing(machine, given, swing)
     values: dict[str, float] = {}

@@ -1,4 +1,4 @@
-"""Numbers of a design that may have some values only: multiples of a step, preferred numbers, a list."""
+"""Numbers of a design with discrete values: multiples of a step, preferred numbers, a list."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ SAME = 1e-12
 
 @dataclass(frozen=True, kw_only=True)
 class Discrete:
-    """A number of a design that has one of some values.
+    """A number of a design with discrete values.
 
-    name: crank, rod, offset, or a number of the machine that varies. values: ascending, SI. rule: in words, such as
-    "multiples of 0.5 mm". Raises `InputError` for values that are none, not finite, or not ascending.
+    name: crank, rod, offset, or a varying number of the machine. values: possible values, ascending, SI. rule: rule in
+    words, such as "multiples of 0.5 mm". Raises `InputError` for values that are empty, not finite, or not ascending.
     """
 
     name: str
@@ -36,13 +36,13 @@ class Discrete:
             raise InputError(f"the values of {self.name} must be finite and ascending, at least one; sort them")
 
     def values_in(self, ends: Range) -> Array:
-        """Return the values of a range."""
+        """Return the values within a range."""
         room = SAME * max(abs(ends.lower), abs(ends.upper))
         return np.array([value for value in self.values if ends.lower - room <= value <= ends.upper + room])
 
 
 def require_known(discrete: Sequence[Discrete], names: Sequence[str]) -> None:
-    """Raise `InputError` unless each is of a number of the design, and of another one."""
+    """Raise `InputError` unless each is for a different number of the design."""
     given = [item.name for item in discrete]
     for name in given:
         if name not in names:

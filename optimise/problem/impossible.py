@@ -1,4 +1,4 @@
-"""Problems whose parts exclude each other, which a search would not notice."""
+"""Contradictory problems, which a search would not notice."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def require_possible(problem: Problem) -> None:
 
 
 def no_option(left_out: tuple[tuple[str, str], ...]) -> InfeasibleError:
-    """Return the error for choices whose options all are left out. left_out: labels and reasons."""
+    """Return the error for choices whose options are all excluded. left_out: labels and reasons."""
     label, why = left_out[0]
     return InfeasibleError(
         f"choice: at least one option must meet [constraints]; none does: {label} has {why}; relax the constraint, or "

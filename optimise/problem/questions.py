@@ -1,8 +1,8 @@
-"""Questions by name; installed packages announce theirs, this package those of `service`.
+"""Questions by name; installed packages register theirs, this package those of `service`.
 
-What interfaces ask stands above the problem, which therefore cannot import it. The entry points of the group
-`slidercrank.questions` invert that, as those of `slidercrank.quantities` do for quantities: each is a mapping from
-names to questions.
+The questions of interfaces belong to a layer above the problem, which therefore cannot import them. The entry points of
+the group `slidercrank.questions` invert that, like those of `slidercrank.quantities` for quantities: each is a mapping
+from names to questions.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ class DesignQuestion(Protocol):
     ) -> dict[str, Any]:
         """Return the answer as JSON has it, in metric units that its keys end with.
 
-        mechanism, linkage: of the design, which need not turn fully. problem: the `Problem` that it answers, if any.
-        inputs: by name, in SI or as text with a unit; None for usual ones. Raises `InputError` for what the
-        design does not have, and for inputs that the question does not take.
+        mechanism, linkage: machine and lengths of the design, which need not rotate fully. problem: the `Problem` that
+        it answers, if any. inputs: inputs by name, in SI or as text with a unit; None for usual ones. Raises
+        `InputError` for anything that the design does not have, and for unknown inputs.
         """
 
 
@@ -46,8 +46,8 @@ class FrontOrJobQuestion(Protocol):
     def answer_of(self, subject: Any, row: int | None, inputs: Mapping[str, object]) -> dict[str, Any]:
         """Return the answer as JSON has it, in metric units that its keys end with.
 
-        subject: the `ParetoFront` or the `Problem`. row: of a design of the front that the question is about, if any.
-        inputs: by name; None for usual ones. Raises `InputError` as `Question.answer` does.
+        subject: the `ParetoFront` or the `Problem`. row: row of the design that the question is about, if any. inputs:
+        inputs by name; None for usual ones. Raises `InputError` as `Question.answer` does.
         """
 
 
@@ -69,7 +69,7 @@ def questions() -> dict[str, Any]:
 def subject_of(name: str) -> str:
     """Return the subject of a question: "design", "front", "runs" or "job".
 
-    Raises `InputError` with the nearest name, or all, for a question that there is not.
+    Raises `InputError` with the nearest name, or all, for an unknown question.
     """
     known = questions()
     if name not in known:
@@ -81,7 +81,7 @@ def subject_of(name: str) -> str:
 
 
 def question_to(subject: str, name: str) -> Any:
-    """Return a question to a design, a front or a job. Raises `InputError` as `subject_of`, and for one to others."""
+    """Return a question about a subject. Raises `InputError` as `subject_of`, and if it has another subject."""
     if (of := subject_of(name)) != subject:
         if of == "design":
             raise InputError(

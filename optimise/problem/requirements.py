@@ -1,4 +1,4 @@
-"""Requirements and wishes of a problem: ranges of dimensions, constraints and objectives. SI, immutable, validated."""
+"""Requirements and objectives of a problem: ranges of dimensions, constraints, objectives. SI, immutable, validated."""
 
 from __future__ import annotations
 
@@ -54,9 +54,9 @@ class Range:
 
 @dataclass(frozen=True, kw_only=True)
 class Constraint:
-    """A quantity that must lie in [lower, upper], SI; None leaves a side open, equal bounds ask a value.
+    """A quantity that must lie in [lower, upper], SI; None leaves a side open, equal bounds require a value.
 
-    Warns of a bound that was probably meant in another unit.
+    Warns about a bound that was probably meant in another unit.
     """
 
     quantity: str
@@ -78,12 +78,12 @@ class Constraint:
 
     @property
     def equality(self) -> bool:
-        """Whether one value is asked for."""
+        """Whether one value is required."""
         return self.lower is not None and self.lower == self.upper
 
     @property
     def sides(self) -> list[tuple[Word, float]]:
-        """The bounds that there are, by their words in a job."""
+        """The bounds that are not open, with their words in a job."""
         if self.equality and self.lower is not None:
             return [("equals", self.lower)]
         pairs: tuple[tuple[Word, float | None], ...] = (("min", self.lower), ("max", self.upper))
@@ -96,8 +96,8 @@ class Objective:
 
     sense: "minimize" and "maximize" become "minimise" and "maximise". Warns as `Constraint` does.
 
-    Raises `InputError` for any other word, and for a name that no quantity can have; whether there is a quantity of the
-    name the `Problem` knows, which may have its own.
+    Raises `InputError` for any other word, and for a name that no quantity can have. The `Problem`, which may have
+    custom quantities, checks whether the quantity exists.
     """
 
     quantity: str
@@ -115,7 +115,7 @@ class Objective:
 
 
 def merged(constraints: Iterable[Constraint]) -> tuple[Constraint, ...]:
-    """Return constraints, those on one quantity as one that holds where all do. Raises `InputError` if none can."""
+    """Return constraints with those on one quantity merged. Raises `InputError` if these contradict each other."""
     merged_constraints: dict[str, Constraint] = {}
     for constraint in constraints:
         name = constraint.quantity
@@ -127,7 +127,7 @@ def merged(constraints: Iterable[Constraint]) -> tuple[Constraint, ...]:
 
 
 def _require_name(name: object) -> None:
-    """Refuse a name that no quantity can have."""
+    """Raise `InputError` for a name that no quantity can have."""
     if not isinstance(name, str) or not (_NAME.fullmatch(name) or _FORMULA.fullmatch(name)):
         raise InputError(
             "the name of a quantity may only have lower-case letters, digits and underscores, such as "
@@ -136,7 +136,7 @@ def _require_name(name: object) -> None:
 
 
 def _sense(name: str, sense: object) -> Sense:
-    """Return a sense in the one spelling. Raises `InputError` for what is none."""
+    """Return a sense in its standard spelling. Raises `InputError` for an unknown one."""
     if not isinstance(sense, str) or sense not in SENSES:
         raise InputError(
             f"the sense of the objective {name} must be {', '.join(map(repr, SENSES))}; got {sense!r}; "
@@ -146,7 +146,7 @@ def _sense(name: str, sense: object) -> Sense:
 
 
 def _warn_of_units(quantity: str, numbers: Mapping[str, float | None]) -> None:
-    """Warn of the first number, SI, of a size that the quantity has in its usual unit alone."""
+    """Warn about the first number, SI, whose size is plausible only in the quantity's usual unit."""
     kind = FACTS[quantity].kind if quantity in FACTS else None
     if kind is None or kind.believed is None:
         return

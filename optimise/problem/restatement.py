@@ -38,7 +38,7 @@ RealFunction = Callable[[float], float]
 
 @dataclass(frozen=True)
 class Restatement:
-    """A formula as factor * form(quantity) + constant, SI. inverse: of the form, which is monotonic."""
+    """A formula as factor * form(quantity) + constant, SI. inverse: inverse of the form, which is monotonic."""
 
     quantity: str
     factor: float
@@ -124,7 +124,7 @@ def _restatement(
 
 
 def _known_parts(formula: FormulaQuantity) -> Iterator[Quantity]:
-    """Yield the quantities that a formula is made of, those of its parts included."""
+    """Yield the quantities in a formula, including those of its parts."""
     for part in formula.parts:
         yield from _known_parts(part) if isinstance(part, FormulaQuantity) else (part,)
 

@@ -1,4 +1,4 @@
-"""Robust problems: objectives and constraints as they are within tolerances, and what a robust front keeps of it."""
+"""Robust problems: objectives and constraints within tolerances, and the nominal problem of a robust one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from .requirements import Constraint, Objective, merged
 class Robust:
     """Robustness of objectives and constraints, see `RobustQuantity`.
 
-    quantities: which of them; None for all but equalities and targets, which stay nominal, and position errors.
+    quantities: names of the robust ones; None for all except equalities and targets, which stay nominal, and position
+    errors.
     """
 
     kind: Case = "percentile"
@@ -31,15 +32,15 @@ class Robust:
 
 
 def robust(problem: Problem, plan: Robust) -> Problem:
-    """Return a problem whose objectives and constraints are robust, under names of their own.
+    """Return a problem whose objectives and constraints are robust, under separate names.
 
-    What is minimised or has a maximum is taken on its high side, what is maximised or has a minimum on its low side:
-    peak_torque becomes peak_torque_robust. A quantity that is needed on both sides becomes two, _robust_low and
-    _robust_high. Equalities stay nominal: the dimensions that are drawn meet them; no machine with errors can. So do
-    targets. Each requirement is robust by itself: 99 % of the machines for each, not 99 % for all together. The sample
-    is seeded by the problem's seed. What comes with a choice (limits of a gearmotor) is made robust alike.
+    A quantity that is minimised or has a maximum is taken on its high side, one that is maximised or has a minimum on
+    its low side: peak_torque becomes peak_torque_robust. A quantity that is needed on both sides becomes two,
+    _robust_low and _robust_high. Equalities stay nominal: the drawn dimensions meet them; no machine with errors can.
+    So do targets. Each requirement is robust separately: 99 % of the machines for each, not 99 % for all together. The
+    problem's seed seeds the sample. Limits that come with a choice, such as a gearmotor's, become robust too.
 
-    Raises `InputError` for a quantity that the problem does not have, that cannot be robust, or that has no gradient.
+    Raises `InputError` for a quantity that is not in the problem, cannot be robust, or has no gradient.
     """
     wanted = _chosen(problem, plan)
     sides: dict[str, set[Side]] = {name: set() for name in wanted}
@@ -85,13 +86,13 @@ def robust_quantities(problem: Problem) -> tuple[RobustQuantity, ...]:
 
 
 def asks_robust(problem: Problem) -> bool:
-    """Return whether anything that is asked is robust, which takes a hundred times as long."""
+    """Return whether any objective or constraint is robust, which takes a hundred times as long."""
     names = [item.quantity for item in problem.objectives] + [item.quantity for item in problem.every_constraint]
     return any(isinstance(problem.quantity(name), RobustQuantity) for name in names)
 
 
 def nominal(problem: Problem) -> Problem:
-    """Return the problem that a robust one was made from."""
+    """Return the nominal problem of a robust one."""
     inner = {quantity.name: quantity.inner.name for quantity in robust_quantities(problem)}
     return replace(
         problem,
@@ -106,7 +107,7 @@ def nominal(problem: Problem) -> Problem:
 
 
 def _chosen(problem: Problem, plan: Robust) -> list[str]:
-    """Return the names of what is to be robust."""
+    """Return the names of the quantities to make robust."""
     bounded = [c.quantity for c in problem.every_constraint if not c.equality]
     able = list(dict.fromkeys([o.quantity for o in problem.objectives if o.sense != "target"] + bounded))
     held = {c.quantity for c in problem.every_constraint if c.equality}
@@ -167,5 +168,5 @@ def _robust_constraints(
 
 
 def _nominal(constraints: tuple[Constraint, ...], inner: dict[str, str]) -> tuple[Constraint, ...]:
-    """Return constraints on the quantities themselves, the two sides of one joined again."""
+    """Return constraints on the nominal quantities, with the two sides of one joined again."""
     return merged(replace(item, quantity=inner.get(item.quantity, item.quantity)) for item in constraints)

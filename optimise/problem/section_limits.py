@@ -1,4 +1,4 @@
-"""Limits of sections: safety factors, pins, sizes that can be made."""
+"""Limits of sections: safety factors, pins, producible sizes."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ def _require(subject: str, name: str, value: float, least: float = 0.0) -> None:
 
 @dataclass(frozen=True, kw_only=True)
 class SectionLimits:
-    """Safety factors, pins, and the sections that can be made, SI.
+    """Safety factors, pins, and producible sections, SI.
 
-    crank_pivot, crank_pin, slider_pin: pin diameters, m. width, depth: least and greatest, m. criterion: of fatigue.
-    eye_concentration: greatest over mean stress in the net section of an eye.
+    crank_pivot, crank_pin, slider_pin: pin diameters, m. width, depth: least and greatest, m. criterion: fatigue
+    criterion. eye_concentration: ratio of greatest to mean stress in the net section of an eye.
     The factors' defaults are customary for known loads and materials; set your own.
     """
 

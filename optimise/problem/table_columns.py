@@ -1,4 +1,4 @@
-"""Columns of the table of designs, and what quantities of a problem's own must leave to others."""
+"""Columns of the table of designs, and names that custom quantities must not take."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ _CHOICE = "choice_"  # of texts: JSON and the page read no number in them
 
 
 def choice_field(name: str) -> str:
-    """Return the key of the column that says what was chosen."""
+    """Return the key of the column with the chosen option."""
     return f"{_CHOICE}{re.sub('[^a-z0-9]+', '_', name.lower()).strip('_')}"
 
 
 def least_field(name: str) -> str:
-    """Return the key of the column that says which is the least option of a catalogue that also serves."""
+    """Return the key of the column with the least sufficient option of a catalogue."""
     return choice_field(f"least {name}")
 
 
 def least_amount_field(choice: str, quantity: Quantity) -> str:
-    """Return the key of the column with an amount, such as the price, of the least option that also serves."""
+    """Return the key of the column with an amount, such as the price, of the least sufficient option."""
     return f"{least_field(choice).removeprefix(_CHOICE)}_{quantity.field}"
 
 
 def note_field(choice: str, head: str) -> str:
-    """Return the key of the column with a text of a catalogue, such as the maker of what was chosen."""
+    """Return the key of the column with a text of a catalogue, such as the maker of the chosen option."""
     return choice_field(f"{choice} {head}")
 
 
@@ -47,9 +47,9 @@ def slack_field(quantity: Quantity) -> str:
 def require_own_columns(
     own: Iterable[Quantity], varying: Sequence[Varying], choices: Iterable[tuple[str, str]]
 ) -> None:
-    """Raise `InputError` for a quantity of a problem's own, or a choice, whose column is that of another one.
+    """Raise `InputError` for a custom quantity or a choice whose column is already taken.
 
-    choices: columns of choices, each with what it is.
+    choices: columns of choices, each with its description.
     """
     owner = dict.fromkeys(_EVERY, "every table") | {of.field: name for name, of in FACTS.items()}
     owner |= {column: name for name, (column, _) in columns_of_numbers(varying).items()}

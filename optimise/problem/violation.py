@@ -1,4 +1,4 @@
-"""Constraints of a problem with their floors, and by how much a design violates them."""
+"""Constraints of a problem with their floors, and violations by designs."""
 
 from __future__ import annotations
 
@@ -28,10 +28,9 @@ Side = tuple[float, float, float]
 def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
     """Return the constraints of a problem with the default floors where none is set.
 
-    They are on the transmission angle, where there is friction on the self-locking margin, where a compressor may
-    deliver nothing on the volumetric efficiency, and for a required slow stroke on the time ratio, along a speed
-    profile on the ratio of that stroke. For a swing the only one is on its transmission angle: the margin from its
-    dead points.
+    Floors apply to the transmission angle; with friction, to the self-locking margin; if a compressor may deliver
+    nothing, to the volumetric efficiency. For a required slow stroke one applies to the time ratio, or along a speed
+    profile to the ratio of that stroke. A swing has only one, on its transmission angle: the margin from dead points.
     """
     if problem.motion is not None:
         return _with_floor(problem, problem.constraints, SWING_TRANSMISSION_ANGLE)
@@ -68,7 +67,7 @@ def restated_constraints(problem: Problem) -> tuple[Constraint, ...]:
 def _with_floor(
     problem: Problem, constraints: tuple[Constraint, ...], of: Quantity, above: float | None = None
 ) -> tuple[Constraint, ...]:
-    """Return constraints with a floor on a quantity unless they have one. above: a bound that alone does not count.
+    """Return constraints with a floor on a quantity unless they have one. above: a lower bound that does not count.
 
     A bound on a formula that restates the quantity counts as a bound on it.
     """
@@ -107,7 +106,7 @@ def sides(constraint: Constraint) -> list[Side]:
 def violated_by(constraint: Constraint, values: Array, *, allowed: float = 0.0) -> Array:
     """Return the relative violation (n,), zero or less where the constraint holds; infinite without a value.
 
-    allowed: how far beyond a bound values may lie, SI.
+    allowed: allowed excess over a bound, SI.
     """
     violation = np.full(len(values), -np.inf)
     for side, bound, scale in sides(constraint):
@@ -120,7 +119,7 @@ def greatest_violation(
 ) -> Array:
     """Return the greatest relative violation (n,) of some constraints by designs (n, 3 + v), zero where all hold.
 
-    allowed: how far beyond its bounds a quantity may lie, SI, by name.
+    allowed: allowed excess of quantities over their bounds, SI, by name.
     """
     worst = np.zeros(len(designs))
     if len(designs) and constraints:
@@ -132,7 +131,7 @@ def greatest_violation(
 
 
 def clearly_turning(designs: Array) -> Mask:
-    """Return which designs (n, 3 + v) turn fully by more than rounding.
+    """Return which designs (n, 3 + v) rotate fully by more than rounding.
 
     Round numbers lock exactly: rod 110 mm, crank 70 mm, offset 40 mm.
     """
@@ -141,10 +140,10 @@ def clearly_turning(designs: Array) -> Mask:
 
 
 def excess(values: Array, side: float, bound: float, scale: float) -> Array:
-    """Return by how much values lie beyond a side of what is asked, in units of its scale."""
+    """Return the excess of values over one side of a requirement, in units of its scale."""
     return (values - bound if side > 0.0 else bound - values) / scale
 
 
 def costly(quantity: Quantity) -> bool:
-    """Return whether a quantity needs the cycle computed: no closed form gives it."""
+    """Return whether a quantity has no closed form, so that the cycle must be computed."""
     return not quantity.of_dimensions

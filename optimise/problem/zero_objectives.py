@@ -1,4 +1,4 @@
-"""Zero for every design: refused as an objective and where a rule excludes it; told where a rule says nothing."""
+"""Quantities that are zero for every design: refused as objectives and if excluded; warned of in idle constraints."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from .problem import Problem
 
 
 def require_ranking(problem: Problem) -> None:
-    """Raise for a quantity that is zero for every design, robust or not, in all variants.
+    """Raise an error for a quantity that is zero for every design, robust or not, in all variants.
 
     `InputError` for an objective, `InfeasibleError` for a constraint that zero violates.
     """

@@ -1,4 +1,4 @@
-"""Crank counterweight and rod balance of least shaking, as a second-order cone programme.
+"""Crank counterweight and rod balance for least shaking, as a second-order cone programme.
 
     minimise  |F| + |M| / arm,   |.| the peak or the root mean square over the cycle,
 
@@ -94,11 +94,11 @@ class RodBalance:
 class Balance:
     """The best balance.
 
-    moment, angle: of the counterweight, kg m, and rad from the crank's direction. radius: m, of the counterweight in
-    `after`; mass: kg, at that radius. rod: None unless asked for. before: the mechanism as it was; after: as balanced.
-    objective: what was minimised, N. bound: what it cannot be below, by the cone programme and to its accuracy, about
-    1e-9 of the shaking before. saving: by how much it falls for each kg m that `most` is raised. rounds: of the
-    exchange. converged: False where it ended with peaks still rising.
+    moment, angle: moment of the counterweight, kg m, and its angle from the crank's direction, rad. radius: radius of
+    the counterweight in `after`, m; mass: mass at that radius, kg. rod: rod balance; None unless requested. before: the
+    original mechanism; after: the balanced one. objective: the minimised value, N. bound: its lower bound from the cone
+    programme, accurate to about 1e-9 of the shaking before. saving: decrease per kg m by which `most` is raised.
+    rounds: rounds of the exchange. converged: False if it ended with peaks still rising.
     """
 
     moment: float
@@ -137,12 +137,12 @@ def balance(
     greatest_moment: float | None = None,
     rod: RodSpace | None = None,
 ) -> Balance:
-    """Return the counterweight, instead of the mechanism's own, and the rod balance of least shaking of one linkage.
+    """Return the counterweight, replacing the mechanism's own, and the rod balance for least shaking of one linkage.
 
-    arm: m, the shaking moment counts as moment / arm; left out if None. It needs a rod balance: no counterweight
-    changes it. radius: of the counterweight, m; if None that of the mechanism's counterweight, or the crank.
-    greatest_moment: of the counterweight, kg m. rod: the space for a rod balance; none if None.
-    Raises `InputError` for a crank that stands or accelerates, and where nothing that moves has a mass.
+    arm: lever arm, m; the shaking moment counts as moment / arm, and is ignored if None. It needs a rod balance: no
+    counterweight changes it. radius: radius of the counterweight, m; if None, that of the mechanism's counterweight, or
+    the crank. greatest_moment: greatest moment of the counterweight, kg m. rod: space for a rod balance; None for none.
+    Raises `InputError` for a crank that is at rest or accelerates, and if no moving part has a mass.
     """
     require_word("measure", measure, Measure)
     require_plain(mechanism, "the balance of a counterweight")

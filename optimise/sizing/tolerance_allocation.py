@@ -1,4 +1,4 @@
-"""Tolerances of least manufacturing cost that keep the position error within a limit.
+"""Tolerances with the least manufacturing cost that keep the position error within a limit.
 
     minimise  sum_i c_i(t_i)   with   error(theta; t) <= limit at every crank angle of the working stroke,
                                       least_i <= t_i <= greatest_i,
@@ -55,10 +55,10 @@ _TURN = 2.0 * math.pi
 
 @dataclass(frozen=True)
 class Part:
-    """One tolerance that was chosen.
+    """One chosen tolerance.
 
-    tolerance: m, of the crank angle rad. cost: of holding it. bound: which end of its range it stands at. saving: by
-    how much the total cost falls for each m (rad) by which that end is loosened; zero within the range.
+    tolerance: tolerance, m, or rad for the crank angle. cost: cost of holding it. bound: end of its range at which it
+    is, if any. saving: decrease of the total cost per m (rad) by which that end is loosened; zero within the range.
     """
 
     name: str
@@ -72,10 +72,10 @@ class Part:
 class Allocation:
     """Least-cost tolerances.
 
-    parts: the tolerances chosen. cost: their total. mechanism: that of the arguments, with them. error: greatest
-    first-order position error with them, m. saving: by how much the cost falls for each m that the limit is raised.
-    angles: crank angles, rad, at which the limit holds the tolerances back, ascending; savings: the share of each in
-    `saving`. residual: of the optimality conditions, relative. rounds: of the exchange. converged: whether the error is
+    parts: the chosen tolerances. cost: their total cost. mechanism: the mechanism passed, with them. error: greatest
+    first-order position error with them, m. saving: decrease of the cost per m by which the limit is raised. angles:
+    crank angles, rad, at which the limit is active, ascending; savings: contribution of each to `saving`. residual:
+    relative residual of the optimality conditions. rounds: rounds of the exchange. converged: whether the error is
     within the limit to 1e-10 and the residual below 1e-6; otherwise this is the best point found.
     """
 
@@ -102,11 +102,11 @@ def allocate(
     *,
     mechanism: Mechanism | None = None,
 ) -> Allocation:
-    """Return the tolerances of least cost that keep the first-order position error of one linkage within a limit, m.
+    """Return the least-cost tolerances that keep the first-order position error of one linkage within a limit, m.
 
-    kind: how errors add up. window: the part of the cycle in which the error counts; that of the mechanism if None.
-    mechanism: its clearances, and its tolerances of what has no cost, take their part of the limit; its speed says
-    which way the crank turns. Raises `InfeasibleError` if even the smallest tolerances exceed the limit.
+    kind: how errors add up. window: part of the cycle in which the error counts; that of the mechanism if None.
+    mechanism: its clearances and its tolerances without a cost use part of the limit; its speed gives the sense of
+    rotation. Raises `InfeasibleError` if even the smallest tolerances exceed the limit.
     """
     require_word("kind", kind, Kind)
     if not (math.isfinite(limit) and limit > 0.0):
