@@ -98,7 +98,7 @@ def _kind(
     believed: tuple[float, float] | None = None,
     spoken: tuple[tuple[str, str], ...] = (),
 ) -> Kind:
-    """Return a kind from the units of a form, separated by commas; the first one, SI, is the default display unit."""
+    """Return a kind from a form's units, separated by commas; the first, SI, is the default display unit."""
     units = tuple(typed.split(", ")) if typed else ()
     unit = units[0] if units else ""
     return Kind(name, unit, example, limit, metric or display_unit(unit), inch, units, usual, believed, spoken)

@@ -20,7 +20,7 @@ _COMPRESSION = ((0.0, 1.0),)
 
 
 class FatigueSafety(OfBars):
-    """Least value of 1 / (amplitude / S_e + mean / S_m) over all points of the bars and their eyes."""
+    """Least 1 / (amplitude / S_e + mean / S_m) over all points of the bars and their eyes."""
 
     def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
         """Return the safety of each bar and of each eye; see `OfBars`."""

@@ -267,7 +267,7 @@ def is_value(text: str) -> bool:
 
 
 def number_and_unit(text: str) -> tuple[str, str] | None:
-    """Return the digits and the unit, known or not, of a text that is one number; None for any other text."""
+    """Return digits and unit, known or not, of a text that is one number; None for any other text."""
     match = _VALUE.fullmatch(text.translate(_TYPESET)) if len(text) <= _LONGEST else None
     return None if match is None else (match[1], _unit_in(match))
 

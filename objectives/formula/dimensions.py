@@ -115,7 +115,7 @@ def _raised(base: _Part, exponent: _Part, text: str) -> Powers:
 
 
 def _value(function: str, arguments: list[_Part]) -> Fraction | None:
-    """Return the value of an exponent such as 1 / 3; None if it is not a number or too large."""
+    """Return the value of an exponent such as 1/3; None if it is not a number or too large."""
     values = [item.value for item in arguments]
     first, last = values[0], values[-1]
     if first is None or last is None or max(map(abs, (first, last))) > 1000:

@@ -217,7 +217,7 @@ def _combined(function: str, sides: list[Side]) -> Side:
 
 
 def _extreme(function: str, arguments: list[TwoSided]) -> TwoSided:
-    """Return the least or the greatest of parts: all pieces on one side, those of the active part on the other."""
+    """Return the least or greatest of parts: all pieces on one side, the active part's on the other."""
     greatest = function == "max"
     wide = [item.from_above if greatest else item.from_below for item in arguments]
     wide = [Side(s.values, s.gradients, s.labels + _APART * place, s.present) for place, s in enumerate(wide)]

@@ -79,7 +79,7 @@ class FormulaQuantity(Quantity):
         return replace(self, parts=parts)
 
     def lacks(self, mechanism: Mechanism, without: Consequence) -> str | None:
-        """Return why a machine does not define it: the unmet need of one of its parts; None if all are met."""
+        """Return why a machine does not define it: the unmet need of a part; None if all are met."""
         if without == "zero":  # other terms may remain if a part is zero
             return None
         reasons = ((part.name, part.lacks(mechanism, without)) for part in self.parts)

@@ -150,7 +150,7 @@ class FormulaBounds:
 
 
 class _Corner(NamedTuple):
-    """A corner of ranges: crank, rod, size and sign of the offset; whether it is at the edge of full rotation."""
+    """A corner of ranges: crank, rod, offset size and sign; whether it is at the edge of full rotation."""
 
     crank: float
     rod: float

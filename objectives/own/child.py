@@ -57,7 +57,7 @@ def load(function: str, folders: list[str]) -> Function:
 
 
 class Watch:
-    """The time limit of a call: when it expires, the process ends, even in a loop that never returns to Python."""
+    """The time limit of a call: on expiry the process ends, even in a loop that never returns to Python."""
 
     def __init__(self, limit: float, log: BinaryIO) -> None:
         """Take the limit, s, and the file for the line that the function was running."""

@@ -1,4 +1,4 @@
-"""The worst point of the tolerance box other than a corner: at offset zero, or at an extreme of the quantity."""
+"""The worst point of the tolerance box besides corners: at offset zero, or at an extreme of the quantity."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def worst_inner_points(
 
 
 def _losses(point_values: PointValues, low: bool) -> tuple[Array, Array, Mask]:
-    """Return a quantity as a loss at points (n, q), its slopes (n, q, 3), and where the linkage rotates fully."""
+    """Return a quantity as a loss at points (n, q), slopes (n, q, 3), and where the linkage rotates fully."""
     values, slopes = point_values.highest(point_values.local)
     sign = -1.0 if low else 1.0
     return np.where(point_values.turns, sign * values, np.inf), sign * slopes, point_values.turns

@@ -32,7 +32,7 @@ def swing_quantities(swing: Swing) -> tuple[SwingQuantity, ...]:
 
 
 def why_not(name: str, swing: Swing | None) -> str | None:
-    """Return the reason why a motion lacks a quantity of a swing; None if it has it, and for other names."""
+    """Return the reason why a motion lacks a swing quantity; None if it has it, and for other names."""
     fact = FACTS.get(name)
     if not isinstance(fact, SwingQuantity):
         return None

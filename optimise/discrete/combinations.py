@@ -35,7 +35,7 @@ _EXPANDED = 256  # designs whose neighbours are looked up together: with eight n
 class Axes:
     """The values of a design's numbers in one variant of a problem.
 
-    part: the variant. values: of each number of a design (3 + v) its possible values, None where it is free in a range.
+    part: the variant. values: possible values of each number of a design (3 + v), None for one free in a range.
     """
 
     part: Problem
@@ -68,7 +68,7 @@ class Axes:
         return math.prod(len(values) for values in self.values if values is not None)
 
     def designs(self, begin: int, end: int) -> Array:
-        """Return some of all combinations (n, 3 + v), the last number changing first; NaN where one is free."""
+        """Return combinations (n, 3 + v) in order, the last number changing fastest; NaN where one is free."""
         return self.numbered(np.arange(begin, min(end, math.prod(self._sizes))))
 
     def numbered(self, numbers: Whole) -> Array:
@@ -83,7 +83,7 @@ class Axes:
     def next_to(self, designs: Array) -> Whole:
         """Return the numbers (n, s) of the combinations at designs (n, 3 + v) and next to them.
 
-        A design itself is among them, and in place of what its range does not have.
+        They include the design itself, which also replaces neighbours outside the range.
         """
         places = np.stack(self._places(designs), axis=1)
         ways = np.array(list(itertools.product(*((-1, 0, 1) if size > 1 else (0,) for size in self._sizes))))
@@ -109,9 +109,9 @@ class Axes:
 class Judged:
     """Combinations that meet every requirement, and the nearest of those that do not.
 
-    part: the problem that the nearest answers. dimensions: (n, 3 + v). values: (n, m), objectives as minimised. judged:
-    combinations looked at. nearest: the design (3 + v,) of least violation among those that turn fully, None without
-    one. missed: its greatest violation, relative.
+    part: the problem of the nearest one. dimensions: (n, 3 + v). values: (n, m), objectives as minimised. judged:
+    number of combinations judged. nearest: the fully rotating design (3 + v,) with the least violation, None without
+    one. missed: its greatest relative violation.
     """
 
     part: Problem
@@ -147,7 +147,8 @@ class Judged:
 def judge_all(axes: Axes, report: ReportProgress = ignore_progress, *, dimensions_only: bool = False) -> Judged:
     """Judge all combinations of a variant without free numbers; of very many, return the best.
 
-    report: called after every few thousand. dimensions_only: judge only what needs no cycle, without objectives.
+    report: called after every few thousand. dimensions_only: whether to judge only requirements without a cycle, and
+    no objectives.
     """
     judged = Judged.empty(axes.part)
     step = _AT_ONCE_ROBUST if asks_robust(axes.part) and not dimensions_only else _AT_ONCE
@@ -228,7 +229,7 @@ def judge_near(
 
 
 def has_judged_neighbours(axes: Axes, designs: Array, judged_numbers: Whole) -> Mask:
-    """Return which combinations (n, 3 + v) have all those next to them among the numbers seen."""
+    """Return which combinations (n, 3 + v) have all their neighbours among the judged numbers."""
     return np.array([bool(np.isin(axes.next_to(row[None]), judged_numbers).all()) for row in designs], np.bool_)
 
 

@@ -1,8 +1,9 @@
-"""The front of a problem whose numbers have some values only.
+"""The front of a problem whose numbers have discrete values.
 
-The front without them comes first: it says what they cost. Where combinations are few enough, every one is judged: the
-answer is exact. With nothing else free a combination is a design; else what is free is searched and polished for each.
-Where they are too many, those around the designs of the continuous front are, and around the best of these.
+The continuous front comes first: it shows what the discrete values cost. If combinations are few enough, every one is
+judged, and the answer is exact. Without free unknowns a combination is a design; otherwise these are searched and
+polished for each. If combinations are too many, those around the continuous front are judged, and those around the best
+of these.
 """
 
 from __future__ import annotations
@@ -41,7 +42,8 @@ def discrete_front(
 ) -> ParetoFront:
     """Return the front of a problem with discrete numbers.
 
-    search: solves a problem without. nothing: makes an empty front of a status and a message. report: asked in between.
+    search: function that solves a continuous problem. nothing: function that makes an empty front from a status and a
+    message. report: called in between.
     """
     axes = [Axes.of_problem(part) for part in problem.parts()]
     is_complete, count = all(axis.is_complete for axis in axes), sum(axis.count for axis in axes)
@@ -97,7 +99,7 @@ def discrete_front(
 def _downgrade_unproven(
     front: ParetoFront, axes: list[Axes], chosen: Chosen, judged_numbers: list[Whole]
 ) -> ParetoFront:
-    """Return a front of combinations that are called stationary only where all those next to them were judged."""
+    """Return a front whose combinations count as stationary only if all their neighbours were judged."""
     combinations = [chosen[row] for row in front.variants]
     surrounded = np.array(
         [
@@ -111,7 +113,7 @@ def _downgrade_unproven(
 
 
 def _designs_to_deliver(problem: Problem, axes: list[Axes], parts: list[Judged]) -> tuple[Chosen, Judged]:
-    """Return the designs to deliver: the non-dominated ones of all variants, at most as many as are asked for."""
+    """Return the designs to deliver: the non-dominated ones of all variants, at most the requested number."""
     together = parts[0]
     for part in parts[1:]:
         together = together.merge(part)
@@ -145,7 +147,7 @@ def _designs_of_variant(front: ParetoFront, variant: int) -> Array:
 
 
 def _first_of_each_variant(chosen: Chosen) -> Chosen:
-    """Return at most `SOLVED` combinations, of each variant the first ones."""
+    """Return at most `SOLVED` combinations, the first ones of each variant."""
     rank: dict[int, int] = {}
     order = []
     for place, (index, _) in enumerate(chosen):
@@ -157,7 +159,7 @@ def _first_of_each_variant(chosen: Chosen) -> Chosen:
 def _front_of_problem(
     problem: Problem, front: ParetoFront, continuous: ParetoFront, chosen: Chosen, summary: DiscreteAnswer
 ) -> ParetoFront:
-    """Return the front of combinations as one of the problem that states them."""
+    """Return the front of combinations as a front of the original problem."""
     columns = dict(front.columns)
     for place, (name, (column, unit)) in enumerate(columns_of_numbers(problem.mechanism.varying).items()):
         if column in columns and any(item.name == name for item in problem.discrete):

@@ -19,7 +19,7 @@ MOST = 200_000
 def require_meetable(problem: Problem) -> None:
     """Raise InfeasibleError, with the nearest, if all three dimensions have discrete values and none meets the rules.
 
-    Only what needs no cycle is looked at, and no more than `MOST` combinations; the rest is left to the search.
+    Checks only requirements that need no cycle, and at most `MOST` combinations; the rest is left to the search.
     """
     if not problem.discrete:
         return

@@ -12,12 +12,12 @@ from .combinations import Judged
 
 
 def rules_text(problem: Problem) -> str:
-    """Return the discrete numbers with what they may be."""
+    """Return the discrete numbers with their possible values."""
     return ", ".join(f"{item.name} ({item.rule})" for item in problem.discrete)
 
 
 def result_message(front: ParetoFront) -> str:
-    """Return how many designs were found among how many combinations, and the best with continuous values."""
+    """Return the numbers of designs found and of combinations, and the best with continuous values."""
     summary, problem = front.discrete, front.problem
     assert summary is not None
     rules = rules_text(problem)
@@ -49,7 +49,7 @@ def result_message(front: ParetoFront) -> str:
 
 
 def failure_message(problem: Problem, judged: Judged) -> str:
-    """Return that no combination keeps every requirement, by how much the nearest misses, and a remedy."""
+    """Return the message that no combination meets every requirement, the nearest one's misses, and a remedy."""
     rules = rules_text(problem)
     subject = (
         f"none of {_count_combinations(judged.judged)} of {rules}"

@@ -32,8 +32,8 @@ class Engine(Protocol):
         """Return function(item) for every item, in order.
 
         function: of a module, so that another process can import it. poll: called between items and while waiting; what
-        it raises ends the map. Raises that, what the function raises, and `EngineError` where the engine is lost. What
-        is lost with a worker is done again and not told.
+        it raises ends the map. Raises that, what the function raises, and `EngineError` if the engine is lost. Work
+        lost with a worker is repeated without a report.
         """
         ...
 

@@ -1,4 +1,4 @@
-"""The best value that one quantity can have while all requirements are kept."""
+"""The best value that one quantity can have while all requirements are met."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ def best_of(
     engine: Engine | None = None,
     report: Callback | None = None,
 ) -> Best | None:
-    """Return the best of a problem's only objective, None where nothing is feasible.
+    """Return the best value of a problem's only objective, None if nothing is feasible.
 
-    checkpoints, engine: of the search that wants to know it. report: called with how far this one is.
+    checkpoints, engine: those of the calling search. report: called with the progress of this one.
     """
     combined = [
         Evaluator(problem, branch, checkpoints, engine)
@@ -61,7 +61,7 @@ def _sampled(full: Problem, light: Problem, evaluators: list[Evaluator], run: Ru
 
     It suffices with enough feasible designs, or if none can be feasible.
 
-    Of one objective the best few of any samples lead down to its best value.
+    For one objective, descents from the best few samples reach its best value.
     """
     if not any(evaluator.loose for evaluator in evaluators):
         archive = run.archive = Archive.empty(1)
@@ -77,10 +77,10 @@ def _sampled(full: Problem, light: Problem, evaluators: list[Evaluator], run: Ru
 
 
 def best_on_dimensions(problem: Problem) -> Best | None:
-    """Return the best of a stroke, time ratio or other closed form, the only objective of a problem.
+    """Return the best value of a stroke, time ratio or other closed form, the only objective of a problem.
 
-    Kept are the requirements on the dimensions and the floor of the transmission angle; loads and masses do not count.
-    None where nothing meets them. A search of about a tenth of a second.
+    The design meets the requirements on the dimensions and the floor of the transmission angle; loads and masses do not
+    count. None if no design does. The search takes about a tenth of a second.
     """
     light = on_dimensions(problem)
     return best_of(replace(light, settings=replace(light.settings, samples=_SAMPLES)))

@@ -18,7 +18,7 @@ _INDEPENDENT = 1e-2  # a column counts as independent of others if this share of
 
 
 def nonnegative_least_squares(matrix: Array, target: Array) -> Array | None:
-    """Return the x >= 0 (n,) with the least |A x - b|; None if it does not converge because of rounding.
+    """Return the x >= 0 (n,) with the least |A x - b|; None if rounding prevents convergence.
 
     matrix: A (m, n). target: b (m,).
     """

@@ -2,7 +2,7 @@
 
 The polish takes objectives that are the greatest of smooth pieces, and with `hold=False` lowers their sum. So a `Form`
 of m objectives becomes 1 + m of them: first max_i w_i (f_i - z_i), whose pieces are those of all weighted objectives,
-then rho f_i each. Ceilings join the constraints. Kinks stay what they are: nothing is smoothed, no variable is added.
+then rho f_i each. Ceilings join the constraints. Kinks stay: nothing is smoothed, no variable is added.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ _APART = 100.0  # between the labels of two objectives' pieces, so that no peak 
 
 
 class Achievement:
-    """A form on one branch, as `polish.Evaluates`. ideal, span: (m,), what objectives are scaled by."""
+    """A form on one branch, as `polish.Evaluates`. ideal, span: (m,), scaling of the objectives."""
 
     def __init__(self, evaluator: Evaluator, form: Form, ideal: Array, span: Array) -> None:
         self.evaluator, self.form = evaluator, form
         self.ideal, self.span = ideal, span
 
     def valid(self, u: Array) -> Mask:
-        """Return which points give a linkage that turns fully."""
+        """Return which points give a linkage that rotates fully."""
         return self.evaluator.valid(u)
 
     def exact(self, u: Array) -> tuple[Rows, Rows]:

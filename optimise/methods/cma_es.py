@@ -3,12 +3,12 @@
     N. Hansen, "The CMA evolution strategy: a tutorial", arXiv:1604.00772, 2016
     A. Auger, N. Hansen, "A restart CMA evolution strategy with increasing population size", IEEE CEC 2005
 
-Where it has converged it starts again elsewhere with twice the population. Each branch has a climb of its own, in turn:
-a normal distribution cannot span two. Only ranks matter to it, so constraints enter as ranks: what is feasible comes
-first, by its objective, then what violates less.
+Once converged, it restarts elsewhere with twice the population. Each branch has a separate climb, in turn: a normal
+distribution cannot span two. Only ranks matter to it, so constraints enter as ranks: feasible designs come first, by
+objective, then the others by violation.
 
-This is the `cmaes` package itself, not Optuna's sampler around it: that ignores constraints and keeps the state as a
-pickle with every trial. Told the same generations again it comes to the same state, so nothing else need be kept.
+This is the `cmaes` package itself, not Optuna's sampler around it: that ignores constraints and stores the state as a
+pickle with every trial. The same generations lead to the same state again, so nothing else need be stored.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def cmaes(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 
 
 class _Climb:
-    """The search of one branch: a distribution that is told what its points were worth, and begun anew."""
+    """The search of one branch: a distribution that learns the values of its points, with restarts."""
 
     def __init__(self, index: int, dimension: int, size: int, seed: int) -> None:
         self.index, self.dimension, self.size, self.seed = index, dimension, size, seed
@@ -62,7 +62,7 @@ class _Climb:
         self.begin()
 
     def begin(self) -> None:
-        """Start from the centre the first time, then from anywhere."""
+        """Start from the centre the first time, then from a random point."""
         from cmaes import CMA
 
         random = np.random.default_rng(np.random.SeedSequence([self.seed, _RESTART, self.index, self.starts]))
@@ -77,7 +77,7 @@ class _Climb:
         return np.array([self.optimiser.ask() for _ in range(self.optimiser.population_size)])
 
     def learn(self, generation: Generation) -> None:
-        """Take in what a generation was worth."""
+        """Learn from the values of a generation."""
         self.generations += 1
         u, values = generation.u[:, : self.dimension], generation.values[:, 0]
         excess = np.where(generation.violation <= FEASIBLE, 0.0, generation.violation)

@@ -31,13 +31,13 @@ _BASINS = 12
 
 
 class _ExactEvaluation:
-    """Objective and violation of one branch for a solver that asks for the one after the other.
+    """Objective and violation of one branch for a solver that requests them in turn.
 
-    Exact: a screened peak may be off by more than what is left to gain near the optimum.
+    Exact: the error of a screened peak may exceed the remaining gain near the optimum.
     """
 
     def __init__(self, index: int, evaluator: Evaluator, improvements: Archive) -> None:
-        """Evaluate a branch of this index; the archive takes in what is better than all before."""
+        """Evaluate the branch with this index; the archive collects improvements."""
         self.index, self.evaluator, self.improvements = index, evaluator, improvements
         self.known: dict[bytes, float] = {}
         self.best = np.inf
@@ -58,7 +58,7 @@ class _ExactEvaluation:
         return np.where(violation <= FEASIBLE, 0.0, violation)
 
     def _evaluate(self, u: Array) -> tuple[Array, Array]:
-        """Return objective and violation (n,) of points, infinite and far where no linkage turns fully."""
+        """Return objective and violation (n,) of points, infinite and far where no linkage rotates fully."""
         values, violation = np.full(len(u), np.inf), np.full(len(u), _FAR)
         valid = np.flatnonzero(self.evaluator.valid(u))
         if len(valid):
@@ -76,9 +76,9 @@ class _ExactEvaluation:
 
 
 def differential_evolution(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the optimum of differential evolution, a share of the budget on every branch.
+    """Return the optimum of differential evolution, with a part of the budget for every branch.
 
-    Constraints by the rule that a feasible design beats an infeasible one and a smaller violation a greater one (J.
+    Constraints follow the rule that a feasible design beats an infeasible one and a smaller violation a greater one (J.
     Lampinen, "A constraint handling approach for the differential evolution algorithm", CEC 2002), without penalties.
     """
     archive, improvements = Archive.empty(1), Archive.empty(1)
@@ -92,7 +92,7 @@ def differential_evolution(problem: Problem, evaluators: list[Evaluator], run: R
 def _evolve(
     problem: Problem, evaluators: list[Evaluator], index: int, archive: Archive, improvements: Archive, run: Run
 ) -> None:
-    """Put the optimum of one branch into the archive, what is better than all before into what was improvements."""
+    """Put the optimum of one branch into the archive, and every improvement into `improvements`."""
     from scipy.optimize import NonlinearConstraint
     from scipy.optimize import differential_evolution as evolve
 
@@ -135,7 +135,7 @@ def _evolve(
 
 
 def shgo(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the optima of the basins that simplicial homology finds, a share of the budget on every branch.
+    """Return the optima of the basins found by simplicial homology, with a part of the budget for every branch.
 
     S. C. Endres, C. Sandrock and W. W. Focke, "A simplicial homology algorithm for Lipschitz optimisation", J. Glob.
     Optim. 72, 2018. It tells basins from feasible Sobol points and descends into each; where a peak has a kink that
@@ -153,7 +153,7 @@ def shgo(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 def _descend(
     problem: Problem, evaluators: list[Evaluator], index: int, archive: Archive, improvements: Archive
 ) -> None:
-    """Put the optima of the basins of one branch into the archive, and what comes on the way."""
+    """Put the optima of the basins of one branch into the archive, and every improvement into `improvements`."""
     from scipy.optimize import shgo as homology
 
     evaluator = evaluators[index]

@@ -39,9 +39,9 @@ Local = Callable[[Programme, Array], Array | None]
 
 
 def samples(problem: Problem, evaluators: list[Evaluator]) -> Candidates:
-    """Return feasible samples of all branches; where there are few, with such as violate constraints by up to 16 %.
+    """Return feasible samples of all branches; if these are few, also samples with violations of up to 16 %.
 
-    Solvers remove the violation. Equalities that are left are met by no sample.
+    Solvers remove the violation. No sample meets the remaining equalities.
     """
     loose = any(evaluator.loose for evaluator in evaluators)
     for attempt, band in enumerate(BANDS[1:] if loose else BANDS):
@@ -62,7 +62,7 @@ def samples(problem: Problem, evaluators: list[Evaluator]) -> Candidates:
 def search_from_starts(
     problem: Problem, evaluators: list[Evaluator], run: Run, *, solve: Local, starts: int
 ) -> Archive:
-    """Return the local optima that a solver finds from so many starts, the best ones that lie apart."""
+    """Return the local optima that a solver finds from `starts` starts, the best ones that lie apart."""
     sampled = samples(problem, evaluators)
     archive = Archive.empty(1)
     run.archive.add(sampled[sampled.is_feasible])
@@ -89,7 +89,7 @@ def is_budget_spent(problem: Problem, evaluators: list[Evaluator]) -> bool:
 
 
 def archive_optimum(solve: Local, programme: Programme, u: Array, archive: Archive, index: int) -> Array | None:
-    """Take the optimum near u (k,), a recorded step, into an archive; return its objectives (m,), SI, None without."""
+    """Add the optimum near u (k,), a recorded step, to an archive; return its objectives (m,), SI, or None."""
     form, scaling, u = programme.form, (programme.ideal, programme.span), u[: programme.k]
     inputs = (u, form.weights, form.reference, form.ceilings, np.array([form.rho]), *scaling)
 
@@ -109,9 +109,9 @@ def archive_optimum(solve: Local, programme: Programme, u: Array, archive: Archi
 def by_slsqp(programme: Programme, u: Array) -> Array | None:
     """Return the optimum near u (k,) by sequential least squares programming, None if it is not feasible.
 
-    D. Kraft, "A software package for sequential quadratic programming", DFVLR-FB 88-28, 1988. Where it ends it begins
-    again, without the curvature that it has learnt and with the pieces that are highest there, until it stays: it takes
-    a short step for an optimum.
+    D. Kraft, "A software package for sequential quadratic programming", DFVLR-FB 88-28, 1988. It mistakes a short step
+    for an optimum. So it restarts where it ends, without the learnt curvature and with the pieces that are highest
+    there, until it no longer moves.
     """
     best = None
     for _ in range(_AGAIN):
@@ -151,8 +151,8 @@ def by_trust_constr(programme: Programme, u: Array) -> Array | None:
     """Return the optimum near u (k,) by the trust-region interior-point method, None if it is not feasible.
 
     R. H. Byrd, M. E. Hribar and J. Nocedal, "An interior point algorithm for large-scale nonlinear programming", SIAM
-    J. Optim. 9(4), 1999. A peak that comes or goes is a jump of a slack that may end it early: it then begins again,
-    nearer to the limits. It keeps within the inequalities, unless u lies on one. Equalities are not for it.
+    J. Optim. 9(4), 1999. A peak that appears or vanishes makes a slack jump, which may end it early: it then restarts,
+    nearer to the limits. It stays within the inequalities, unless u lies on one. It does not support equalities.
     """
     for attempt in range(_ATTEMPTS):
         end, converged = _barrier(programme, u, _MARGIN * _NEARER**attempt)
@@ -164,7 +164,7 @@ def by_trust_constr(programme: Programme, u: Array) -> Array | None:
 
 
 def _barrier(programme: Programme, u: Array, margin: float) -> tuple[Array, bool]:
-    """Return where one run of the interior-point method ends, and whether at an optimum. margin: between s and t."""
+    """Return the end of one interior-point run, and whether it is an optimum. margin: distance between s and t."""
     from scipy.optimize import BFGS, Bounds, NonlinearConstraint, minimize
 
     minimised: Any = minimize

@@ -9,9 +9,8 @@ Children come from simulated binary crossover and polynomial mutation. Constrain
 feasible designs come first, then smaller violations. Several branches (signs of the offset) are one categorical
 parameter: selection follows the front, while a share of the budget for each would be wasted on poor branches.
 
-Selection and crossover need only the last generation and what that was bred from. So each generation is a new Optuna
-study in memory with these designs and a new sampler: the cost of a generation stays the same, and it depends on nothing
-but them.
+Selection and crossover need only the last generation and its parents. So each generation is a new Optuna study in
+memory with these designs and a new sampler: the cost of a generation is constant, and it depends only on them.
 """
 
 from __future__ import annotations
@@ -43,7 +42,7 @@ def nsga2(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 
 
 def nsga3(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the designs that NSGA-III finds; reference directions, about one a member, keep its population diverse."""
+    """Return the designs that NSGA-III finds; about one reference direction per member keeps its population diverse."""
     from optuna.samplers import NSGAIIISampler
 
     size, objectives = population_size(problem), len(problem.objectives)
@@ -51,7 +50,7 @@ def nsga3(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 
 
 def population_size(problem: Problem) -> int:
-    """Return how many designs a generation has. Raises `InputError` for fewer than two, which cannot breed."""
+    """Return the number of designs in a generation. Raises `InputError` for fewer than two, which cannot breed."""
     size = generation_size(problem, POPULATION)
     if size < 2:
         raise InputError(
@@ -62,7 +61,7 @@ def population_size(problem: Problem) -> int:
 
 
 def divisions(population: int, objectives: int) -> int:
-    """Return how finely the axes are divided so that there are at most as many reference directions as designs.
+    """Return the number of divisions of the axes with at most as many reference directions as designs.
 
     p divisions give (p + m - 1 over m - 1) directions (Das and Dennis, 1998).
     """

@@ -1,7 +1,7 @@
-"""Generation after generation: breed, evaluate at once, remember.
+"""Evolution by generations: breed, evaluate as one batch, store.
 
-A method says only how a brood is bred from the generations before it. Every brood has random numbers of its own, seeded
-by the run's seed and its number, and depends on these generations alone: a brood on record need not be bred again.
+A method only defines how to breed a brood from the previous generations. Every brood has its own random numbers, seeded
+by the run's seed and its number, and depends only on these generations: a recorded brood need not be bred again.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ class Brood:
     """Points to be evaluated together.
 
     branch: (n,), index of each point's branch. u: (n, k), points of the unit box; columns beyond a branch's dimension
-    are ignored. parents: (p,), rows that the brood was bred from, counted over the points of all generations; empty
-    where a method has none.
+    are ignored. parents: (p,), rows of the parents, counted over the points of all generations; empty if a method has
+    none.
     """
 
     branch: Rows
@@ -44,11 +44,11 @@ class Brood:
 
 @dataclass
 class Generation(Table):
-    """The points of a brood and what they turned out to be.
+    """The points of a brood with their values.
 
-    branch, u: see `Brood`. values: (n, m) objectives as they are minimised, SI; NaN where a constraint is violated.
-    violation: (n,), the greatest relative one beyond what is tolerated (see `BAND`), infinite where no
-    linkage turns fully. parents: of the brood.
+    branch, u: see `Brood`. values: (n, m) objectives as minimised, SI; NaN where a constraint is violated. violation:
+    (n,), greatest relative violation beyond the tolerance (see `BAND`), infinite where no linkage rotates fully.
+    parents: parents of the brood.
     """
 
     branch: Rows
@@ -64,7 +64,7 @@ def generation_seed(seed: int, generation: int) -> int:
 
 
 def generation_size(problem: Problem, usual: int) -> int:
-    """Return how many designs a generation has, at most the whole budget. usual: where the job sets no number."""
+    """Return the number of designs in a generation, at most the whole budget. usual: default number."""
     return min(problem.settings.samples or usual, budget(problem))
 
 
@@ -75,7 +75,7 @@ Breed = Callable[[Sequence[Generation]], Brood]
 def evolve(problem: Problem, evaluators: list[Evaluator], run: Run, breed: Breed, *, size: int) -> Archive:
     """Return the archive of the non-dominated feasible designs of all generations that the budget allows.
 
-    size: of a generation, for the progress.
+    size: size of a generation, for progress reports.
     """
     allowed = budget(problem)
     run.rounds = max(1, allowed // size)
@@ -108,7 +108,7 @@ _Evaluations = dict[tuple[int, bytes], tuple[Array, float]]
 def _evaluate_brood(
     evaluators: list[Evaluator], brood: Brood, archive: Archive, evaluations: _Evaluations
 ) -> Generation:
-    """Return the generation of a brood, the archive has what is feasible; a branch's new points are one batch."""
+    """Return the generation of a brood and archive its feasible designs; a branch's new points are one batch."""
     points = zip(brood.branch.tolist(), brood.u + 0.0, strict=True)  # no negative zeros
     keys = [(index, point[: evaluators[index].dimension].tobytes()) for index, point in points]
     fresh = {key: row for row, key in enumerate(keys) if key not in evaluations}
@@ -130,7 +130,7 @@ def _evaluate_brood(
 def screen_points(evaluator: Evaluator, u: Array, band: float = 0.0) -> tuple[Array, Array]:
     """Return objectives (n, m) and violation beyond a band (n,) of points.
 
-    Whatever is not feasible has NaN objectives, and what has one that is not finite counts as infinitely violated.
+    Infeasible points have NaN objectives, and points with a non-finite objective count as infinitely violated.
     """
     _, values, violation = evaluator.screen(u, band=band)
     violation = np.maximum(violation - band, 0.0) if band else violation

@@ -1,7 +1,7 @@
-"""A method of searching, all methods by name, and the refusal of problems that a method cannot take.
+"""Search methods by name, and checks that a method can solve a problem.
 
-Each module of this package declares its own methods; `methods` finds them. Packages that a method computes with are
-imported inside functions: to know what a method can take costs next to nothing.
+Each module of this package declares its own methods; `methods` finds them. Packages that a method uses are imported
+inside functions, so that reading the facts of a method costs next to nothing.
 """
 
 from __future__ import annotations
@@ -29,23 +29,23 @@ class Search(Protocol):
     """The search of a method."""
 
     def __call__(self, problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-        """Return designs found: feasible ones, or ones so near that the delivery brings them onto the limits.
+        """Return the designs found: feasible ones, or ones near enough for the delivery to move onto the limits.
 
-        evaluators: of the branches that leave something free, at least one. Costly steps are recorded, so that
-        a search can be stopped within a moment and go on.
+        evaluators: evaluators of the branches with free unknowns, at least one. Costly steps are recorded, so that a
+        search can stop within a moment and resume.
         """
         ...
 
 
 @dataclass(frozen=True, kw_only=True)
 class Method:
-    """A method that a job can ask for.
+    """A method that a job can select.
 
-    name: in job files. title, help: a few words, and one sentence on how it searches. objectives: how many it can take.
-    budget: evaluations where the job sets none; None for a method that ends by itself and takes no budget. uses:
-    packages that compute, besides NumPy. gradients: whether it needs them. equalities: whether it copes with one that
-    cannot be eliminated. polishes: whether designs are polished to stationarity; otherwise they are delivered as they
-    were found, which keeps methods independent checks of one another.
+    name: name in job files. title, help: a few words, and one sentence on how it searches. objectives: supported
+    numbers of objectives. budget: default number of evaluations; None for a method that ends by itself and takes no
+    budget. uses: packages that compute, besides NumPy. gradients: whether it needs them. equalities: whether it
+    supports one that cannot be eliminated. polishes: whether designs are polished to stationarity; otherwise they are
+    delivered as found, so that methods remain independent checks of one another.
     """
 
     name: str
@@ -79,7 +79,7 @@ def methods() -> dict[str, Method]:
 
 
 def method_of(problem: Problem) -> Method:
-    """Return the method that a problem asks for. Raises `InputError` for an unknown name."""
+    """Return the method that a problem selects. Raises `InputError` for an unknown name."""
     name, by_name = problem.settings.method, methods()
     if name not in by_name:
         raise InputError(f"the method must be one of {', '.join(by_name)}; got {name!r}; choose one of these")
@@ -87,7 +87,7 @@ def method_of(problem: Problem) -> Method:
 
 
 def budget(problem: Problem) -> int:
-    """Return how many designs the problem's method may evaluate. Raises `InputError` if it takes no budget."""
+    """Return the evaluation budget of the problem's method. Raises `InputError` if it takes no budget."""
     default = method_of(problem).budget
     if default is None:
         raise InputError(f"the method {problem.settings.method} has no budget of evaluations; name another method")
@@ -111,7 +111,7 @@ def require_fit(problem: Problem) -> None:
 
 
 def require_eliminated(problem: Problem, evaluators: list[Evaluator]) -> None:
-    """Raise `InputError` if the method cannot meet an equality that is left after elimination."""
+    """Raise `InputError` if the method cannot meet an equality that remains after elimination."""
     method = method_of(problem)
     if method.equalities:
         return
@@ -127,7 +127,7 @@ def require_eliminated(problem: Problem, evaluators: list[Evaluator]) -> None:
 def require_gradients(problem: Problem, caller: str | None = None) -> None:
     """Raise `InputError` if the problem's method needs a gradient that a quantity does not have.
 
-    caller: needs gradients in place of the method, as the subject of a sentence.
+    caller: subject of the message in place of the method.
     """
     lacking = problem.without_gradient()
     if not lacking:

@@ -1,4 +1,4 @@
-"""Random and Sobol points: what every other method must beat."""
+"""Random and Sobol points: the baseline for every other method."""
 
 from __future__ import annotations
 

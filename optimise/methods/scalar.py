@@ -1,4 +1,4 @@
-"""One objective made of several, and its smooth programme as the solvers of scipy take it.
+"""One objective composed from several, and its smooth programme for the solvers of scipy.
 
 With objectives f_i scaled by their range over the front, ideal at zero, a `Form` stands for
 
@@ -32,7 +32,7 @@ _CLOSE = 0.02  # rad, or a row's number: pieces of neighbouring points nearer th
 
 @dataclass(frozen=True)
 class Form:
-    """A scalarisation: weights w, reference z and ceilings c, (m,) each, and the share rho of the sum."""
+    """A scalarisation: weights w, reference z and ceilings c, (m,) each, and the factor rho of the sum."""
 
     weights: Array
     reference: Array
@@ -55,9 +55,9 @@ class Form:
 
 
 class Programme:
-    """A form on one branch, by z = (u, s, t): (k + m + 1,). Remembers its last point, which solvers ask for in turns.
+    """A form on one branch, by z = (u, s, t): (k + m + 1,). Remembers its last point, which solvers request repeatedly.
 
-    ideal, span: (m,), what objectives are scaled by.
+    ideal, span: (m,), scaling of the objectives.
     """
 
     def __init__(self, evaluator: Evaluator, form: Form, ideal: Array, span: Array) -> None:
@@ -122,7 +122,7 @@ class Programme:
         return np.concatenate([goals, np.pad(limits, ((0, 0), (0, self.m + 1))), self._fixed])
 
     def equalities(self, z: Array) -> Array:
-        """Return the rows h(z) = 0 of equalities that are left."""
+        """Return the rows h(z) = 0 of the remaining equalities."""
         self._go(z[: self.k])
         return self._limits.values[self._equality_rows()] + (0.0 if self._valid else _OUT)
 
@@ -166,8 +166,8 @@ class Programme:
 def _equal_rows(evaluator: Evaluator, limits: Rows) -> Whole:
     """Return the constraint rows (e, 2) of each equality that are to vanish: its highest piece, and the opposite row.
 
-    Every piece has a row on one side, the highest alone one on the other side; both say the same of it, and a solver
-    given both has dependent constraints, at which it ends early. The rows of the other pieces stay inequalities.
+    Every piece has a row on one side; only the highest has one on the other side too. Its two rows are equivalent: with
+    both, a solver has dependent constraints and ends early. The rows of the other pieces stay inequalities.
     """
     pairs = []
     for owner, constraint in enumerate(evaluator.constraints):
@@ -196,7 +196,7 @@ def _swappable_columns(evaluator: Evaluator, goals: Rows, limits: Rows) -> tuple
 
 
 def _align_pieces(rows: Rows, before: Rows, groups: list[Whole]) -> Rows:
-    """Return the rows in the former places of the same pieces; peaks come by height and swap in ties."""
+    """Return the rows in the former order of the same pieces; peaks are sorted by height and swap in ties."""
     order = np.arange(len(rows.owner))
     for columns in groups:
         distances = np.abs(rows.labels[columns][:, None] - before.labels[columns])
@@ -207,7 +207,7 @@ def _align_pieces(rows: Rows, before: Rows, groups: list[Whole]) -> Rows:
 
 
 def _match_labels(distances: Array) -> Whole:
-    """Return for each place the row that goes there."""
+    """Return the row for each place."""
     from scipy.optimize import linear_sum_assignment
 
     if (np.diag(distances) < _CLOSE).all():

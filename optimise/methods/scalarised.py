@@ -1,9 +1,9 @@
 """Fronts by scalarisation: many problems with one objective each, whose optima are Pareto-optimal.
 
-All begin with the optimum of each objective alone. Their objectives are the payoff table; its ranges scale the
-objectives. Each further problem starts from the sample or the optimum that is best for it, and is solved by SLSQP. The
-first round takes aim evenly. As fronts of more objectives than free unknowns are thin, much of that leads to the same
-designs; later rounds aim at the gaps between optima.
+All begin with the optimum of each objective alone. These form the payoff table, whose ranges scale the objectives. Each
+further problem starts from the sample or the optimum that is best for it, and is solved by SLSQP. The first round aims
+evenly. As fronts with more objectives than free unknowns are thin, many of its aims lead to the same designs; later
+rounds aim at the gaps between optima.
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ Aims = tuple[list[Form], Callable[[Array], Form]]
 def epsilon_constraint(front: _Front) -> Aims:
     """Return the aims of minimising the first objective with ceilings on all others, on a grid of the payoff table.
 
-    Ceilings that no sample or optimum comes near are left out; the grid is refined until enough others are left. With
-    the sum, see `scalar`, this is the augmented epsilon-constraint method (G. Mavrotas, "Effective implementation of
+    Ceilings far from every sample and optimum are left out; the grid is refined until enough others remain. With the
+    sum, see `scalar`, this is the augmented epsilon-constraint method (G. Mavrotas, "Effective implementation of
     the epsilon-constraint method in multi-objective mathematical programming problems", Appl. Math. Comput. 213(2),
     2009).
     """
@@ -111,8 +111,8 @@ def nbi(front: _Front) -> Aims:
 class _Front:
     """State that the scalarised problems share.
 
-    payoff: (m, m), objectives (columns) of the optimum of each objective (rows), SI. aimed: (n, m), where later rounds
-    took aim, scaled.
+    payoff: (m, m), objectives (columns) at the optimum of each objective (rows), SI. aimed: (n, m), scaled aims of
+    later rounds.
     """
 
     problem: Problem
@@ -150,7 +150,7 @@ class _Front:
         return self.archive
 
     def _gaps(self) -> Array:
-        """Return scaled objectives (n, m) in gaps between optima, the farthest from all first; none if it is full.
+        """Return scaled objectives (n, m) in gaps between optima, the farthest from all first; empty if there are none.
 
         They are non-dominated samples and the middles between neighbouring optima: those with no other optimum in the
         ball between them (K. R. Gabriel and R. R. Sokal, "A new statistical approach to geographic variation analysis",
@@ -174,7 +174,7 @@ class _Front:
         return np.asarray(aims[picked])
 
     def _starts(self, form: Form) -> list[tuple[int, Array]]:
-        """Return the best point of every branch that is not plainly worse than that of another."""
+        """Return the best point of every branch, unless it is clearly worse than that of another."""
         points = self.archive.join(self.samples)
         scaled = self.scaled(points.values)
         excess = np.maximum(scaled - form.ceilings, 0.0).max(axis=1)
@@ -223,13 +223,13 @@ def _middles(points: Array) -> Array:
 
 
 def _aims_per_round(problem: Problem) -> int:
-    """Return how many problems take aim evenly. Of two objectives the front is a line: all of them find their own."""
+    """Return the number of evenly aimed problems. With two objectives the front is a line: all optima differ."""
     share = _MORE if len(problem.objectives) == 2 else _FIRST
     return max(1, int(share * problem.settings.designs))
 
 
 def _payoff_front(problem: Problem, evaluators: list[Evaluator], run: Run) -> _Front | None:
-    """Return samples and payoff table; None where nothing was found to begin with."""
+    """Return samples and payoff table; None if no starts were found."""
     m = len(problem.objectives)
     sampled = samples(problem, evaluators)
     front = Archive.empty(m)
@@ -256,7 +256,7 @@ def _payoff_front(problem: Problem, evaluators: list[Evaluator], run: Run) -> _F
 
 
 def scalarised(problem: Problem, evaluators: list[Evaluator], run: Run, *, aims: Callable[[_Front], Aims]) -> Archive:
-    """Return the front by the forms of a method."""
+    """Return the front found with the forms of a method."""
     front = _payoff_front(problem, evaluators, run)
     return Archive.empty(len(problem.objectives)) if front is None else front.solve(*aims(front))
 

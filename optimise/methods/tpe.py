@@ -1,10 +1,10 @@
-"""TPE by Optuna: proposes where designs are likelier to be good than not, by densities fitted to what was evaluated.
+"""TPE by Optuna: proposes points that are probably good, by densities fitted to the evaluated designs.
 
     J. Bergstra, R. Bardenet, Y. Bengio, B. Kegl, "Algorithms for hyper-parameter optimization", NIPS 2011
     Y. Ozaki et al., "Multiobjective tree-structured Parzen estimator", JAIR 73, 2022
 
-Meant for models that take long: a proposal costs 20 to 100 ms, growing with the designs so far. The densities are over
-all coordinates together, since feasible regions lie aslant in the box.
+Intended for slow models: a proposal costs 20 to 100 ms, growing with the number of designs. The densities are over all
+coordinates together, since feasible regions lie obliquely in the box.
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ _BRANCH = "sheet"  # of the categorical parameter; samplers draw in the order of
 
 @contextmanager
 def silence_optuna() -> Iterator[None]:
-    """While entered, Optuna neither tells of every study nor warns that an operator may change in a later version."""
+    """Silence Optuna's reports of studies and its warnings about experimental operators within the context."""
     import optuna
 
     level = optuna.logging.get_verbosity()
@@ -42,7 +42,7 @@ def silence_optuna() -> Iterator[None]:
 
 
 def search_space(evaluators: list[Evaluator]) -> Space:
-    """Return Optuna's parameters: the coordinates of the unit box, and the branch where there are several."""
+    """Return Optuna's parameters: the coordinates of the unit box, and the branch if there are several."""
     from optuna.distributions import CategoricalDistribution, FloatDistribution
 
     dimension = max(evaluator.dimension for evaluator in evaluators)
@@ -62,9 +62,9 @@ def new_study(problem: Problem, sampler: BaseSampler) -> Study:
 def completed_trials(space: Space, points: Generation, mark: dict[str, Any]) -> list[FrozenTrial]:
     """Return evaluated points as completed trials, each with its constraint.
 
-    A trial without a constraint would count as feasible, and one whose objectives are NaN or infinite would be taken
-    as it is: so every trial has its violation, and only infeasible ones carry stand-ins for objectives, which no
-    selection compares. They are infinite, unless all are: NSGA-III scales by what is finite.
+    A trial without a constraint would count as feasible, and NaN or infinite objectives would be taken at face value.
+    So every trial has its violation, and only infeasible ones have substitute objectives, which no selection compares.
+    These are infinite, unless all are: NSGA-III scales by the finite ones.
     """
     from optuna.trial import create_trial
 

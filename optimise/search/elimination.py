@@ -76,7 +76,7 @@ class EliminationBranch:
     variant: int = 0
 
     def dimensions(self, u: Any) -> Any:
-        """Return designs (n, 3 + v) for points (n, k) of the unit box; NaN where no linkage meets the requirements.
+        """Return designs (n, 3 + v) for points (n, k) of the unit box; NaN where requirements cannot hold.
 
         Columns: crank, rod, offset, m, and extra variables, SI. Complex points give complex designs.
         """

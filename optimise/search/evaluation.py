@@ -1,4 +1,4 @@
-"""Objectives and constraints of a problem as functions of the free unknowns: quickly for many, exactly for few."""
+"""Objectives and constraints of a problem as functions of the free unknowns: fast for many, exact for few."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _CLEARANCE = 1e-9
 class Evaluator:
     """Evaluates one branch of a problem.
 
-    engine: where heavy batches are evaluated; it does not show in the results.
+    engine: engine for expensive batches; it does not affect the results.
     """
 
     def __init__(
@@ -42,7 +42,7 @@ class Evaluator:
     ) -> None:
         """Prepare the constraints that remain on the branch, cheapest first.
 
-        checkpoints: of the search that asks. Every evaluation raises `Cancelled` when that is to end.
+        checkpoints: checkpoints of the calling search. Every evaluation raises `Cancelled` when that must end.
         """
         self.checkpoints = checkpoints or Checkpoints()
         self.engine = engine or Serial()
@@ -70,14 +70,14 @@ class Evaluator:
         return Evaluator, (self.problem, self.branch)
 
     def quantity(self, name: str) -> Quantity:
-        """Return the quantity of a name; the problem is asked once for each."""
+        """Return the quantity with a name, looked up in the problem once."""
         quantity = self._quantities.get(name)
         if quantity is None:
             quantity = self._quantities[name] = self.problem.quantity(name)
         return quantity
 
     def _off_excluded_end(self, constraint: Constraint) -> Constraint:
-        """Return a constraint whose lower bound is moved off an excluded end of the domain; at 0 deg it locks."""
+        """Return a constraint with its lower bound moved off an excluded end of the domain; at 0 deg it locks."""
         domain = self.quantity(constraint.quantity).domain
         if domain is None or domain.idle or not domain.open or constraint.lower != domain.lower:
             return constraint
@@ -92,9 +92,8 @@ class Evaluator:
     def screen(self, u: Array, *, band: float = 0.0) -> tuple[Array, Array, Array]:
         """Return designs (n, 3 + v), minimised objectives (n, m) and violation (n,) of points of the unit box.
 
-        The violation is the greatest relative one, infinite where there is no linkage that turns fully; designs that
-        violate a constraint by more than `band` have NaN objectives. Peaks are screened
-        (see `model.signals.screening`).
+        The violation is the greatest relative one, infinite where no linkage rotates fully; designs that violate a
+        constraint by more than `band` have NaN objectives. Peaks are screened (see `model.signals.screening`).
         """
         dimensions = self.branch.dimensions(u)
         rows, values, violation = self.step(
@@ -109,7 +108,7 @@ class Evaluator:
         self.checkpoints.poll()
         violation = self._geometry_violation(dimensions)
         self.evaluations += len(dimensions)
-        # What is out of reach already needs no cycle computed.
+        # Designs already out of reach need no cycle computed.
         for slow in (False, True):
             constraints = [c for c in self.constraints if costly(self.quantity(c.quantity)) == slow]
             rows = np.flatnonzero(violation <= band + FEASIBLE if slow else np.isfinite(violation))
@@ -136,9 +135,9 @@ class Evaluator:
         )
 
     def _geometry_violation(self, dimensions: Array) -> Array:
-        """Greatest relative violation of the computed dimensions' ranges; inf where the linkage does not move as asked.
+        """Greatest relative violation of the computed dimensions' ranges; inf if the required motion is impossible.
 
-        As asked: it turns fully, or makes the swing of the problem, and friction does not lock it on the way.
+        Required motion: the linkage rotates fully, or makes the problem's swing, and friction does not lock it.
         """
         violation = np.zeros(len(dimensions))
         turns = running(self.mechanism, self.problem.motion, dimensions)
@@ -158,11 +157,11 @@ class Evaluator:
     # ---- exact: for the polish and the proof ---------------------------------------------------------------------
 
     def valid(self, u: Array) -> Mask:
-        """Return which points give a linkage that turns fully, or makes the swing of the problem."""
+        """Return which points give a linkage that rotates fully, or makes the swing of the problem."""
         return np.isfinite(self._geometry_violation(self.branch.dimensions(u)))
 
     def light_violation(self, u: Array) -> Array:
-        """Return the greatest violation (n,) of what needs no cycle computed, of points where `valid` holds."""
+        """Return the greatest violation (n,) of requirements that need no cycle, for points where `valid` holds."""
         dimensions = self.branch.dimensions(u)
         violation = self._geometry_violation(dimensions)
         for constraint in self.constraints:
@@ -173,9 +172,9 @@ class Evaluator:
         return violation
 
     def exact(self, u: Array, *, goals: bool = True) -> tuple[Rows, Rows]:
-        """Return objective rows, none if not asked for, and constraint rows of points where `valid` holds.
+        """Return objective rows, empty unless requested, and constraint rows of points where `valid` holds.
 
-        Gradients are by the coordinates of the unit box.
+        Gradients are with respect to the coordinates of the unit box.
         """
         self.checkpoints.poll()
         dimensions = self.branch.dimensions(u)
@@ -245,16 +244,16 @@ def _objective_rows(objective: Objective, pieces: Pieces) -> list[Pieces]:
 
 
 def _excess_pieces(pieces: Pieces, side: float, bound: float, scale: float = 1.0) -> Pieces:
-    """Return by how much pieces lie beyond a side of what is asked, relative."""
+    """Return the relative excess of pieces over one side of a requirement."""
     return Pieces(excess(pieces.values, side, bound, scale), side * pieces.gradients / scale, pieces.labels)
 
 
 def _binding_pieces(pieces: Pieces, side: float) -> Pieces:
     """Return the pieces that must stay low (side 1) or high (-1) for the quantity to do so.
 
-    To keep a least-of low it takes the lowest one, to keep a greatest-of high the highest: there the others do not tie
-    to hold it up. A quantity with kinks of both kinds has pieces for either. Peaks come highest first, closed forms in
-    any order.
+    A minimum of pieces stays low by its lowest piece alone, a maximum stays high by its highest: the other pieces do
+    not bind there. A quantity with kinks of both kinds has pieces for either side. Peaks come highest first, closed
+    forms in any order.
     """
     if pieces.opposite is not None and pieces.least == (side > 0.0):
         return pieces.opposite

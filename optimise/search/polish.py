@@ -276,7 +276,7 @@ class _Batch:
         self.open[lost] &= self.radius[lost] > _SHORTEST
 
     def _corrected(self, row: int, step: Array, goals: Rows, limits: Rows, chosen: tuple[int, ...]) -> Array:
-        """Return the step that also holds the rows from which the first one curves away; rows are those at its end."""
+        """Return the step that also holds rows from which the first one curves away; rows: those at its end."""
         goals, limits = [
             replace(present, values=bent(present, trial_rows, step))
             for present, trial_rows in ((alone(self.goals, row), goals), (alone(self.limits, row), limits))

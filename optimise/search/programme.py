@@ -72,7 +72,7 @@ def solve_step(
     violation: float,
     aim: Aim,
 ) -> Step:
-    """Return the step from u (k,) with the rows of one design; a zero step if the programme cannot be solved.
+    """Return the step from u (k,) with one design's rows; a zero step if the programme cannot be solved.
 
     root: transposed inverse of L with B = L L', see `roots`. violation: C.
 

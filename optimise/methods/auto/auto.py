@@ -1,4 +1,4 @@
-"""The default method, sampling, zooming and polish by SQP; and the delivery of what any method has found.
+"""The default method (sampling, zooming, polish by SQP), and the delivery of the designs from any method.
 
 The delivery polishes candidates, fills the gaps that they leave and chooses among them.
 """
@@ -52,9 +52,9 @@ _NEIGHBOURS = 2  # an objective, between which gaps are looked for
 
 
 def search_with(method: Method, problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront | None:
-    """Return the front that a method finds, None where nothing is feasible.
+    """Return the front that a method finds, None if nothing is feasible.
 
-    Combinations that leave nothing free are enumerated; the method searches the rest.
+    Combinations without free unknowns are enumerated; the method searches the rest.
     """
     enumerate_branches(problem, evaluators, run)
     free = searched_evaluators(evaluators)
@@ -63,7 +63,7 @@ def search_with(method: Method, problem: Problem, evaluators: list[Evaluator], r
 
 
 def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> ParetoFront | None:
-    """Return the front from the settled designs and those of an archive; None if none could be made feasible."""
+    """Return the front from the enumerated designs and those of an archive; None if none could be made feasible."""
     candidates, free = _start_candidates(problem, archive, run), searched_evaluators(evaluators)
     several = len(problem.objectives) > 1
     starts = []
@@ -90,9 +90,9 @@ def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run
 
 
 def deliver_unpolished(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> ParetoFront | None:
-    """Return the front from the designs of an archive as they are, moved no more than onto the constraints.
+    """Return the front from the designs of an archive without polish, only moved onto the constraints.
 
-    None if no design could be moved there. Designs that meet the constraints already are not touched.
+    None if no design could be moved there. Designs that already meet the constraints stay unchanged.
     """
     candidates = _start_candidates(problem, archive, run)
     several = len(problem.objectives) > 1
@@ -103,7 +103,7 @@ def deliver_unpolished(problem: Problem, evaluators: list[Evaluator], archive: A
 
 
 def _start_candidates(problem: Problem, archive: Archive, run: Run) -> FrontCandidates:
-    """Return the settled designs, which those of the archive are to join; the run has them too."""
+    """Return the enumerated designs, to be joined by those of the archive; the run has them too."""
     values = np.concatenate([archive.values, run.candidates.values])
     if len(problem.objectives) > 1:
         values = values[nondominated(values)]
@@ -112,7 +112,7 @@ def _start_candidates(problem: Problem, archive: Archive, run: Run) -> FrontCand
 
 
 def add_projected(candidates: FrontCandidates, chosen: Candidates, evaluators: list[Evaluator]) -> None:
-    """Add candidates as they are, those that violate constraints moved onto them."""
+    """Add candidates unchanged, except that those that violate constraints are moved onto them."""
     for index, u in chosen.by_branch(evaluators):
         valid = u[evaluators[index].valid(u)]
         candidates.add(index, projected(evaluators[index], valid, candidates.span))
@@ -123,7 +123,7 @@ def _candidate_count(problem: Problem) -> int:
 
 
 def _rows_to_polish(problem: Problem, group: Archive, evaluator: Evaluator, run: Run) -> Whole:
-    """Return the rows of designs whose polish is to become the front; a recorded step."""
+    """Return the rows of designs to polish for the front; a recorded step."""
     best, rows = np.argmin(group.values, axis=0), np.arange(len(group))
     if len(rows) > _POOL:
         rows = distinct(np.concatenate([np.linspace(0, len(rows) - 1, _POOL).astype(int), best]))
@@ -139,9 +139,9 @@ def _rows_to_polish(problem: Problem, group: Archive, evaluator: Evaluator, run:
 def _polish_extremes(evaluators: list[Evaluator], group: Archive, span: Array) -> Iterator[tuple[int, Polished | None]]:
     """Yield the extreme designs of the front by branch: best in one objective, then in the others.
 
-    Each begins from several designs that lead in the objective, and is improved in it alone, then in all with that one
-    held firmly. Where even so it loses what shows, the best in the objective alone is an end too. Held less firmly, it
-    moves to where the others gain much for little, if its slope vanishes at the end. None: on the way.
+    Each starts from several designs that lead in the objective, and is improved in it alone, then in all with that one
+    held firmly. If it still loses visibly, the best in the objective alone is an end too. Held less firmly, it would
+    move to where the others gain much for little, if its slope vanishes at the end. None: in progress.
     """
     parts: dict[int, list[tuple[int, Polished]]] = {}
     for column in range(len(span)):
@@ -176,10 +176,10 @@ def challengers(
     attempt: int,
     report: ReportProgress,
 ) -> list[tuple[int, Array]]:
-    """Return points by branch for further polish; none if the front is as good and full as asked.
+    """Return points by branch for further polish; none if the front is good and full enough.
 
-    First those that dominate a polished design. Then, where candidates are wanting, those that no polished design
-    dominates, and points half-way between neighbours. report: called many times a second.
+    First those that dominate a polished design. Then, if candidates are too few, those that no polished design
+    dominates, and midpoints between neighbours. report: called many times a second.
     """
     best = candidates[candidates.best(report)]
     front = best.values / best.span
@@ -203,7 +203,7 @@ def challengers(
 def _screen_fresh_points(
     problem: Problem, evaluators: list[Evaluator], archive: Archive, best: FrontCandidates, attempt: int
 ) -> None:
-    """Screen points everywhere, and the polished designs, what is around them, and all that on other branches."""
+    """Screen points everywhere, the polished designs, points around them, and all these on other branches."""
     seed, k = problem.settings.seed, len(evaluators)
     random = generator(seed, 2000, attempt)
     everywhere = samples_per_branch(problem.settings.samples or FIRST, evaluators)
@@ -220,7 +220,7 @@ def _screen_fresh_points(
 
 
 def _compare_with_front(screened: Array, front: Array) -> tuple[Mask, Mask]:
-    """Return which screened designs dominate one of the front, and which none of the front dominates."""
+    """Return which screened designs dominate one of the front, and which are dominated by none of it."""
     undominated = np.zeros(len(front) + len(screened), dtype=bool)
     undominated[nondominated(np.concatenate([front, screened]))] = True
     return dominating(screened, front, clearly=_CLEAR, slightly=_GAIN), undominated[len(front) :]
@@ -255,7 +255,7 @@ def _gap_middles(evaluators: list[Evaluator], best: FrontCandidates, count: int)
 
 
 def auto(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the archive of what sampling and zooming find, which the polish starts from."""
+    """Return the archive of designs from sampling and zooming, from which the polish starts."""
     run.rounds = (
         len(run.round_reports) + 1 + len(WIDTHS) + -(-_candidate_count(problem) // BATCH)
     )  # if nothing needs filling

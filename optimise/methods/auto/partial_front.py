@@ -1,4 +1,4 @@
-"""The front so far of a search that was told to end, delivered within a moment."""
+"""The front so far of a cancelled search, delivered within a moment."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ _MOST = 1000  # designs: to choose among more would take longer
 
 
 def partial_front(problem: Problem, evaluators: list[Evaluator], run: Run, *, silent: bool = False) -> ParetoFront:
-    """Return the front of what a search has polished, else of what it has found, moved onto the constraints.
+    """Return the front of the polished designs of a search, else of those found, moved onto the constraints.
 
-    Where that or the quantities of all designs would take longer than a moment, it has fewer of them, evenly spread;
-    none where functions of the job's own do not return in that time. silent: they did not when the search was told to
-    end, and are not asked again.
+    If that or the quantities of all designs would take longer than a moment, it has fewer designs, evenly spread; none
+    if custom functions do not return in that time. silent: whether they did not return upon cancellation, and must not
+    be called again.
     """
     begin = time.perf_counter() if run.checkpoints.ended is None else run.checkpoints.ended
     run.checkpoints.close()
@@ -69,7 +69,7 @@ def _front(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFro
 
 def _add_archive(problem: Problem, evaluators: list[Evaluator], archive: Archive, candidates: FrontCandidates) -> None:
     """Add designs of an archive, moved onto the constraints."""
-    # What needs no move comes first.
+    # Designs that need no move come first.
     first, *rest = (group[_spread(group.values, problem.settings.designs)] for group in archive.groups())
     chosen = first.join(*rest)
     end = time.perf_counter() + _PROJECTING
@@ -82,7 +82,7 @@ def _add_archive(problem: Problem, evaluators: list[Evaluator], archive: Archive
 
 
 def _rows_in_time(problem: Problem, evaluators: list[Evaluator], candidates: FrontCandidates, rows: Whole) -> Whole:
-    """Return those rows whose quantities are had within a moment, all of them as a rule."""
+    """Return the rows whose quantities can be computed within a moment, usually all of them."""
     count = _TRIED if any(map(runs_own, problem.own)) else 1
     seconds_per_design, end = 1e-9, time.perf_counter() + 0.5 * _ANALYSING
     while count <= _TRIED and count < len(rows) and (begin := time.perf_counter()) < end:

@@ -13,12 +13,12 @@ and corrected to second order before it is refused (Conn, Gould and Toint, "Trus
 quadratically; where fewer do, the curvature of the Lagrangian, by differences of exact gradients with the multipliers
 of the step before, keeps them fast.
 
-What proves the optimum are the multipliers of the last programme: weights of the pieces that add up to one and prices
-of the constraints, for which
+The multipliers of the last programme prove the optimum: weights of the pieces that add up to one, and prices of the
+constraints, for which
 
     sum_p lambda_p grad f_p + sum_j mu_j grad c_j + bounds = 0,   lambda_p (max f - f_p) = 0,   mu_j c_j = 0
 
-to the residual (Karush-Kuhn-Tucker). The proof is local; that no other valley is deeper rests on the starts.
+to the residual (Karush-Kuhn-Tucker). The proof is local; only the starts can show that no other valley is deeper.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ _LAST = 4096  # samples for the starts where none is feasible
 
 
 def minimax(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the optima that the descents ended in, each a local one."""
+    """Return the local optima at which the descents ended."""
     screened = explore(_limit_samples(problem), evaluators, run)
     scale, begin = starts(problem, evaluators, screened)
     run.rounds = len(run.round_reports) + len(begin)
@@ -60,7 +60,7 @@ def minimax(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 
 
 def _descend(evaluator: Evaluator, descent: Descent, u: Array) -> tuple[Array, float, float]:
-    """Return where the descent from a point ends, with its greatest piece and its violation; a recorded step."""
+    """Return the end of the descent from a point, with its greatest piece and its violation; a recorded step."""
 
     def compute() -> tuple[Array, Array]:
         point = descent.run(u)
@@ -83,7 +83,7 @@ def _limit_samples(problem: Problem) -> Problem:
 def starts(problem: Problem, evaluators: list[Evaluator], archive: Archive) -> tuple[float, list[tuple[int, Array]]]:
     """Return the objective's scale, and branch and point of the designs to start from.
 
-    They are the best designs of an archive that are apart, or where it is empty what violates least.
+    They are the best distinct designs of an archive, or the least violating points if it is empty.
     """
     rows = distant_rows(archive.values[:, 0], archive.u, archive.branch, STARTS)
     begin = [(int(archive.branch[row]), archive.u[row]) for row in rows]
@@ -110,7 +110,7 @@ def _scale(problem: Problem, values: Array) -> float:
 
 
 def _least_violating_points(evaluators: list[Evaluator]) -> list[tuple[int, Array]]:
-    """Return branches and points that violate the constraints least, where no sample comes near to meeting them."""
+    """Return branches and points that violate the constraints least, if no sample comes near to meeting them."""
     ranked: list[tuple[float, int, Array]] = []
     for index, evaluator in enumerate(evaluators):
         u = first_samples(_LAST, evaluator.dimension, evaluator.problem.settings.seed, 400 + index)

@@ -25,7 +25,7 @@ _CURVATURE = 1e-8  # least eigenvalue of the programme's curvature
 
 @dataclass
 class Point:
-    """A design on its way: where it is, its rows, and the last programme there.
+    """A design during a descent: its position, its rows, and the last programme there.
 
     u: (k,). goals: pieces of the objective, scaled. limits: constraint rows. step: its multipliers. residual: see
     `residual_of`.
@@ -60,7 +60,7 @@ class Descent:
         self._programmes: dict[tuple[int, int, int], Subproblem] = {}
 
     def run(self, start: Array) -> Point:
-        """Return where the descent from a point (k,) of the unit box, valid, ends."""
+        """Return the end of the descent from a valid point (k,) of the unit box."""
         point = self._point_at(np.clip(start, 0.0, 1.0))
         radius, weight = _RADIUS, _WEIGHT
         root = np.zeros((len(start), len(start)))
@@ -113,7 +113,7 @@ class Descent:
         )
 
     def _programme(self, point: Point, root: Array, radius: float, weight: float) -> tuple[Step | None, float]:
-        """Return the step, and the penalty that its multipliers ask for: an exact one exceeds their sum."""
+        """Return the step, and the penalty that its multipliers require: an exact one exceeds their sum."""
         while True:
             step = self._solve(point, point.goals.values, point.limits.values, root, radius, weight)
             if step is None or step.limits.sum() < 0.9 * weight or weight >= _HEAVIEST:
@@ -124,7 +124,7 @@ class Descent:
             weight *= 10.0
 
     def _try(self, point: Point, step: Step, root: Array, weight: float) -> tuple[float, Point | None]:
-        """Return actual over predicted decrease, and the design at the end of a step; None where nothing turns."""
+        """Return actual over predicted decrease, and the design after a step; None if it cannot rotate fully."""
         predicted = weight * (point.violation - step.slack) - step.top - 0.5 * float(np.sum((root @ step.move) ** 2))
         u = np.clip(point.u + step.move, 0.0, 1.0)
         if not self.evaluator.valid(u[None])[0]:
@@ -139,7 +139,7 @@ class Descent:
     def _corrected(
         self, point: Point, trial: Point | None, step: Step, root: Array, radius: float, weight: float
     ) -> tuple[float, Point | None] | None:
-        """Return the same for the step that also follows how the rows bend along it."""
+        """Return the same for the step corrected for the curvature of the rows along it."""
         if trial is None:
             return None
         goals, limits = (
@@ -153,7 +153,7 @@ class Descent:
         return self._try(point, replace(step, move=corrected.move), root, weight)
 
     def _root(self, point: Point, step: Step) -> Array:
-        """Return R with R'R the Lagrangian's Hessian, convexified along what holds the step."""
+        """Return R with R'R the Lagrangian's Hessian, convexified along the active rows."""
         k = len(point.u)
         moves = np.where(point.u < 0.5, _DIFFERENCE, -_DIFFERENCE)
         moved = point.u + np.diag(moves)
@@ -167,7 +167,7 @@ class Descent:
 
 
 def residual_of(point: Point, step: Step) -> float:
-    """Return norm of what the multipliers leave of the gradients, plus complementarity gap, plus violation."""
+    """Return the norm of the Lagrangian's gradient, plus complementarity gap, plus violation."""
     left = (
         step.goals @ np.where(step.goals[:, None] > 0.0, point.goals.gradients, 0.0)
         + step.limits @ np.where(step.limits[:, None] > 0.0, point.limits.gradients, 0.0)
@@ -185,7 +185,7 @@ def residual_of(point: Point, step: Step) -> float:
 
 
 def _normals(point: Point, step: Step, least: float = 1e-6) -> Array:
-    """Return gradients of what holds a step: limits, bounds, and ties of pieces as differences."""
+    """Return gradients of the rows active in a step: limits, bounds, and ties of pieces as differences."""
     tied = point.goals.gradients[step.goals > least]
     edge = np.eye(len(point.u))
     return np.concatenate(
@@ -198,7 +198,7 @@ def _normals(point: Point, step: Step, least: float = 1e-6) -> Array:
 
 
 def _convex_root(hessian: Array, normals: Array) -> Array:
-    """Return R: curvature across what holds the step is added first, which its length there makes harmless."""
+    """Return R: curvature across the active rows is added first; it is harmless, as the step has no length there."""
     if not np.isfinite(hessian).all():
         return np.zeros_like(hessian)
     size = float(np.abs(hessian).max())

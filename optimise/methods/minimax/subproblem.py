@@ -1,4 +1,4 @@
-"""The convex programme of one minimax step, stated once and solved again and again with other numbers.
+"""The convex programme of one minimax step, stated once and solved repeatedly with other numbers.
 
 With objective pieces p (the present greatest is zero) of gradient g, constraint rows c <= 0 of gradient a, unit-box
 point u, a step solves
@@ -46,7 +46,7 @@ class Step:
 
 
 class Subproblem:
-    """The programme for k unknowns, p pieces and q constraint rows; stating it costs a hundred times a solution."""
+    """The programme for k unknowns, p pieces and q constraint rows; stating it costs a hundred solutions."""
 
     def __init__(self, k: int, p: int, q: int) -> None:
         cp = required("cvxpy", "minimax searches need")
@@ -75,7 +75,7 @@ class Subproblem:
         high: Array,
         weight: float,
     ) -> Step | None:
-        """Return the step for values and gradients of pieces and constraints; None where the solver gives up."""
+        """Return the step for values and gradients of pieces and constraints; None if the solver fails."""
         cp = required("cvxpy", "minimax searches need")
 
         (pieces, slopes), (rows, normals) = _neutralise_absent(*goals), _neutralise_absent(*limits)
@@ -114,15 +114,15 @@ class Subproblem:
 
 
 def _neutralise_absent(values: Array, slopes: Array) -> tuple[Array, Array]:
-    """Return rows with those that are absent, or too far below to count, made harmless."""
+    """Return rows with absent ones, and those too low to count, neutralised."""
     is_present = values > _ABSENT
     return np.where(is_present, values, _ABSENT), np.where(is_present[:, None], slopes, 0.0)
 
 
 def _refine_step(step: Step, goals: tuple[Array, Array], limits: tuple[Array, Array], low: Array, high: Array) -> Step:
-    """Return the step moved the shortest way to where the rows that hold it hold exactly.
+    """Return the step moved by the shortest way to where its active rows hold exactly.
 
-    An interior-point method stops short of them by its tolerance, which a violation would keep for ever.
+    An interior-point method stops short of them by its tolerance, which would remain as a permanent violation.
     """
     (pieces, slopes), (rows, normals) = goals, limits
     k = len(step.move)
