@@ -16,5 +16,5 @@ _SCRIPT = (
 
 def faults(page: Page) -> dict[str, list[str]]:
     """Faults: "wider" than the window; text "clipped" or "over" another; "small" targets; "tiny" or "huge" labels."""
-    found: dict[str, list[str]] = page.evaluate(f"(least) => {{ {_SCRIPT} return parseQuantity(least); }}", LEAST_TARGET)
+    found: dict[str, list[str]] = page.evaluate(f"(least) => {{ {_SCRIPT} return findFaults(least); }}", LEAST_TARGET)
     return found

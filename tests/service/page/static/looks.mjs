@@ -4,7 +4,7 @@
 const [WIDE, LEAST_TEXT, MOST_TEXT] = [1280, 12, 20]; // px: of the window, from where on texts in pictures have the least size
 
 /** Return the faults by their kind. least: of what is clicked, px. */
-export function parseQuantity(least) {
+export function findFaults(least) {
   const seen = (node) =>
     node.checkVisibility({ checkOpacity: true, checkVisibilityCSS: true }) &&
     !node.closest(".hidden, .skip, #notices");
