@@ -97,7 +97,7 @@ def test_the_table_of_extras_has_each_one_for_users(root: Path) -> None:
     listed = {name.strip("`") for name in listed}
     (every,) = project["optional-dependencies"]["all"]
     named = set(every.partition("[")[2].rstrip("]").split(","))
-    assert {*named, "all"} == {name for name in listed if name in project["optional-dependencies"]}
+    assert {*named, "all", "notebook"} == {name for name in listed if name in project["optional-dependencies"]}
 
 
 @pytest.mark.slow
