@@ -61,7 +61,7 @@ def test_words_of_a_wish_and_of_classes(kept: Path, command: Command) -> None:
     ("number", "wishes", "code", "words"),
     [
         ([], ["time_ratio"], 2, '--at must be OBJECTIVE=VALUE or OBJECTIVE=CLASS; got "time_ratio"'),
-        ([], ["time_ratio=1.2", "time_ratio=1.3"], 2, "--at gives each name once; got time_ratio twice"),
+        ([], ["time_ratio=1.2", "time_ratio=1.3"], 2, "--at may give each name only once; got time_ratio twice"),
         ([], ["transmission_angle=45"], 2, 'must be an angle with its unit; got "45"'),
         ([], ["time_ratio=nan"], 2, "must be a finite number"),
         ([], ["crank=40 mm"], 2, "one of the objectives time_ratio, transmission_angle; got 'crank'"),

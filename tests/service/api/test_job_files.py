@@ -168,5 +168,5 @@ def test_check_says_of_each_load_what_it_does_and_warns_of_one_that_pushes_with_
     assert f"load #1 ({sentence})" in said
     helps = {"force": "350 N", "helps": "outward stroke", "over": "last 60 mm"}
     stated = shared.post("/check", json={"job": job | {"load": [helps]}}).json()
-    assert stated["loads"] == [sentence.replace("constant", "zero")]
+    assert stated["loads"] == [sentence.replace("constant beyond, hence everywhere", "zero beyond")]
     assert stated["warnings"] == before["warnings"]
