@@ -33,7 +33,7 @@ def valueless(part: Problem, designs: Array) -> str:
         )
         why = f": {quantity.blank}" if quantity.blank else ""
         count = counted(len(designs), "design")
-    return f"{quantity.title} has no value for any of {count} within the ranges{why}; {remedy}"
+        return f"{quantity.title} has no value for any of {count} within the ranges{why}; {remedy}"
     return ""
 
 

@@ -127,10 +127,9 @@ def _pins(job: Job) -> list[str]:
             path in option.paths for part in job.choice for option in part.option
         )
         if varies or not math.isclose(2.0 * radius, diameter, rel_tol=1e-6):
+            how = "varies" if varies else f"is a diameter of {1e3 * diameter:.6g} mm"
             notes.append(
-                f"friction.{name}.radius: stays {1e3 * radius:.6g} mm, while {path} "
-                f"{'varies' if varies else f'is a diameter option {1e3 * diameter:.6g} mm'}; leave the radius out, "
-                "and it "
-                "is half of that"
+                f"friction.{name}.radius: stays {1e3 * radius:.6g} mm, while {path} {how}; "
+                "leave the radius out, and it is half of that"
             )
     return notes

@@ -60,7 +60,7 @@ def test_the_volume_is_that_of_all_designs_so_far_in_the_box_of_the_first(seed: 
 def test_the_volume_never_falls_however_many_designs_tell(count: int, most: int | None) -> None:
     random = np.random.default_rng(count)
     rounds = [np.abs(random.normal(0.0, 1.0 - 0.1 * k, (60, count))) + 0.05 * (9 - k) for k in range(9)]
-    told = volumes(rounds, most=most)
+    told = volumes(rounds, max_designs=most)
     assert all(one <= two for one, two in itertools.pairwise(told))
     assert told[0] < told[-1]
 
