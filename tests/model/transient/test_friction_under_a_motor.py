@@ -116,7 +116,7 @@ def test_acceleration_solves_the_nine_equations_of_the_bodies_and_the_motor() ->
             unknowns, way = solved(machine, design, theta, speed), linkage.at(theta, speed=speed)
             on_dead_centre = abs(float(way.slider_velocity[0])) < 1e-9 * abs(speed) * design[0]
             if on_dead_centre or abs(float(way.rod_velocity[0])) < 1e-9 * abs(speed):
-                continue  # rounding decides the sense of friction in the guide, or in the slider pin as the rod turns back
+                continue  # there rounding decides which way friction acts in the guide or in the slider pin
             assert found.acceleration[i] == pytest.approx(unknowns[9], abs=1e-9 * size)
             sides.add((unknowns[7] > 0.0, bool(way.slider_velocity[0] > 0.0), bool(way.rod_velocity[0] > 0.0)))
     assert len(sides) == 8  # every combination of signs occurred
