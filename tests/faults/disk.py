@@ -178,13 +178,25 @@ def _serve(verdict: Verdict, small: Disk) -> None:
             verdict.violate("lost", f"the job does not wait for the disk: {job['state']}, {job['reason']}")
         time.sleep(max(0.0, SAYS - (time.monotonic() - begin)))
         small.empty()
-        serving.until(lambda: serving.job(number)["state"] == "done", 120.0)
+        _until_done(serving, number)
         if serving.job(number)["state"] != "done":
             verdict.violate("lost", f"the job did not go on: {serving.job(number)}")
         if serving.ready().status_code != 200:
             verdict.violate("late", f"ready still says {serving.ready().text}")
     serving.judge(verdict)
     left_over(verdict, serving)
+
+
+def _until_done(serving: Serving, number: int) -> None:
+    """Wait until a job is done, or has made no progress for two minutes."""
+    records, end = -1, time.monotonic() + 120.0
+    while time.monotonic() < end:
+        job = serving.job(number)
+        if job["state"] == "done":
+            return
+        if job["records"] != records:
+            records, end = job["records"], time.monotonic() + 120.0
+        time.sleep(0.1)
 
 
 def _until(condition: Callable[[], Any], seconds: float) -> None:
