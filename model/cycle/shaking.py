@@ -49,9 +49,8 @@ def shaking_curves(
     """
     linkage = single(mechanism, linkage)
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
-    raw_vector(mechanism)  # rejects varying numbers
-    numbers, structure = inertial_inputs(one_turn(mechanism))
-    raw = numbers[:, None].copy()
+    _, structure = inertial_inputs(one_turn(mechanism))
+    raw = raw_vector(mechanism)[:, None]
     raw[:3, 0] = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     block = np.empty((DESIGN + LOAD_ROWS * len(structure.kind), 1))
     derive(raw, structure.kind, structure.datum, block)

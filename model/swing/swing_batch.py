@@ -92,7 +92,7 @@ class SwingBatch:
         self.stepped_ends = self.ends.stepped(self.columns, column) if slopes else self.plain_ends
         self.table = self.swing.table
         # Quantities that depend only on position are alike both ways: all laws but tables are symmetric in time.
-        alike = all(load.by_position or load.inertial for load in mechanism.loads)
+        alike = all(load.is_conservative for load in mechanism.loads)
         self.ways_differ = self.rubs or self.swing.law == "table" or not alike
 
     def states(self, designs: Any, share: Any, probe: Any, back: Any, slip: Any = 0.0, step: int | None = None) -> Any:

@@ -74,7 +74,7 @@ def _tells_signs_apart(part: Problem, branches: list[EliminationBranch]) -> bool
         return True
     if is_shaft(part.mechanism):
         return True
-    if not all(load.by_position or load.inertial for load in machine.loads):
+    if not all(load.is_conservative for load in machine.loads):
         return True  # a difference at some crank angles only would show in some designs only
     designs = np.concatenate([_random_designs(part, branch) for branch in branches])
     if not len(designs):

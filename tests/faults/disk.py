@@ -189,14 +189,17 @@ def _serve(verdict: Verdict, small: Disk) -> None:
 
 def _until_done(serving: Serving, number: int) -> None:
     """Wait until a job is done, or has made no progress for two minutes."""
-    records, end = -1, time.monotonic() + 120.0
-    while time.monotonic() < end:
+    records = -1
+
+    def has_moved() -> bool:
+        job = serving.job(number)
+        return bool(job["state"] == "done" or job["records"] > records)
+
+    while serving.until(has_moved, 120.0):
         job = serving.job(number)
         if job["state"] == "done":
             return
-        if job["records"] != records:
-            records, end = job["records"], time.monotonic() + 120.0
-        time.sleep(0.1)
+        records = job["records"]
 
 
 def _until(condition: Callable[[], Any], seconds: float) -> None:

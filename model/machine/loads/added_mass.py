@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -23,7 +22,6 @@ class AddedMass(Load):
     mass: float
 
     enters: ClassVar = Enters.ADDED_MASS
-    inertial: ClassVar = True
     sizes: ClassVar = ("mass",)
     slots: ClassVar = {"mass": (2, "kg")}
 
@@ -34,13 +32,9 @@ class AddedMass(Load):
         """Return the mass after factors of one."""
         return (1.0, 1.0, self.mass, 0.0)
 
-    def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
-        """Return nothing: the kinetic energy repeats."""
-        return {}
-
     @property
-    def resists(self) -> bool:
-        """True: it returns what it takes."""
+    def is_conservative(self) -> bool:
+        """True: the kinetic energy repeats."""
         return True
 
     @property

@@ -135,7 +135,7 @@ class Load:
     enters: see `Enters`. formula: force of position (m outward of the crank pivot), velocity (m/s outward), way (1
     while the slider moves outward, -1 inward) and the load's own two numbers; zero where both numbers are zero;
     `analytic`, without branches on its arguments. speed_power: power of the crank speed to which the formula is
-    proportional. inertial: whether it is a mass that moves with the slider. on_crank: whether it is a torque on the
+    proportional. on_crank: whether it is a torque on the
     crank. every_corner: whether its varying numbers must be valid at every combination of their bounds, not only all at
     the lower and all at the upper ones. sizes: fields that are all zero if the load is zero throughout; none for a load
     that never is. slots: place in the load's numbers and SI unit of each field that designs can vary. tables: its
@@ -145,7 +145,6 @@ class Load:
     enters: ClassVar[Enters]
     formula: ClassVar[Formula | None] = None
     speed_power: ClassVar[Literal[0, 1, 2]] = 0
-    inertial: ClassVar[bool] = False
     on_crank: ClassVar[bool] = False
     every_corner: ClassVar[bool] = False
     sizes: ClassVar[tuple[str, ...]] = ()
@@ -202,9 +201,14 @@ class Load:
         return name
 
     @property
-    def by_position(self) -> bool:
-        """Whether the force depends only on the slider's place."""
+    def is_conservative(self) -> bool:
+        """Whether it gives back over a cycle what it takes: a force by position alone, or a mass."""
         return False
+
+    @property
+    def inertial(self) -> bool:
+        """Whether it is a mass that moves with the slider."""
+        return self.enters is Enters.ADDED_MASS
 
     @property
     def by_stroke(self) -> bool:
@@ -217,7 +221,7 @@ class Load:
 
         moving: whether the crank turns; at rest, speed-dependent loads are zero.
         """
-        takes = not self.by_position and (moving or not self.speed_power)
+        takes = not self.is_conservative and (moving or not self.speed_power)
         return {type(self).__name__: (1.0,)} if takes else {}
 
     def stroke_work(self, passage: Passage) -> Any:
@@ -246,15 +250,15 @@ class Load:
     def resists(self) -> bool:
         """Whether it certainly does no net work on the machine over a cycle."""
         if self.push is None:
-            return self.by_position
+            return self.is_conservative
         outward, inward = self.push
-        return self.by_position or (max(outward) <= 0.0 and min(inward) >= 0.0)
+        return self.is_conservative or (max(outward) <= 0.0 and min(inward) >= 0.0)
 
     @property
     def effect(self) -> str:
         """Effect on the strokes, and whether the net work over a cycle is zero."""
         parts = [] if self.push is None else [effect_in_strokes(*self.push)]
-        return ", ".join([*parts, "no net work over a cycle"] if self.by_position and self.acts else parts)
+        return ", ".join([*parts, "no net work over a cycle"] if self.is_conservative and self.acts else parts)
 
     @property
     def range(self) -> str:

@@ -73,7 +73,7 @@ class PositionTable(Load):
         return has_step(self.positions)
 
     @property
-    def by_position(self) -> bool:
+    def is_conservative(self) -> bool:
         """Whether the force acts in both strokes."""
         return self.during == "cycle"
 

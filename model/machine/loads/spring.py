@@ -35,7 +35,7 @@ class Spring(Load):
         return (1.0, 1.0, self.stiffness, self.free_position)
 
     @property
-    def by_position(self) -> bool:
+    def is_conservative(self) -> bool:
         """True."""
         return True
 

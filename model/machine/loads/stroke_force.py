@@ -37,7 +37,7 @@ class StrokeForce(Load):
         return (self.outward, self.inward, 0.0, 0.0)
 
     @property
-    def by_position(self) -> bool:
+    def is_conservative(self) -> bool:
         """Whether the two strokes have one force."""
         return self.outward == self.inward
 
