@@ -30,8 +30,6 @@ from .call import Call, ToolAnswer, tables_of, text_of
 from .inputs import Design, Files, JobInput, TopicRequest
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from ...objectives.kinds import System
     from ..render.blocks import Block
     from .inputs import Machine
@@ -161,9 +159,8 @@ def _analyse_rotating(
     call: Call, machine: Machine, options: Mapping[str, dict[str, Any]], question: TopicRequest
 ) -> ToolAnswer:
     """Analyse a design that rotates fully. options: options of each topic."""
-    from ..designs.requirements import judge_rules
     from ..questions.analysis_text import show_analysis
-    from ..questions.design_analysis import analysis_of, judge_choices, quantities_of_design
+    from ..questions.design_analysis import analysis_of, judge_design, quantities_of_design
 
     row, undefined = quantities_of_design(machine.mechanism, machine.linkage, machine.problem.own)
     analysis = analysis_of(
@@ -176,16 +173,11 @@ def _analyse_rotating(
         lenient=ALL in question.topics,
         undefined=undefined,
     )
-    rules = judge_rules(machine.problem, row, question.units)
-    choices = judge_choices(machine.problem, machine.mechanism, machine.linkage, row, question.units)
-
-    def show(screen: Console) -> None:
-        show_analysis(screen, analysis, rules, question.units, choices=choices, custom=machine.problem.own)
-
-    text = text_of(show)
-    return ToolAnswer(
-        analysis.record(question.units, rules, choices), "\n".join((text, *analysis.notes, *analysis.refused))
+    judgement = judge_design(machine.problem, machine.mechanism, machine.linkage, row, question.units)
+    text = text_of(
+        lambda screen: show_analysis(screen, analysis, judgement, question.units, custom=machine.problem.own)
     )
+    return ToolAnswer(analysis.record(question.units, judgement), "\n".join((text, *analysis.notes, *analysis.refused)))
 
 
 def _analyse_by_command(name: str, machine: Machine, question: TopicRequest) -> ToolAnswer:

@@ -11,8 +11,7 @@ import typer
 
 from ...model.errors import InputError
 from ...objectives.kinds import System
-from ..designs.requirements import judge_rules
-from ..questions.design_analysis import analysis_of, judge_choices, quantities_of_design
+from ..questions.design_analysis import analysis_of, judge_design, quantities_of_design
 from ..questions.design_question import BoundQuestion
 from ..questions.discovery import ALL, INPUTS, TOPIC_OF_INPUT, TOPICS, chosen_topics
 from ..runs.result import Row, json_text
@@ -116,17 +115,16 @@ def analyse(
         )
     if files.cycle is not None:
         _write_cycle(mechanism, linkage, files.cycle, units, machine=problem is not None)
-    rules = [] if problem is None else judge_rules(problem, row, units)
-    choices = [] if problem is None else judge_choices(problem, mechanism, linkage, row, units)
+    judgement = None if problem is None else judge_design(problem, mechanism, linkage, row, units)
     if json:
-        print_output(json_text(analysis.record(units, None if problem is None else rules, choices)))
+        print_output(json_text(analysis.record(units, judgement)))
     else:
         from ..questions.analysis_text import show_analysis
 
         screen = console()
         hint = f"\nMore about this design with --show: {', '.join(TOPICS)}, or {ALL}."
         hint = "" if problem is None or topics else hint
-        show_analysis(screen, analysis, rules, units, choices=choices, custom=custom, hint=hint)
+        show_analysis(screen, analysis, judgement, units, custom=custom, hint=hint)
     for note in analysis.notes + (analysis.refused if ALL in (show or ()) else []):
         print_message(note)
     if files.figures is not None and not interruption.requested():

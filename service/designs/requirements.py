@@ -74,6 +74,17 @@ class JudgedChoice:
     missed: tuple[JudgedRule, ...]
 
 
+@dataclass(frozen=True, kw_only=True)
+class Judgement:
+    """A job judged at one design.
+
+    rules: its rules, without limits that come with a choice. choices: its combinations of choices.
+    """
+
+    rules: list[JudgedRule]
+    choices: list[JudgedChoice]
+
+
 def requirements_of(part: Problem) -> list[Requirement]:
     """Return the constraints of a problem without choices, with the default floors where it sets none."""
     from ...optimise.problem.violation import constraints_of
@@ -127,11 +138,6 @@ def judge_rules(problem: Problem, row: Row, system: System = "metric") -> list[J
     alternatives = zip(*lengths, strict=True)  # of several, where it is chosen
     ranges = [min(same_length, key=lambda rule: rule.missed_by(row) or 0.0) for same_length in alternatives]
     return [_judged(rule, row, system) for rule in (*ranges, *requirements_of(problem))]
-
-
-def missed_rules(part: Problem, row: Row, system: System = "metric") -> tuple[JudgedRule, ...]:
-    """Return the ranges and constraints of a problem without choices that a design's metric row does not meet."""
-    return tuple(rule for rule in judge_rules(part, row, system) if not rule.met)
 
 
 def _number(cell: Cell) -> float | None:

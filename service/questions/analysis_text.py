@@ -15,30 +15,30 @@ if TYPE_CHECKING:
 
     from ...objectives.kinds import System
     from ...objectives.quantity import Quantity
-    from ..designs.requirements import JudgedChoice, JudgedRule
+    from ..designs.requirements import Judgement
     from .design_analysis import Analysis
 
 
 def show_analysis(
     screen: Console,
     analysis: Analysis,
-    rules: Sequence[JudgedRule],
+    judgement: Judgement | None,
     units: System,
     *,
-    choices: Sequence[JudgedChoice] = (),
     custom: Sequence[Quantity] = (),
     hint: str = "",
 ) -> None:
     """Write all numbers of a design, its rules as met or missed, and its topics.
 
-    choices: choices of its job, judged at the design. custom: custom quantities of its job. hint: line before the
-    topics, "" for none.
+    judgement: its job, judged at the design; None without a job. custom: custom quantities of its job. hint: line
+    before the topics, "" for none.
     """
     row, reasons = analysis.row, (analysis.undefined or {}).items()
     show_design(screen, row_in({key: row[key] for key in row if key not in TOPIC_COLUMNS}, units), custom=custom)
     show_undefined(screen, {key: why for key, why in reasons if key not in TOPIC_COLUMNS}, custom)
     show_violated(screen, record_in(analysis.violated, units), row_in(row, units))
-    show_rules(screen, rules, choices)
+    if judgement is not None:
+        show_rules(screen, judgement)
     if hint:
         screen.print(hint, style="dim")
     for topic in analysis.topics:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
 from ..designs.display_units import record_in, row_in
-from ..designs.requirements import JudgedChoice, JudgedRule, missed_rules
+from ..designs.requirements import JudgedChoice, Judgement, judge_rules
 from ..designs.violations import violated_by
 from ..runs.result import Row, rows_of
 from .design_question import BoundQuestion
@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from ...objectives.quantity import Quantity
     from ...optimise.problem.problem import Problem
     from ..designs.stored_designs import StoredDesign
-
-
-_MOST_CHOICES = 256
 
 
 @dataclass(frozen=True)
@@ -44,39 +41,37 @@ class Analysis:
     undefined: dict[str, str] | None = None
     violated: dict[str, float] = field(default_factory=dict)
 
-    def record(
-        self,
-        units: System = "metric",
-        rules: Sequence[JudgedRule] | None = None,
-        choices: Sequence[JudgedChoice] = (),
-    ) -> dict[str, Any]:
+    def record(self, units: System = "metric", judgement: Judgement | None = None) -> dict[str, Any]:
         """Return all numbers of the design and of its topics, for JSON, with undefined and violated quantities.
 
-        rules: rules of its job at the design; None without a job. choices: choices of its job, judged at the design.
+        judgement: its job, judged at the design; None without a job.
         """
         topics = {topic.name: topic.numbers_in(self.topic_numbers[topic.name], units) for topic in self.topics}
         undefined = {} if self.undefined is None else {"undefined": record_in(self.undefined, units)}
-        judged = {} if rules is None else {"rules": [asdict(rule) for rule in rules]}
-        judged |= {"choices": [asdict(choice) for choice in choices]} if choices else {}
+        judged: dict[str, Any] = {}
+        if judgement is not None:
+            judged["rules"] = [asdict(rule) for rule in judgement.rules]
+            if judgement.choices:
+                judged["choices"] = [asdict(choice) for choice in judgement.choices]
         return row_in(self.row, units) | topics | undefined | {"violated": record_in(self.violated, units)} | judged
 
 
-def judge_choices(
+def judge_design(
     problem: Problem, mechanism: Mechanism, linkage: Linkage, row: Row, system: System = "metric"
-) -> list[JudgedChoice]:
-    """Return every combination of a job's choices with the rules that a design misses with it.
+) -> Judgement:
+    """Return a job judged at a design, with each combination of its choices.
 
-    mechanism: mechanism of the design without a choice. row: its quantities. Empty for a job without choices, or with
-    more than 256 combinations.
+    mechanism: mechanism of the design without a choice. row: its quantities.
     """
-    judged = []
-    for index, variant in enumerate(problem.variants if len(problem.variants) <= _MOST_CHOICES else ()):
+    choices = []
+    for index, variant in enumerate(problem.variants):
         part = problem.part(index)
         machine, quantities = replace(part.mechanism.nominal, speed=mechanism.speed), row
         if machine != mechanism:
             quantities, _ = quantities_of_design(machine, linkage, part.own)
-        judged.append(JudgedChoice(labels=variant.labels, missed=missed_rules(part, quantities, system)))
-    return judged
+        missed = tuple(rule for rule in judge_rules(part, quantities, system) if not rule.met)
+        choices.append(JudgedChoice(labels=variant.labels, missed=missed))
+    return Judgement(rules=judge_rules(problem, row, system), choices=choices)
 
 
 def quantities_of_design(

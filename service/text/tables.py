@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from ...objectives.quantity import Quantity
-    from ..designs.requirements import JudgedChoice, JudgedRule
+    from ..designs.requirements import JudgedRule, Judgement
 
 ROWS = 15
 """Designs shown of a front unless asked otherwise."""
@@ -212,26 +212,25 @@ def show_violated(screen: Console, violated: Mapping[str, float], row: Row) -> N
         screen.print(f"Beyond the allowable value: {sentence}.", style="bold yellow", soft_wrap=True)
 
 
-def show_rules(screen: Console, rules: Sequence[JudgedRule], choices: Sequence[JudgedChoice] = ()) -> None:
+def show_rules(screen: Console, judgement: Judgement) -> None:
     """Print whether a design meets each requirement of its job, and with which choices; missed ones come first."""
+    rules, choices = judgement.rules, judgement.choices
     if not rules:
         return
     broken = [rule for rule in rules if not rule.met]
     fitting = [" and ".join(choice.labels) for choice in choices if not choice.missed]
     screen.print()
-    if not broken and not choices:
-        screen.print("It meets every range and requirement of the job.", soft_wrap=True)
-    elif not broken and fitting:
-        shown, more = fitting[:_CHOICES], len(fitting) - _CHOICES
-        listed = ", ".join(shown) + (f" and {more} more" if more > 0 else "")
-        screen.print(
-            f"It meets every range and requirement of the job with {len(fitting)} of {len(choices)} choices: {listed}.",
-            soft_wrap=True,
-        )
-    elif not broken:
+    if not broken and choices and not fitting:
         nearest = min(choices, key=lambda choice: len(choice.missed))
         screen.print(f"No choice of the job fits; with {' and '.join(nearest.labels)}:", style="bold")
         broken = list(nearest.missed)
+    elif not broken:
+        judged = ""
+        if choices:
+            more = len(fitting) - _CHOICES
+            listed = ", ".join(fitting[:_CHOICES]) + (f" and {more} more" if more > 0 else "")
+            judged = f" with {len(fitting)} of {len(choices)} choices: {listed}"
+        screen.print(f"It meets every range and requirement of the job{judged}.", soft_wrap=True)
     for rule in broken:
         value = "has no value" if rule.value is None else f"is {_format_value(rule.value, rule)}"
         miss = "" if rule.missed_by is None else f", by {_format_value(rule.missed_by, rule)}"
