@@ -71,6 +71,10 @@ class Kind:
         """The SI unit as a display unit."""
         return quotient_unit(self.unit) if "_per_" in self.metric.suffix else display_unit(self.unit)
 
+    def is_plausible(self, number: float) -> bool:
+        """Return whether a number without a unit has a credible size in SI."""
+        return self.believed is None or self.believed[0] <= abs(number) < self.believed[1]
+
     def display_unit(self, system: System) -> DisplayUnit:
         """Return its display unit in a system."""
         return self.metric if system == "metric" or self.inch is None else self.inch

@@ -67,15 +67,23 @@ def given_designs(designs: object, names: Sequence[str]) -> Array:
 def warn_of_lengths(owner: object, designs: Array, greatest: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
     """Warn about designs (..., 3 + k) with lengths beyond any machine, which are in mm rather than in m.
 
-    Warns once for each machine or problem `owner`, attributed to the caller's caller. greatest: intended crank, rod and
-    offset, m, whatever their size.
+    Warns once for each machine or problem `owner`, attributed to the caller's caller, also where others were warned
+    about on the same line. greatest: intended crank, rod and offset, m, whatever their size.
     """
     if _WARNED in vars(owner):
         return
     doubt = in_both_units((designs[..., place] for place in range(3)), (max(LONGEST, size) for size in greatest))
     if doubt is not None:
         vars(owner)[_WARNED] = True
-        warnings.warn(f"lengths of designs are in m: {doubt}", InputWarning, stacklevel=3)
+        user = sys._getframe(2)
+        # Without a registry of the module, Python's default filter shows the sentence again for the next owner.
+        warnings.warn_explicit(
+            f"lengths of designs must be in m: {doubt}",
+            InputWarning,
+            user.f_code.co_filename,
+            user.f_lineno,
+            user.f_globals.get("__name__"),
+        )
 
 
 def countable(designs: Array) -> Mask:

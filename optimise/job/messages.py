@@ -10,7 +10,8 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from ...objectives.registry import FACTS
-from ...objectives.units import closest, quote, spread
+from ...objectives.units import closest, quote
+from .suggested_bounds import suggested_bounds
 
 _MOST_KEYS = 20  # that are told where none is near
 
@@ -215,13 +216,14 @@ def sentence_of(details: ErrorDetails, schema: Schema) -> str:
         return f"{rule_of(details)}; {value_text}; shorten it"
     if kind in ("too_short", "too_long"):
         return f"{rule_of(details)}; got {len(value)}{write}"
-    if rule_of(details) == _TABLE and isinstance(value, str | float | int) and "equals" in _properties(schema, path):
+    is_value = isinstance(value, str | float | int) and not isinstance(value, bool)
+    if rule_of(details) == _TABLE and is_value and "equals" in _properties(schema, path):
         if value in _WISHES:
             return f"{quote(value)} belongs below [objectives]; got it below [{path[0]}]; move it there"
-        bounds = ["equals"] if spread(value) else ["equals", "min", "max"]
-        first, *alternatives = (f"{{ {word} = {toml(value)} }}" for word in bounds)
+        fact = FACTS.get(str(path[-1]))
+        first, *alternatives = map(toml, suggested_bounds(value, fact and fact.kind))
         write = f"; write {key_of(path[-1:])} = {', '.join(filter(None, (first, ' or '.join(alternatives))))}"
-        return f"must be exact, a minimum or a maximum; {value_text}{write}"
+        return f"must be a table with equals, min or max; {value_text}{write}"
     return f"{rule_of(details)}; {value_text}{write}"
 
 

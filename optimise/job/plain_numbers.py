@@ -41,8 +41,7 @@ class PlainNumbers:
     def warning(self) -> str | None:
         """Warning for numbers of a size that is not believed, or beside others with a unit; None for others."""
         numbers = plain_in(self.value)
-        believed = self.kind.believed
-        doubtful = [n for n in numbers if believed is not None and not believed[0] <= abs(n) < believed[1]]
+        doubtful = [number for number in numbers if not self.kind.is_plausible(number)]
         mixed = any(isinstance(value, str) for value in values_in(self.value))
         if not doubtful and not mixed:
             return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -11,15 +12,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...model.errors import InputError
+from ...model.input_warning import both_readings, warn_user
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.single import single
+from ...model.linkage.values import numbers
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
 from ...model.swing.swing import Swing, require_swing
 from ...objectives.formula.quantity import FormulaQuantity
 from ...objectives.formula.resolve import resolve_quantities
-from ...objectives.kinds import unit_text
+from ...objectives.kinds import ANGLE, unit_text
 from ...objectives.quantity import Array, Quantity, Values
 from ...objectives.registry import QUANTITIES
 from ...objectives.tables.cycle_curves import cycle_curves, cycle_table, even_angles
@@ -137,9 +140,15 @@ class Analysis(Mapping[str, float]):
         deg); or crank angles (n,), rad. Columns carry their unit: crank_angle_rad, slider_position_m,
         slider_velocity_m_s, slider_acceleration_m_s2, slider_jerk_m_s3, rod_angle_rad, transmission_angle_rad,
         torque_Nm, power_W, load_N, the joint forces, position errors. See `cycle_curves`.
-        Raises `InputError` for a design that swings.
+        Warns with `InputWarning` of angles beyond two turns, which are probably in degrees. Raises `InputError` for a design that swings.
         """
         self._require_turning("a cycle")
+        for angle in () if isinstance(angles, int) else numbers(angles, "a crank angle").real.flat:
+            if math.isfinite(angle) and not ANGLE.is_plausible(angle):
+                usual = ANGLE.metric
+                doubt = both_readings("crank angle", angle, ANGLE.unit, usual.symbol, usual.factor)
+                warn_user(f"crank angles must be in rad: {doubt}")
+                break
         return cycle_table(self.mechanism, self.linkage, angles)
 
     def deviations(self, measured: Mapping[str, ArrayLike] | pd.DataFrame) -> pd.DataFrame:

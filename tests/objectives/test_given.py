@@ -97,7 +97,7 @@ def test_standard_forms_and_fronts_are_compared_without_a_question_of_truth() ->
     assert sc.standard_form(PROBLEM) != FORM
 
 
-@pytest.mark.filterwarnings("ignore:lengths of designs are in m")
+@pytest.mark.filterwarnings("ignore:lengths of designs must be in m")
 @pytest.mark.parametrize("size", [1e-300, 1e-160, 1e160, 1e300])
 def test_lengths_whose_powers_are_no_numbers_give_none(size: float) -> None:
     design = [size, 3.0 * size, 0.5 * size]

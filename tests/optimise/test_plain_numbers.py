@@ -71,6 +71,12 @@ def put(path: str, value: Any) -> dict[str, Any]:
             0.015,
             "tolerances.crank = 0.015 has no unit and is read as 0.015 m (15 mm); if you mean 0.015 mm, write",
         ),
+        (
+            "tolerances.crank_angle",
+            0.1,
+            "tolerances.crank_angle = 0.1 has no unit and is read as 0.1 rad (5.72958 deg); if you mean 0.1 deg, write "
+            '"0.1 deg", otherwise "0.1 rad"',
+        ),
         ("tolerances.crank_angle", 30, "tolerances.crank_angle = 30 has no unit and is read as 30 rad (1718.87 deg)"),
         (
             "constraints",
@@ -235,9 +241,32 @@ def test_designs_in_mm_are_warned_of_once_for_each_machine_and_problem(ask: str)
             call([40.0, 300.0, 20.0])
         call([41.0, 300.0, 20.0])
         assert [str(warning.message) for warning in found] == [
-            "lengths of designs are in m: crank 40 is 40 m = 40000 mm; write 0.04 for 40 mm"
+            "lengths of designs must be in m: crank 40 is 40 m = 40000 mm; write 0.04 for 40 mm"
         ]
         assert found[0].filename == __file__
+
+
+def test_designs_in_mm_are_warned_of_for_each_problem_on_one_line_under_the_default_filter() -> None:
+    problems = [sc.problem(PRESS | {"name": name}) for name in ("one", "two", "two")]
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("default")
+        for problem in (*problems, *problems):
+            problem.evaluate([40.0, 300.0, 20.0])
+    assert [(warning.category, warning.filename) for warning in found] == 3 * [(InputWarning, __file__)]
+
+
+def test_crank_angles_in_degrees_are_warned_of_and_two_turns_in_radians_are_not() -> None:
+    analysis = sc.problem(PRESS).analyse([0.04, 0.3, 0.02])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        analysis.cycle([0.0, math.pi, 4.0 * math.pi])
+        analysis.cycle(360)
+    with pytest.warns(InputWarning) as found:
+        analysis.cycle([0, 90, 180, 270])
+    assert [str(warning.message) for warning in found] == [
+        "crank angles must be in rad: crank angle 90 is 90 rad = 5156.62 deg; write 1.5708 for 90 deg"
+    ]
+    assert found[0].filename == __file__
 
 
 def test_lengths_within_ranges_with_units_never_warn() -> None:

@@ -37,7 +37,7 @@ def problem_of(of: str, branch: Branch, value: float, *, free: bool, rod: Range,
     )
 
 
-@pytest.mark.filterwarnings("ignore:lengths of designs are in m")  # some of the sheet's own designs are as long
+@pytest.mark.filterwarnings("ignore:lengths of designs must be in m")  # some of the sheet's own designs are as long
 @pytest.mark.parametrize("of", ["crank", "slider"])
 @pytest.mark.parametrize("free", [False, True])
 def test_equalities_of_a_swing_hold_to_rounding_and_miss_no_design(of: str, free: bool) -> None:

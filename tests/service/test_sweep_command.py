@@ -155,7 +155,14 @@ def test_unusual_sweeps_can_be_drawn(axes: list[Axis], of: list[str]) -> None:
     assert overlaps(figure) == []
 
 
-@pytest.mark.parametrize(("name", "said"), [("mechanism.slider.mass", "--set"), ("ofset", "did you mean offset?")])
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("mechanism.slider.mass", "--set"),
+        ("ofset", "did you mean offset?"),
+        ("rod_to_offset", "follows from these: sweep one of them, and compute rod_to_offset as a quantity"),
+    ],
+)
 def test_a_name_that_is_not_swept_is_what_is_wrong(name: str, said: str, command: Command, job: Path) -> None:
     done = command("sweep", job, "--over", f"{name}=1 kg..2 kg:3", "--of", "stroke")
     assert done.exit_code == 2

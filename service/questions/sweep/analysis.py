@@ -12,6 +12,7 @@ from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.keys import kind_of_key
 from ....objectives.kinds import ANGULAR_SPEED, LENGTH
+from ....objectives.registry import FACTS
 from ....objectives.tables.sweep import Axis, Parameter, sweep
 from ....objectives.units import closest
 from ...designs.display_units import rows_in
@@ -101,12 +102,12 @@ def parse_axis(text: str, word: str = "over") -> Axis:
     parameters, parameter = get_args(Parameter), text.partition("=")[0].strip()
     example = f'{word} "offset=0 mm..20 mm:5" or {word} "offset=0 mm, 10 mm, 20 mm"'
     if "=" in text and parameter and parameter not in parameters:
-        near = closest(parameter, parameters)
-        suggestion = f"; did you mean {near}?" if near else ""
-        raise InputError(
-            f"a sweep must be over one of {', '.join(parameters)}; got {parameter!r}{suggestion}; set other numbers of "
-            "a job with analyse --set, or let them vary in [variables]"
-        )
+        remedy = "set other numbers in the job or with analyse --set, or let them vary in [variables]"
+        if parameter in FACTS:
+            remedy = f"{parameter} follows from these: sweep one of them, and compute {parameter} as a quantity"
+        elif near := closest(parameter, parameters):
+            remedy = f"did you mean {near}?"
+        raise InputError(f"a sweep must be over one of {', '.join(parameters)}; got {parameter!r}; {remedy}")
     match, several = _FORM.fullmatch(text), _LIST.fullmatch(text)
     if match is None and (several is None or not several[2].strip()):
         raise InputError(
