@@ -18,8 +18,8 @@ _FORMS = {
 def suggested_bounds(value: str | float, kind: Kind | None) -> list[dict[str, Any]]:
     """Return the tables of bounds that a value may mean, the likeliest first.
 
-    A plain number gets the unit that its size suggests: 180 is "180 mm" as a stroke, and 0.18 is "0.18 m". kind: kind of
-    the quantity, None for an unknown one.
+    A plain number gets the unit that its size suggests: 180 is "180 mm" as a stroke, and 0.18 is "0.18 m". kind: that
+    of the quantity, None for an unknown one.
     """
     kind = kind or RATIO
     if isinstance(value, str):

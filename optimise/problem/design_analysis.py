@@ -140,7 +140,8 @@ class Analysis(Mapping[str, float]):
         deg); or crank angles (n,), rad. Columns carry their unit: crank_angle_rad, slider_position_m,
         slider_velocity_m_s, slider_acceleration_m_s2, slider_jerk_m_s3, rod_angle_rad, transmission_angle_rad,
         torque_Nm, power_W, load_N, the joint forces, position errors. See `cycle_curves`.
-        Warns with `InputWarning` of angles beyond two turns, which are probably in degrees. Raises `InputError` for a design that swings.
+        Warns with `InputWarning` of angles beyond two turns, which are probably in degrees. Raises `InputError` for a
+        design that swings.
         """
         self._require_turning("a cycle")
         for angle in () if isinstance(angles, int) else numbers(angles, "a crank angle").real.flat:

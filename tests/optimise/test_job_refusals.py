@@ -138,7 +138,7 @@ BAD: list[tuple[str, str, list[str]]] = [
         ],
     ),
     (STROKE, 'strok = { min = "280 mm" }', ["constraints.strok", "did you mean stroke?"]),
-    (STROKE, 'stroke = "280 mm"', ["constraints.stroke", "must be a table with equals, min or max", '"280 mm"', "min ="]),
+    (STROKE, 'stroke = "280 mm"', ["constraints.stroke: must be a table with equals, min or max", '"280 mm"', "min ="]),
     (STROKE, "stroke = 280", ['write stroke = { equals = "280 mm" }, { min = "280 mm" } or { max = "280 mm" }']),
     (STROKE, "stroke = 0.28", ['write stroke = { equals = "0.28 m" }, {']),
     (STROKE, 'stroke = ">= 60 mm"', ['got ">= 60 mm"; write stroke = { min = "60 mm" }']),
