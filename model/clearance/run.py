@@ -125,7 +125,14 @@ def simulate(
         raise InputError(f"tolerance must be from 1e-13 to 1e-3; got {tolerance:g}; 1e-7 is usual")
     began = time.perf_counter()
     linkage = single(mechanism, linkage)
-    integrator = _start(mechanism, linkage, clearance, tolerance)
+    # At the motion of the ideal linkage: zero gap and zero gap velocity.
+    integrator = Integrator(
+        *build(mechanism, linkage, clearance),
+        hysteresis=clearance.hysteresis,
+        slow_impact=clearance.slow_impact,
+        tolerance=tolerance,
+        state=np.zeros(7),
+    )
     period = 2.0 * math.pi / abs(mechanism.speed)
     # Fractions of a turn at which the crank passes the dead centres.
     turn, way = 2.0 * math.pi, math.copysign(1.0, mechanism.speed)
@@ -146,17 +153,6 @@ def simulate(
         if turns_made < cycles and cancelled is not None and cancelled():
             break
     return _collect(mechanism, linkage, clearance, integrator, turns_made, cycles, discard)
-
-
-def _start(mechanism: Mechanism, linkage: Linkage, clearance: Clearance, tolerance: float) -> Integrator:
-    """Return the integrator at the motion of the ideal linkage: zero gap and zero gap velocity."""
-    return Integrator(
-        *build(mechanism, linkage, clearance),
-        hysteresis=clearance.hysteresis,
-        slow_impact=clearance.slow_impact,
-        tolerance=tolerance,
-        state=np.zeros(7),
-    )
 
 
 def _outward(linkage: Linkage, speed: float, before: float, after: float) -> bool:

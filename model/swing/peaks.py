@@ -62,7 +62,8 @@ class _Curve:
         for way, pieces in enumerate(self.ways):
             design, piece = np.nonzero(pieces.live)
             low, high = pieces.cuts[design, piece], pieces.cuts[design, piece + 1]
-            parts.append((design, low + pieces.back, high + pieces.back, self._numbered(way, design, piece)))
+            number = (design * pieces.cuts.shape[1] + piece) * len(self.ways) + way
+            parts.append((design, low + pieces.back, high + pieces.back, number))
         row, low, high, cut = (np.concatenate(part) for part in zip(*parts, strict=True))
         order = np.lexsort((low, row))
         row, low, high, cut = row[order], low[order], high[order], cut[order]
@@ -95,9 +96,6 @@ class _Curve:
             design, cut = np.divmod(cuts[rows] // len(self.ways), pieces.cuts.shape[1])
             cut_rates[rows] = self.many.moved(pieces, design, cut, probe[rows] - pieces.back)
         return cut_rates
-
-    def _numbered(self, way: int, design: Whole, cut: Whole) -> Whole:
-        return np.asarray((design * self.ways[way].cuts.shape[1] + cut) * len(self.ways) + way)
 
 
 def swing_peaks(

@@ -177,7 +177,9 @@ def _meaning(text: str, spoken: Mapping[str, str], kinds: Mapping[str, Kind], un
         curve_name, unit = (stem if stem in spoken else None), bracketed[2].strip()
     else:
         curve_name = max((name for name in spoken if f"{stem}_".startswith(f"{name}_")), key=len, default=None)
-        unit = "" if curve_name is None else _text_after(curve_name, text).strip(" _,:/")
+        # Any characters may separate the words of the name; the rest is the unit.
+        pattern = "[^a-z0-9]*" + "[^a-z0-9]+".join((curve_name or "").split("_"))
+        unit = "" if curve_name is None else re.sub(pattern, "", text, count=1, flags=re.IGNORECASE).strip(" _,:/")
     if curve_name is None:
         return None
     kind = kinds[spoken[curve_name]]
@@ -216,11 +218,6 @@ def _factor(unit: str, kind: Kind) -> float | None:
 
 def _display_units(kind: Kind) -> list[DisplayUnit]:
     return [unit for unit in (kind.metric, DisplayUnit(kind.unit, ""), kind.inch) if unit is not None and unit.symbol]
-
-
-def _text_after(name: str, text: str) -> str:
-    """Return the rest of a text after a name; any characters may separate the words of the name."""
-    return re.sub("[^a-z0-9]*" + "[^a-z0-9]+".join(name.split("_")), "", text, count=1, flags=re.IGNORECASE)
 
 
 def _plain(text: str) -> str:

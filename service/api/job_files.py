@@ -113,13 +113,9 @@ class Understood(BaseModel):
 
 
 @router.get("/presets")
+@cache
 def list_presets() -> PresetList:
     """Give the shipped jobs, to start from."""
-    return _presets()
-
-
-@cache
-def _presets() -> PresetList:
     return PresetList(
         presets=[
             PresetModel(

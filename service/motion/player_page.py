@@ -37,6 +37,11 @@ def player_page(
     """
     play = turn_playback(mechanism, linkage) if swing is None else swing_playback(mechanism, linkage, swing)
     title = f"{name}, {design}" if design else name
+    readout = (
+        f'<div><dt>{escape(column.title)}</dt><dd><output data-curve="{escape(column.key)}"></output> '
+        f"<span>{escape(unit_text(column.unit))}</span></dd></div>"
+        for column in play.columns
+    )
     template = Template((_PLAYER / "player.html").read_text(encoding="utf-8"))
     page = template.substitute(
         title=escape(title),
@@ -47,7 +52,7 @@ def player_page(
         drawing=_drawing(play, title),
         strips="\n".join(_strip(column, play) for column in play.columns),
         degrees=360 * play.turns,
-        readout="\n".join(_row(column) for column in play.columns),
+        readout="\n".join(readout),
         control=play.words.control,
         times=play.words.times,
         over=play.words.span_name,
@@ -80,13 +85,6 @@ def _drawing(play: Playback, title: str) -> str:
         lines.append(group(layer, size).replace(f'id="{layer.name}"', f'id="{name}" class="part"', 1))
         lines += [*(line for shape in shapes for line in elements(shape)), "</g>"]
     return "\n".join([*lines, "</svg>"])
-
-
-def _row(column: CurveColumn) -> str:
-    return (
-        f'<div><dt>{escape(column.title)}</dt><dd><output data-curve="{escape(column.key)}"></output> '
-        f"<span>{escape(unit_text(column.unit))}</span></dd></div>"
-    )
 
 
 def _strip(column: CurveColumn, play: Playback) -> str:
