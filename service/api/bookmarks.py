@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from http import HTTPStatus
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Response
 from pydantic import BaseModel, Field
@@ -25,10 +25,6 @@ from .models import PLAIN_DIGITS, UnitsParameter
 from .problems import problem_responses
 from .settings import StoreDep
 from .stored_fronts import LONGEST, SHORTEST, FrontDep, StoredFront
-
-if TYPE_CHECKING:
-    from ..report.subject import Alternative
-    from ..store import Store
 
 router = APIRouter(route_class=QuickRoute, tags=["designs"], responses=problem_responses(409))
 
@@ -144,23 +140,6 @@ def export_bookmarks(stored_front: FrontDep, store: StoreDep, units: UnitsParame
         head |= {"note": bookmark.note, "reason": bookmark.reason, "outside_the_job": ", ".join(varied.outside)}
         rows.append(head | rows_in([varied.row], units)[0])
     return download(csv_text(rows, spreadsheet=True), "text/csv; charset=utf-8", f"{stored_front.result.run}-kept.csv")
-
-
-def alternatives_of(stored_front: StoredFront, store: Store) -> list[Alternative]:
-    """Return the bookmarked designs of a job for a report."""
-    from ..report.subject import Alternative
-
-    alternatives = []
-    for bookmark in bookmarks_of(store, stored_front.job.id):
-        varied = _varied(stored_front, _design(stored_front, bookmark))
-        words: dict[str, Any] = {
-            "name": bookmark.name,
-            "note": bookmark.note,
-            "decided": bookmark.decided,
-            "reason": bookmark.reason,
-        }
-        alternatives.append(Alternative(**words, row=varied.row, broken=varied.broken, outside=varied.outside))
-    return alternatives
 
 
 def _requested_design(stored_front: StoredFront, request: NewBookmark) -> StoredDesign:

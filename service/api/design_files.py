@@ -18,7 +18,6 @@ from ..drawings.svg import svg_file
 from ..runs.run_folder import slug
 from ..store import Store
 from ..store.bookmarks import bookmarks_of
-from .bookmarks import alternatives_of
 from .computing import LongRoute
 from .exports import SEALED, download, file_responses
 from .figures import require_figures
@@ -130,6 +129,7 @@ def export_cycle(request: RequestedDesignDep, units: UnitsParameter = "metric") 
 
 def _report(request: RequestedDesign, store: Store, units: System) -> Report:
     """Return the report of a design, with further data from the store."""
+    from ..report.alternatives import alternatives_of
     from ..report.design_report import design_report
     from ..report.subject import Subject
 
@@ -150,7 +150,7 @@ def _report(request: RequestedDesign, store: Store, units: System) -> Report:
         loaded_front=stored_front.front,
         changed=request.variation(),
         system=units,
-        alternatives=alternatives_of(stored_front, store),
+        alternatives=alternatives_of(bookmarks_of(store, job), stored_front.problem, stored_front.result),
     )
     return design_report(subject)
 

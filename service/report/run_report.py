@@ -13,6 +13,7 @@ from ..designs.measured_file import read_measured
 from ..designs.rotating_crank import require_rotating_crank
 from ..runs.result import Result
 from ..runs.stored_runs import problem_of
+from .alternatives import alternatives_of, bookmarks_of_run
 from .design_report import design_report
 from .subject import Subject
 
@@ -26,7 +27,9 @@ def run_report(
     """
     versions, certificate = _load_json(folder / "versions.json") or {}, _load_json(folder / "certificate.json")
     records: dict[str, Any] = {"versions": versions, "certificate": certificate, "system": units}
-    subject = Subject(problem_of(folder, result), result, number, run=folder.name, **records)
+    problem, bookmarks = problem_of(folder, result), bookmarks_of_run(folder)
+    alternatives = alternatives_of(bookmarks, problem, result)
+    subject = Subject(problem, result, number, run=folder.name, alternatives=alternatives, **records)
     if measured is not None:
         design = subject.design
         require_rotating_crank(design.part.motion, "a comparison with measured curves")

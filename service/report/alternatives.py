@@ -1,0 +1,49 @@
+"""Bookmarked designs of a run, one of them perhaps decided for, as reports list them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...optimise.problem.problem import Problem
+from ..designs.picking_options import minimised_values
+from ..designs.stored_designs import StoredDesign
+from ..designs.variation import variation_of
+from ..jobs.stores import has_store, open_store
+from ..runs.result import Result
+from .subject import Alternative
+
+if TYPE_CHECKING:
+    from ..store.bookmarks import Bookmark
+
+
+def alternatives_of(bookmarks: Iterable[Bookmark], problem: Problem, result: Result) -> list[Alternative]:
+    """Return the bookmarked designs of a job, each judged against its requirements and ranges."""
+    minimised, alternatives = minimised_values(result), []
+    for bookmark in bookmarks:
+        design = StoredDesign(problem.part(bookmark.variant), bookmark.dimensions, bookmark.variant)
+        varied = variation_of(design, result, minimised)
+        alternatives.append(
+            Alternative(
+                name=bookmark.name,
+                note=bookmark.note,
+                decided=bookmark.decided,
+                reason=bookmark.reason,
+                row=varied.row,
+                broken=varied.broken,
+                outside=varied.outside,
+            )
+        )
+    return alternatives
+
+
+def bookmarks_of_run(folder: Path) -> list[Bookmark]:
+    """Return the bookmarks of a run on the disk, from the store that solved it; none without such a store."""
+    if not has_store(None, folder.parent):
+        return []
+    from ..store.bookmarks import bookmarks_of
+
+    with open_store(None, folder.parent) as store:
+        job = store.find(folder.name)
+        return [] if job is None else bookmarks_of(store, job.id)

@@ -1,0 +1,39 @@
+"""The decision in the report of a run on the disk, taken on the page or over the API."""
+
+from __future__ import annotations
+
+import re
+from html import unescape
+from pathlib import Path
+
+from slidercrank.service.store import Store
+from slidercrank.service.store.backup import back_up
+from slidercrank.service.store.bookmarks import change_kept, keep_design
+from tests.service.api.fixed_front import Solved
+from tests.service.conftest import Command
+
+
+def test_the_report_of_a_command_has_the_decision_of_the_store(
+    solved: Solved, tmp_path: Path, command: Command
+) -> None:
+    runs, out = tmp_path / "runs", tmp_path / "report.html"
+    runs.mkdir()
+    back_up(solved.store, runs / "slidercrank.db")
+    with Store(runs / "slidercrank.db") as store:
+        run = store.job(solved.number).run
+        arguments = ("report", run, "--design", 2, "--runs", runs, "--out", out)
+        assert command(*arguments).exit_code == 0
+        assert "Decided for" not in out.read_text(encoding="utf-8")
+        for name, number in (("Stock rod", 1), ("Least torque", 2)):
+            row = solved.result.designs[number - 1]
+            crank, rod, offset = (float(row[key] or 0.0) / 1e3 for key in ("crank_mm", "rod_mm", "offset_mm"))
+            keep_design(store, solved.number, dimensions=(crank, rod, offset), design=number, name=name)
+        change_kept(store, solved.number, 1, reason="too tall")
+        change_kept(store, solved.number, 2, decided=True, reason="fits the gearmotor")
+    assert command(*arguments).exit_code == 0
+    text = unescape(re.sub(r"<[^>]+>", " ", out.read_text(encoding="utf-8")))
+    assert "Decided for Least torque: fits the gearmotor." in text
+    assert "too tall" in text
+    assert "This report is about another design." not in text
+    assert command("report", run, "--design", 1, "--runs", runs, "--out", out).exit_code == 0
+    assert "This report is about another design." in out.read_text(encoding="utf-8")
