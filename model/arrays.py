@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-Whole = NDArray[np.int64]
+IntArray = NDArray[np.int64]
 
 
-def distinct(values: Whole, axis: int | None = None) -> Whole:
+def distinct(values: IntArray, axis: int | None = None) -> IntArray:
     """Return whole numbers, or rows of them along axis 0, each once, ascending.
 
     Like `np.unique`, which without counts first loads `numpy.ma`: a thirtieth of a command's time.

@@ -26,7 +26,7 @@ RMS_TORQUE = _average(
     advice="Compare it with the rated torque of the motor, and the peak torque with its greatest one.",
     formula="sqrt(mean of T^2 over time), dt = d theta / omega",
     needs=(DRIVEN,),
-    on_sheet=True,
+    on_datasheet=True,
 )
 MEAN_TORQUE = _average(
     name="mean_torque",

@@ -15,11 +15,11 @@ from ..model.machine.memoise import memoise_by_batch
 from ..model.machine.numbers import PINS, formula_of_numbers
 from ..model.machine.raw import Raw
 from ..model.machine.strength import Strength
-from ..model.signals.peaks import KEPT, find_peaks
+from ..model.signals.peaks import STORED_PEAKS, find_peaks
 from ..model.signals.signals import Signal
 from ..model.strength.places import Eye, StressLocation
 from ..model.strength.section_forces import CRANK, ROD
-from ..model.strength.stress_cycle import APART, CLASSES, stress_peaks
+from ..model.strength.stress_cycle import CLASSES, LABEL_STEP, stress_peaks
 from .quantity import Array, Group, Pieces, Quantity, Values, fact, undefined
 from .quantity import Formula as Formula
 
@@ -120,7 +120,7 @@ class OfBars(Quantity):
         """Return the local peaks of every part; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return super().pieces(mechanism, dimensions)
-        all_parts = self.joined(mechanism, dimensions, KEPT, True)
+        all_parts = self.joined(mechanism, dimensions, STORED_PEAKS, True)
         assert all_parts.gradients is not None
         order = np.argsort(all_parts.values if self.least else -all_parts.values, axis=1, kind="stable")
         return Pieces(all_parts.values, all_parts.gradients, all_parts.labels, self.least).take(order)
@@ -133,7 +133,7 @@ class OfBars(Quantity):
             np.concatenate([part.gradients for part in parts if part.gradients is not None], axis=1)
             if gradients
             else None,
-            np.concatenate([part.labels + CLASSES * APART * n for n, part in enumerate(parts)], axis=1),
+            np.concatenate([part.labels + CLASSES * LABEL_STEP * n for n, part in enumerate(parts)], axis=1),
         )
 
 

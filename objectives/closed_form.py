@@ -25,7 +25,7 @@ class ClosedFormQuantity(Quantity):
     """
 
     section: str = fact("2. Closed forms")
-    on_sheet: bool = fact(True)
+    on_datasheet: bool = fact(True)
     forms: tuple[ClosedForm, ...]
     rises: tuple[bool, bool, bool] | None = field(default=None, compare=False)
 

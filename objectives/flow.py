@@ -31,9 +31,9 @@ from .kinds import RATIO, VOLUME_FLOW
 from .needs import COMPRESSOR, EVEN_SPEED, SPEED, Need
 from .quantity import Array, Group, Pieces, Quantity, Values, undefined
 
-_KEPT = 3
+_MOST_PIECES = 3
 """Local peaks, and local troughs, of the flow that pieces are made of."""
-_APART = 10.0  # labels of peaks are crank angles, below 2 pi
+_LABEL_STEP = 10.0  # labels of peaks are crank angles, below 2 pi
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,7 +69,7 @@ class FlowRipple(Quantity):
         """Return the differences of local peaks and troughs; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return super().pieces(mechanism, dimensions)
-        return self._differences(mechanism, np.asarray(dimensions, dtype=np.float64), _KEPT)
+        return self._differences(mechanism, np.asarray(dimensions, dtype=np.float64), _MOST_PIECES)
 
     def _differences(self, mechanism: Mechanism, designs: Array, peak_count: int) -> Pieces:
         n, pumps = len(designs), list(pumps_of(mechanism))
@@ -93,7 +93,7 @@ class FlowRipple(Quantity):
         values = differences.reshape(shape) / mean[:, None]
         finite = np.isfinite(values)
         slopes = (slopes - np.where(finite, values, 0.0)[:, :, None] * mean_slopes[:, None]) / mean[:, None, None]
-        labels = peaks.angles[:, :, None] + _APART * troughs.angles[:, None]
+        labels = peaks.angles[:, :, None] + _LABEL_STEP * troughs.angles[:, None]
         return Pieces(values, np.where(finite[:, :, None], slopes, 0.0), labels.reshape(shape))
 
 

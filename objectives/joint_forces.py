@@ -8,7 +8,7 @@ from .kinds import FORCE
 from .needs import LOADED, PIVOT_LOADED
 from .quantity import Group
 
-_force = partial(CyclePeak, kind=FORCE, group=Group.FORCES, section="8. Dynamics", on_sheet=True)
+_force = partial(CyclePeak, kind=FORCE, group=Group.FORCES, section="8. Dynamics", on_datasheet=True)
 PEAK_PIVOT_FORCE = _force(
     name="peak_pivot_force",
     signal=Signal.PIVOT_FORCE,

@@ -5,17 +5,17 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from .kinds import INERTIA, LENGTH, PRESSURE, RATIO, SHOWN, DisplayUnit, Kind, System, display_unit, kind_in
+from .kinds import DISPLAYED_KINDS, INERTIA, LENGTH, PRESSURE, RATIO, DisplayUnit, Kind, System, display_unit, kind_in
 
 # Suffixes of column names: longest first, as "_lbf_in" ends like "_in".
 _DISPLAY_UNITS = sorted(
-    {unit for kind in SHOWN for unit in (kind.metric, kind.inch) if unit is not None},
+    {unit for kind in DISPLAYED_KINDS for unit in (kind.metric, kind.inch) if unit is not None},
     key=lambda unit: -len(unit.suffix),
 )
-_KINDS = {kind.metric.suffix: kind for kind in reversed(SHOWN)}
+_KINDS = {kind.metric.suffix: kind for kind in reversed(DISPLAYED_KINDS)}
 _TO_INCH = {
     kind.metric.suffix: (kind.inch.suffix, kind.inch.factor / kind.metric.factor)
-    for kind in SHOWN
+    for kind in DISPLAYED_KINDS
     if kind.inch is not None
 }
 _EXTRA_UNITS = {

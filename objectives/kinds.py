@@ -147,9 +147,9 @@ PRESSURE = _kind("a pressure", "Pa, kPa, bar, MPa, GPa, psi", "20 MPa", 1e15, *_
 _HEAT = display_unit("ft lbf/in^3", _INCH**2 / (12.0 * _LBF)), display_unit("MJ/m^3", 1e-6)
 _HEATS = "J/m^3, MJ/m^3, J/cm^3, kJ/L, ft lbf/in^3"
 HEAT_PER_VOLUME = _kind("a heat per volume", _HEATS, "1.2 MJ/m^3", 1e15, *_HEAT)
-_RUBBED = display_unit("psi ft/min", 60.0 * _INCH / (12.0 * _LBF)), display_unit("MPa m/s", 1e-6)
+_PRESSURE_SPEEDS = display_unit("psi ft/min", 60.0 * _INCH / (12.0 * _LBF)), display_unit("MPa m/s", 1e-6)
 PRESSURE_SPEED = _kind(
-    "a pressure times a speed", "Pa m/s, MPa m/s, psi ft/min", "1 MPa m/s", 1e15, *_RUBBED, "MPa m/s"
+    "a pressure times a speed", "Pa m/s, MPa m/s, psi ft/min", "1 MPa m/s", 1e15, *_PRESSURE_SPEEDS, "MPa m/s"
 )
 _WEAR = display_unit("in^2/lbf", _LBF / _INCH**2), display_unit("mm^2/N", 1e6)
 WEAR = _kind("a wear coefficient", "m^2/N, mm^2/N, in^2/lbf", "1e-9 mm^2/N", 1.0, *_WEAR, "mm^2/N")
@@ -183,17 +183,17 @@ MASS_MOMENT = Kind(
     "a mass times a length", "kg m", "", 0.0, display_unit("kg m"), display_unit("lb in", _PER_INCH / _POUND)
 )
 
-SHOWN = (*(kind for kind in KINDS if kind.unit), PER_ANGLE, PER_SQUARED_ANGLE, PER_CUBED_ANGLE, MASS_MOMENT)
+DISPLAYED_KINDS = (*(kind for kind in KINDS if kind.unit), PER_ANGLE, PER_SQUARED_ANGLE, PER_CUBED_ANGLE, MASS_MOMENT)
 """Kinds that columns are of: the one table of units for columns, figures, reports and the page."""
 
 
-def shown_in(symbol: str, system: System) -> tuple[str, float]:
+def metric_unit_in(symbol: str, system: System) -> tuple[str, float]:
     """Return a system's display unit for a metric unit, and the metric unit's value in it.
 
-    "mm" is ("in", 1 / 25.4) in the inch system. A unit that is not a metric one of `SHOWN`, such as that of a custom
-    quantity, stays unchanged.
+    "mm" is ("in", 1 / 25.4) in the inch system. A unit that is not a metric one of `DISPLAYED_KINDS`, such as
+    that of a custom quantity, stays unchanged.
     """
-    for kind in SHOWN if system == "inch" else ():
+    for kind in DISPLAYED_KINDS if system == "inch" else ():
         if kind.inch is not None and kind.metric.symbol == symbol:
             return kind.inch.symbol, kind.inch.factor / kind.metric.factor
     return symbol, 1.0

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import formula_of_numbers
-from ..model.strength.places import StressLocation, WholeBar
+from ..model.strength.places import LinkBody, StressLocation
 from .bars import LINKS, NEAR, Formula, OfBars, Part, eyes_of, strength_of, stress_divisor, stresses
 from .kinds import RATIO
 from .needs import A_BAR, EVEN_SPEED, LOADED, ONE_TURN, STRENGTH
@@ -30,7 +30,7 @@ class FatigueSafety(OfBars):
         criteria = ((worn + steady, worn - steady), (worn, worn))
         bars = self.bars(mechanism)
         eyes = [eye for name in bars for pin in (NEAR, LINKS[name].far) for eye in eyes_of(name, pin)]
-        places: tuple[StressLocation, ...] = (*(WholeBar(LINKS[name].part) for name in bars), *eyes)
+        places: tuple[StressLocation, ...] = (*(LinkBody(LINKS[name].part) for name in bars), *eyes)
         peak_stresses = stresses(mechanism, designs, places, criteria, piece_count, gradients)
         return [
             part.dividing(stress_divisor(mechanism, designs, place, gradients))
@@ -46,7 +46,7 @@ class BucklingSafety(OfBars):
         material = strength_of(mechanism).material
         safeties = []
         bars = [LINKS[name] for name in self.bars(mechanism)]
-        places = tuple(WholeBar(own.part, bent=False) for own in bars)
+        places = tuple(LinkBody(own.part, bent=False) for own in bars)
         squeezed = stresses(mechanism, designs, places, _COMPRESSION, piece_count, gradients)
         for own, pressed in zip(bars, squeezed, strict=True):
             for side in (own.width, own.depth):

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import formula_of_numbers
-from ..model.strength.places import StressLocation, WholeBar
+from ..model.strength.places import LinkBody, StressLocation
 from ..model.strength.stress_cycle import stress_peaks
 from .bars import (
     LINKS,
@@ -40,9 +40,9 @@ class LinkStress(OfBars):
 
     def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
         """Return the stresses along the bars and in their eyes; see `OfBars`."""
-        return [part for _, _, part in self.told_parts(mechanism, designs, piece_count, gradients)]
+        return [part for _, _, part in self.reported_parts(mechanism, designs, piece_count, gradients)]
 
-    def told_parts(
+    def reported_parts(
         self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool
     ) -> Iterator[tuple[str, str, Part]]:
         """Yield link, pin ("" along the link) and part, in the order of `parts`; an eye may have several."""
@@ -81,7 +81,7 @@ def eye_stresses(mechanism: Mechanism, design: Array) -> dict[str, dict[str, tup
     """
     stresses_by_link: dict[str, dict[str, tuple[float, float]]] = {}
     angles = iter([_angle_of(mechanism, place, design) for _, pin, place in _places(mechanism) if pin])
-    for name, pin, part in replace(ROD_STRESS, links=tuple(LINKS)).told_parts(mechanism, design, 1, False):
+    for name, pin, part in replace(ROD_STRESS, links=tuple(LINKS)).reported_parts(mechanism, design, 1, False):
         if pin:  # those that are bent come first; the label of a force is its angle
             value, angle = float(part.values[0, 0]), next(angles, float(part.labels[0, 0]))
             stress = (value, angle if math.isfinite(value) else math.nan)
@@ -102,7 +102,7 @@ def _angle_of(mechanism: Mechanism, place: StressLocation, design: Array) -> flo
 def _places(mechanism: Mechanism) -> list[tuple[str, str, StressLocation]]:
     """Return the places with stress over a whole section: along the bars, and in the eye at the pivot."""
     bars, pivot = STATIC_SAFETY.bars(mechanism), LINKS[CRANK].far
-    places: list[tuple[str, str, StressLocation]] = [(name, "", WholeBar(LINKS[name].part)) for name in bars]
+    places: list[tuple[str, str, StressLocation]] = [(name, "", LinkBody(LINKS[name].part)) for name in bars]
     return places + [(CRANK, pivot, eye) for eye in (eyes_of(CRANK, pivot) if CRANK in bars else [])]
 
 

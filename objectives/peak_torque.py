@@ -28,7 +28,7 @@ PEAK_TORQUE = _peak(
     formula=f"max |T|, {_TORQUE}: reflected inertia J, potential energy V, load F",
     needs=(DRIVEN,),
     offered=("requirement", "objective"),
-    on_sheet=True,
+    on_datasheet=True,
 )
 PEAK_TORQUE_OUTWARD = _peak(
     name="peak_torque_outward",

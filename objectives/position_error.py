@@ -34,7 +34,7 @@ POSITION_ERROR = _error(
     formula="max over theta of the sum of |dx/di| T_i, for i = crank, rod, offset, crank angle",
     example="0.3 mm",
     offered=("objective",),
-    on_sheet=True,
+    on_datasheet=True,
 )
 POSITION_ERROR_RSS = _error(
     name="position_error_rss",

@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from ..model.arrays import Array as Array
-from ..model.arrays import Whole
+from ..model.arrays import IntArray
 from ..model.machine.mechanism import Mechanism
 from .bounds import QuantityBounds
 from .kinds import DisplayUnit, Kind
@@ -123,7 +123,7 @@ class Pieces:
     least: bool = False
     opposite: Pieces | None = None
 
-    def take(self, places: Whole) -> Pieces:
+    def take(self, places: IntArray) -> Pieces:
         """Return the pieces at some indices (n, m) of each design."""
         return Pieces(
             np.take_along_axis(self.values, places, axis=1),
@@ -157,8 +157,8 @@ class Quantity(ABC):
     infinite for every design, as a sentence. needs: needs that a machine must meet. instead: quantities to use where a
     need is not met. reach: bounds within ranges of the dimensions. allowed_by: origin of its allowable value, in words;
     empty for one without. about_tolerances: whether it already includes tolerances. offered: parts of a form that offer
-    it. on_sheet: whether the datasheet of a design has it. plain: whether it follows obviously from others, so that a
-    short table leaves it out. turning: whether it needs a crank that rotates fully, so that a swing has none.
+    it. on_datasheet: whether the datasheet of a design has it. plain: whether it follows obviously from others, so that
+    a short table leaves it out. turning: whether it needs a crank that rotates fully, so that a swing has none.
     """
 
     name: str
@@ -188,7 +188,7 @@ class Quantity(ABC):
     allowed_by: str = fact("")
     about_tolerances: bool = fact(False)
     offered: tuple[Offer, ...] = fact(())
-    on_sheet: bool = fact(False)
+    on_datasheet: bool = fact(False)
     plain: bool = fact(False)
     turning: bool = fact(True)
     table: ClassVar[str] = ""

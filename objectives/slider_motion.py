@@ -20,7 +20,7 @@ PEAK_SLIDER_SPEED = _peak(
     formula="max |x' omega| with x' = -r sin(theta - phi) / cos(phi)",
     picture="speed",
     needs=(SPEED,),
-    on_sheet=True,
+    on_datasheet=True,
 )
 PEAK_SLIDER_ACCELERATION = _peak(
     name="peak_slider_acceleration",
@@ -32,7 +32,7 @@ PEAK_SLIDER_ACCELERATION = _peak(
     formula="max |x'' omega^2 + x' alpha|",
     picture="acceleration",
     needs=(MOTION,),
-    on_sheet=True,
+    on_datasheet=True,
 )
 PEAK_SLIDER_JERK = _peak(
     name="peak_slider_jerk",

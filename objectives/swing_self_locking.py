@@ -9,7 +9,7 @@ from .swing_quantity import SwingLeast
 _least = partial(SwingLeast, signed=True, better="high", group=Group.DRIVE, picture="torque")
 _ADVICE = "Below zero the loads push it on, and the drive holds it back; with both ways above zero it locks itself."
 
-LEAST_FORCE_FORTH = _least(
+LEAST_FORCE_FORWARD = _least(
     name="least_force_forth",
     title="least actuator force forth",
     kind=FORCE,
@@ -35,7 +35,7 @@ LEAST_FORCE_BACK = _least(
     formula="min over the way back of P sgn(x' w)",
     example="0 N",
 )
-LEAST_TORQUE_FORTH = _least(
+LEAST_TORQUE_FORWARD = _least(
     name="least_torque_forth",
     title="least torque forth",
     kind=TORQUE,

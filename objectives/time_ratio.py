@@ -66,7 +66,7 @@ def _inverse_slopes(ratio: Array, slopes: Array) -> Array:
     return -slopes / np.square(ratio)[:, None]
 
 
-_REACH = QuantityBounds(
+_TIME_RATIO_BOUNDS = QuantityBounds(
     compute=_time_ratio_bounds,
     to_raise="a longer crank or a larger |offset|",
     to_lower="a smaller |offset|",
@@ -103,7 +103,7 @@ TIME_RATIO = TimeRatio(
     floor=1.01,
     in_line=1.0,
     needs=(ONE_TIMING,),
-    bounds=_REACH,
+    bounds=_TIME_RATIO_BOUNDS,
     offered=("motion", "objective"),
 )
 CRANK_ANGLE_RATIO = ClosedFormQuantity(
@@ -126,6 +126,6 @@ CRANK_ANGLE_RATIO = ClosedFormQuantity(
         remedy="give the inverse",
     ),
     in_line=1.0,
-    bounds=_REACH,
+    bounds=_TIME_RATIO_BOUNDS,
     plain=True,
 )

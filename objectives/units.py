@@ -118,7 +118,7 @@ _HINTS = {
     "Grad": "write deg",
 }
 
-_APART = (
+_AMBIGUOUS_SYMBOLS = (
     ("N m", r"J\b", "an energy; a torque is given in N m"),
     ("Pa", r"J\b", "a heat per volume"),
     ("J/m^3", r"(Pa|bar|psi|ksi)\b|/\s*\w+?\^?2\b", "a pressure"),
@@ -324,8 +324,8 @@ def without_in(text: str) -> str:
 
 def symbol_in(text: str, kind: Kind) -> str | None:
     """Return the unit in a heading, spelled as in jobs; None if the kind does not have it."""
-    shown_symbols = [unit.symbol for unit in (kind.metric, kind.inch) if unit is not None]
-    listed = next((symbol for symbol in (*kind.typed, *shown_symbols) if squeezed(symbol) == squeezed(text)), None)
+    display_symbols = [unit.symbol for unit in (kind.metric, kind.inch) if unit is not None]
+    listed = next((symbol for symbol in (*kind.typed, *display_symbols) if squeezed(symbol) == squeezed(text)), None)
     try:
         return listed or (text.strip() if to_si(f"1 {text}", kind) else None)
     except InputError:
@@ -390,7 +390,7 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
         elif kinds and kind.plain == "mass" and _unit("N")[1] == dimension:
             write = f"write the mass in {kind.unit}"
         raise InputError(f"{rule}; got {quote(text)}{note}; {write}")
-    for unit_of_kind, symbols, item in _APART:
+    for unit_of_kind, symbols, item in _AMBIGUOUS_SYMBOLS:
         if kind.unit == unit_of_kind and re.search(symbols, unit):
             raise InputError(f"{rule}; got {quote(text)}, which is {item}; {write}")
     return number * factor

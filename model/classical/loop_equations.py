@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Array, Mask, Whole
+from ..arrays import Array, IntArray, Mask
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 
@@ -37,7 +37,7 @@ class LoopSolution:
     rod_angle: Array
     rod_velocity: Array
     rod_acceleration: Array
-    iterations: Whole
+    iterations: IntArray
 
 
 def solve_loop(

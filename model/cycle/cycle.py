@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..dynamics.breakpoints import breakpoints_of
 from ..dynamics.contact import rubs, sides_of
-from ..dynamics.crank_loads import beside_crank_loads, sense_of
+from ..dynamics.crank_loads import sense_of, torque_without_crank_loads
 from ..dynamics.rubbing import joint_forces
 from ..dynamics.segments import CycleWindow, enter, load_on_slider
 from ..errors import InputError
@@ -92,7 +92,7 @@ def _curves(
         out[3, i] = math.atan2(abs(m.l_cos), abs(m.l_sin))
         out[4, i] = load
         way = sense_of(d)
-        out[5, i] = beside_crank_loads(f.torque, d, block, 0, theta, way, loads, piece, shift)
+        out[5, i] = torque_without_crank_loads(f.torque, d, block, 0, theta, way, loads, piece, shift)
         out[6, i] = f.pivot_x
         out[7, i] = f.pivot_y
         out[8, i] = f.crank_pin_x
@@ -102,7 +102,7 @@ def _curves(
         out[12, i] = f.guide
         out[13, i] = worst_case(j, d)
         out[14, i] = root_sum_square(j, d)
-        out[15, i] = -beside_crank_loads(0.0, d, block, 0, theta, way, loads, piece, shift)
+        out[15, i] = -torque_without_crank_loads(0.0, d, block, 0, theta, way, loads, piece, shift)
 
 
 def cycle(
@@ -124,10 +124,10 @@ def cycle(
     """
     linkage = single(mechanism, linkage)
     angles = np.require(np.atleast_1d(crank_angle), np.float64, ["C", "W"])  # one compiled kernel serves
-    own_motion = crank_speed(mechanism, angles)
+    mechanism_motion = crank_speed(mechanism, angles)
     speeds, accelerations = (
         np.array(np.broadcast_to(np.asarray(default if argument is None else argument, dtype=np.float64), angles.shape))
-        for argument, default in zip((speed, acceleration), own_motion, strict=True)
+        for argument, default in zip((speed, acceleration), mechanism_motion, strict=True)
     )
     if not (np.isfinite(angles).all() and np.isfinite(speeds).all() and np.isfinite(accelerations).all()):
         raise InputError("crank angles, speeds and accelerations must be finite")

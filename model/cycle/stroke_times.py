@@ -56,7 +56,7 @@ def scaled_stroke_times(
             outer, inner = math.pi - outer, 3.0 * math.pi - inner
         lead = cylinders_of(mechanism)[cylinder].lead
         inward_span = _elapsed_time(profile, inner - lead) - _elapsed_time(profile, outer - lead)
-        turn = profile.elapsed_time.whole_turn
+        turn = profile.elapsed_time.full_turn
     outward, inward = (
         (turn - inward_span, inward_span) if mechanism.direction > 0.0 else (inward_span, turn - inward_span)
     )

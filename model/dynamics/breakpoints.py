@@ -12,7 +12,7 @@ from ..machine.design import design_at
 from ..machine.raw import Loads
 from .contact import cut_contacts
 from .rubbing import always_drives
-from .segments import Cuts, CycleWindow, cut_cycle, room_for
+from .segments import Cuts, CycleWindow, breakpoint_capacity, cut_cycle
 
 
 class Breakpoints(NamedTuple):
@@ -46,7 +46,7 @@ def _cut(blocks: Cube, loads: Loads, watch: CycleWindow, breakpoints: Breakpoint
 
 def breakpoints_of(blocks: Array, loads: Loads, watch: CycleWindow, *, rubbing: bool) -> Breakpoints:
     """Return the breakpoints of designs by their blocks (n, rows, 1), each rotating fully."""
-    shape = len(blocks), room_for(loads)
+    shape = len(blocks), breakpoint_capacity(loads)
     breakpoints = Breakpoints(
         np.empty(shape),
         np.empty(shape, np.int64),

@@ -16,7 +16,7 @@ _CRANK_TORQUE = int(Enters.CRANK_TORQUE)
 
 
 @analytic
-def beside_crank_loads(
+def torque_without_crank_loads(
     torque: Any, d: Any, block: Any, j: int, theta: Any, way: float, loads: Any, piece: Any, shift: Any
 ) -> Any:
     """Return a torque less those of the loads on the crank, N m, in a previously entered segment.

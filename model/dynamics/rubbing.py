@@ -35,7 +35,7 @@ from ..machine.design import Design
 from .torque import Forces, balance, forces, joined
 
 _ITERATIONS = 100
-_SETTLED = 1e-15
+_CONVERGED = 1e-15
 
 
 class Sides(NamedTuple):
@@ -120,7 +120,7 @@ def rubbing_forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, s: S
                     new = 0.5 * (low + high)
                 step = abs(new - y)
                 y = new
-                if step <= _SETTLED * (abs(y) + abs(pull.real)):
+                if step <= _CONVERGED * (abs(y) + abs(pull.real)):
                     break
     h, rate = _moment(y, slope, rest, mu, pull, b.rod_x, b.rod_y, p, q)
     by = y - h * inverse(rate)

@@ -29,7 +29,7 @@ _EXPANDED, _COMPRESSED, _TURNED, _BURNT = 6, 7, 8, 9  # 5: `contact.CONTACT`
 _TURN = 2.0 * math.pi
 _STILL = 1e-13
 """|x'| over crank below which the slider is at a dead centre, to the precision of a crank angle."""
-ROOM = 40
+BASE_CAPACITY = 40
 """Room for breakpoints, besides two for each knot and four for each cylinder: 8 at most, plus those from friction."""
 
 
@@ -70,9 +70,9 @@ def crank_angle_at(x: float, r: float, l: float, e: float, second: bool) -> floa
 
 
 @analytic
-def room_for(loads: Loads) -> int:
+def breakpoint_capacity(loads: Loads) -> int:
     """Return the greatest number of breakpoints that a design can have."""
-    return int(ROOM + 2 * loads.at.shape[0] + 4 * loads.kind.shape[0])
+    return int(BASE_CAPACITY + 2 * loads.at.shape[0] + 4 * loads.kind.shape[0])
 
 
 @analytic

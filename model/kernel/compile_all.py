@@ -15,7 +15,7 @@ from threading import Thread
 from typing import NamedTuple
 
 from .closure import codes
-from .disk import INTO, MODEL, KernelSource, building, compile_beside, keep, locked, read_any, wanted_files
+from .disk import INTO, MODEL, KernelSource, awaited_files, building, compile_in_processes, keep, locked, read_any
 from .folder import kernel_folder
 from .kernel import KERNELS, Kernel
 
@@ -53,14 +53,14 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
     mostly formulas that this process has already compiled come first, then urgent ones. The file of `building` holds
     the progress. Ends if nothing can be stored.
     """
-    names = wanted_files(folder)
+    names = awaited_files(folder)
     tasks_found = _tasks(folder, packages, modules)
     everything = [task for task in tasks_found if not task.seldom or task.file.name in names]
     tasks, awaited = [*everything], {task.file.name for task in everything}
     compiled: set[int] = set()
     complete = False
     while True:
-        names = wanted_files(folder)
+        names = awaited_files(folder)
         listed = {task.file.name for task in everything}
         if not complete and (not tasks or not listed.issuperset(names)):
             tasks_found = _tasks(folder, packages, [name for package in packages.split() for name in _modules(package)])
@@ -123,4 +123,4 @@ if __name__ == "__main__":
         gc.set_threshold(50_000, 1000, 1000)  # a fifth faster, for 80 MB
         compile_missing(Path(sys.argv[2]), sys.argv[3], sys.argv[4:])
     elif (place := kernel_folder()) is not None:
-        compile_beside(place, " ".join(sys.argv[1:]) or MODEL)
+        compile_in_processes(place, " ".join(sys.argv[1:]) or MODEL)

@@ -50,7 +50,7 @@ class _FormulaCompiler(CompilerBase):
 _FORMULA: Any = _OPTIONS | {"forceinline": True, "_nrt": False, "pipeline_class": _FormulaCompiler}
 _KERNEL: Any = _OPTIONS | {"nogil": True}
 
-_TRIED = "0.68."  # tested numba version: `_linked` and `_resolved_once` use its internals
+_TRIED = "0.68."  # tested numba version: `_linked` and `_memoised_resolution` use its internals
 
 _registered: dict[Callable[..., Any], None] = {}
 _resolved: dict[Any, Any] = {}
@@ -64,7 +64,7 @@ def know_formulas() -> None:
 
 
 @contextmanager
-def _resolved_once() -> Iterator[None]:
+def _memoised_resolution() -> Iterator[None]:
     """Resolve each call once for the same types of arguments.
 
     Otherwise numba tries every meaning of + at every +. It also compiles a formula again for a call from a kernel, and
@@ -128,8 +128,8 @@ class _NoArrays(event.Listener):
     def on_start(self, event: Any) -> None:
         """Check the return type of a function before it is compiled."""
         data = event.data
-        is_own_formula = data["name"].startswith("native_lowering") and not data["module"].startswith("numba")
-        if is_own_formula and "array(" in data["return_type"]:
+        is_native_lowering = data["name"].startswith("native_lowering") and not data["module"].startswith("numba")
+        if is_native_lowering and "array(" in data["return_type"]:
             raise TypeError(f"a formula must return no array; got one of {data['qualname']}; let the kernel make it")
 
     def on_end(self, event: Any) -> None:
@@ -141,7 +141,7 @@ def compile_kernel(function: Callable[..., Any], examples: tuple[Any, ...]) -> M
     know_formulas()
     signature = tuple(map(typeof, examples))
     dispatcher: Any = njit(**_KERNEL)(function)
-    with _resolved_once(), _linked(function.__qualname__), event.install_listener("numba:run_pass", _NoArrays()):
+    with _memoised_resolution(), _linked(function.__qualname__), event.install_listener("numba:run_pass", _NoArrays()):
         dispatcher.compile(signature)
     compiled = dispatcher.overloads[signature]
     symbol = compiled.fndesc.llvm_func_name

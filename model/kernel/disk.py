@@ -19,7 +19,7 @@ from threading import Thread
 from typing import Any, NamedTuple
 
 from .closure import digest
-from .folder import kernel_folder, other_folders, tell_refusals
+from .folder import kernel_folder, log_refused_folders, other_folders
 from .interruption import ask
 from .machine_code import MachineCode
 
@@ -30,7 +30,7 @@ INTO = "--into"
 """Option of the compiling processes, before their folder."""
 _PATIENCE = 300.0  # s; a process that compiles for longer has stopped or failed
 _TICK = 0.05  # s
-_TELL = 3.0  # s
+_REPORT_INTERVAL = 3.0  # s
 _SIDE_BY_SIDE = 4
 """Greatest number of compiling processes; each takes 200 MB."""
 _STATES = 8
@@ -71,14 +71,14 @@ def machine_code(source: KernelSource, modules: Iterable[str] = ()) -> MachineCo
     code = read_any(name, folder)
     if code is not None:
         return code
-    tell_refusals()
+    log_refused_folders()
     if folder is None:
         return source.compile()
     package, root = _package(source.module), source.module.partition(".")[0] + "."
     related = [module for module in reversed(list(modules)) if module.startswith(root)]
     packages = dict.fromkeys([*map(_package, related), package])
     if folder not in _refusing:
-        compile_beside(folder, " ".join(packages), folder / name, dict.fromkeys([*related, source.module]))
+        compile_in_processes(folder, " ".join(packages), folder / name, dict.fromkeys([*related, source.module]))
         code = read(folder / name)
     if code is None:  # no process could be started, or nothing could be stored
         if folder in _refusing:
@@ -119,30 +119,30 @@ def keep(file: Path, code: MachineCode) -> bool:
     """Store machine code, keep a few earlier versions, and return whether it was stored. Reports a full disk."""
     head = code._asdict() | {"code": None, "sha256": sha256(code.code).hexdigest()}
     unfinished = file.with_name(f"{uuid.uuid4().hex}.unfinished")
-    is_kept = False
+    is_stored = False
     with contextlib.suppress(OSError):
         try:
             unfinished.write_bytes(json.dumps(head).encode() + b"\n" + code.code)
             unfinished.replace(file)
-            is_kept = True
+            is_stored = True
         except OSError as error:
-            _tell_unkept(file.parent, error.strerror or str(error))
+            _warn_not_stored(file.parent, error.strerror or str(error))
         finally:
             unfinished.unlink(missing_ok=True)
         earlier = sorted(file.parent.glob(f"{file.stem}.*"), key=lambda path: path.stat().st_mtime)
         for path in earlier[:-_STATES]:
             path.unlink(missing_ok=True)
-    return is_kept
+    return is_stored
 
 
 @cache
-def _tell_unkept(folder: Path, reason: str) -> None:
+def _warn_not_stored(folder: Path, reason: str) -> None:
     _log.warning(
         f"slidercrank cannot keep what it compiles in {folder} ({reason}) and will do it again; make room there"
     )
 
 
-def compile_beside(folder: Path, packages: str, file: Path | None = None, modules: Iterable[str] = ()) -> None:
+def compile_in_processes(folder: Path, packages: str, file: Path | None = None, modules: Iterable[str] = ()) -> None:
     """Have other processes compile the missing kernels of packages; return when a file exists, or they have ended.
 
     packages: names separated by blanks. They compile that file's kernel next, and those of modules before the others.
@@ -156,17 +156,17 @@ def compile_beside(folder: Path, packages: str, file: Path | None = None, module
     _waits.append(0.0)
     workers = _ahead.pop(packages, None)
     if workers:
-        _tell_once()
+        _report_compilation()
     while (file is None or read(file) is None) and time.monotonic() < start_time + _PATIENCE:
         if workers is not None and all(worker.poll() is not None for worker in workers):
             return
         if workers is None:
             with locked(building(folder, packages)) as lock:
                 if lock is not None:
-                    _tell_once()
+                    _report_compilation()
                     workers = _start(folder, packages, modules, lock)
         _waits[-1] = time.monotonic() - start_time
-        if time.monotonic() > last_report + _TELL:
+        if time.monotonic() > last_report + _REPORT_INTERVAL:
             last_report = time.monotonic()
             with contextlib.suppress(OSError):
                 if far := building(folder, packages).read_text():
@@ -186,7 +186,7 @@ def compile_ahead(packages: str, modules: Iterable[str]) -> None:
 
 
 @cache
-def _tell_once() -> None:
+def _report_compilation() -> None:
     _log.warning("slidercrank compiles its formulas, once after installation")
 
 
@@ -220,7 +220,7 @@ def building(folder: Path, packages: str) -> Path:
     return folder / f"{packages.replace(' ', '+')}.building"
 
 
-def wanted_files(folder: Path) -> list[str]:
+def awaited_files(folder: Path) -> list[str]:
     """Return the names of the files that processes wait for, or waited for, in that order."""
     try:
         return (folder / "wanted").read_text().split()

@@ -45,7 +45,7 @@ def other_folders() -> tuple[Path, ...]:
 
 
 @cache
-def tell_refusals() -> None:
+def log_refused_folders() -> None:
     """Log once which places were refused, if the folder is empty or missing. For processes that have to compile."""
     folder, empty, refused, _ = _chosen()
     if folder is None:

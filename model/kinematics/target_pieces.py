@@ -24,10 +24,10 @@ from .position import motion
 from .target_motion import Measure, TargetMotion, fit
 
 _PEAKS = 6  # local peaks over the points, of either sign, that make pieces
-_BESIDE = 3  # the highest of the other points
+_OTHER_POINTS = 3  # the highest of the other points
 _CROSSED = 8  # candidates that are paired where the phase is free
 _PIECES = 10
-_SETTLED = 1e-6  # rad; a deviation whose turning point is this near to the phase turns there, up to rounding
+_CONVERGED = 1e-6  # rad; a deviation whose turning point is this near to the phase turns there, up to rounding
 _MIX = 0.5 * (math.sqrt(5.0) - 1.0)  # any irrational: labels of different pairs hardly ever coincide
 
 
@@ -123,7 +123,7 @@ class _Sides(NamedTuple):
         value, slope, bend = (
             np.take_along_axis(getattr(self, name), top, axis=1)[:, 0] for name in ("values", "slope", "bend")
         )
-        turns_by_itself = np.abs(slope) < _SETTLED * bend
+        turns_by_itself = np.abs(slope) < _CONVERGED * bend
         step = np.where(turns_by_itself, -slope / np.where(turns_by_itself, bend, 1.0), 0.0)
         with np.errstate(invalid="ignore"):
             after_step = np.where(np.isfinite(self.values), self.values + self.slope * step[:, None], -np.inf)
@@ -134,7 +134,7 @@ class _Sides(NamedTuple):
         """Return pairs of a falling and a rising deviation, and the highest one where it has a turning point."""
         few = self._take_highest(_CROSSED)
         n, k = few.values.shape
-        turning = (np.abs(few.slope) < _SETTLED * few.bend) & (np.arange(k) == 0)
+        turning = (np.abs(few.slope) < _CONVERGED * few.bend) & (np.arange(k) == 0)
         falling, rising = (few.slope < 0.0) & ~turning, (few.slope > 0.0) & ~turning
         finite = np.isfinite(few.values)
         is_pair = (falling & finite)[:, :, None] & (rising & finite)[:, None, :]
@@ -180,6 +180,6 @@ def _peaks(sign: float, d: Array, slope: Array, bend: Array, slopes: Array, angl
     curves = sign * slope, sign * bend, sign * slopes, labels
     parts = (
         _Sides(np.where(peaks, values, -np.inf), *curves)._take_highest(_PEAKS),
-        _Sides(np.where(peaks, -np.inf, values), *curves)._take_highest(_BESIDE),
+        _Sides(np.where(peaks, -np.inf, values), *curves)._take_highest(_OTHER_POINTS),
     )
     return _Sides(*(np.concatenate(pair, axis=1) for pair in zip(*parts, strict=True)))

@@ -56,34 +56,35 @@ def crank_solutions(
     Where the rod is nearly normal to the slider line, rounding of the angle moves the slider by some 1e-8 cranks.
     """
     crank, rod, offset = _real_lengths(linkage)
-    motion_asked = _SliderMotion(
+    slider_motion = _SliderMotion(
         _number("slider position", position),
         None if velocity is None else _number("slider velocity", velocity),
         None if acceleration is None else _number("slider acceleration", acceleration),
     )
-    if motion_asked.acceleration is not None and motion_asked.velocity is None:
+    if slider_motion.acceleration is not None and slider_motion.velocity is None:
         raise InputError(
             "a slider acceleration gives the crank's only together with the slider velocity; "
-            f"got acceleration {motion_asked.acceleration:g} m/s^2 alone; give the velocity too, 0 for a slider at rest"
+            f"got acceleration {slider_motion.acceleration:g} m/s^2 alone; "
+            "give the velocity too, 0 for a slider at rest"
         )
-    distance, rounding = math.hypot(motion_asked.position, offset), ROUNDING * (crank + rod)
+    distance, rounding = math.hypot(slider_motion.position, offset), ROUNDING * (crank + rod)
     to_outer, to_inner = crank + rod - distance, distance - abs(rod - crank)
     if min(to_outer, to_inner) < -rounding:
-        raise _out_of_reach(linkage, motion_asked.position)
+        raise _unreachable_position(linkage, slider_motion.position)
     if distance <= rounding:
         raise AssemblyError(
             "a slider pin on the crank pivot leaves the crank free to turn; "
-            f"got position {1e3 * motion_asked.position:.9g} mm with rod = crank = {1e3 * crank:g} mm and no offset; "
+            f"got position {1e3 * slider_motion.position:.9g} mm with rod = crank = {1e3 * crank:g} mm and no offset; "
             "move the position, or make rod and crank differ"
         )
     if min(to_outer, to_inner) <= rounding:
-        angle = math.atan2(offset, motion_asked.position) + (math.pi if to_inner < to_outer and rod > crank else 0.0)
-        return (_at_dead_centre(linkage, angle, motion_asked),)
+        angle = math.atan2(offset, slider_motion.position) + (math.pi if to_inner < to_outer and rod > crank else 0.0)
+        return (_at_dead_centre(linkage, angle, slider_motion),)
     solutions = [
-        solution for stroke in get_args(Solution) for solution in _crank_solutions(linkage, stroke, motion_asked)
+        solution for stroke in get_args(Solution) for solution in _crank_solutions(linkage, stroke, slider_motion)
     ]
     if not solutions:
-        raise _out_of_reach(linkage, motion_asked.position)
+        raise _unreachable_position(linkage, slider_motion.position)
     return tuple(solutions)
 
 
@@ -139,7 +140,7 @@ def _at_dead_centre(linkage: Dimensions, angle: float, target: _SliderMotion) ->
     """Return the solution at a dead centre. Raises `InputError` for a slider motion that is impossible there."""
     crank, rod, offset = _real_lengths(linkage)
     if linkage.sign * (target.position - crank * math.cos(angle)) <= 0.0:
-        raise _out_of_reach(linkage, target.position)
+        raise _unreachable_position(linkage, target.position)
     m = motion(math.sin(angle), math.cos(angle), crank, rod, offset, linkage.sign)
     place = f"at the dead centre of position {1e3 * target.position:.9g} mm"
     remedy = "or a position further away"
@@ -159,7 +160,7 @@ def _at_dead_centre(linkage: Dimensions, angle: float, target: _SliderMotion) ->
     return CrankSolution(angle_in_turn, None, None, None)
 
 
-def _out_of_reach(linkage: Dimensions, position: float) -> AssemblyError:
+def _unreachable_position(linkage: Dimensions, position: float) -> AssemblyError:
     crank, rod, offset = _real_lengths(linkage)
     # Rounded inward, and away from ends where the linkage locks: an end entered as reported is within reach.
     inward = 0.0 if rod > crank + abs(offset) else _LOCKED * rod

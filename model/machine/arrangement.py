@@ -47,9 +47,9 @@ class Arrangement:
                 )
         for k in range(count):
             for i in range(k):
-                self._require_apart(i, k)
+                self._require_distinct_cylinders(i, k)
 
-    def _require_apart(self, i: int, k: int) -> None:
+    def _require_distinct_cylinders(self, i: int, k: int) -> None:
         """Raise an error for two cylinders with equal phase and bank at one place."""
         angles = self.phases[k] - self.phases[i], self.bank(k) - self.bank(i)
         if self.place(i) == self.place(k) and all(abs(math.remainder(angle, _TURN)) <= _SAME for angle in angles):

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array, Whole
+from ..arrays import Array, IntArray
 from ..kernel.arithmetic import STEP
 from ..kernel.kernel import ComplexCube, Cube, Integers, Row, Table, kernel
 from .design import DESIGN, LOAD_ROWS, derive
@@ -43,7 +43,7 @@ def _derive(
 
 
 def derived(
-    raw: Array, loads: Loads, columns: Whole = _NONE, designs: Array = _ONE, *, steps: bool = False
+    raw: Array, loads: Loads, columns: IntArray = _NONE, designs: Array = _ONE, *, steps: bool = False
 ) -> tuple[Array, NDArray[Any]]:
     """Return blocks (n, DESIGN + LOAD_ROWS k, 1) of raw numbers (END + LOAD_SLOTS k,); designs (n, c) set `columns`.
 

@@ -14,7 +14,7 @@ from ..arrays import Array
 _TURN = 2.0 * math.pi
 _NODES = 20  # nodes in each panel
 _TAIL = 2  # last coefficients of a series, which show whether it has converged
-_SETTLED = 1e-14  # relative size of the last coefficients of a converged series
+_CONVERGED = 1e-14  # relative size of the last coefficients of a converged series
 _NOISE = 32.0 * np.finfo(np.float64).eps  # error of p, so that 1 / p has p^-2 times this error
 _PANELS = 200_000
 
@@ -43,7 +43,7 @@ class ElapsedTime:
             values = 1.0 / ratio(begin[:, None] + half[:, None] * (1.0 + nodes))
             coefficients = values @ basis
             tail = np.abs(coefficients[:, -_TAIL:]).sum(axis=1)
-            good = tail <= _SETTLED * coefficients[:, 0] + _NOISE * values.max(axis=1) ** 2
+            good = tail <= _CONVERGED * coefficients[:, 0] + _NOISE * values.max(axis=1) ** 2
             good |= len(begin) > _PANELS
             starts.append(begin[good])
             parts.append(half[good, None] * coefficients[good])
@@ -58,7 +58,7 @@ class ElapsedTime:
         return cls(np.asarray(panels, dtype=np.float64), series, np.concatenate([[0.0], np.cumsum(panel_integrals)]))
 
     @property
-    def whole_turn(self) -> float:
+    def full_turn(self) -> float:
         """Integral over a turn."""
         return float(self.up_to_ends[-1])
 
@@ -70,4 +70,4 @@ class ElapsedTime:
         low, high = self.ends[panel], self.ends[panel + 1]
         x = np.clip(2.0 * (angle_in_turn - low) / (high - low) - 1.0, -1.0, 1.0)
         within_panel = legendre.legval(x, self.series[:, panel], tensor=False)
-        return np.asarray(turns * self.whole_turn + self.up_to_ends[panel] + within_panel)
+        return np.asarray(turns * self.full_turn + self.up_to_ends[panel] + within_panel)

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, Whole
+from ..arrays import Array, IntArray
 from ..errors import InputError
 from ..kernel.arithmetic import STEP
 from .loads.registry import kinds
@@ -88,7 +88,7 @@ class Numbers:
     derivatives by the design's numbers; None where that is the identity.
     """
 
-    columns: Whole
+    columns: IntArray
     values: Array
     slopes: Array | None
 

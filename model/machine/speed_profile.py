@@ -84,7 +84,7 @@ class Harmonics:
     @property
     def over_time(self) -> float:
         """Mean speed over time divided by that over the crank angle."""
-        return _TURN / self.elapsed_time.whole_turn
+        return _TURN / self.elapsed_time.full_turn
 
     @property
     def pairs(self) -> list[tuple[float, float]]:
@@ -190,7 +190,7 @@ class SpeedTable:
     @property
     def over_time(self) -> float:
         """Mean speed over time divided by that over the crank angle."""
-        return _TURN / self.elapsed_time.whole_turn
+        return _TURN / self.elapsed_time.full_turn
 
     @property
     def pieces(self) -> tuple[Array, Array]:

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, Whole
+from ..arrays import Array, IntArray
 from ..errors import InputError
 from .loads.load import Load
 from .mechanism import Mechanism
@@ -66,7 +66,7 @@ def one_turn(mechanism: Mechanism) -> Mechanism:
     return halves(mechanism)[0] if cycle_turns(mechanism) > 1 else mechanism
 
 
-def half_at(mechanism: Mechanism, inner: Any, outer: Any, crank_angle: Array) -> Whole:
+def half_at(mechanism: Mechanism, inner: Any, outer: Any, crank_angle: Array) -> IntArray:
     """Return the index of the half, 0 or 1, at crank angles, rad, for dead centres inner and outer; broadcasts."""
     datum = _datum(mechanism)
     way = 1.0 if datum == "zero crank angle" else mechanism.direction

@@ -24,17 +24,17 @@ import numpy as np
 
 from ..arrays import Array
 from ..dynamics.contact import cut_contacts, rubs, shift_of, sides_of
-from ..dynamics.crank_loads import beside_crank_loads, on_crank, sense_of
+from ..dynamics.crank_loads import on_crank, sense_of, torque_without_crank_loads
 from ..dynamics.rubbing import always_drives, joint_forces
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
     angle_within,
+    breakpoint_capacity,
     crowded,
     cut_cycle,
     enter,
     load_on_slider,
-    room_for,
     uncrowded,
 )
 from ..kernel.arithmetic import STEP, analytic, root
@@ -153,8 +153,13 @@ def _average(
     jumps: bool,
 ) -> None:
     nodes, weights, tail = rule
-    cut_room = room_for(loads)
-    cuts = Cuts(np.empty(cut_room), np.empty(cut_room, np.int64), np.empty(cut_room), np.empty(cut_room, np.int64))
+    capacity = breakpoint_capacity(loads)
+    cuts = Cuts(
+        np.empty(capacity),
+        np.empty(capacity, np.int64),
+        np.empty(capacity),
+        np.empty(capacity, np.int64),
+    )
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     nv = mean_slope.shape[1] if gradients else 0
     value, slope, weight = np.empty(_NODES), np.empty((nv, _NODES)), np.empty(_NODES)
@@ -205,14 +210,16 @@ def _average(
                         square = square_along(theta, d, gaps[n])
                         value[i] = _curve(kind, theta, square, d, block, outward, loads, piece, shift, sides)
                         if turned:  # added last, so that machines without it keep their last digits
-                            value[i] += beside_crank_loads(0.0, d, block, 0, theta, sense_of(d), loads, piece, shift)
+                            value[i] += torque_without_crank_loads(
+                                0.0, d, block, 0, theta, sense_of(d), loads, piece, shift
+                            )
                         for v in range(nv):
                             z = design_at(stepped[v], 0)
                             z = _curve(kind, theta, square, z, stepped[v], outward, loads, piece, shift, sides)
                             slope[v, i] = z.imag / STEP
                             if turned:
                                 z_crank = design_at(stepped[v], 0)
-                                added = beside_crank_loads(
+                                added = torque_without_crank_loads(
                                     0j, z_crank, stepped[v], 0, theta, sense_of(z_crank), loads, piece, shift
                                 )
                                 slope[v, i] += added.imag / STEP
@@ -248,7 +255,7 @@ def _average(
                     square = square_along(theta, d, gaps[n])
                     t = _curve(kind, theta, square, d, block, outward, loads, piece, shift, sides)
                     if turned:
-                        t += beside_crank_loads(0.0, d, block, 0, theta, sense_of(d), loads, piece, shift)
+                        t += torque_without_crank_loads(0.0, d, block, 0, theta, sense_of(d), loads, piece, shift)
                     sign = (1.0 if end else -1.0) / (STEP * _TURN)
                     for v in range(nv):
                         z = design_at(stepped[v], 0)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..dynamics.contact import rubs, sides_of
-from ..dynamics.crank_loads import beside_crank_loads, sense_of
+from ..dynamics.crank_loads import sense_of, torque_without_crank_loads
 from ..dynamics.rubbing import joint_forces
 from ..dynamics.segments import CycleWindow, enter, load_on_slider
 from ..dynamics.torque import Forces
@@ -55,7 +55,9 @@ def _fill_forces(
             m = design_motion(s, c, z)
             load = load_on_slider(m, z, curved, 0, angles[n, k], outward, loads, piece, shift)
             f = joint_forces(s, c, m, z, load, sides)
-            out[n, 0, k] = beside_crank_loads(f.torque, d, curved, 0, angles[n, k], sense_of(d), loads, piece, shift)
+            out[n, 0, k] = torque_without_crank_loads(
+                f.torque, d, curved, 0, angles[n, k], sense_of(d), loads, piece, shift
+            )
             out[n, 1, k] = f.pivot_x
             out[n, 2, k] = f.pivot_y
             out[n, 3, k] = f.crank_pin_x

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, Whole
+from ..arrays import Array, IntArray
 from ..dynamics.segments import angle_within
 
 
@@ -19,11 +19,11 @@ class Segments:
     where none follows. unit: unit of place for counting panels.
     """
 
-    row: Whole
+    row: IntArray
     low: Array
     high: Array
-    cut: Whole
-    next_segment: Whole
+    cut: IntArray
+    next_segment: IntArray
     unit: float = 1.0
 
     @property
@@ -33,7 +33,7 @@ class Segments:
         high: Any = self.high
         return np.asarray(angle_within(low, high))
 
-    def panels(self, fineness: Array) -> tuple[Whole, Array, Array, Array, Whole]:
+    def panels(self, fineness: Array) -> tuple[IntArray, Array, Array, Array, IntArray]:
         """Return design, a place inside, start, width and segment of panels, at least `fineness` (n,) per unit."""
         width = self.high - self.low
         count = np.maximum(1, np.ceil(width / self.unit * fineness[self.row])).astype(np.int64)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import Array, Whole
+from ..arrays import Array, IntArray
 
 EQUAL = 1e-9
 """Relative difference of peaks that count as equal: peaks are accurate to about 1e-13, near-cancelling sums less."""
@@ -19,10 +19,10 @@ Around an extreme f values are equal, by the rule above, within sqrt(2 EQUAL |f 
 1e-4 for one on a mean of four times its size. If that reaches zero, the first of the equal values is there. Rounded to
 0.01 deg, no angle is then that of the end of the cycle: half of it is 8.7e-5 rad.
 """
-_APART = 1e-3  # rad: an equally high point closer to a peak than this is the same peak
+_SAME_ANGLE = 1e-3  # rad: an equally high point closer to a peak than this is the same peak
 
 
-def first_greatest(values: Array, angles: Array, period: float) -> Whole:
+def first_greatest(values: Array, angles: Array, period: float) -> IntArray:
     """Return the indices (...) of the greatest values (..., k); for equal values, the first by crank angle, rad.
 
     Angles count from zero. The index is 0 if no value is finite.
@@ -32,7 +32,7 @@ def first_greatest(values: Array, angles: Array, period: float) -> Whole:
         equal = values >= top - EQUAL * np.abs(top)
         turned = np.where(equal, np.mod(angles + _ZERO, period), np.inf)
         off = turned - turned.min(axis=-1, keepdims=True)
-        same = equal & (np.abs(off - period * np.round(off / period)) <= _APART)
+        same = equal & (np.abs(off - period * np.round(off / period)) <= _SAME_ANGLE)
     return np.asarray(np.argmax(np.where(same, values, -np.inf), axis=-1))
 
 

@@ -26,7 +26,7 @@ _TAIL = 3  # coefficients that show whether a panel is resolved ...
 _RESOLVED = 1e-12  # ... and their remaining size then, relative to the curve's size
 _DEEPEST = 24  # halvings of a panel
 _MOST = 20_000  # panels that halving may add: beyond that, only rounding of the curves remains
-_THIN = 1e-12  # rad
+_SHORTEST = 1e-12  # rad
 _NODES, _WEIGHTS = legendre.leggauss(_DEGREE + 1)
 _PRODUCT_NODES, _PRODUCT_WEIGHTS = legendre.leggauss(_PRODUCT)
 _AT_PRODUCT_NODES = legendre.legvander(_PRODUCT_NODES, _DEGREE)
@@ -124,7 +124,7 @@ def panels_of(curves: Curves, ends: Array, sizes: Array) -> Panels:
     is negligible.
     """
     low, width = ends[:-1], np.diff(ends)
-    low, width = low[width > _THIN], width[width > _THIN]
+    low, width = low[width > _SHORTEST], width[width > _SHORTEST]
     resolved: list[tuple[Array, Array, Array]] = []
     panel_limit, total = len(low) + _MOST, 0
     for depth in range(_DEEPEST + 1):

@@ -16,17 +16,17 @@ from typing import Protocol
 
 import numpy as np
 
-from ..arrays import Array, Mask, Whole
+from ..arrays import Array, IntArray, Mask
 from .cycle_segments import Segments
 from .panels import resolved_tail
 
 _ROUGH = 1e-6  # greatest size of the last coefficients on a resolved panel, as a fraction of the curve's greatest size
 _DEEPEST = 8  # halvings of a panel
 _ITERATIONS = 80
-_SETTLED = 1e-15
-_STRAY = 1e-11  # relative difference below which the two sides of a breakpoint count as continuous
+_CONVERGED = 1e-15
+_CONTINUOUS = 1e-11  # relative difference below which the two sides of a breakpoint count as continuous
 _SAME = 1e-7  # a flat top is not located better
-_BESIDE = 1e-13
+_ON_EDGE = 1e-13
 _NODES = np.concatenate([[0.0], 0.5 * (1.0 + np.polynomial.legendre.leggauss(16)[0]), [1.0]])
 
 
@@ -39,7 +39,7 @@ class Curve(Protocol):
         ...
 
     def evaluate(
-        self, row: Whole, probe: Array, place: Array, *, rate: Array | None = None, gradients: bool = False
+        self, row: IntArray, probe: Array, place: Array, *, rate: Array | None = None, gradients: bool = False
     ) -> tuple[Array, Array]:
         """Return the curve (p, k, 2 + v) and its sizes (p, k) at places (p, k) in segments.
 
@@ -48,7 +48,7 @@ class Curve(Protocol):
         """
         ...
 
-    def rates(self, cuts: Whole, probe: Array) -> Array:
+    def rates(self, cuts: IntArray, probe: Array) -> Array:
         """Return the derivatives (c, v) of breakpoint places; probe: places in the segments that begin there."""
         ...
 
@@ -70,13 +70,13 @@ class Maxima:
 class _Tops:
     """Local maxima: design, value, place, segment; end: -1 or 1 on the breakpoint at its start or end."""
 
-    row: Whole
+    row: IntArray
     value: Array
     place: Array
-    segment: Whole
-    end: Whole
+    segment: IntArray
+    end: IntArray
 
-    def select(self, chosen: Whole | Mask) -> _Tops:
+    def select(self, chosen: IntArray | Mask) -> _Tops:
         return _Tops(self.row[chosen], self.value[chosen], self.place[chosen], self.segment[chosen], self.end[chosen])
 
 
@@ -122,7 +122,7 @@ class _Search:
         counts = self.counted[segment]
         row, probe, low, width, segment = row[counts], probe[counts], low[counts], width[counts], segment[counts]
         size = np.zeros(len(fineness))
-        resolved: list[tuple[Whole, Array, Array, Array, Whole]] = []
+        resolved: list[tuple[IntArray, Array, Array, Array, IntArray]] = []
         for depth in range(_DEEPEST + 1):
             place = low[:, None] + width[:, None] * _NODES
             curve, sizes = self.curve.evaluate(row, probe, place)
@@ -161,11 +161,11 @@ class _Search:
             top_places - self.segments.low[panel_segment],
             self.segments.high[panel_segment] - top_places,
         )
-        edge = np.where(from_low < _BESIDE, -1, np.where(from_high < _BESIDE, 1, 0))
+        edge = np.where(from_low < _ON_EDGE, -1, np.where(from_high < _ON_EDGE, 1, 0))
         return _Tops(row[panel], top, top_places, panel_segment, edge), best, size
 
     def refined(
-        self, row: Whole, probe: Array, begin: tuple[Array, Array, Array], end: tuple[Array, Array]
+        self, row: IntArray, probe: Array, begin: tuple[Array, Array, Array], end: tuple[Array, Array]
     ) -> tuple[Array, Array]:
         """Return value and place of the maxima in brackets: roots of the slope by secants of Illinois.
 
@@ -191,7 +191,7 @@ class _Search:
             a[i], rise[i] = np.where(up, trial, a[i]), np.where(up, slope, rise[i])
             b[i], fall[i] = np.where(up, b[i], trial), np.where(up, fall[i], slope)
             side[i] = np.where(up, 1, -1)
-            still = (slope != 0.0) & (moved > _SETTLED) & (b[i] - a[i] > 2.0 * _SETTLED)
+            still = (slope != 0.0) & (moved > _CONVERGED) & (b[i] - a[i] > 2.0 * _CONVERGED)
             active = i[still]
         return value, at
 
@@ -206,7 +206,7 @@ class _Search:
         before, following = np.append(np.arange(n), np.full(len(first), -1)), np.append(segments.next_segment, first)
         left, falls_not = edge[before, 1, 0], edge[before, 1, 1] >= 0.0
         right, rises_not = edge[following, 0, 0], edge[following, 0, 1] <= 0.0
-        tolerance = _STRAY * np.fmax(*(np.abs(np.where(np.isfinite(side), side, 0.0)) for side in (left, right)))
+        tolerance = _CONTINUOUS * np.fmax(*(np.abs(np.where(np.isfinite(side), side, 0.0)) for side in (left, right)))
         from_left = np.isfinite(left) & ~(left < right - tolerance) & falls_not
         of_left = from_left & (~(left <= right + tolerance) | rises_not)
         of_right = ~from_left & np.isfinite(right) & ~(right <= left + tolerance) & rises_not

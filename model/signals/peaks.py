@@ -22,12 +22,12 @@ from ..dynamics.segments import (
     Cuts,
     CycleWindow,
     angle_within,
+    breakpoint_capacity,
     crowded,
     crowding,
     cut_cycle,
     enter,
     load_on_slider,
-    room_for,
     uncrowded,
 )
 from ..kernel.arithmetic import STEP, analytic
@@ -52,14 +52,14 @@ _FINER, _NEAR = 16, 0.95  # samples of that row, and how near the highest a samp
 _HOPELESS = 0.8
 """Fraction of the highest sample below which no sample is followed if one peak is requested. Of a million random peaks
 of all signals, on machines with all loads, long tables, cylinders and friction, none was lost."""
-KEPT = 6
+STORED_PEAKS = 6
 """Peaks stored per design, highest first."""
 _ITERATIONS = 60
 _TURN = 2.0 * math.pi
-_STRAY = 1e-11  # relative difference below which the two sides of a breakpoint count as continuous
+_CONTINUOUS = 1e-11  # relative difference below which the two sides of a breakpoint count as continuous
 _FLAT = 1e-13
 _SAME = 1e-7  # rad: a flat top is not located better
-_THIN = 1e-13  # rad: breakpoints closer than this are one
+_SHORTEST = 1e-13  # rad: breakpoints closer than this are one
 
 
 @dataclass(frozen=True)
@@ -201,19 +201,24 @@ def _find(
     gradients: Cube,
     rubbing: bool,
 ) -> None:
-    cut_room = room_for(loads)
-    cuts = Cuts(np.empty(cut_room), np.empty(cut_room, np.int64), np.empty(cut_room), np.empty(cut_room, np.int64))
+    capacity = breakpoint_capacity(loads)
+    cuts = Cuts(
+        np.empty(capacity),
+        np.empty(capacity, np.int64),
+        np.empty(capacity),
+        np.empty(capacity, np.int64),
+    )
     piece = np.zeros(loads.kind.shape[0], np.int64)
     shift = np.zeros(loads.kind.shape[0])
     nv = gradients.shape[2] if gradients.shape[0] else 0
     listed = values.shape[1]
     peak, at = np.empty(listed), np.empty(listed)
     segment, pin = np.empty(listed, np.int64), np.empty(listed, np.int64)
-    edge = np.empty((cut_room, 4))  # value and slope at the start and end of each segment
-    counts, is_thin = np.empty(cut_room, np.bool_), np.empty(cut_room, np.bool_)
-    theta = np.empty(angles + 8 + 5 * cut_room)  # samples of all segments, one after another
+    edge = np.empty((capacity, 4))  # value and slope at the start and end of each segment
+    counts, is_negligible = np.empty(capacity, np.bool_), np.empty(capacity, np.bool_)
+    theta = np.empty(angles + 8 + 5 * capacity)  # samples of all segments, one after another
     f = np.empty(theta.shape[0])
-    first = np.empty(cut_room + 1, np.int64)  # index at which the samples of each segment begin
+    first = np.empty(capacity + 1, np.int64)  # index at which the samples of each segment begin
     for n in range(blocks.shape[0]):
         block = blocks[n]
         d = design_at(block, 0)
@@ -236,10 +241,10 @@ def _find(
         for s in range(count):
             a, b = cuts.angle[s], cuts.angle[s + 1]
             first[s + 1] = first[s]
-            is_thin[s] = b - a < _THIN
+            is_negligible[s] = b - a < _SHORTEST
             probe = angle_within(a, b)
             counts[s], outward = enter(d, block, 0, probe, loads, watch, piece, shift)
-            if is_thin[s] or not counts[s]:
+            if is_negligible[s] or not counts[s]:
                 has_motion = False
                 continue
             sides = sides_of(probe, d, block, 0, outward, loads, piece, shift, rubbing)
@@ -270,7 +275,7 @@ def _find(
         peak_count = 0
         best, best_at, best_segment = -1.0, 0.0, -1
         for s in range(count):
-            if is_thin[s] or not counts[s]:
+            if is_negligible[s] or not counts[s]:
                 continue
             a, b, start, end = cuts.angle[s], cuts.angle[s + 1], first[s], first[s + 1] - 1
             hopeful = listed > 1
@@ -315,16 +320,16 @@ def _find(
                         break
                     left, right = max(left, angle - step), min(right, angle + step)
         for s in range(count):
-            if is_thin[s]:
+            if is_negligible[s]:
                 continue
             # The breakpoint between segment `before` and segment s; between the two, breakpoints may coincide.
             before = s - 1 if s > 0 else count - 1
-            while is_thin[before]:
+            while is_negligible[before]:
                 before = before - 1 if before > 0 else count - 1
             after = counts[s]
             left = edge[before, 2] if counts[before] else -1.0
             right = edge[s, 0] if after else -1.0
-            tolerance = _STRAY * max(left, right)
+            tolerance = _CONTINUOUS * max(left, right)
             if counts[before] and left >= right - tolerance and edge[before, 3] >= 0.0:
                 if left > right + tolerance or edge[s, 1] <= 0.0:
                     peak_count = _keep(peak, at, segment, pin, peak_count, left, cuts.angle[s], before, s)
@@ -369,7 +374,7 @@ def find_peaks(
     *,
     during: str = "cycle",
     gradients: bool = False,
-    limit: int = KEPT,
+    limit: int = STORED_PEAKS,
     angles: int = ANGLES,
 ) -> Peaks:
     """Return the local peaks of a signal for designs (n, 3 + k): crank, rod, offset, m, each rotating fully.

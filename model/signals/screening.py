@@ -39,7 +39,7 @@ ANGLES = 64
 """Sampled angles per turn if thousands of designs are only sorted."""
 
 _STEPS = 7
-_SETTLED = 3e-7  # a step of the refinement, rad, whose cube does not show in the value
+_CONVERGED = 3e-7  # a step of the refinement, rad, whose cube does not show in the value
 _TORQUE, _WORST, _RSS = int(Signal.TORQUE), int(Signal.POSITION_ERROR), int(Signal.POSITION_ERROR_RSS)
 _FLAT = 1e-13
 
@@ -195,7 +195,7 @@ def _refine(
             trial = trial if (trial > floor) & (trial < ceiling) else middle
             # Such a short step is taken without checking again: its square still counts in the value, its cube does
             # not.
-            goes_on = moves if (abs(trial - t) > _SETTLED) | (step == 0) else 0.0
+            goes_on = moves if (abs(trial - t) > _CONVERGED) | (step == 0) else 0.0
             ahead = 0.0 if goes_on > 0.0 else trial - t
             value_here += 0.5 * rise * ahead
             # On the flat top the later angle is the better.

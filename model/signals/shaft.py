@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..arrays import Array, Mask, Whole
+from ..arrays import Array, IntArray, Mask
 from ..dynamics.breakpoints import breakpoints_of
 from ..dynamics.contact import rubs
 from ..dynamics.rubbing import always_drives
@@ -30,7 +30,7 @@ from .signals import Signal
 _NEAR = 1e-9  # rad: a breakpoint this near to the start of one of two turns may belong to either
 _CONTACTS = 24  # panels of a turn in which the guide's force may change sides, of 16 samples each
 _HALVINGS = 60
-_BESIDE = 1e-12  # rad
+_SIDE_STEP = 1e-12  # rad
 
 
 class Shaft:
@@ -111,7 +111,7 @@ class Shaft:
         crowd = np.array([crowding(*lengths) for lengths in zip(r, l, e, strict=True)])
         return np.asarray(np.ceil(np.maximum(12.0 / np.maximum(crowd, 0.05), 1.0 * len(self._pace.cosines))))
 
-    def half(self, angle: Array, row: Whole) -> Whole:
+    def half(self, angle: Array, row: IntArray) -> IntArray:
         """Return the half (p, m) of its cycle in which every cylinder is at shaft angles (p,)."""
         if len(self._parts) < 2:
             return np.zeros((len(angle), len(self._axes.lead)), dtype=np.int64)
@@ -127,7 +127,7 @@ class Shaft:
         return tuple(np.asarray(np.pi - at if crossed else at) for at in (inner, outer))
 
     def evaluate(
-        self, row: Whole, probe: Array, angle: Array, *, rate: Array | None = None, gradients: bool = False
+        self, row: IntArray, probe: Array, angle: Array, *, rate: Array | None = None, gradients: bool = False
     ) -> tuple[Array, Array]:
         """Return the curve (p, k, 2 + v) and its sizes (p, k) at angles (p, k) of segments.
 
@@ -143,13 +143,20 @@ class Shaft:
         return np.asarray(evaluated[2][:, 0] == 1)
 
     def _evaluate(
-        self, kind: int, members: Whole, row: Whole, probe: Array, angle: Array, rate: Array | None, gradients: bool
-    ) -> tuple[Array, Array, Whole]:
+        self,
+        kind: int,
+        members: IntArray,
+        row: IntArray,
+        probe: Array,
+        angle: Array,
+        rate: Array | None,
+        gradients: bool,
+    ) -> tuple[Array, Array, IntArray]:
         """Return curve, sizes and strokes; where all forces vanish together, those beside that angle."""
         curve = self._run_kernel(kind, members, row, probe, angle, rate, gradients)
         lost = np.asarray(~np.isfinite(curve[0]).all(axis=(1, 2)))
         if lost.any():
-            nearby = angle[lost] + np.copysign(_BESIDE, probe[lost, None] - angle[lost])
+            nearby = angle[lost] + np.copysign(_SIDE_STEP, probe[lost, None] - angle[lost])
             lost_rate = None if rate is None else rate[lost]
             substitute = self._run_kernel(kind, members, row[lost], probe[lost], nearby, lost_rate, gradients)
             is_finite = np.asarray(np.isfinite(curve[0][lost]).all(axis=2))
@@ -158,8 +165,15 @@ class Shaft:
         return curve
 
     def _run_kernel(
-        self, kind: int, members: Whole, row: Whole, probe: Array, angle: Array, rate: Array | None, gradients: bool
-    ) -> tuple[Array, Array, Whole]:
+        self,
+        kind: int,
+        members: IntArray,
+        row: IntArray,
+        probe: Array,
+        angle: Array,
+        rate: Array | None,
+        gradients: bool,
+    ) -> tuple[Array, Array, IntArray]:
         rate = np.zeros((len(row), self.numbers)) if rate is None else rate
         items = Evaluations(
             np.ascontiguousarray(row),
@@ -254,7 +268,7 @@ class Shaft:
             parts.append(Breaks(row[panel], at, members, zeros, zeros + CONTACT, np.zeros(len(panel)), zeros))
         return joined(parts)
 
-    def rates(self, cuts: Whole, probe: Array) -> Array:
+    def rates(self, cuts: IntArray, probe: Array) -> Array:
         """Return the derivatives (c, v) of breakpoint angles by the design; probe: angles in the segments behind."""
         breaks = self.breaks
         code, row = breaks.code[cuts], breaks.row[cuts]

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, Mask, Whole
+from ..arrays import Array, IntArray, Mask
 from ..machine.speed_profile import time_per_angle
 from .cycle_segments import Segments
 from .panels import resolved_tail
@@ -71,8 +71,8 @@ def shaft_means(shaft: Shaft, count: int) -> Means:
         _add_jumps(shaft, segments, slopes)
     sums[:, ~shaft.drives] = np.nan
     nothing = np.sqrt(sums[SQUARE]) <= NOTHING * sizes[0]
-    kept_rows = [MEAN, SQUARE, SQUARE if rows == 2 else SQUARE_OVER_TIME]
-    return Means(sums[kept_rows], slopes[kept_rows] if shaft.gradients else None, nothing)
+    mean_rows = [MEAN, SQUARE, SQUARE if rows == 2 else SQUARE_OVER_TIME]
+    return Means(sums[mean_rows], slopes[mean_rows] if shaft.gradients else None, nothing)
 
 
 def _time_weight(shaft: Shaft, angle: Array) -> Array | None:
@@ -80,7 +80,7 @@ def _time_weight(shaft: Shaft, angle: Array) -> Array | None:
     return None if shaft.profile is None else time_per_angle(shaft.profile, angle)
 
 
-def _is_rough(value: Array, size: Array, sizes: Array, row: Whole, width: Array) -> Mask:
+def _is_rough(value: Array, size: Array, sizes: Array, row: IntArray, width: Array) -> Mask:
     """Return which panels (p,) are not resolved, from values and sizes (p, 16); raise the sizes (n,) of the designs."""
     np.maximum.at(sizes, row, size.max(axis=1, initial=0.0))
     rough: Mask = resolved_tail(value) * np.minimum(1.0, width) > _RESOLVED * sizes[row]

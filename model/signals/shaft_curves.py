@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..dynamics.contact import sides_of
-from ..dynamics.crank_loads import beside_crank_loads, sense_of
+from ..dynamics.crank_loads import sense_of, torque_without_crank_loads
 from ..dynamics.inertia import reflected_inertia, shaking
 from ..dynamics.rubbing import Sides, joint_forces, touch
 from ..dynamics.segments import Cuts, CycleWindow, cut_shift, enter, load_on_slider
@@ -96,7 +96,7 @@ def _components(kind: Any, s: Any, c: Any, m: Any, d: Any, load: Any, sides: Any
         f = joint_forces(s, c, m, d, load, sides)
         if kind in (_TORQUE, _POWER):
             block, theta, loads, piece, shift = place
-            torque = beside_crank_loads(f.torque, d, block, 0, theta, sense_of(d), loads, piece, shift)
+            torque = torque_without_crank_loads(f.torque, d, block, 0, theta, sense_of(d), loads, piece, shift)
             return (torque * d.speed, zero) if kind == _POWER else (torque, zero)
         if kind in (_PIVOT, WORK + 2):
             x, y = f.pivot_x, f.pivot_y

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, Whole
+from ..arrays import Array, IntArray
 from ..machine.two_turns import TURN
 from .cycle_segments import Segments
 
 FIXED, CONTACT = -1, -2
 """Codes of a breakpoint that no design moves, and of one where a guide's force changes sides."""
-_THIN = 1e-13  # rad: breakpoints closer than this are one
+_SHORTEST = 1e-13  # rad: breakpoints closer than this are one
 
 
 @dataclass(frozen=True)
@@ -22,13 +22,13 @@ class Breaks:
     code: `FIXED` for a breakpoint that no design moves, `CONTACT` where a guide's force changes sides.
     """
 
-    row: Whole
+    row: IntArray
     angle: Array
-    member: Whole
-    half: Whole
-    code: Whole
+    member: IntArray
+    half: IntArray
+    code: IntArray
     number: Array
-    load: Whole
+    load: IntArray
 
 
 def joined(parts: list[Breaks]) -> Breaks:
@@ -45,8 +45,8 @@ def segments_of(breaks: Breaks, period: float) -> Segments:
     last = np.searchsorted(row, row, side="right") - 1
     place = np.arange(len(row))
     high = np.where(place == last, low[first] + period, low[np.minimum(place + 1, len(row) - 1)])
-    has_length = high - low >= _THIN
-    thin_breaks, thin_row = order[~has_length], row[~has_length]
+    has_length = high - low >= _SHORTEST
+    merged_breaks, merged_row = order[~has_length], row[~has_length]
     next_break = np.searchsorted(np.flatnonzero(has_length), np.flatnonzero(~has_length))
     row, low, high, cut = row[has_length], low[has_length], high[has_length], order[has_length]
     place = np.arange(len(row))
@@ -56,8 +56,8 @@ def segments_of(breaks: Breaks, period: float) -> Segments:
     # The ends of a thin segment count as one breakpoint, also around the cycle: designs move it if they move either
     # end.
     next_break = np.where(
-        next_break > np.searchsorted(row, thin_row, side="right") - 1, np.searchsorted(row, thin_row), next_break
+        next_break > np.searchsorted(row, merged_row, side="right") - 1, np.searchsorted(row, merged_row), next_break
     )
-    moves = (breaks.code[cut[next_break]] == FIXED) & (breaks.code[thin_breaks] != FIXED)
-    cut[next_break[moves]] = thin_breaks[moves]
+    moves = (breaks.code[cut[next_break]] == FIXED) & (breaks.code[merged_breaks] != FIXED)
+    cut[next_break[moves]] = merged_breaks[moves]
     return Segments(row, low, high, cut, after, TURN)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import IntEnum, auto
 from typing import Any
 
-from ..dynamics.crank_loads import beside_crank_loads, sense_of
+from ..dynamics.crank_loads import sense_of, torque_without_crank_loads
 from ..dynamics.inertia import reflected_inertia, shaking
 from ..dynamics.rubbing import joint_forces
 from ..kernel.arithmetic import analytic, magnitude, root
@@ -90,7 +90,7 @@ def signal(
             torque = f.torque
             if place is not None:
                 block, j, theta, loads, piece, shift = place
-                torque = beside_crank_loads(torque, d, block, j, theta, sense_of(d), loads, piece, shift)
+                torque = torque_without_crank_loads(torque, d, block, j, theta, sense_of(d), loads, piece, shift)
             return magnitude(torque * d.speed) if kind == _POWER else magnitude(torque)
         return size_of_force(kind, f, m, d)
     if kind == _SPEED:

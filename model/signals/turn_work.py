@@ -27,11 +27,11 @@ from ..dynamics.segments import (
     Cuts,
     CycleWindow,
     angle_within,
+    breakpoint_capacity,
     crowded,
     cut_cycle,
     enter,
     load_on_slider,
-    room_for,
     uncrowded,
 )
 from ..kernel.arithmetic import STEP, analytic, magnitude, root
@@ -108,8 +108,13 @@ def _integrate(
     rubbing: bool,
 ) -> None:
     nodes, weights, tail = rule
-    cut_room = room_for(loads)
-    cuts = Cuts(np.empty(cut_room), np.empty(cut_room, np.int64), np.empty(cut_room), np.empty(cut_room, np.int64))
+    capacity = breakpoint_capacity(loads)
+    cuts = Cuts(
+        np.empty(capacity),
+        np.empty(capacity, np.int64),
+        np.empty(capacity),
+        np.empty(capacity, np.int64),
+    )
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     nv = slopes.shape[2] if slopes.shape[0] else 0
     # Row 0 of the rates is the curve itself, the others are its derivatives.
@@ -161,11 +166,11 @@ def _integrate(
                             g = _curves(theta, square, z, stepped[v], outward, loads, piece, shift, sides)
                             for k in range(_CURVES):
                                 rates[k, v + 1, i] = g[k].imag / STEP
-                    halve, room_left = False, _SHARE * _TURN / width
+                    halve, tolerance_factor = False, _SHARE * _TURN / width
                     for k in range(_CURVES):
                         for v in range(nv + 1):
                             greatest[k, v] = max(greatest[k, v], np.abs(rates[k, v]).max())
-                            allowed = RESOLVED[0 if v == 0 else 1] * resolved * greatest[k, v] * room_left
+                            allowed = RESOLVED[0 if v == 0 else 1] * resolved * greatest[k, v] * tolerance_factor
                             halve = halve or rough(rates[k, v], tail, allowed)
                     if halve and depth < DEEPEST:
                         for half in range(2):  # the left one on top: panels are added up in order

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arrays import Array, Mask, Whole
+from ..arrays import Array, IntArray, Mask
 from ..kernel.kernel import Integers, IntegerTable, Table, seldom_kernel
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import formula_of_numbers
@@ -28,7 +28,7 @@ from .stress_points import WIDE, Field, Samples
 _MANY = WIDE // 2
 
 
-class WholeBar(NamedTuple):
+class LinkBody(NamedTuple):
     """A whole link. part: `ROD` or `CRANK`. bent: whether moments count."""
 
     part: int
@@ -50,7 +50,7 @@ class Eye(NamedTuple):
     outer: bool
 
 
-StressLocation = WholeBar | Eye
+StressLocation = LinkBody | Eye
 
 
 @dataclass(frozen=True)
@@ -79,21 +79,21 @@ class StressLocations:
         """Return whether friction locks the design of a bar, (m n,)."""
         return np.tile(self.field.locked, len(self.places))
 
-    def segment_counts(self, bars: Whole) -> Whole:
+    def segment_counts(self, bars: IntArray) -> IntArray:
         """Return the number of segments in the cycle of bars (p,)."""
-        counts: Whole = self.field.cuts.many[self._design(bars)]
+        counts: IntArray = self.field.cuts.many[self._design(bars)]
         return counts
 
-    def ends(self, bars: Whole, segment: Whole) -> tuple[Array, Array]:
+    def ends(self, bars: IntArray, segment: IntArray) -> tuple[Array, Array]:
         """Return where segments (p,) of bars (p,) begin and end, rad."""
         return self.field.ends(self._design(bars), segment)
 
-    def stress_at(self, bars: Whole, segment: Whole, angle: Array) -> Array:
+    def stress_at(self, bars: IntArray, segment: IntArray, angle: Array) -> Array:
         """Return stress and its derivatives by the crank angle, (p, WIDE)."""
         stress = self.field.stress_at(self._design(bars), segment, angle)
         return _spread(self.places, stress, np.arange(len(bars)), self._place(bars), self.factors[bars])
 
-    def slopes(self, bars: Whole, segment: Whole, angle: Array, cut: Whole) -> Array:
+    def slopes(self, bars: IntArray, segment: IntArray, angle: Array, cut: IntArray) -> Array:
         """Return the derivatives by the numbers of the design, (p, 3 + k, WIDE / 2).
 
         cut: (p,), the breakpoint with which the angle moves, -1 for none.
@@ -110,14 +110,14 @@ class StressLocations:
         spread[eyes] += _spread(self.places, values, row[eyes], place[eyes], rates[eyes])[:, :_MANY]
         return spread.reshape(p, k, _MANY)
 
-    def _place(self, bars: Whole) -> Whole:
+    def _place(self, bars: IntArray) -> IntArray:
         return bars // len(self.field.blocks)
 
-    def _design(self, bars: Whole) -> Whole:
+    def _design(self, bars: IntArray) -> IntArray:
         return bars % len(self.field.blocks)
 
 
-def _spread(places: Sequence[StressLocation], stress: Array, row: Whole, place: Whole, factors: Array) -> Array:
+def _spread(places: Sequence[StressLocation], stress: Array, row: IntArray, place: IntArray, factors: Array) -> Array:
     """Return the stress of locations (p, WIDE) from rows (p,) of the stress of both links (r, 2 WIDE)."""
     codes = np.array(
         [

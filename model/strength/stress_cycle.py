@@ -27,7 +27,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, Mask, Whole
+from ..arrays import Array, IntArray, Mask
 from ..errors import InputError
 from ..kernel.batches import in_chunks, turning
 from ..machine.mechanism import Mechanism
@@ -36,9 +36,9 @@ from ..machine.two_turns import cycle_turns, halves
 from .places import StressLocation, StressLocations, stress_at_locations
 from .section_forces import Stress, at_share
 from .stress_points import field_of
-from .stress_search import LISTED, STATIONS, Candidates, choose, climb, first_candidates, propose, room_for
+from .stress_search import LISTED, STATIONS, Candidates, choose, climb, empty_candidates, first_candidates, propose
 
-KEPT = 8
+STORED_MAXIMA = 8
 """Maxima stored per design, highest first."""
 _NEAR, _WIDE = 0.05, 0.2  # depth below the highest sample down to which maxima are refined: for the value, for pieces
 _TURN = 2.0 * math.pi
@@ -49,7 +49,7 @@ _EQUAL = 1e-6  # relative; accuracy of cubics between samples when comparing max
 # which it is accepted (such a cubic has a millionth of the last one's error); then the ratio to the next distance.
 _CLOSE, _FORETOLD, _CLOSER, _ROUNDS = 0.01, 1e-3, 30.0, 10
 _SECOND_TURN = 1e5  # step between labels, more than all parts of a quantity take
-APART, CLASSES = 60.0, 12
+LABEL_STEP, CLASSES = 60.0, 12
 """Distance between labels of maxima that are not neighbours, more than a turn; number of their classes."""
 
 
@@ -75,13 +75,13 @@ class _Maxima:
     angle: (c, 2). segment: (c, 2). is_counted: (c, 2), whether the angle counts. spacing: (c, 2), between samples, rad.
     """
 
-    bar: Whole
-    side: Whole
-    pull: Whole
+    bar: IntArray
+    side: IntArray
+    pull: IntArray
     share: Array
     value: Array
     angle: Array
-    segment: Whole
+    segment: IntArray
     is_counted: Mask
     spacing: Array
 
@@ -89,7 +89,7 @@ class _Maxima:
         """Give an angle that does not count the value of the other one."""
         self.angle = np.where(self.is_counted, self.angle, self.angle[:, ::-1])
 
-    def select(self, rows: Whole) -> _Maxima:
+    def select(self, rows: IntArray) -> _Maxima:
         """Return a selection of the maxima."""
         return _Maxima(**{name: column[rows] for name, column in vars(self).items()})
 
@@ -102,7 +102,7 @@ def _of_samples(bars: StressLocations, sides: Array, criteria: Array, margin: fl
     candidate_count = n * len(sides) * len(criteria) * (STATIONS + 1) // 2 * LISTED**2
     space = np.empty((STATIONS, int(np.diff(start).max(initial=1)))), np.empty((2, LISTED), np.int64)
     best = np.empty((len(sides), len(criteria), STATIONS))
-    candidates = room_for(candidate_count)
+    candidates = empty_candidates(candidate_count)
     count = propose(start, first, stress, 0, sides, criteria, margin, *space, best, candidates)
     candidates = first_candidates(candidates, count)
     values, angles, chosen = np.empty(count), np.empty((count, 2)), np.empty((n, limit), np.int64)
@@ -151,16 +151,16 @@ def _close_in(bars: StressLocations, sides: Array, criteria: Array, maxima: _Max
         angles = np.where(is_counted, angles, angles[:, ::-1])
         moved = np.abs(angles - maxima.angle[waiting])
         maxima.value[waiting], maxima.share[waiting], maxima.angle[waiting] = values, candidates.share, angles
-        is_settled = np.all(moved <= near[waiting], axis=1)
+        is_converged = np.all(moved <= near[waiting], axis=1)
         is_inside = (angles > low) | (low <= begin[waiting])
         is_inside &= (angles < high) | (high >= end[waiting])
         closer = waiting[np.all(is_inside | ~is_counted, axis=1)]
         width[closer] /= _CLOSER
         near[closer] *= _CLOSER  # the remaining ones are off by less, wherever they were predicted
-        waiting = waiting[~is_settled]
+        waiting = waiting[~is_converged]
 
 
-def _gradients(bars: StressLocations, all_sides: Array, criteria: Array, maxima: _Maxima, pins: Whole) -> Array:
+def _gradients(bars: StressLocations, all_sides: Array, criteria: Array, maxima: _Maxima, pins: IntArray) -> Array:
     """Return the derivatives (c, 3 + k) of maxima on breakpoints `pins` (c, 2), or on none (-1)."""
     is_counted = maxima.is_counted
     counted_bars = np.broadcast_to(maxima.bar[:, None], is_counted.shape)[is_counted]
@@ -212,7 +212,7 @@ def _peaks(bars: StressLocations, criteria: Array, gradients: bool, limit: int) 
     turned = np.where(maxima.is_counted, maxima.angle - _TURN * np.floor(maxima.angle / _TURN), 0.0)
     label_class = (maxima.side * len(criteria) + maxima.pull) * 3 + ended
     peaks.values[is_found] = maxima.value
-    peaks.labels[is_found] = APART * label_class + turned[:, 0] + _OTHER * turned[:, 1]
+    peaks.labels[is_found] = LABEL_STEP * label_class + turned[:, 0] + _OTHER * turned[:, 1]
     peaks.places[is_found] = np.column_stack([maxima.share, _SIDES[maxima.side], maxima.angle])
     if peaks.gradients is not None:
         peaks.gradients[is_found] = _gradients(bars, _SIDES, criteria, maxima, pins)
@@ -255,7 +255,7 @@ def stress_peaks(
     criteria: Array,
     *,
     gradients: bool = False,
-    limit: int = KEPT,
+    limit: int = STORED_MAXIMA,
 ) -> list[StressPeaks]:
     """Return the greatest p sigma - q sigma of designs (n, 3 + k) at each place; `StressLocation` defines sigma.
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array, Mask, Whole
+from ..arrays import Array, IntArray, Mask
 from ..dynamics.breakpoints import Breakpoints, breakpoints_of
 from ..dynamics.contact import rubs, shift_of, sides_of
 from ..dynamics.rubbing import joint_forces
@@ -33,7 +33,7 @@ ANGLES = 128
 WIDE = 14
 """Columns of a link: seven coefficients of its `Stress`, and their derivatives."""
 _TURN = 2.0 * math.pi
-_THIN = 1e-13  # rad: breakpoints closer than this are one
+_SHORTEST = 1e-13  # rad: breakpoints closer than this are one
 _SLOTS = (*range(Raw.ROD_WIDTH, Raw.ROD_WIDTH + 3), *range(Raw.CRANK_WIDTH, Raw.CRANK_WIDTH + 3))
 
 
@@ -149,7 +149,7 @@ def _sample_segments(
         for s in range(count):
             a = cuts.angle[n, s]
             b = cuts.angle[n, s + 1] if s + 1 < count else cuts.angle[n, 0] + _TURN
-            if b - a < _THIN:
+            if b - a < _SHORTEST:
                 continue
             low, high = crowded(a, kappa), crowded(b, kappa)
             points = max(3, int(ANGLES * (high - low) / _TURN) + 2)
@@ -184,13 +184,13 @@ class Field:
         is_locked: Mask = self.cuts.many == 0
         return is_locked
 
-    def ends(self, design: Whole, segment: Whole) -> tuple[Array, Array]:
+    def ends(self, design: IntArray, segment: IntArray) -> tuple[Array, Array]:
         """Return where segments (p,) of designs (p,) begin and end, rad."""
         angle, count = self.cuts.angle, self.cuts.many[design]
         last = segment + 1 == count
         return angle[design, segment], angle[design, np.where(last, 0, segment + 1)] + np.where(last, _TURN, 0.0)
 
-    def stress_at(self, design: Whole, segment: Whole, angle: Array) -> Array:
+    def stress_at(self, design: IntArray, segment: IntArray, angle: Array) -> Array:
         """Return stress and its derivatives by the crank angle, (p, 2 WIDE)."""
         begin, end = self.ends(design, segment)
         no_number = np.full(len(design), -1)
@@ -199,7 +199,7 @@ class Field:
             self.blocks, _NO_STEPS, self.sizes, _NO_TURN, points, self.cuts, self.loads, rubs(self.mechanism)
         )
 
-    def slopes(self, design: Whole, segment: Whole, angle: Array, cut: Whole) -> Array:
+    def slopes(self, design: IntArray, segment: IntArray, angle: Array, cut: IntArray) -> Array:
         """Return stress and its derivatives by the raw numbers of `numbers`, (p, c, 2 WIDE).
 
         cut: (p,), the breakpoint with which the angle moves, -1 for none.

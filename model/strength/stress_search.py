@@ -20,7 +20,7 @@ STATIONS = 9
 LISTED = 6
 """Local maxima of a place's stress over the cycle."""
 _ITERATIONS = 60
-_SETTLED = 1e-11  # fraction of the length
+_CONVERGED = 1e-11  # fraction of the length
 _TURN = 2.0 * math.pi
 _PLACE, _ANGLE = 1e-5, 1e-9  # fraction of the length, 1 - cosine of crank angles: maxima this near are one
 
@@ -39,7 +39,7 @@ class Candidates(NamedTuple):
     share: Row
 
 
-def room_for(count: int) -> Candidates:
+def empty_candidates(count: int) -> Candidates:
     """Return room for candidates."""
     columns = [np.empty(count, np.int64) for _ in range(3)]
     return Candidates(columns[0], columns[1], columns[2], np.empty((count, 2), np.int64), np.empty(count))
@@ -249,7 +249,7 @@ def climb(
                 else:
                     trial = 0.5 * (lower + upper)
             old_xi, old_slope = xi, slope
-            if abs(trial - xi) < _SETTLED or upper - lower < _SETTLED:
+            if abs(trial - xi) < _CONVERGED or upper - lower < _CONVERGED:
                 break
             xi = trial
         values[c], candidates.share[c] = value, xi

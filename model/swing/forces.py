@@ -42,7 +42,7 @@ _STILL = 1e-200
 """A crank speed, rad/s, that only gives the sense of rotation, with negligible inertia forces."""
 _NOTHING = 1e-150
 _ITERATIONS = 50
-_SETTLED = 1e-14
+_CONVERGED = 1e-14
 
 
 @dataclass(frozen=True)
@@ -221,7 +221,7 @@ def _with_pins(bx: Array, by: Array, rows: Callable[[Array, Array], PinRows]) ->
         step_x, step_y = newton_step(rows(bx, by))
         bx, by = bx + step_x, by + step_y
         size = np.hypot(step_x, step_y)
-        if np.all((size <= _SETTLED * np.hypot(bx, by)) | ~np.isfinite(size)):
+        if np.all((size <= _CONVERGED * np.hypot(bx, by)) | ~np.isfinite(size)):
             break
     near = size <= 1e-9 * np.hypot(bx, by)  # rounding may keep the last steps from falling further
     return np.where(near, bx, np.nan), np.where(near, by, np.nan)

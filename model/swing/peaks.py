@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from ..arrays import Array, Whole
+from ..arrays import Array, IntArray
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import in_chunks
 from ..machine.mechanism import Mechanism
@@ -23,7 +23,7 @@ from .swing import Swing
 from .swing_batch import Pieces, SwingBatch
 from .swing_states import DRIVE, ERROR
 
-KEPT = 6
+STORED_PEAKS = 6
 """Peaks stored per design, highest first."""
 _PANELS = 2.0  # initial panels per stroke
 _CHUNK = 128
@@ -73,7 +73,7 @@ class _Curve:
         return Segments(row, low, high, cut, after)
 
     def evaluate(
-        self, row: Whole, probe: Array, place: Array, *, rate: Array | None = None, gradients: bool = False
+        self, row: IntArray, probe: Array, place: Array, *, rate: Array | None = None, gradients: bool = False
     ) -> tuple[Array, Array]:
         """Return value, slope and derivatives; see `peak_search.Curve`."""
         back = np.floor(probe)[:, None]
@@ -88,7 +88,7 @@ class _Curve:
             curve = self.toward[row][:, None, None] * curve
         return curve, np.nan_to_num(np.abs(state.real))
 
-    def rates(self, cuts: Whole, probe: Array) -> Array:
+    def rates(self, cuts: IntArray, probe: Array) -> Array:
         """Return the derivatives of cuts; see `peak_search.Curve`."""
         cut_rates = np.zeros((len(cuts), self.numbers))
         for way, pieces in enumerate(self.ways):
@@ -99,7 +99,13 @@ class _Curve:
 
 
 def swing_peaks(
-    mechanism: Mechanism, swing: Swing, state: int, designs: Array, *, gradients: bool = False, limit: int = KEPT
+    mechanism: Mechanism,
+    swing: Swing,
+    state: int,
+    designs: Array,
+    *,
+    gradients: bool = False,
+    limit: int = STORED_PEAKS,
 ) -> SwingPeaks:
     """Return the greatest sizes of a state (`swing_states.DRIVE`, `POWER` or `ERROR`) for designs (n, 3 + k).
 
@@ -110,7 +116,13 @@ def swing_peaks(
 
 
 def least_drives(
-    mechanism: Mechanism, swing: Swing, designs: Array, *, back: bool, gradients: bool = False, limit: int = KEPT
+    mechanism: Mechanism,
+    swing: Swing,
+    designs: Array,
+    *,
+    back: bool,
+    gradients: bool = False,
+    limit: int = STORED_PEAKS,
 ) -> SwingPeaks:
     """Return the least drives along the motion of one way, without inertia, negated: local peaks, highest first.
 

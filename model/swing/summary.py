@@ -21,7 +21,7 @@ class SwingSummary:
     peak_drive: greatest size of the driver's torque or force, either way. drive_start, drive_end: drive at each end on
     the forward and on the return stroke, without inertia. With negligible friction both hold the linkage at rest; with
     friction, any force between them does. holds: whether friction alone holds the linkage at rest throughout the swing.
-    energy_forth, energy_back: energy of the driver on the forward and return strokes, J. stored: energy of the slow
+    energy_forward, energy_back: energy of the driver on the forward and return strokes, J. stored: energy of the slow
     forward stroke without friction, J. efficiency: energy without friction over energy with friction, on the slow
     forward stroke, otherwise the slow return stroke; None where neither is driven. peak_power: W, None for a slow
     swing. least_transmission: least transmission angle of the driven side. position_error: greatest over the swing,
@@ -37,7 +37,7 @@ class SwingSummary:
     drive_start: tuple[float, float]
     drive_end: tuple[float, float]
     holds: bool
-    energy_forth: float
+    energy_forward: float
     energy_back: float
     stored: float
     efficiency: float | None
@@ -84,7 +84,7 @@ def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSumm
         drive_start=(float(still[0].drive[0]), float(still[1].drive[1])),
         drive_end=(float(still[0].drive[1]), float(still[1].drive[0])),
         holds=slow.friction_holds(),
-        energy_forth=cycle.energy(back=False),
+        energy_forward=cycle.energy(back=False),
         energy_back=cycle.energy(back=True),
         stored=free.energy(back=False),
         efficiency=None if locked else _efficiency(slow, free),

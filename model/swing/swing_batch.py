@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, Mask, Whole
+from ..arrays import Array, IntArray, Mask
 from ..dynamics.rubbing import drives
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import in_chunks
@@ -30,7 +30,7 @@ from .law import corners, mirrored, shares_of
 from .swing import Swing, slowly
 from .swing_states import ANGLE, GUIDE, PACE, PLACE, Complexes, Path, path_of, states
 
-_THIN = 1e-12
+_SHORTEST = 1e-12
 _SCAN = 33
 _CONTACTS = 6
 _ROOTS = 60
@@ -46,12 +46,12 @@ class Pieces:
 
     back: bool
     cuts: Array
-    state: Whole
+    state: IntArray
 
     @property
     def live(self) -> Mask:
         """Pieces (n, c - 1) that have a length."""
-        return np.asarray(np.diff(self.cuts, axis=1) > _THIN)
+        return np.asarray(np.diff(self.cuts, axis=1) > _SHORTEST)
 
     @property
     def probe(self) -> Array:
@@ -137,7 +137,7 @@ class SwingBatch:
         shares = [np.zeros(self.count), np.ones(self.count), *(share for share, _ in inner_cuts)]
         state = np.tile(np.array([-1, -1, *(code for _, code in inner_cuts)], dtype=np.int64), (self.count, 1))
         cuts = np.stack(shares, axis=1)
-        cuts = np.where((cuts > _THIN) & (cuts < 1.0 - _THIN), cuts, np.where(cuts < 0.5, 0.0, 1.0))
+        cuts = np.where((cuts > _SHORTEST) & (cuts < 1.0 - _SHORTEST), cuts, np.where(cuts < 0.5, 0.0, 1.0))
         cuts = np.where(np.isnan(np.stack(shares, axis=1)), 1.0, cuts)
         uncut = _sorted(Pieces(back, 1.0 - cuts if back else cuts, state))
         touching = forces and contacts and self.rubs and self.mechanism.fullest.friction.guide > 0.0
@@ -240,7 +240,7 @@ class SwingBatch:
         )
         return _sorted(Pieces(pieces.back, cuts, states_of))
 
-    def _contact_shares(self, design: Whole, low: Array, high: Array, probe: Array, back: float) -> Array:
+    def _contact_shares(self, design: IntArray, low: Array, high: Array, probe: Array, back: float) -> Array:
         """Return the fractions between two at which the guide's force is zero, by bisection and Newton's iteration."""
         rising = self.states(design, high, probe, back)[:, GUIDE].real > 0.0
         roots, rows = 0.5 * (low + high), np.arange(len(low))
@@ -258,7 +258,7 @@ class SwingBatch:
                 break
         return roots
 
-    def moved(self, pieces: Pieces, design: Whole, cut: Whole, probe: Array) -> Array:
+    def moved(self, pieces: Pieces, design: IntArray, cut: IntArray, probe: Array) -> Array:
         """Return the derivatives (p, c) of the cuts (p,), as fractions of the time, by each raw number."""
         state = pieces.state[design, cut]
         slips = np.zeros((len(design), self.columns))

@@ -68,9 +68,9 @@ def resolve_swing(
     if motion is not None and fields.get("stated_for", motion.stated_for) == motion.stated_for:
         swing = replace(motion, **fields)
     else:
-        kept_fields = ("driver", "law", "duration", "points", "actuator_tolerance")
+        motion_fields = ("driver", "law", "duration", "points", "actuator_tolerance")
         swing = _new_swing(
-            ({} if motion is None else {name: getattr(motion, name) for name in kept_fields}) | fields, names
+            ({} if motion is None else {name: getattr(motion, name) for name in motion_fields}) | fields, names
         )
     return replace(mechanism, start=Start()), replace(swing, follows=False)
 

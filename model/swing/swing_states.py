@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array, Whole
+from ..arrays import Array, IntArray
 from ..dynamics.contact import sides_of
-from ..dynamics.crank_loads import beside_crank_loads
+from ..dynamics.crank_loads import torque_without_crank_loads
 from ..dynamics.rubbing import joint_forces
 from ..dynamics.segments import CycleWindow, enter, load_on_slider
 from ..dynamics.torque import balance, with_couple
@@ -32,7 +32,7 @@ angle, crank angle, derivative of the driver's place by the fraction of the time
 _STATES = 8
 _STILL = 1e-200  # rad/s: gives the sense of rotation, with negligible inertia
 _NEWTON = 40
-_SETTLED = 1e-15
+_CONVERGED = 1e-15
 _SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acceleration")
 
 
@@ -101,7 +101,7 @@ def _pushed(sine: Any, cosine: Any, m: Any, d: Any, load: Any, on_crank: Any, ro
             step_x, step_y = newton_step(pin_rows(bx, by, sine, cosine, m, d, b, sides))
             bx, by = bx + step_x, by + step_y
             size = abs(step_x.real) + abs(step_y.real)
-            if size <= _SETTLED * (abs(bx.real) + abs(by.real)):
+            if size <= _CONVERGED * (abs(bx.real) + abs(by.real)):
                 break
         if not size <= 1e-9 * (abs(bx.real) + abs(by.real)):
             bx = bx * math.nan
@@ -204,7 +204,7 @@ def _states(
         if path.slider:
             if path.forces:
                 angle = complex(theta, moved)
-                on_crank = beside_crank_loads(0j, z, stepped_block, 0, angle, turning, loads, piece, shift)
+                on_crank = torque_without_crank_loads(0j, z, stepped_block, 0, angle, turning, loads, piece, shift)
                 rod_1 = motion(math.sin(probe_angle), math.cos(probe_angle), d.r, d.l, d.e, d.branch).rod_1
                 drive, guide = _pushed(zs, zc, m, z, load, on_crank, rod_1, path.rubbing)
                 power = drive * m.x_1 * speed
@@ -216,7 +216,7 @@ def _states(
                 sides = sides_of(probe_angle, d, block, 0, outward, loads, piece, shift, path.rubbing)
                 f = joint_forces(zs, zc, m, z, load, sides)
                 angle = complex(theta, moved)
-                drive = beside_crank_loads(f.torque, z, stepped_block, 0, angle, turning, loads, piece, shift)
+                drive = torque_without_crank_loads(f.torque, z, stepped_block, 0, angle, turning, loads, piece, shift)
                 guide, power = f.guide, drive * speed
             error = worst_case(j, z)
         out[p, 0], out[p, 1], out[p, 2], out[p, 3] = drive, power, error, guide
@@ -228,7 +228,7 @@ def states(
     steps: Complexes,
     loads: Loads,
     path: Path,
-    points: tuple[Whole, Whole, Array, Array, Array, Array],
+    points: tuple[IntArray, IntArray, Array, Array, Array, Array],
     ends: Complexes,
 ) -> Complexes:
     """Return states (p, 8) at points: indices of block and stepped block, time fraction, imaginary part, piece, way.

@@ -30,7 +30,7 @@ _STOPS = 1e-12
 """Least fraction of the energies at work that differs from zero: a millionth of the greatest speed."""
 _NEAR = 1e-2
 """Fraction of the range of W within which several least values may each bring the crank close to stopping."""
-_ROUNDS, _SETTLED = 60, 1e-6
+_ROUNDS, _CONVERGED = 60, 1e-6
 """Number of re-evaluations of viscous loads and friction, and the relative change of speed that ends them."""
 _GRADES = 10
 """Panels on either side of a least value, each a quarter of the last: down to a millionth of a radian."""
@@ -65,7 +65,7 @@ def coasting(turn: PeriodicTurn, inertia: float, speed: float) -> Coasting:
         rise = (guess[2] - load - 2.0 * turn.terms.spin * guess[0]) / (turn.terms.inertia + inertia)
         change = np.sqrt(2.0 * guess[0]) - pace
         pace = pace + 0.5 * change  # a full step overshoots where the drag is strong
-        if np.abs(change).max() <= _SETTLED * pace.max():
+        if np.abs(change).max() <= _CONVERGED * pace.max():
             return Coasting(load, guess, stops)
     return Coasting(load, None, stops)
 

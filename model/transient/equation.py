@@ -23,15 +23,15 @@ import numpy as np
 
 from ..arrays import Array
 from ..cycle.self_locking import require_driving
-from ..dynamics.crank_loads import beside_crank_loads
+from ..dynamics.crank_loads import torque_without_crank_loads
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
     angle_within,
+    breakpoint_capacity,
     cut_cycle,
     enter,
     load_on_slider,
-    room_for,
     with_formulas,
 )
 from ..dynamics.torque import forces, smooth_load
@@ -53,7 +53,7 @@ TURN = 2.0 * math.pi
 NEAREST = 1e-12
 """rad; breakpoints closer together are one."""
 _STILL, _SPIN, _PUSH, _BARE, _SQUARE = range(5)
-_KEPT = {_SPIN: 1, _PUSH: 1, _BARE: 1, _SQUARE: 2}  # power of the speed in the loads that each column keeps
+_SPEED_POWERS = {_SPIN: 1, _PUSH: 1, _BARE: 1, _SQUARE: 2}  # power of the speed in the loads that each column keeps
 
 
 @dataclass(frozen=True)
@@ -107,11 +107,11 @@ def _terms(
         out[0, i] = forces(sine, cosine, m, push, 0.0).torque
         out[1, i] = forces(sine, cosine, m, spin, 0.0).torque
         static = forces(sine, cosine, m, still, load).torque
-        out[2, i] = beside_crank_loads(static, still, block, 0, theta, way, loads, piece, shift)
+        out[2, i] = torque_without_crank_loads(static, still, block, 0, theta, way, loads, piece, shift)
         dragged = with_formulas(smooth_load(m, spin, 0.0), m, spin, block, 1, outward, loads)
         out[3, i] = forces(sine, cosine, m, bare, dragged).torque
         load_torque = still.branch * load * m.x_1
-        out[4, i] = load_torque - beside_crank_loads(0.0, still, block, 0, theta, way, loads, piece, shift)
+        out[4, i] = load_torque - torque_without_crank_loads(0.0, still, block, 0, theta, way, loads, piece, shift)
         squared = with_formulas(0.0, m, square, block, 4, outward, loads)
         out[5, i] = forces(sine, cosine, m, bare, squared).torque
 
@@ -259,7 +259,7 @@ class CrankEquation(Equation):
         raw[Raw.SPEED, [_SPIN, _SQUARE]] = raw[Raw.ACCELERATION, _PUSH] = 1.0
         raw[[Raw.GRAVITY_X, Raw.GRAVITY_Y], _SPIN:] = 0.0
         for index, load in enumerate(mechanism.loads):
-            for column, power in _KEPT.items():
+            for column, power in _SPEED_POWERS.items():
                 if not load.inertial and load.speed_power != power:
                     raw[Raw.END + LOAD_SLOTS * index :, column][:LOAD_SLOTS] = 0.0
         self.block = np.hstack([derived(np.ascontiguousarray(column), self.loads)[0][0] for column in raw.T])
@@ -268,12 +268,17 @@ class CrankEquation(Equation):
         self._stretches: dict[tuple[int, float], Stretch] = {}
 
     def _breakpoints(self, marks: tuple[float, ...]) -> Array:
-        cut_room = room_for(self.loads)
-        cuts = Cuts(np.empty(cut_room), np.empty(cut_room, np.int64), np.empty(cut_room), np.empty(cut_room, np.int64))
+        capacity = breakpoint_capacity(self.loads)
+        cuts = Cuts(
+            np.empty(capacity),
+            np.empty(capacity, np.int64),
+            np.empty(capacity),
+            np.empty(capacity, np.int64),
+        )
         count = _cut(self.block, self.loads, self.watch, cuts)
         angles = np.sort(np.concatenate([np.mod(marks, TURN), cuts.angle[:count]]))
-        is_apart = np.diff(angles, prepend=angles[-1] - TURN) > NEAREST
-        return np.asarray(angles[is_apart] if len(angles) > 1 else angles)
+        is_distinct = np.diff(angles, prepend=angles[-1] - TURN) > NEAREST
+        return np.asarray(angles[is_distinct] if len(angles) > 1 else angles)
 
     def stretch(self, index: int, way: float) -> Stretch:
         """Return the stretch from breakpoint `index` to the next, the last stretch reaching beyond 2 pi."""

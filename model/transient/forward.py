@@ -104,13 +104,13 @@ def simulate(
         if progress is not None:
             progress(Progress(run.time, duration, (run.angle - start.angle) / TURN, run.speed))
         if verdict is None and run.at_mark:
-            whole_turns = round((run.angle - start.angle) / TURN)
-            if turns is not None and abs(whole_turns) >= turns:
+            full_turns = round((run.angle - start.angle) / TURN)
+            if turns is not None and abs(full_turns) >= turns:
                 verdict = "turns done"
             if run.at_cycle:
-                if verdict is None and steady is not None and whole_turns != passed:
+                if verdict is None and steady is not None and full_turns != passed:
                     verdict = "steady" if abs(run.speed - before) <= steady * abs(run.speed) else None
-                before, passed = run.speed, whole_turns
+                before, passed = run.speed, full_turns
         if verdict is None and cancelled is not None and cancelled():
             verdict = "cancelled"
         if verdict is not None:

@@ -26,7 +26,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from ..dynamics.crank_loads import beside_crank_loads
+from ..dynamics.crank_loads import torque_without_crank_loads
 from ..dynamics.rubbing import Sides, joint_forces, touch
 from ..dynamics.segments import load_on_slider
 from ..dynamics.torque import balance
@@ -40,7 +40,7 @@ from ..signals.signals import design_motion
 
 ITERATIONS = 100
 """Greatest number of steps of Newton's iteration."""
-_SETTLED, _ROUNDING = 1e-15, 1e-9
+_CONVERGED, _ROUNDING = 1e-15, 1e-9
 """Steps that end it: below the first value, or below the second and not much smaller than the last, hence rounding."""
 _STEP = 1e-170
 """Imaginary step whose square is zero: where no force acts, its size must not be the root of a negative number."""
@@ -98,7 +98,7 @@ def least_inertia(sine: Any, cosine: Any, m: Motion, push: Design, mu: Any) -> A
 @analytic
 def has_converged(step: Any, last: Any) -> bool:
     """Return whether the iteration has converged. step, last: this step and the previous one over the acceleration."""
-    return bool(step <= _SETTLED or (step <= _ROUNDING and step >= 0.5 * last))
+    return bool(step <= _CONVERGED or (step <= _ROUNDING and step >= 0.5 * last))
 
 
 @analytic
@@ -159,7 +159,7 @@ def _fill_friction_states(
             press = -1.0 if guide.real > 0.0 else 1.0
             sides = Sides(senses.turn, senses.slide, senses.swing, press, senses.turn)
             f = joint_forces(sine, cosine, m, d, load, sides)
-            torque = beside_crank_loads(f.torque, d, stepped, 0, theta, senses.turn, loads, piece, shift)
+            torque = torque_without_crank_loads(f.torque, d, stepped, 0, theta, senses.turn, loads, piece, shift)
             rate = torque.imag / _STEP
             out[1 + derivative, i] = rate
             if derivative == 1:

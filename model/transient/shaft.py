@@ -101,8 +101,8 @@ class ShaftEquation(Equation):
         )
         cuts = np.concatenate([*(first_turn + turn * TURN for turn in range(turns)), marks])
         cuts = np.sort(np.mod(cuts, self.period))
-        is_apart = np.diff(cuts, prepend=cuts[-1] - self.period) > NEAREST
-        self.breakpoints = cuts[is_apart] if is_apart.any() else cuts[:1]
+        is_distinct = np.diff(cuts, prepend=cuts[-1] - self.period) > NEAREST
+        self.breakpoints = cuts[is_distinct] if is_distinct.any() else cuts[:1]
 
         self._stretches: dict[tuple[int, float], ShaftStretch] = {}
 

@@ -16,14 +16,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...model.arrays import Mask, Whole
+from ...model.arrays import IntArray, Mask
 from ..quantity import Array, Pieces
 from .expression import Number
 from .slopes import BINARY, UNARY, partials, sum_of
 
-_KEPT = 8
+_MOST_PIECES = 8
 """Pieces of a part that may tie."""
-_APART = 50.0
+_LABEL_STEP = 50.0
 """rad, between the labels of the arguments of min and max."""
 
 
@@ -41,7 +41,7 @@ class Side:
         """The active piece alone."""
         return Side(self.values[:, :1], self.gradients[:, :1], self.labels[:, :1], self.present[:, :1])
 
-    def take(self, places: Whole) -> Side:
+    def take(self, places: IntArray) -> Side:
         """Return the pieces at some indices (n, m) of each design."""
         return Side(
             np.take_along_axis(self.values, places, axis=1),
@@ -67,7 +67,7 @@ class Side:
         right[:, 0] = True
         sort_keys = np.where(right, -self.values if from_above else self.values, np.inf)
         sort_keys[:, 0] = -np.inf
-        order = np.argsort(sort_keys, axis=1, kind="stable")[:, :_KEPT]
+        order = np.argsort(sort_keys, axis=1, kind="stable")[:, :_MOST_PIECES]
         return replace(self, present=right).take(order)
 
 
@@ -220,7 +220,7 @@ def _extreme(function: str, arguments: list[TwoSided]) -> TwoSided:
     """Return the least or greatest of parts: all pieces on one side, the active part's on the other."""
     greatest = function == "max"
     wide = [item.from_above if greatest else item.from_below for item in arguments]
-    wide = [Side(s.values, s.gradients, s.labels + _APART * place, s.present) for place, s in enumerate(wide)]
+    wide = [Side(s.values, s.gradients, s.labels + _LABEL_STEP * place, s.present) for place, s in enumerate(wide)]
     tops = np.stack([item.values[:, 0] for item in wide])
     first = (np.argmax if greatest else np.argmin)(tops, axis=0)
     width = max(item.values.shape[1] for item in wide)

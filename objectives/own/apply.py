@@ -33,8 +33,8 @@ class Refused(Exception):
 
 
 @dataclass(frozen=True)
-class Answer:
-    """Answer of a function for n designs, as the greatest of k pieces.
+class FunctionResult:
+    """Result of a function for n designs, as the greatest of k pieces.
 
     values: (n, k), SI. slopes: derivatives by the stepped dimension, or None. angles: crank angles of peaks, or None.
     """
@@ -51,7 +51,7 @@ def apply(
     column: int | None,
     *,
     make: Callable[[Mechanism, NDArray[Any]], Designs] = Designs,
-) -> Answer:
+) -> FunctionResult:
     """Return the answer for designs (n, 3); column: the dimension that carries a complex step, or None.
 
     Raises `Refused` for a function that raises, or returns anything but finite numbers of the right shape and kind.
@@ -90,7 +90,7 @@ def place(error: BaseException, function: Callable[..., Any]) -> str:
     )
 
 
-def _checked(returned: NDArray[Any], dimensions: Array, column: int | None) -> Answer:
+def _checked(returned: NDArray[Any], dimensions: Array, column: int | None) -> FunctionResult:
     n = len(dimensions)
     if returned.dtype.kind not in "fiuc":
         raise Refused(
@@ -123,4 +123,4 @@ def _checked(returned: NDArray[Any], dimensions: Array, column: int | None) -> A
             f"must return a finite number for every design; got {wrong_value} for crank {crank:.6g} mm, "
             f"rod {rod:.6g} mm, offset {offset:.6g} mm; correct the function"
         )
-    return Answer(values, slopes, None if angles is None else np.array(angles, dtype=np.float64))
+    return FunctionResult(values, slopes, None if angles is None else np.array(angles, dtype=np.float64))

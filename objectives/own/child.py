@@ -22,7 +22,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.complex_forces import complex_joint_forces
-from .apply import Answer, Function, Refused, apply, place
+from .apply import Function, FunctionResult, Refused, apply, place
 from .designs import Designs, Numbers, Reactions
 
 HEAD = struct.Struct("<cQ")
@@ -89,18 +89,18 @@ class Timed(Designs):
         return super().forces(angle)
 
 
-def packed(answer: Answer) -> bytes:
+def packed(result: FunctionResult) -> bytes:
     """Return an answer as bytes: shape, then values, slopes and angles, NaN where there are none."""
-    blank = np.full(answer.values.shape, np.nan)
-    parts = [blank if part is None else part for part in (answer.values, answer.slopes, answer.angles)]
-    return SHAPE.pack(3, *answer.values.shape) + np.stack(parts).tobytes()
+    blank = np.full(result.values.shape, np.nan)
+    parts = [blank if part is None else part for part in (result.values, result.slopes, result.angles)]
+    return SHAPE.pack(3, *result.values.shape) + np.stack(parts).tobytes()
 
 
-def unpacked(data: bytes) -> Answer:
+def unpacked(data: bytes) -> FunctionResult:
     """Return the answer that `packed` wrote."""
     shape = SHAPE.unpack_from(data)
     values, slopes, angles = np.frombuffer(data, offset=SHAPE.size).reshape(shape).copy()
-    return Answer(values, *(None if np.isnan(part).all() else part for part in (slopes, angles)))
+    return FunctionResult(values, *(None if np.isnan(part).all() else part for part in (slopes, angles)))
 
 
 def main() -> None:
@@ -140,11 +140,11 @@ def main() -> None:
             dimensions: Array = np.frombuffer(data).reshape(-1, 3)
             try:
                 with watch:
-                    answer = apply(function, mechanism, dimensions, column, make=Timed)
+                    result = apply(function, mechanism, dimensions, column, make=Timed)
             except Refused as error:
                 send(b"E", str(error).encode())
             else:
-                send(b"A", packed(answer))
+                send(b"A", packed(result))
 
 
 if __name__ == "__main__":

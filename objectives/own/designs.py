@@ -28,7 +28,7 @@ _ZOOMS = 4
 _WITHIN = 9  # angles of a zoom
 _PEAKS = 3
 _TURN = 2.0 * np.pi
-_BESIDE = 1e-9  # rad, from a dead centre to the side that counts
+_SIDE_STEP = 1e-9  # rad, from a dead centre to the side that counts
 _FIFTH = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0  # first and second derivative from five points
 _SECOND = np.array([-1.0, 16.0, -30.0, 16.0, -1.0]) / 12.0
 
@@ -282,7 +282,7 @@ class Designs:
         outer, inner = geometry.outer_crank_angle(*dimensions), geometry.inner_crank_angle(*dimensions)
         ends = np.concatenate([outer, inner], axis=1)
         ends = ends if self._branch > 0.0 else np.pi - ends
-        sides = np.concatenate([ends - _BESIDE, ends + _BESIDE], axis=1)
+        sides = np.concatenate([ends - _SIDE_STEP, ends + _SIDE_STEP], axis=1)
         jumps = curve(sides)
         for k in range(angle.shape[1]):
             distance = np.abs(np.angle(np.exp(1j * (sides.real - angle[:, k : k + 1]))))

@@ -12,13 +12,13 @@ from typing import Any, Literal, NoReturn, get_args
 
 import numpy as np
 
-from ...model.arrays import Whole
+from ...model.arrays import IntArray
 from ...model.cycle.self_locking import locking_margin
 from ...model.errors import InputError
 from ...model.kernel.batches import turning
 from ...model.machine.mechanism import Mechanism
 from ..quantity import Array, Pieces, Quantity, Values
-from .apply import Answer, Function, Refused, apply
+from .apply import Function, FunctionResult, Refused, apply
 from .worker import Worker
 
 Gradient = Literal["complex step", "finite differences", "none"]
@@ -34,7 +34,7 @@ LONGEST_NAME = 60
 _NAME = re.compile(rf"[a-z][a-z0-9_]{{0,{LONGEST_NAME - 1}}}")
 FUNCTION = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*", re.ASCII)
 
-Call = Callable[[Mechanism, Array, int | None], Answer]
+Call = Callable[[Mechanism, Array, int | None], FunctionResult]
 
 
 class _Session:
@@ -148,7 +148,7 @@ class OwnQuantity(Quantity):
 
     # ---- how it is called -----------------------------------------------------------------------------------------
 
-    def _ask(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> Answer:
+    def _ask(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> FunctionResult:
         session = self._session
         session.call = session.call or self._call()
         try:
@@ -196,7 +196,7 @@ class OwnQuantity(Quantity):
             )
         return turning(dimensions)
 
-    def _batches(self, mechanism: Mechanism, dimensions: Array) -> Iterator[Whole]:
+    def _batches(self, mechanism: Mechanism, dimensions: Array) -> Iterator[IntArray]:
         """Yield the rows of designs that friction does not lock: the forces of the others are undetermined."""
         rows = np.arange(len(dimensions))
         if mechanism.friction.acts:
@@ -289,20 +289,20 @@ def bounded(quantity: Quantity, longest: float) -> Quantity:
     return quantity.with_parts(tuple(bounded(part, longest) for part in quantity.made_of))
 
 
-def close_own(quantity: Quantity) -> None:
+def close_custom_functions(quantity: Quantity) -> None:
     """End the custom function processes that a quantity or one of its parts has started."""
     if isinstance(quantity, OwnQuantity):
         quantity.close()
     for part in quantity.made_of:
-        close_own(part)
+        close_custom_functions(part)
 
 
-def runs_own(quantity: Quantity) -> bool:
+def runs_custom_function(quantity: Quantity) -> bool:
     """Whether a quantity or one of its parts is a custom function."""
-    return isinstance(quantity, OwnQuantity) or any(map(runs_own, quantity.made_of))
+    return isinstance(quantity, OwnQuantity) or any(map(runs_custom_function, quantity.made_of))
 
 
-def own_quantities() -> dict[str, Any]:
+def quantity_entry_points() -> dict[str, Any]:
     """Return the entry points of installed packages that give quantities, by name; none is loaded yet."""
     from importlib.metadata import entry_points
 
@@ -311,7 +311,7 @@ def own_quantities() -> dict[str, Any]:
 
 def installed(name: str) -> OwnQuantity:
     """Return the quantity that an installed package provides by a name. Raises `InputError` if it is not one."""
-    entry = own_quantities()[name]
+    entry = quantity_entry_points()[name]
     quantity = entry.load()
     if not isinstance(quantity, OwnQuantity) or quantity.name != name:
         raise InputError(

@@ -27,7 +27,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.kernel.interruption import ask, farewell, killed
 from ...model.machine.mechanism import Mechanism
-from .apply import Answer, Refused
+from .apply import FunctionResult, Refused
 from .child import HEAD, unpacked
 
 _START = 600.0  # s, for importing this software or compiling a kernel on a busy machine; neither counts in the limit
@@ -84,14 +84,14 @@ class Worker:
         self._late = self._paused = False
         self._lock = threading.Lock()
 
-    def __call__(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> Answer:
+    def __call__(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> FunctionResult:
         """Return the function's answer for designs (n, 3); see `apply`."""
         with self._lock:
             while True:
                 with contextlib.suppress(_Suspended):
-                    return self._request_answer(mechanism, dimensions, column)
+                    return self._call_process(mechanism, dimensions, column)
 
-    def _request_answer(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> Answer:
+    def _call_process(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> FunctionResult:
         self._paused = False
         if self._process is None:
             ask()
@@ -99,7 +99,7 @@ class Worker:
         machine = None if mechanism is self._mechanism else mechanism
         self._send((machine, np.ascontiguousarray(dimensions, np.float64).tobytes(), column))
         self._mechanism = mechanism
-        return unpacked(self._await_answer(self.limit))
+        return unpacked(self._await_message(self.limit))
 
     def close(self) -> None:
         """End the process and all that it started."""
@@ -128,7 +128,7 @@ class Worker:
             target=_listen, args=(process.stdout, self._messages), name="own function", daemon=True
         ).start()
         self._send((self._log, self.limit, self.function, self.folders))
-        self._await_answer(_START + self.limit)
+        self._await_message(_START + self.limit)
 
     def forget(self) -> None:
         """Leave the process to its starter, of which this process is a fork."""
@@ -144,15 +144,15 @@ class Worker:
     def _send(self, request: tuple[Any, ...]) -> None:
         assert self._process is not None
         assert self._process.stdin is not None
-        with contextlib.suppress(OSError):  # it ended; `_await_answer` says why
+        with contextlib.suppress(OSError):  # it ended; `_await_message` says why
             left = memoryview(pickle.dumps(request))
             while left:
                 left = left[self._process.stdin.write(left) :]
 
-    def _await_answer(self, limit: float) -> bytes:
+    def _await_message(self, limit: float) -> bytes:
         kind, content = self._next_message(limit)
         if kind == b"W":
-            return self._await_answer(_START + self.limit)
+            return self._await_message(_START + self.limit)
         if not kind:
             self._refuse(self._reason_of_end())
         if kind == b"E":

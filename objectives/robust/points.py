@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...model.arrays import Mask, Whole
+from ...model.arrays import IntArray, Mask
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ..quantity import Array, Quantity
@@ -67,7 +67,7 @@ def corners(columns: list[int]) -> Array:
     return points
 
 
-def in_line(columns: list[int], dimensions: Array, limits: Array) -> tuple[Whole, Array]:
+def in_line(columns: list[int], dimensions: Array, limits: Array) -> tuple[IntArray, Array]:
     """Return the designs (m,) whose offset may be zero within the limits, and their points (m, q, 3) there.
 
     The points are the corners of the other dimensions' box, in units of the limits.

@@ -21,7 +21,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from ...model.arrays import Whole
+from ...model.arrays import IntArray
 from ...model.tolerance.spreads import Shape, spread
 from ..quantity import Array
 from .points import star
@@ -115,7 +115,7 @@ class Sample:
         quantile = quantile + exact - _einsum_by_design("nd,nd->n", shift, control)
         return quantile, slope + _einsum_by_design("nq,nqd->nd", by_control, slopes[rows, :, top])
 
-    def _ranked(self, machines: Array) -> tuple[Whole, Array]:
+    def _ranked(self, machines: Array) -> tuple[IntArray, Array]:
         """Return the machines (n, s), ascending, that determine the quantile, and their weights (s,)."""
         first, last = np.flatnonzero(self.weights > _FAINT)[[0, -1]]  # few of many: the others need no order
         tail = np.sort(np.argpartition(machines, (first, last), axis=1)[:, first : last + 1], axis=1)

@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ...model.arrays import Mask, Whole
+from ...model.arrays import IntArray, Mask
 from ...model.errors import InputError
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
@@ -28,8 +28,8 @@ SAMPLES = 2048
 """Machines of a percentile."""
 _LEAST = 64
 _MOST = 65536
-_KEPT = 8  # pieces of a worst case that may tie
-_APART = 100.0  # rad, between the labels of different corners
+_MOST_PIECES = 8  # pieces of a worst case that may tie
+_LABEL_STEP = 100.0  # rad, between the labels of different corners
 _STEP = 0.05  # of the limits, see `_linear`
 _BLOCK = 1 << 22  # numbers of a sample held at once
 
@@ -131,7 +131,9 @@ class RobustQuantity(Quantity):
         ]
         merged = _merge_parts(len(dimensions), parts, absent=np.inf if low else -np.inf)
         pieces = Pieces(*merged, least=low)
-        return pieces.take(np.argsort(pieces.values if low else -pieces.values, axis=1, kind="stable")[:, :_KEPT])
+        return pieces.take(
+            np.argsort(pieces.values if low else -pieces.values, axis=1, kind="stable")[:, :_MOST_PIECES]
+        )
 
     def estimate(self, mechanism: Mechanism, dimensions: Array, inner: Values) -> Array:
         """Return the first-order estimate (n,) from values and gradients of the quantity itself.
@@ -167,7 +169,7 @@ class RobustQuantity(Quantity):
         inner_values = np.full((len(values), worse.shape[1]), np.inf if low else -np.inf)
         inner_slopes, inner_labels = np.zeros((*inner_values.shape, slopes.shape[2])), np.zeros(inner_values.shape)
         inner_values[inner_points.rows], inner_slopes[inner_points.rows] = worse, slope
-        inner_labels[inner_points.rows] = label + _APART * at_corners.values.shape[1]
+        inner_labels[inner_points.rows] = label + _LABEL_STEP * at_corners.values.shape[1]
         return (
             np.concatenate([values, inner_values], axis=1),
             np.concatenate([slopes, inner_slopes], axis=1),
@@ -176,7 +178,7 @@ class RobustQuantity(Quantity):
 
     def _bad_side(self, point_values: PointValues) -> tuple[Array, Array, Array]:
         """Return values (n, m), gradients and labels at the points: all pieces, or the highest on the low side."""
-        labels = point_values.labels + _APART * np.arange(point_values.labels.shape[1])[:, None]
+        labels = point_values.labels + _LABEL_STEP * np.arange(point_values.labels.shape[1])[:, None]
         if self.side == "high":
             n, _, _, width = point_values.gradients.shape
             return (
@@ -185,7 +187,7 @@ class RobustQuantity(Quantity):
                 labels.reshape(n, -1),
             )
         values, slopes = point_values.highest(point_values.gradients)
-        point = np.broadcast_to(_APART * np.arange(values.shape[1]), values.shape)
+        point = np.broadcast_to(_LABEL_STEP * np.arange(values.shape[1]), values.shape)
         # Infinite where friction locks: nothing is high there.
         return np.where(point_values.turns & (values < np.inf), values, -np.inf), slopes, point
 
@@ -211,7 +213,7 @@ class RobustQuantity(Quantity):
         plain = np.einsum("npi,ci->ncp", slope[:, 0, :, :3] * limits[:, None, :], signs)
         values = np.where(np.isfinite(centre), centre + np.where(on_both_sides, change, plain), -np.inf)
         slopes = slope + np.where(on_both_sides[:, :, :, None], change_slope, 0.0)
-        labels = point_values.labels[:, :1] + _APART * np.arange(len(signs))[:, None]
+        labels = point_values.labels[:, :1] + _LABEL_STEP * np.arange(len(signs))[:, None]
         turns_fully = _box_turns_fully(dimensions, limits)
         if self.side == "low":
             values, slopes, labels = values[:, :, :1], slopes[:, :, :1], labels[:, :, :1]  # the highest piece
@@ -225,8 +227,8 @@ class RobustQuantity(Quantity):
     def _quantile(self, mechanism: Mechanism, dimensions: Array, columns: tuple[int, ...]) -> Pieces:
         star_values = evaluate_points(self.inner, mechanism, dimensions, star(list(columns)))
         values, slopes, has_twin = match_pieces(star_values)
-        followed: Mask = np.logical_and.reduce(has_twin, axis=1)
-        values = np.where(followed[:, None, :], values, -np.inf)
+        has_all_twins: Mask = np.logical_and.reduce(has_twin, axis=1)
+        values = np.where(has_all_twins[:, None, :], values, -np.inf)
         # If a peak is absent at some points but matters at others, the greatest of all peaks is taken as one piece.
         top, steepest = star_values.highest(star_values.gradients)
         greatest: Array = values.max(axis=2, initial=-np.inf)
@@ -252,7 +254,7 @@ class RobustQuantity(Quantity):
         return Pieces(quantiles[:, None], gradients[:, None], np.zeros((n, 1)), least=self.side == "low")
 
 
-def _blocks(rows: Mask, size: int) -> Iterator[Whole]:
+def _blocks(rows: Mask, size: int) -> Iterator[IntArray]:
     """Yield the indices of rows in blocks that fit in memory together. size: number of values in each row."""
     places, step = np.flatnonzero(rows), max(1, _BLOCK // size)
     for begin in range(0, len(places), step):
@@ -260,7 +262,7 @@ def _blocks(rows: Mask, size: int) -> Iterator[Whole]:
 
 
 def _merge_parts(
-    count: int, parts: list[tuple[Whole, tuple[Array, Array, Array]]], *, absent: float
+    count: int, parts: list[tuple[IntArray, tuple[Array, Array, Array]]], *, absent: float
 ) -> tuple[Array, Array, Array]:
     """Return values, gradients and labels of all designs from parts with some each; missing pieces are `absent`."""
     if len(parts) == 1:

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from ...model.arrays import Mask, Whole
+from ...model.arrays import IntArray, Mask
 from ...model.machine.mechanism import Mechanism
 from ..quantity import Array, Quantity
 from .points import PointValues, corners, evaluate_points, in_line, limits_of, match_pieces
 
-_BESIDE = 1e-6  # of the limits: how far from offset zero tells a kink there from a curve that turns nearby
+_SIDE_STEP = 1e-6  # of the limits: how far from offset zero tells a kink there from a curve that turns nearby
 _LOST = 1e-13  # of a value: what a point must be worse by than another one
 _FLAT = 1e-9  # of a value, over the limits: slopes below do not tell where a curve turns
 _STEPS = 60
@@ -23,7 +23,7 @@ _EXACT = 1e-15
 class InnerPoints:
     """Points (m, q, 3) besides the corners, in units of the limits, for the designs `rows` (m,) that have any."""
 
-    rows: Whole
+    rows: IntArray
     points: Array
 
 
@@ -60,9 +60,9 @@ def worst_inner_points(
         inward = start[rows] * _slopes_at_worst(at_zero[beaten], zero_slopes[beaten]) * limits[rows]
         other_columns = [column for column in columns if column != 2]
         doubtful[rows] = (inward[:, other_columns] < -_FLAT * np.abs(best[rows])[:, None]).any(axis=1)
-        next_to_zero = start[rows][:, None, :] + _BESIDE * np.array([[[0.0, 0.0, 1.0]], [[0.0, 0.0, -1.0]]]).transpose(
-            1, 0, 2
-        )
+        next_to_zero = start[rows][:, None, :] + _SIDE_STEP * np.array(
+            [[[0.0, 0.0, 1.0]], [[0.0, 0.0, -1.0]]]
+        ).transpose(1, 0, 2)
         near, _, _ = _losses(evaluate_points(quantity, mechanism, dimensions[rows], next_to_zero), low)
         doubtful[rows] |= near.max(axis=1, initial=-np.inf) > best[rows] + _LOST * np.abs(best[rows])
     doubtful &= turns.all(axis=1) & np.isfinite(best)

@@ -38,7 +38,7 @@ _SAMPLES = 2048
 _LEAST_SAMPLES = 33  # in a piece, however short
 _INSET = 1e-8
 """Distance from an end of a piece, rad, at which the stroke is beyond doubt; limits are extrapolated from it."""
-_REACH = 4.0
+_TOLERATED_STEPS = 4.0
 """Rise of a curve above a sample, in differences of neighbouring samples: one at a tip, less where it is smooth."""
 _CANDIDATES = 60  # of each curve and side; there are more only where samples are equal but for rounding
 _SECTIONS = 64  # 0.618^64 = 4e-14 of a bracket
@@ -270,7 +270,7 @@ def _brackets(curve: list[Array], pieces: list[Array]) -> list[tuple[float, floa
         before, after = np.maximum(highest - 1, 0), np.minimum(highest + 1, len(angles) - 1)
         steps = np.abs(np.diff(values))  # two on each side: the last step of a piece may be short
         step = np.max([steps[np.clip(highest + k, 0, len(steps) - 1)] for k in (-2, -1, 0, 1)], axis=0)
-        bounds = (values[highest] + _REACH * step).tolist()
+        bounds = (values[highest] + _TOLERATED_STEPS * step).tolist()
         brackets += zip(bounds, angles[before].tolist(), angles[after].tolist(), strict=True)
     best = max(values.max() for values in curve)
     brackets.sort(key=lambda bracket: -bracket[0])

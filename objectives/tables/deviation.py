@@ -26,7 +26,7 @@ _NODES = 2880  # of the computed curve that the grid interpolates
 _GROUPS = 2048  # a group then spans 0.2 deg of evenly measured samples
 _CANDIDATES = 6
 _SECTIONS = 40  # to 1e-10 rad
-_APART = 1e-3  # rad: crank angles nearer than this, as of times that were rounded, count as one
+_SAME_ANGLE = 1e-3  # rad: crank angles nearer than this, as of times that were rounded, count as one
 _CONSTANT = 1e-12  # of the greatest size
 _EQUAL = 1e-9  # relative: among equally good shifts, the smaller one is reported
 
@@ -152,7 +152,7 @@ def _three(angles: Array) -> bool:
     ordered = np.sort(angles)
     for _ in range(2):
         first = ordered[0]
-        ordered = ordered[(ordered >= first + _APART) & (ordered <= angles.min() + _TURN - _APART)]
+        ordered = ordered[(ordered >= first + _SAME_ANGLE) & (ordered <= angles.min() + _TURN - _SAME_ANGLE)]
         if not len(ordered):
             return False
     return True

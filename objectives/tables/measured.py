@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ..kinds import ANGLE, SHOWN, TIME, DisplayUnit, Kind
+from ..kinds import ANGLE, DISPLAYED_KINDS, TIME, DisplayUnit, Kind
 from ..quantity import Array
 from ..units import squeezed, without_in
 from .curve_extremes import every_curve, undefined_because
@@ -195,11 +195,11 @@ def _meaning(text: str, spoken: Mapping[str, str], kinds: Mapping[str, Kind], un
     if factor is not None:
         return Column(spoken[curve_name], factor, kind)
     if unit in kind.typed or squeezed(unit) in map(squeezed, kind.typed):
-        units_read = " or ".join(dict.fromkeys(shown_unit.symbol for shown_unit in _display_units(kind)))
+        units_read = " or ".join(dict.fromkeys(display_unit.symbol for display_unit in _display_units(kind)))
         raise InputError(f"{curve_name} is read in {units_read}; got {text!r}; write it like {example}")
     matching_kinds = (
         other_kind
-        for other_kind in SHOWN
+        for other_kind in DISPLAYED_KINDS
         if _factor(unit, other_kind) or (units is not None and units(unit, other_kind))
     )
     other_kind = next(matching_kinds, None)

@@ -61,7 +61,9 @@ def missing_value_reasons(
         why = _LOCKED_SWING if swing is not None else locking_reason(mechanism.friction, linkage)
         reasons[row] = f"friction locks this design: {why}"
     for row in np.flatnonzero(~np.isfinite(values)).tolist():
-        reasons[row] = reasons[row] or _own_reason(quantity, float(values[row]), mechanism, designs[row : row + 1])
+        reasons[row] = reasons[row] or _missing_value_reason(
+            quantity, float(values[row]), mechanism, designs[row : row + 1]
+        )
     return reasons
 
 
@@ -92,7 +94,7 @@ def _undetermined(quantity: Quantity, mechanism: Mechanism, designs: Array) -> M
     return undetermined
 
 
-def _own_reason(quantity: Quantity, value: float, mechanism: Mechanism, design: Array) -> str:
+def _missing_value_reason(quantity: Quantity, value: float, mechanism: Mechanism, design: Array) -> str:
     """Return the reason why a running design (1, 3) has no finite value; empty if infinity is its value."""
     if np.isnan(value):
         return quantity.blank

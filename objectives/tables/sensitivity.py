@@ -25,7 +25,7 @@ from .swinging import swing_quantities, swinging
 _TIE = 1e-9  # of a quantity: pieces that differ by less are equal
 _ROUNDING = 1e-12  # of a quantity, over the rod: changes below are zero but for rounding
 _TIP = 1e-6  # of the rod, a small offset at which a quantity that vanishes without offset is far above rounding
-_BESIDE_ZERO = 1e-100  # m, an offset of zero as seen from one side: less than rounding
+_SIDE_OF_ZERO = 1e-100  # m, an offset of zero as seen from one side: less than rounding
 
 
 @dataclass(frozen=True)
@@ -102,12 +102,16 @@ def _one_sided(quantity: Quantity, mechanism: Mechanism, design: Array) -> tuple
     """
     value = float(quantity.evaluate(mechanism, design[None]).values[0])
     if design[2] == 0.0 and _is_tip(quantity, mechanism, design, value):
-        return value, _beside_tip(quantity, mechanism, design, -1.0), _beside_tip(quantity, mechanism, design, 1.0)
+        return (
+            value,
+            _one_sided_slopes(quantity, mechanism, design, -1.0),
+            _one_sided_slopes(quantity, mechanism, design, 1.0),
+        )
     sides = []
     for side in (-1.0, 1.0):
         at = design.copy()
         if at[2] == 0.0:
-            at[2] = side * _BESIDE_ZERO
+            at[2] = side * _SIDE_OF_ZERO
         sides.append(_steepest(quantity, mechanism, at, side))
     return value, sides[0], sides[1]
 
@@ -133,7 +137,7 @@ def _is_tip(quantity: Quantity, mechanism: Mechanism, design: Array, value: floa
     return abs(value) <= _TIE * abs(float(quantity.evaluate(mechanism, nearby[None]).values[0]))
 
 
-def _beside_tip(quantity: Quantity, mechanism: Mechanism, design: Array, side: float) -> Array:
+def _one_sided_slopes(quantity: Quantity, mechanism: Mechanism, design: Array, side: float) -> Array:
     """Return the derivatives (3,) on one side of an offset of zero, from those at two small offsets."""
     near, far = (
         _steepest(quantity, mechanism, design + np.array([0.0, 0.0, side * share * _TIP * design[1]]), side)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...model.arrays import Array, Mask, Whole
+from ...model.arrays import Array, IntArray, Mask
 from ...model.errors import InputError
 from ...model.kernel.arithmetic import magnitude
 from ...model.kinematics.closed_forms import closed_form
@@ -230,7 +230,7 @@ class Boxes:
         least, highest = least - _ROUNDED * np.abs(least), highest + _ROUNDED * np.abs(highest)
         return value, np.where(np.isnan(least), -np.inf, least), np.fmin(greatest, highest)
 
-    def _angles(self, rows: Whole, lower: Array, upper: Array) -> tuple[Array, dict[str, list[Array]]]:
+    def _angles(self, rows: IntArray, lower: Array, upper: Array) -> tuple[Array, dict[str, list[Array]]]:
         """Return the middle designs of some boxes and the angles of their peaks; any where the middle does not turn.
 
         The angles are those of each curve of a quantity.
@@ -276,12 +276,12 @@ def _minimised_bound(objective: Objective, lowest: Array, highest: Array) -> Arr
     return lowest
 
 
-def _select_boxes(value: Enclosure, rows: Whole) -> Enclosure:
+def _select_boxes(value: Enclosure, rows: IntArray) -> Enclosure:
     empty = None if value.empty is None else value.empty[rows]
     return Enclosure(value.centre[rows], value.slopes[:, rows], value.rest[rows], empty)
 
 
-def _scatter_boxes(value: Enclosure, rows: Whole, n: int) -> Enclosure:
+def _scatter_boxes(value: Enclosure, rows: IntArray, n: int) -> Enclosure:
     """Return an enclosure of n boxes that says nothing of those not in `rows`."""
     parts = value.centre.shape[1]
     centre, slopes = np.zeros((n, parts)), np.zeros((len(value.slopes), n, parts))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...model.arrays import Array, Whole
+from ...model.arrays import Array, IntArray
 from ...model.kernel.batches import in_chunks
 from ...model.kernel.kernel import Flags, Integers, Row, Table, kernel
 from ..front.dominance import nondominated
@@ -39,7 +39,7 @@ def excess(
     designs: Array,
     *,
     earlier_excess: Array | None = None,
-    first: Whole | None = None,
+    first: IntArray | None = None,
     enough: float = -np.inf,
 ) -> Array:
     """Return the excess (n,) of points (n, m) over designs (p, m), infinite without any.
@@ -83,14 +83,14 @@ def _choose(points: Table, values: Table, epsilon: float, chosen: Flags) -> None
                 chosen[i] = True
 
 
-def choose_covering(points: Array, values: Array, epsilon: float) -> Whole:
+def choose_covering(points: Array, values: Array, epsilon: float) -> IntArray:
     """Return the rows of values (n, m) that cover their point (n, m) to epsilon where earlier ones do not."""
     chosen = np.zeros(len(points), dtype=bool)
     _choose(np.ascontiguousarray(points), np.ascontiguousarray(values), epsilon, chosen)
     return np.flatnonzero(chosen)
 
 
-def greedy_cover(points: Array, values: Array, epsilon: float) -> Whole:
+def greedy_cover(points: Array, values: Array, epsilon: float) -> IntArray:
     """Return few rows of values (p, m), chosen greedily, that together cover all points (n, m) to epsilon."""
     covers = np.stack([(row <= points + epsilon).all(axis=1) for row in values]) if len(values) else np.zeros((0, 0))
     if not len(points) or not covers.any(axis=0).all():

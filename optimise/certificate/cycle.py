@@ -32,7 +32,7 @@ from .gas import gas_force
 
 _TURN = 2.0 * np.pi
 _ON_END = 1e-7  # share of the stroke: nearer to a dead centre than this is on it
-_BESIDE, _FARTHEST = 1e-9, 0.5  # rad from a step
+_SIDE_STEP, _FARTHEST = 1e-9, 0.5  # rad from a step
 _AT_REST = 1e-6  # of the crank: |x'| below it is a dead centre
 _derive = cast(Any, derive)
 
@@ -72,7 +72,7 @@ class Curve:
             pace = np.abs(motion(np.sin(angles), np.cos(angles), r, l, e, self.mechanism.sign).x_1)
             ends = [dimension.ends() for dimension in dimensions]
             width = np.sum([high[:, 0] - low[:, 0] for low, high in ends], axis=0)
-            away = np.minimum(width / np.maximum(pace, 1e-3 * r) + width / r + _BESIDE, _FARTHEST)
+            away = np.minimum(width / np.maximum(pace, 1e-3 * r) + width / r + _SIDE_STEP, _FARTHEST)
             for side in (-away, away):
                 enclosure = side_by_side(enclosure, self._enclose_at(dimensions, angles + side, middle))
         return enclosure
@@ -131,7 +131,7 @@ class Curve:
         return cast(Enclosure, signal(int(self.kind), sine, cosine, m, d, None))
 
     def _on_crank(self, m: Any, d: Design, block: Any, theta: Array, outward: Enclosure) -> Any:
-        """Return the torque of the loads on the crank, N m: as `beside_crank_loads` has it."""
+        """Return the torque of the loads on the crank, N m: as `torque_without_crank_loads` has it."""
         torque: Any = 0.0
         for k, load in enumerate(self.mechanism.loads):
             if load.on_crank and self.loads.kind[k] == Enters.CRANK_TORQUE:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 import pandas as pd
 
-from ...model.arrays import Array, Whole
+from ...model.arrays import Array, IntArray
 from ...objectives.cycle_peak import CyclePeak
 from ..problem.problem import Problem
 from ..problem.violation import FEASIBLE, minimised, restated_constraints
@@ -94,7 +94,7 @@ class Search:
         late = time.perf_counter() - self.start > self.seconds * (1.0 - _SHARE)
         return self.stopped or late or len(self.tree) > _MOST
 
-    def _close_covered_boxes(self, rows: Whole) -> Whole:
+    def _close_covered_boxes(self, rows: IntArray) -> IntArray:
         """Close those boxes that designs added since they were opened cover; return the others."""
         tree = self.tree
         tree.excess[rows] = excess(

@@ -9,7 +9,7 @@ from os import cpu_count
 
 import numpy as np
 
-from ...model.arrays import Array, Mask, Whole
+from ...model.arrays import Array, IntArray, Mask
 from ..search.candidates import Table
 from .boxes import Bounded, Boxes
 
@@ -28,13 +28,13 @@ class Tree(Table):
     left. bounded: boxes bounded so far.
     """
 
-    branch: Whole
+    branch: IntArray
     lower: Array
     upper: Array
     corner: Array
     excess: Array
-    counted_designs: Whole
-    axis: Whole
+    counted_designs: IntArray
+    axis: IntArray
     branches: list[Boxes] = field(kw_only=True)
     bounded: int = field(default=0, kw_only=True)
 
@@ -87,18 +87,18 @@ class Tree(Table):
         columns = (np.full(n, index), boxes.lower, boxes.upper, corner, excess, np.full(n, counted), axis)
         self.become(self.join(Tree(*columns, branches=self.branches)))
 
-    def keep(self, rows: Whole | Mask) -> None:
+    def keep(self, rows: IntArray | Mask) -> None:
         """Keep only these boxes."""
         self.become(self[rows])
 
-    def largest(self, count: int) -> Whole:
+    def largest(self, count: int) -> IntArray:
         """Return the splittable boxes of the largest excess."""
         rows = np.flatnonzero(self.axis >= 0)
         if len(rows) <= count:
             return rows
         return rows[np.argpartition(-self.excess[rows], count)[:count]]
 
-    def halved(self, rows: Whole) -> list[tuple[int, Array, Array]]:
+    def halved(self, rows: IntArray) -> list[tuple[int, Array, Array]]:
         """Remove boxes and return their halves by branch: index, lower, upper (n, k)."""
         halves = []
         for index, boxes in enumerate(self.branches):

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...model.arrays import Array, Mask, Whole
+from ...model.arrays import Array, IntArray, Mask
 from ...model.errors import InputError
 from ..front.constant import spread
 from ..front.dominance import nondominated
@@ -36,13 +36,13 @@ class Comparison:
     equal in `in_union`, `coverage` and `dominates`.
     """
 
-    sizes: Whole
+    sizes: IntArray
     ideal: Array
     span: Array
     hypervolumes: Array
     union: float
     shares: Array
-    in_union: Whole
+    in_union: IntArray
     coverage: Array
     epsilon: Array
     dominates: Mask

@@ -17,7 +17,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...model.arrays import Array, Whole
+from ...model.arrays import Array, IntArray
 from ...model.errors import InputError
 from ...model.input_warning import warn_user
 from ...model.linkage.dimensions import DIMENSIONS
@@ -226,7 +226,7 @@ def _zoom(finished: FrontCandidates, evaluators: list[Evaluator], archive: Archi
             break
 
 
-def _ranked(finished: FrontCandidates, archive: Archive, values: Array) -> Whole:
+def _ranked(finished: FrontCandidates, archive: Archive, values: Array) -> IntArray:
     """Return the rows of non-dominated designs, nearest first; stationary ones before all others."""
     rows = finished.best()
     if archive.is_feasible.any():  # samples within a band around the constraints prove nothing

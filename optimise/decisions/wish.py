@@ -24,7 +24,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...model.arrays import Array, Whole
+from ...model.arrays import Array, IntArray
 from ...model.errors import InputError
 from ..front.front import ParetoFront, require_front
 from ..front.rounding import ranges_or_sizes
@@ -178,7 +178,7 @@ class Wishes:
         order = sorted(merit_by_branch, key=lambda index: (merit_by_branch[index], index))
         return [index for index in order if merit_by_branch[index] <= merit_by_branch[order[0]] + _WORSE][:_BRANCHES]
 
-    def _ends(self, form: Form, evaluator: Evaluator, index: int, rows: Whole) -> list[tuple[float, int, Array]]:
+    def _ends(self, form: Form, evaluator: Evaluator, index: int, rows: IntArray) -> list[tuple[float, int, Array]]:
         """Return the feasible end points of the starts on a branch, with the form's value there."""
         if not len(rows):
             return []

@@ -8,7 +8,7 @@ from typing import cast
 
 import numpy as np
 
-from ...objectives.kinds import System, shown_in
+from ...objectives.kinds import System, metric_unit_in
 from ...objectives.quantity import Quantity
 from ..front.front import ParetoFront
 from ..problem.requirements import Objective
@@ -79,11 +79,11 @@ class Outcome:
         return f" of {wished} wished: it must give way by {amount}"
 
     def _value(self, value: float, system: System) -> str:
-        unit, factor = shown_in(self.quantity.unit.symbol, system)
+        unit, factor = metric_unit_in(self.quantity.unit.symbol, system)
         return f"{value * self.quantity.unit.factor * factor:.4g} {unit}".rstrip()
 
     def _amount(self, value: float, system: System) -> str:
-        unit, factor = shown_in(self.quantity.unit.symbol, system)
+        unit, factor = metric_unit_in(self.quantity.unit.symbol, system)
         return f"{abs(value) * self.quantity.unit.factor * factor:.3g} {unit}".rstrip()
 
 

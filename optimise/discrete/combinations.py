@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...model.arrays import Array, Mask, Whole
+from ...model.arrays import Array, IntArray, Mask
 from ..front.dominance import nondominated
 from ..front.hypervolume import ReportProgress, ignore_progress
 from ..problem.problem import Problem, Variant
@@ -71,7 +71,7 @@ class Axes:
         """Return combinations (n, 3 + v) in order, the last number changing fastest; NaN where one is free."""
         return self.numbered(np.arange(begin, min(end, math.prod(self._sizes))))
 
-    def numbered(self, numbers: Whole) -> Array:
+    def numbered(self, numbers: IntArray) -> Array:
         """Return combinations (n, 3 + v) by their numbers."""
         places = np.unravel_index(numbers, self._sizes)
         columns = [
@@ -80,7 +80,7 @@ class Axes:
         ]
         return np.stack(columns, axis=1)
 
-    def next_to(self, designs: Array) -> Whole:
+    def next_to(self, designs: Array) -> IntArray:
         """Return the numbers (n, s) of the combinations at designs (n, 3 + v) and next to them.
 
         They include the design itself, which also replaces neighbours outside the range.
@@ -90,7 +90,7 @@ class Axes:
         neighbours_at = np.clip(places[:, None] + ways, 0, np.array(self._sizes) - 1)
         return np.asarray(np.ravel_multi_index(tuple(np.moveaxis(neighbours_at, 2, 0)), self._sizes), np.int64)
 
-    def numbers(self, designs: Array) -> Whole:
+    def numbers(self, designs: Array) -> IntArray:
         """Return the number of each combination (n, 3 + v), as `designs` counts them."""
         return np.asarray(np.ravel_multi_index(tuple(self._places(designs)), self._sizes), np.int64)
 
@@ -98,7 +98,7 @@ class Axes:
     def _sizes(self) -> tuple[int, ...]:
         return tuple(1 if values is None else len(values) for values in self.values)
 
-    def _places(self, designs: Array) -> list[Whole]:
+    def _places(self, designs: Array) -> list[IntArray]:
         return [
             np.zeros(len(designs), np.int64) if values is None else np.searchsorted(values, column)
             for values, column in zip(self.values, designs.T, strict=True)
@@ -205,7 +205,7 @@ def neighbours(axes: Axes, designs: Array, limit: int) -> Array:
 
 def judge_near(
     axes: Axes, designs: Array, window: int, limit: int, report: ReportProgress = ignore_progress
-) -> tuple[Judged, Whole]:
+) -> tuple[Judged, IntArray]:
     """Return the best combinations around designs of a fully discrete variant, and the numbers of all judged ones.
 
     First, a window of at most `window` combinations around the designs is judged. Then the neighbours of the best so
@@ -228,7 +228,7 @@ def judge_near(
     return best, judged_numbers
 
 
-def has_judged_neighbours(axes: Axes, designs: Array, judged_numbers: Whole) -> Mask:
+def has_judged_neighbours(axes: Axes, designs: Array, judged_numbers: IntArray) -> Mask:
     """Return which combinations (n, 3 + v) have all their neighbours among the judged numbers."""
     return np.array([bool(np.isin(axes.next_to(row[None]), judged_numbers).all()) for row in designs], np.bool_)
 

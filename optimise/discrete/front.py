@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...model.arrays import Array, Whole
+from ...model.arrays import Array, IntArray
 from ...objectives.tables.varying_column import columns_of_numbers
 from ..front.discrete_answer import DiscreteAnswer
 from ..front.dominance import nondominated
@@ -51,7 +51,7 @@ def discrete_front(
     exact = count <= limit
     judged: Judged | None = None
     chosen: Chosen = []
-    judged_numbers: list[Whole] = []
+    judged_numbers: list[IntArray] = []
     if exact and is_complete:
         chosen, judged = _designs_to_deliver(problem, axes, [judge_all(axis, report) for axis in axes])
         if not chosen:
@@ -97,7 +97,7 @@ def discrete_front(
 
 
 def _downgrade_unproven(
-    front: ParetoFront, axes: list[Axes], chosen: Chosen, judged_numbers: list[Whole]
+    front: ParetoFront, axes: list[Axes], chosen: Chosen, judged_numbers: list[IntArray]
 ) -> ParetoFront:
     """Return a front whose combinations count as stationary only if all their neighbours were judged."""
     combinations = [chosen[row] for row in front.variants]

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ...model.arrays import Array, Mask, Whole
+from ...model.arrays import Array, IntArray, Mask
 from ...model.kernel.batches import in_chunks
 from ...model.kernel.kernel import Cube, Flags, IntegerTable, Table, kernel
 
@@ -15,7 +15,7 @@ _CHUNK = 2048  # designs that one thread filters at a time
 _OBJECTIVES, _MANY = 4, 40_000  # for fewer objectives, and for more designs, a filter of n log n steps is faster
 
 
-def nondominated(values: Array) -> Whole:
+def nondominated(values: Array) -> IntArray:
     """Return the indices of designs that no other dominates, ascending; of equals, the first.
 
     Designs are sorted, by the first objective first: only earlier designs may dominate a later one. For each other

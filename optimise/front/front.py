@@ -19,7 +19,7 @@ from ...model.errors import InputError
 from ...model.input_warning import warn_user
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
-from ...objectives.kinds import System, shown_in
+from ...objectives.kinds import System, metric_unit_in
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
 from ...objectives.tables.violations import violations
@@ -387,7 +387,7 @@ class ParetoFront:
 
     def _unit(self, objective: Objective, system: System) -> tuple[str, float]:
         """Return the display unit of an objective in a system, and the size of its metric unit in it."""
-        return shown_in(self.problem.quantity(objective.quantity).unit.symbol, system)
+        return metric_unit_in(self.problem.quantity(objective.quantity).unit.symbol, system)
 
     def _change(self, objective: Objective, amount: float, system: System, *, gain: bool) -> str:
         """Return a change of an objective, given in its metric unit, in words."""

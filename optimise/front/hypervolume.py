@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...model.arrays import Array, Whole
+from ...model.arrays import Array, IntArray
 from ...model.kernel.kernel import Row, Table, kernel
 from .constant import spread
 
@@ -115,7 +115,7 @@ class Bounds:
 
 def choose(
     values: Array, count: int, *, always: tuple[int, ...] = (), report: ReportProgress = ignore_progress
-) -> Whole:
+) -> IntArray:
     """Return `count` indices of non-dominated designs, greedily by hypervolume, `always` included; ascending.
 
     The hypervolume is submodular: the gain of a design only shrinks as others join. So a gain need not be recomputed if

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...model.arrays import Array, Whole
+from ...model.arrays import Array, IntArray
 from ...model.kernel.batches import in_chunks
 from ...model.kernel.kernel import Integers, Table, kernel
 
 
-def neighbours(points: Array, count: int) -> tuple[Array, Whole]:
+def neighbours(points: Array, count: int) -> tuple[Array, IntArray]:
     """Return distances and rows (n, count) of the nearest of points (n, m), nearest first, beginning with itself.
 
     count: number of neighbours, at most n.

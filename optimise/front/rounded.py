@@ -11,7 +11,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...objectives.counted import counted
-from ...objectives.kinds import System, shown_in
+from ...objectives.kinds import System, metric_unit_in
 from ...objectives.tables.varying_column import columns_of_numbers
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint
@@ -155,7 +155,7 @@ class Rounded:
         texts = []
         for name, value in self.allowed.items():
             quantity = self.problem.quantity(name)
-            unit, factor = shown_in(quantity.unit.symbol, system)
+            unit, factor = metric_unit_in(quantity.unit.symbol, system)
             texts.append(f"{value * quantity.unit.factor * factor:.4g} {unit}".rstrip() + f" of {quantity.title}")
         return " and ".join(texts)
 

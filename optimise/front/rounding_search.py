@@ -11,7 +11,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from ...model.arrays import Array, Whole
+from ...model.arrays import Array, IntArray
 from ...model.errors import InputError
 from ...objectives.tables.evaluate import running
 from ...objectives.tables.varying_column import columns_of_numbers
@@ -210,7 +210,7 @@ class RoundingSearch:
         return np.asarray(designs[order[free]])
 
     def _nearest(
-        self, designs: Array, misses: Array, exact: Whole, count: int, max_loss: float = math.inf
+        self, designs: Array, misses: Array, exact: IntArray, count: int, max_loss: float = math.inf
     ) -> Steps[Array]:
         """Return the nearest designs, see `rounding.rounding`; only those that lose no more than `max_loss`.
 
@@ -252,7 +252,7 @@ class RoundingSearch:
                 losses = np.fmax(losses, (now - self.before[place]) / self.span[place])
         return losses
 
-    def _staircase(self, designs: Array, rows: Whole, misses: Array, losses: Array) -> Whole:
+    def _staircase(self, designs: Array, rows: IntArray, misses: Array, losses: Array) -> IntArray:
         """Return the row that misses least, then those that miss more but lose clearly less."""
         order = np.lexsort((self._steps_away(designs[rows]), np.round(losses, _TIE), np.round(misses, _TIE)))
         ranked: list[int] = []

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...model.arrays import Array, Whole, row_lengths
+from ...model.arrays import Array, IntArray, row_lengths
 from .nonnegative import nonnegative_least_squares
 
 STATIONARY = 1e-6
@@ -41,7 +41,7 @@ def multipliers(goals: Array, active: Array) -> tuple[float, Array, Array]:
 
 
 def strict_multipliers(
-    goals: Array, owner: Whole, active: Array, *, exactly: bool = False
+    goals: Array, owner: IntArray, active: Array, *, exactly: bool = False
 ) -> tuple[float, Array, Array]:
     """Return residual, lambda (p,) and mu (q,) where every objective must carry weight.
 

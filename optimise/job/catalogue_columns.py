@@ -17,7 +17,7 @@ from ...objectives.formula.expression import Name, names_in, text_of
 from ...objectives.formula.formulas import ROOTS, Units, unknown_name
 from ...objectives.formula.parser import parse
 from ...objectives.kinds import LENGTH, Kind
-from ...objectives.own.quantity import LONGEST_NAME, own_quantities
+from ...objectives.own.quantity import LONGEST_NAME, quantity_entry_points
 from ...objectives.registry import FACTS, QUANTITIES
 from ...objectives.units import closest, quote, to_si
 
@@ -205,7 +205,7 @@ def _limited(text: str, custom_names: frozenset[str]) -> tuple[str, Kind | None]
     node = parse(text, units)
     names = names_in(node)
     unknown = [name for name in names if name not in known_names and "." not in name]
-    installed = own_quantities() if unknown else {}
+    installed = quantity_entry_points() if unknown else {}
     for name in unknown:
         if name not in installed:
             raise unknown_name(name, known_names, units, text)

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ...model.arrays import Array, Whole
+from ...model.arrays import Array, IntArray
 from ...model.errors import InputError, JobError
 from ...objectives.formula.formulas import words_of
 from ...objectives.units import to_si
@@ -186,7 +186,7 @@ def _limit_cost(bounds: object, column: Column, side: float) -> float:
     return max((side * bound for bound in limits if bound is not None), default=-math.inf)
 
 
-def _order(columns: Sequence[Column], rows: Sequence[list[str]]) -> Whole:
+def _order(columns: Sequence[Column], rows: Sequence[list[str]]) -> IntArray:
     """Return the rows, the least first: by price, mass and limits, the tighter first, as far as there are columns.
 
     A blank price, mass or limit comes last, and of equal rows the first one first.
@@ -205,14 +205,14 @@ def _side_by_side(columns: Sequence[Array], count: int) -> Array:
     return np.stack(columns, axis=1) if columns else np.zeros((count, 0))
 
 
-def _groups(columns: Sequence[Array], count: int) -> Whole:
+def _groups(columns: Sequence[Array], count: int) -> IntArray:
     """Return a number of each row that rows have in common which are equal in some columns."""
     if not columns:
         return np.zeros(count, np.int64)
     return np.asarray(np.unique(_side_by_side(columns, count), axis=0, return_inverse=True)[1].ravel(), np.int64)
 
 
-def _unbeaten(costs: Array) -> Whole:
+def _unbeaten(costs: Array) -> IntArray:
     """Return the rows (n, k) that none dominates; of equal ones the first."""
     from ..front.dominance import nondominated  # brings what computes
 

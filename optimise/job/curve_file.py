@@ -214,10 +214,10 @@ def of_cycle(curve: Curve, turns: int | None) -> tuple[Curve, int]:
         if len(curve.arguments) > 1
         else 0.0
     )
-    whole_turns = round(curve.span)
-    if whole_turns >= 1 and 0.0 < abs(curve.span - whole_turns) <= near:
-        at = curve.arguments[0] + (curve.arguments - curve.arguments[0]) * (whole_turns / curve.span)
-        at[-1] = curve.arguments[0] + whole_turns * curve.turn
+    full_turns = round(curve.span)
+    if full_turns >= 1 and 0.0 < abs(curve.span - full_turns) <= near:
+        at = curve.arguments[0] + (curve.arguments - curve.arguments[0]) * (full_turns / curve.span)
+        at[-1] = curve.arguments[0] + full_turns * curve.turn
         curve = replace(curve, arguments=at)
     if turns is None:
         turns = 1 if curve.span <= 1.0 else 2

@@ -22,7 +22,7 @@ from ...objectives.own.quantity import (
     Gradient,
     OwnQuantity,
     installed,
-    own_quantities,
+    quantity_entry_points,
     require_name,
 )
 from ...objectives.registry import FACTS
@@ -200,7 +200,7 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
     known_names = {*FACTS, *tables, *names, *DIMENSIONS, SLOW_STROKE}
     # Formulas stand among the names; looking for packages takes longer than reading a job.
     unknown = [name for name in dict.fromkeys(requested) if name not in known_names and name.isidentifier()]
-    packages = own_quantities() if unknown else {}
+    packages = quantity_entry_points() if unknown else {}
     installed_quantities = tuple(installed(name) for name in unknown if name in packages)
     for quantity in installed_quantities:
         tables[quantity.name] = _stated(quantity.title, kind_for(quantity.unit.symbol))

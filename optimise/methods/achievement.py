@@ -14,7 +14,7 @@ from ..search.evaluation import Evaluator
 from ..search.pieces import Rows
 from .scalar import Form
 
-_APART = 100.0  # between the labels of two objectives' pieces, so that no peak is taken for one of another curve
+_LABEL_STEP = 100.0  # between the labels of two objectives' pieces, so that no peak is taken for one of another curve
 
 
 class Achievement:
@@ -34,7 +34,7 @@ class Achievement:
         owner, form = goals.owner, self.form
         values = (goals.values - self.ideal[owner]) / self.span[owner]
         slopes = goals.gradients / self.span[owner][:, None]
-        labels = goals.labels + _APART * owner
+        labels = goals.labels + _LABEL_STEP * owner
         is_weighted, capped = form.weights[owner] > 0.0, np.isfinite(form.ceilings[owner])
         weights, weighted_owner = form.weights[owner[is_weighted]], owner[is_weighted]
         aims = Rows(

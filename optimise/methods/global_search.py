@@ -20,7 +20,7 @@ from .scalar import Form, Programme
 
 _POPULATION = 20  # of differential evolution, members an unknown
 _RECOMBINATION = 0.9  # high: such valleys are not along an axis
-_SETTLED = 1e-12  # of the objective: spread of a population that ends it
+_CONVERGED = 1e-12  # of the objective: spread of a population that ends it
 _TOLD = 20  # generations between two entries of the history
 _FAR = 1e3  # violation where no linkage turns fully
 _STREAM = 3500  # of the seed
@@ -123,7 +123,7 @@ def _evolve(
         strategy="rand1bin",  # best1bin runs dry in valleys that lie along the kink of two peaks
         recombination=_RECOMBINATION,
         popsize=_POPULATION,
-        tol=_SETTLED,
+        tol=_CONVERGED,
         init="sobol",
         rng=generator(problem.settings.seed, _STREAM, index),
         polish=False,

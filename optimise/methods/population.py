@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...model.arrays import Array, Whole
+from ...model.arrays import Array, IntArray
 from ..problem.problem import Problem
 from ..problem.violation import FEASIBLE
 from ..search.candidates import Table
@@ -19,7 +19,7 @@ from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
 from .registry import budget
 
-Rows = Whole
+Rows = IntArray
 
 BAND = 0.01
 """Relative violation that counts as none where an equality is left, which no sample meets; the delivery removes it."""

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...model.arrays import Array, Whole
+from ...model.arrays import Array, IntArray
 from ..search.evaluation import Evaluator
 from ..search.pieces import Rows, alone, greatest
 
@@ -131,7 +131,7 @@ class Programme:
         self._go(z[: self.k])
         return np.pad(self._limits.gradients[self._equality_rows()], ((0, 0), (0, self.m + 1)))
 
-    def _equality_rows(self) -> Whole:
+    def _equality_rows(self) -> IntArray:
         """Return the rows that must vanish; for a piece that this design lacks, the row of the highest."""
         highest, instead = self._equal.T
         return np.asarray(np.where(np.isfinite(self._limits.values[highest]), highest, instead))
@@ -163,7 +163,7 @@ class Programme:
         self._goals, self._limits = goals, limits
 
 
-def _equal_rows(evaluator: Evaluator, limits: Rows) -> Whole:
+def _equal_rows(evaluator: Evaluator, limits: Rows) -> IntArray:
     """Return the constraint rows (e, 2) of each equality that are to vanish: its highest piece, and the opposite row.
 
     Every piece has a row on one side; only the highest has one on the other side too. Its two rows are equivalent: with
@@ -181,9 +181,9 @@ def _equal_rows(evaluator: Evaluator, limits: Rows) -> Whole:
     return np.array(pairs, dtype=np.int64).reshape(-1, 2)
 
 
-def _swappable_columns(evaluator: Evaluator, goals: Rows, limits: Rows) -> tuple[list[Whole], ...]:
+def _swappable_columns(evaluator: Evaluator, goals: Rows, limits: Rows) -> tuple[list[IntArray], ...]:
     """Return the columns of goals and limits that are peaks of one curve and may swap; lower bounds may not."""
-    groups_by_kind: tuple[list[Whole], ...] = ([], [])
+    groups_by_kind: tuple[list[IntArray], ...] = ([], [])
     last = [objective.target is not None for objective in evaluator.problem.objectives]
     bounds = [constraint.lower is not None for constraint in evaluator.constraints]
     for rows, has_lower_row, groups in ((goals, last, groups_by_kind[0]), (limits, bounds, groups_by_kind[1])):
@@ -195,7 +195,7 @@ def _swappable_columns(evaluator: Evaluator, goals: Rows, limits: Rows) -> tuple
     return groups_by_kind
 
 
-def _align_pieces(rows: Rows, before: Rows, groups: list[Whole]) -> Rows:
+def _align_pieces(rows: Rows, before: Rows, groups: list[IntArray]) -> Rows:
     """Return the rows in the former order of the same pieces; peaks are sorted by height and swap in ties."""
     order = np.arange(len(rows.owner))
     for columns in groups:
@@ -206,7 +206,7 @@ def _align_pieces(rows: Rows, before: Rows, groups: list[Whole]) -> Rows:
     return Rows(rows.values[order], rows.gradients[order], rows.labels[order], rows.owner)
 
 
-def _match_labels(distances: Array) -> Whole:
+def _match_labels(distances: Array) -> IntArray:
     """Return the row for each place."""
     from scipy.optimize import linear_sum_assignment
 

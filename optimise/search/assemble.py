@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...model.arrays import Array, Mask, Whole, distinct
+from ...model.arrays import Array, IntArray, Mask, distinct
 from ...model.kinematics.in_line import without_rounding
 from ...objectives.amount import Amount
 from ...objectives.counted import counted
@@ -33,7 +33,11 @@ _GLIMPSE = 40  # designs of a round that count in the history of a search that w
 
 
 def assemble(
-    problem: Problem, evaluators: list[Evaluator], candidates: FrontCandidates, run: Run, rows: Whole | None = None
+    problem: Problem,
+    evaluators: list[Evaluator],
+    candidates: FrontCandidates,
+    run: Run,
+    rows: IntArray | None = None,
 ) -> ParetoFront:
     """Return the front of the best candidates, of which there is at least one.
 
@@ -82,7 +86,7 @@ def assemble(
     )
 
 
-def _on_unseen_kink(problem: Problem, variants: Whole, dimensions: Array) -> Mask:
+def _on_unseen_kink(problem: Problem, variants: IntArray, dimensions: Array) -> Mask:
     """Return which designs (n,) lie on a kink that their slopes describe only in part.
 
     For a formula with kinks of both kinds, such as a difference of peaks, slopes cover the kinks of one kind with the
@@ -105,7 +109,7 @@ def _on_unseen_kink(problem: Problem, variants: Whole, dimensions: Array) -> Mas
     return is_torn
 
 
-def _rows_to_deliver(problem: Problem, candidates: FrontCandidates, report: ReportProgress) -> Whole:
+def _rows_to_deliver(problem: Problem, candidates: FrontCandidates, report: ReportProgress) -> IntArray:
     rows = candidates.best(report)
     if len(problem.objectives) == 1:
         return rows
@@ -114,7 +118,7 @@ def _rows_to_deliver(problem: Problem, candidates: FrontCandidates, report: Repo
 
 
 def columns_of(
-    problem: Problem, variants: Whole, dimensions: Array, report: ReportProgress = ignore_progress
+    problem: Problem, variants: IntArray, dimensions: Array, report: ReportProgress = ignore_progress
 ) -> Columns:
     """Return all quantities of designs, their chosen options, and the slacks of their constraints.
 
@@ -157,7 +161,7 @@ def columns_of(
     }
 
 
-def _choice_columns(problem: Problem, variants: Whole, dimensions: Array) -> Columns:
+def _choice_columns(problem: Problem, variants: IntArray, dimensions: Array) -> Columns:
     """Return the columns of choices: labels, notes, and the least sufficient options with their notes."""
     chosen = [problem.variants[variant] for variant in variants] if problem.variants else []
     columns: Columns = {

@@ -9,7 +9,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.arrays import Array, Mask, Whole, distinct
+from ...model.arrays import Array, IntArray, Mask, distinct
 from ..front.dominance import nondominated
 from ..front.hypervolume import ReportProgress, ignore_progress
 from ..front.stationarity import STATIONARY
@@ -78,7 +78,7 @@ class Candidates(Table):
     there.
     """
 
-    branch: Whole
+    branch: IntArray
     u: Array
     values: Array
     is_feasible: Mask
@@ -92,7 +92,7 @@ class Candidates(Table):
         """Return the feasible designs and those to move onto the constraints, as separate groups."""
         return [group for group in (self[self.is_feasible], self[~self.is_feasible]) if len(group)]
 
-    def leading(self, column: int, count: int) -> Whole:
+    def leading(self, column: int, count: int) -> IntArray:
         """Return at most `count` rows that meet every constraint, and at most `count` others.
 
         The best in an objective come first, each `apart` from the better ones.
@@ -170,7 +170,7 @@ class FrontCandidates(Candidates):
         """Return the designs of enumerated branches, whose gradients need no scaling, with another span."""
         return replace(self[~self.free], span=span)
 
-    def best(self, report: ReportProgress = ignore_progress) -> Whole:
+    def best(self, report: ReportProgress = ignore_progress) -> IntArray:
         """Return the non-dominated rows, ascending, thinned out where they hardly differ. report: called for each row.
 
         None of them is as good as another to within `EQUAL` everywhere and better somewhere.

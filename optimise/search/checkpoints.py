@@ -19,14 +19,14 @@ from typing import Protocol, TypeVar, cast
 
 import numpy as np
 
-from ...model.arrays import Array, Whole
+from ...model.arrays import Array, IntArray
 from ...model.errors import ForeignRecords
 
 PAUSE = 1.0
 """s between two records of a long round: what a kill loses at most, and the step under way."""
 
-Numbers = Array | Whole
-Words = Whole
+Numbers = Array | IntArray
+Words = IntArray
 Arrays = TypeVar("Arrays", bound=tuple[Numbers, ...])
 """What a step gives: the same number of arrays, floats and integers in the same places, every time."""
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...model.arrays import Mask, Whole
+from ...model.arrays import IntArray, Mask
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.quantity import Array, Pieces, Quantity
 from ...objectives.tables.evaluate import running
@@ -103,7 +103,7 @@ class Evaluator:
         objectives[rows] = values
         return dimensions, objectives, violation
 
-    def _screened(self, dimensions: Array, band: float) -> tuple[Whole, Array, Array]:
+    def _screened(self, dimensions: Array, band: float) -> tuple[IntArray, Array, Array]:
         """Return the rows (r,) of designs that have objectives, these (r, m), and the violation (n,) of all."""
         self.checkpoints.poll()
         violation = self._geometry_violation(dimensions)

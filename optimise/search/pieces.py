@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...model.arrays import Array, Mask, Whole
+from ...model.arrays import Array, IntArray, Mask
 
 ACTIVE = 1e-8
 """Constraint rows nearer to zero than this, and objective pieces nearer to their greatest (scaled), are active."""
@@ -25,7 +25,7 @@ class Rows:
     values: Array
     gradients: Array
     labels: Array
-    owner: Whole
+    owner: IntArray
     constant: tuple[int, ...] = ()
 
     @classmethod
@@ -56,7 +56,7 @@ def box(u: Array, *, tolerance: float = ACTIVE) -> Array:
     return np.concatenate([-edge[u < tolerance], edge[u > 1.0 - tolerance]])
 
 
-def active_pieces(goals: Rows, chosen: tuple[int, ...], *, tolerance: float = ACTIVE) -> Whole:
+def active_pieces(goals: Rows, chosen: tuple[int, ...], *, tolerance: float = ACTIVE) -> IntArray:
     """Return the pieces that tie for the greatest of each chosen objective."""
     pieces = []
     for owner in chosen:
@@ -66,7 +66,7 @@ def active_pieces(goals: Rows, chosen: tuple[int, ...], *, tolerance: float = AC
     return np.concatenate(pieces)
 
 
-def partners(rows: Rows, others: Rows, columns: Whole) -> tuple[Whole, Mask]:
+def partners(rows: Rows, others: Rows, columns: IntArray) -> tuple[IntArray, Mask]:
     """Return the rows of other designs (..., p) that match rows (p,) of one design, and whether they exist.
 
     Rows match by label, since peaks may swap their order. Rows of one owner with equal labels (lower and upper bound)

@@ -20,7 +20,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ...model.arrays import Array, Mask, Whole, row_lengths
+from ...model.arrays import Array, IntArray, Mask, row_lengths
 from ..front.stationarity import multipliers, strict_multipliers
 from .candidates import Polished, ragged
 from .pieces import ACTIVE, Rows, active_pieces, alone, bent, box, difference, greatest
@@ -61,7 +61,7 @@ def polish(
     chosen: tuple[int, ...] | None = None,
     iterations: int | None = ITERATIONS,
     hold: bool = True,
-    best_in: Whole | None = None,
+    best_in: IntArray | None = None,
 ) -> Polished:
     """Return designs improved to stationarity from `start` (n, k) in the unit box.
 
@@ -208,7 +208,7 @@ class _Batch:
             aim=Aim(chosen, self.held[row], self.loss[row], self.hold),
         )
 
-    def _hessians(self, rows: Whole, drafts: list[Step]) -> Array:
+    def _hessians(self, rows: IntArray, drafts: list[Step]) -> Array:
         """Return the Hessians (n, k, k) of the Lagrangians with fixed multipliers, made positive definite."""
         u = self.u[rows]
         n, k = u.shape
@@ -227,7 +227,7 @@ class _Batch:
         hessians = 0.5 * (hessians + hessians.transpose(0, 2, 1))
         return np.stack([convex(hessian, draft.normals) for hessian, draft in zip(hessians, drafts, strict=True)])
 
-    def _search(self, rows: Whole, steps: Array, chosen: tuple[int, ...], *, correct: bool) -> None:
+    def _search(self, rows: IntArray, steps: Array, chosen: tuple[int, ...], *, correct: bool) -> None:
         """Take the steps that lower the merit, corrected if necessary; shrink the radius for the others.
 
         The merit is the sum of the objectives, plus penalised losses and greatest violation.

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...model.arrays import Array, Whole
+from ...model.arrays import Array, IntArray
 from ..engine.engine import Serial
 from .candidates import Polished, ragged
 from .checkpoints import Numbers
@@ -14,7 +14,7 @@ from .evaluation import Evaluator
 from .polish import ITERATIONS, Evaluates
 from .polish import polish as polish_here
 
-Lengths = Whole
+Lengths = IntArray
 _Asked = tuple[tuple[float, ...], tuple[int, ...] | None, int | None, bool]
 """Scale, chosen objectives and iterations of a polish, and whether the last column of its starts is `best_in`."""
 
@@ -26,7 +26,7 @@ def polished(
     *,
     chosen: tuple[int, ...] | None = None,
     viewed_evaluator: Evaluates | None = None,
-    best_in: Whole | None = None,
+    best_in: IntArray | None = None,
 ) -> Polished:
     """Return the result of `polish`. viewed_evaluator: a view of the evaluator that the polish uses instead."""
     inputs: tuple[Numbers, ...] = (start, scale, np.array([-1] if chosen is None else chosen, dtype=np.int64))
@@ -52,7 +52,7 @@ def polish(
     *,
     chosen: tuple[int, ...] | None = None,
     iterations: int | None = ITERATIONS,
-    best_in: Whole | None = None,
+    best_in: IntArray | None = None,
 ) -> Polished:
     """Return the result of `polish.polish`, on the engine where worthwhile; no record is stored.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...model.arrays import Array, Whole
+from ...model.arrays import Array, IntArray
 from ..front.hypervolume import scaling
 from ..front.neighbours import neighbours
 from .sobol import sobol
@@ -16,7 +16,7 @@ APART = 0.1
 """Distance in the unit box of starts that are to lead to different optima."""
 
 
-def distant_rows(merits: Array, points: Array, branch: Whole, count: int) -> Whole:
+def distant_rows(merits: Array, points: Array, branch: IntArray, count: int) -> IntArray:
     """Return rows of at most `count` points (n, k): least finite merit (n,) first, each `APART` from those before.
 
     Points of different branches count as apart.
@@ -71,7 +71,7 @@ def sample_near(parents: Array, values: Array, count: int, width: float, random:
     return np.asarray(np.clip(np.where(stays, base, base + step), 0.0, 1.0))
 
 
-def draw_rows(chances: Array, count: int, random: np.random.Generator) -> Whole:
+def draw_rows(chances: Array, count: int, random: np.random.Generator) -> IntArray:
     """Return `count` rows drawn with chances (n,), as `Generator.choice` draws them, in a third of its time."""
     upto = chances.cumsum()
     upto /= upto[-1]

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...model.arrays import Array, Mask, Whole
+from ...model.arrays import Array, IntArray, Mask
 from ...objectives.robust.quantity import RobustQuantity
 from ..front.dominance import nondominated
 from ..front.hypervolume import ReportProgress
@@ -97,7 +97,7 @@ def _thin_out(values: Array) -> Array:
     return values[:: 1 + len(values) // _FRONT_SAMPLE]
 
 
-def _rows_to_keep(candidates: Candidates) -> Whole:
+def _rows_to_keep(candidates: Candidates) -> IntArray:
     """Return the rows of candidates to keep; feasible ones are displaced only by feasible ones."""
     rows = _best_rows(candidates.values)
     if candidates.is_feasible.all():
@@ -106,7 +106,7 @@ def _rows_to_keep(candidates: Candidates) -> Whole:
     return np.concatenate([feasible[_best_rows(candidates.values[feasible])], rows[~candidates.is_feasible[rows]]])
 
 
-def _best_rows(values: Array) -> Whole:
+def _best_rows(values: Array) -> IntArray:
     """Return the rows to keep: the non-dominated ones, or the best many for a single objective, best first."""
     alone = values.shape[1] == 1
     return np.argsort(values[:, 0], kind="stable")[:_BEST] if alone else nondominated(values)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...model.arrays import Array, Mask, Whole
+from ...model.arrays import Array, IntArray, Mask
 from ..problem.violation import FEASIBLE
 from .candidates import Polished
 from .evaluation import Evaluator
@@ -60,5 +60,5 @@ def greatest_of_starts(evaluator: Evaluator, u: Array, count: int) -> Array:
     return evaluator.step("violation", (u, np.array([count])), greatest)[0]
 
 
-def _single_branch(u: Array) -> Whole:
+def _single_branch(u: Array) -> IntArray:
     return np.zeros(len(u), np.int64)

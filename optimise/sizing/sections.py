@@ -33,7 +33,7 @@ from .limit_states import AMPLIFICATION, Above, crank_loads, joint_terms, limit_
 from .section_loads import Whip, joint_loads, whip_of
 
 _ITERATIONS = 60
-_SETTLED = 1e-8  # relative change of the sections that ends the iteration
+_CONVERGED = 1e-8  # relative change of the sections that ends the iteration
 _RADIUS = 1.0  # of the logarithms of the sections, in one iteration
 _ANYWHERE = 50.0
 _OVER = 1e-6  # overload that counts as none
@@ -89,7 +89,7 @@ def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, li
         new, sensitivity = programme.solve(sizes, loads, powers, radius)
         change = float(np.abs(new - sizes).max())
         sizes = new
-        if iteration > 0 and change <= _SETTLED:
+        if iteration > 0 and change <= _CONVERGED:
             break
         if iteration == 0:
             radius = _RADIUS

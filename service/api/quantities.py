@@ -8,7 +8,7 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from ...objectives.formula.expression import ARGUMENTS
-from ...objectives.kinds import KINDS, SHOWN, shown_in
+from ...objectives.kinds import DISPLAYED_KINDS, KINDS, metric_unit_in
 from ..designs.quantity_facts import facts_of_all
 from ..questions.design_question import DesignQuestion
 from ..questions.discovery import DESIGN_QUESTIONS, QUESTION_COMMANDS, TOPICS
@@ -144,7 +144,9 @@ def list_units() -> UnitTable:
     from ...objectives.registry import FACTS
     from ...objectives.units import per_si
 
-    inch_units = [(kind.metric.symbol, shown_in(kind.metric.symbol, "inch")) for kind in SHOWN if kind.inch]
+    inch_units = [
+        (kind.metric.symbol, metric_unit_in(kind.metric.symbol, "inch")) for kind in DISPLAYED_KINDS if kind.inch
+    ]
     kinds = [
         KindModel(
             name=kind.plain,
@@ -159,7 +161,7 @@ def list_units() -> UnitTable:
     return UnitTable(
         kinds=kinds,
         inch={symbol: ShownUnit(unit=unit, factor=factor) for symbol, (unit, factor) in inch_units},
-        suffixes={kind.metric.symbol: kind.metric.suffix for kind in SHOWN},
+        suffixes={kind.metric.symbol: kind.metric.suffix for kind in DISPLAYED_KINDS},
         titles={
             quantity.field: quantity.title
             for quantity in FACTS.values()

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.errors import SlidercrankError
 from ...objectives.keys import key_in, split_unit
-from ...objectives.kinds import System, shown_in
+from ...objectives.kinds import System, metric_unit_in
 from ..runs.result import Result, Row, Wanted
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def objective_in(objective: Wanted, system: System) -> Wanted:
     """Return an objective in the units of a system."""
     column, factor = key_in(objective.column, system)
     target = None if objective.target is None else objective.target * factor
-    return replace(objective, column=column, unit=shown_in(objective.unit, system)[0], target=target)
+    return replace(objective, column=column, unit=metric_unit_in(objective.unit, system)[0], target=target)
 
 
 def _trade_offs(problem: Problem, result: Result, system: System) -> list[str]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...objectives.counted import counted
-from ...objectives.kinds import System, shown_in
+from ...objectives.kinds import System, metric_unit_in
 from ..runs.result import Result, Wanted
 from .picking_options import minimised_values
 
@@ -126,5 +126,5 @@ def _range_in_words(result: Result, free: NDArray[np.bool_], objective: Wanted, 
 
 
 def _with_unit(value: object, objective: Wanted, system: System) -> str:
-    unit, factor = shown_in(objective.unit, system)
+    unit, factor = metric_unit_in(objective.unit, system)
     return f"{value * factor:.4g} {unit}".rstrip() if isinstance(value, float) else "not defined"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.kinds import System, shown_in
+from ...objectives.kinds import System, metric_unit_in
 from ..runs.result import Cell, Row
 from .columns import find_column
 
@@ -146,7 +146,7 @@ def _number(cell: Cell) -> float | None:
 
 def _judged(rule: Requirement, row: Row, system: System) -> JudgedRule:
     missed = rule.missed_by(row)
-    unit, factor = shown_in(rule.unit, system)
+    unit, factor = metric_unit_in(rule.unit, system)
     numbers = {"lower": rule.lower, "upper": rule.upper, "value": _number(row.get(rule.column)), "missed_by": missed}
     converted = {name: None if item is None else item * factor for name, item in numbers.items()}
     return JudgedRule(quantity=rule.quantity, title=rule.title, unit=unit, met=missed == 0.0, **converted)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ...objectives.kinds import System, shown_in
+from ...objectives.kinds import System, metric_unit_in
 from ..designs.toleranced import format_toleranced
 from .layers import DIMENSIONS
 from .shapes import WIDE, Dimension, Label, Line, Point, Wedge
@@ -24,7 +24,7 @@ class Lettering:
     @property
     def factor(self) -> float:
         """Conversion factor from mm to the unit of the texts."""
-        return shown_in("mm", self.system)[1]
+        return metric_unit_in("mm", self.system)[1]
 
 
 def dimension(

@@ -8,7 +8,7 @@ from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
-from ...objectives.kinds import System, shown_in
+from ...objectives.kinds import System, metric_unit_in
 from ..designs.toleranced import tolerances_of
 from . import layers as on
 from .dimensions import Lettering, aligned, dimension
@@ -96,7 +96,7 @@ def _dimensions(drawn: SwingLook, angle: float, mechanism: Mechanism, letters: L
 
 def _notes(drawn: SwingLook, angle: float, system: System) -> tuple[str, ...]:
     look, swing = drawn.look, drawn.swing
-    unit, factor = shown_in("mm", system)
+    unit, factor = metric_unit_in("mm", system)
     start, end, drawn_angle = (f"{math.degrees(at):.6g}" for at in (swing.start, swing.end, angle))
     widths = "Link widths are to scale; slider and pins are schematic."
     driven = "The crank is driven." if drawn.cylinder is None else "It is driven; the cylinder is schematic."

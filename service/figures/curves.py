@@ -29,7 +29,7 @@ from .style import MUTED, SMALL
 Array = NDArray[np.float64]
 SAMPLES = 720
 _TURN = 2.0 * np.pi
-_BESIDE = 1e-7
+_SIDE_STEP = 1e-7
 """rad from a peak to the samples that show its height where the curve jumps there."""
 _STEP = 1e-5  # of the value: smooth curves change less between these samples
 
@@ -75,7 +75,7 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True)
     kappa = crowding(*dimensions[0])
     crowded = [uncrowded(tau, kappa) for tau in np.linspace(0.0, 2.0 * np.pi, SAMPLES // 2)]
     # At a step of a load, the curve has different values on the two sides of the peak.
-    beside = [extreme[1] + side for extreme in extremes.values() if extreme for side in (-_BESIDE, 0.0, _BESIDE)]
+    beside = [extreme[1] + side for extreme in extremes.values() if extreme for side in (-_SIDE_STEP, 0.0, _SIDE_STEP)]
     marked = [inner, outer, *(angle for angle in beside if angle >= 0.0)]
     even, turns = np.linspace(0.0, _TURN, SAMPLES + 1), cycle_turns(mechanism)
     turn_angles = [*np.mod(crowded, _TURN), *even, inner, outer]

@@ -13,7 +13,7 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...objectives.keys import split_unit
-from ...objectives.kinds import System, shown_in, unit_text
+from ...objectives.kinds import System, metric_unit_in, unit_text
 from ...objectives.registry import QUANTITIES
 from ..render.numerals import format_number
 from .curves import cycle_curves, draw_curves
@@ -58,7 +58,7 @@ def design_datasheet(
     for column in range(2):
         x, y = _LEFT + 2.95 * column, _TABLE - 0.12
         for key, name in rows[tall * column : tall * (column + 1)]:
-            unit, factor = shown_in(split_unit(key)[1], system)
+            unit, factor = metric_unit_in(split_unit(key)[1], system)
             style: dict[str, Any] = {"weight": "bold" if key in (bold or {}) else "normal", "color": INK}
             name = textwrap.shorten(name, 2 * _LETTERS, placeholder=" ...")
             write_text(figure, x, y, name, fontsize=TEXT * min(1.0, _LETTERS / len(name)), **style)
@@ -86,7 +86,7 @@ def _rows(numbers: Mapping[str, Any], objectives: Mapping[str, str]) -> list[tup
         return value is not None and not math.isnan(float(value))
 
     usual = {f"{name}_mm": name for name in DIMENSIONS}
-    usual |= {quantity.field: quantity.short_title for quantity in QUANTITIES.values() if quantity.on_sheet}
+    usual |= {quantity.field: quantity.short_title for quantity in QUANTITIES.values() if quantity.on_datasheet}
     extra = {key: title for key, title in objectives.items() if key not in usual}
     defined = [key for key in usual if has_value(key)]
     free_rows = 2 * _ROWS - len([key for key in extra if has_value(key)])

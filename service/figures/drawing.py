@@ -11,7 +11,7 @@ from matplotlib.patches import Arc
 
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ...objectives.kinds import System, shown_in
+from ...objectives.kinds import System, metric_unit_in
 from ..drawings.parts import Look, fixed_shapes, look_of, moving_shapes, pin_positions
 from ..drawings.shapes import Point
 from ..render.numerals import format_number, length
@@ -117,7 +117,7 @@ def _arrow(axes: Axes, start: Point, end: Point) -> None:
 
 def scale_bar(axes: Axes, x: float, y: float, size: float, system: System) -> None:
     """Draw a scale bar of a round length, about a sixth of the picture."""
-    unit, factor = shown_in("mm", system)
+    unit, factor = metric_unit_in("mm", system)
     longest = size / 6.0 * factor
     power = 10.0 ** math.floor(math.log10(longest))
     displayed = max(step * power for step in (1.0, 2.0, 5.0) if step * power <= longest)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...objectives.kinds import System, shown_in
+from ...objectives.kinds import System, metric_unit_in
 from ...objectives.tables.varying_column import varying_column
 from ...optimise.front.constant import is_constant
 from ...optimise.front.front import ParetoFront
@@ -99,7 +99,7 @@ def marks(front: ParetoFront) -> list[Mark]:
 def objective_axis(front: ParetoFront, objective: Objective, system: System = "metric") -> Axis:
     """Return the axis of an objective, in the units of a system."""
     quantity = front.problem.quantity(objective.quantity)
-    symbol, factor = shown_in(quantity.unit.symbol, system)
+    symbol, factor = metric_unit_in(quantity.unit.symbol, system)
     values = front.columns[quantity.field] * factor
     target = None if objective.target is None else objective.target * quantity.unit.factor * factor
     return Axis(with_unit(quantity.short_title, symbol, target), symbol, values, BETTER[objective.sense])
@@ -108,14 +108,14 @@ def objective_axis(front: ParetoFront, objective: Objective, system: System = "m
 def dimension_axes(front: ParetoFront, system: System = "metric") -> list[Axis]:
     """Return the axes of crank, rod, offset and the extra variables, in the units of a system."""
     columns = ("crank", "rod", "offset")
-    length, unit_factor = shown_in("mm", system)
+    length, unit_factor = metric_unit_in("mm", system)
     axes = [
         Axis(with_unit(name, length), length, 1e3 * unit_factor * front.dimensions[:, index], 0)
         for index, name in enumerate(columns)
     ]
     for index, item in enumerate(front.problem.mechanism.varying, start=3):
         unit = varying_column(item)[1]
-        symbol, unit_factor = shown_in(unit.symbol, system)
+        symbol, unit_factor = metric_unit_in(unit.symbol, system)
         title = with_unit(item.name.removeprefix("mechanism."), symbol)
         axes.append(Axis(title, symbol, unit.factor * unit_factor * front.dimensions[:, index], 0))
     return axes

@@ -101,14 +101,14 @@ def ending_own(problem: Problem, engine: Engine | None = None) -> Iterator[None]
 
     engine: engine that may have called them too; it ends its processes, and starts others when next needed.
     """
-    from ...objectives.own.quantity import close_own, runs_own
+    from ...objectives.own.quantity import close_custom_functions, runs_custom_function
 
     try:
         yield
     finally:
         for quantity in problem.own:
-            close_own(quantity)
-        if engine is not None and any(map(runs_own, problem.own)):
+            close_custom_functions(quantity)
+        if engine is not None and any(map(runs_custom_function, problem.own)):
             engine.close()
 
 

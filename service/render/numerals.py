@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ...objectives.kinds import System, shown_in, unit_text
+from ...objectives.kinds import System, metric_unit_in, unit_text
 from ..runs.result import Cell
 
 
@@ -48,7 +48,7 @@ def as_stored(cell: Cell) -> str:
 
 def length(millimetres: float, system: System, digits: int = 4) -> str:
     """Return a length, mm, for people in the unit of a system."""
-    unit, factor = shown_in("mm", system)
+    unit, factor = metric_unit_in("mm", system)
     return f"{format_number(millimetres * factor, digits)} {unit}"
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...model.tolerance.sources import limits
-from ...objectives.kinds import System, shown_in
+from ...objectives.kinds import System, metric_unit_in
 from ..questions.sensitivity.figure import tornado_figure, tornado_rows
 from ..questions.tolerances.analysis import PositionError, numbers
 from ..questions.tolerances.figure import error_bands, tolerances_figure
@@ -72,7 +72,7 @@ def _facts(record: Mapping[str, Any], system: System) -> dict[str, list[str]]:
 
 
 def _sources(record: PositionError, system: System) -> Table:
-    unit, factor = shown_in("mm", system)
+    unit, factor = metric_unit_in("mm", system)
     rows = tuple(
         (
             str(row["source"]),

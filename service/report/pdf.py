@@ -14,7 +14,7 @@ from typing import Any
 import matplotlib
 
 from ...model.extras import required
-from ...objectives.kinds import SHOWN, unit_text
+from ...objectives.kinds import DISPLAYED_KINDS, unit_text
 from ..figures.style import figure_bytes
 from .document import Block, Facts, Paragraph, Picture, Report, Table
 
@@ -25,7 +25,9 @@ _FONTS = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
 """Those of the figures, so that pages are the same everywhere; others serve letters that these lack."""
 _ACROSS = 6.77  # inches
 _SHARP = 220  # dots an inch of what is drawn as points
-_UNITS = sorted({unit_text(face.symbol) for of in SHOWN for face in (of.metric, of.inch) if face}, key=len)[::-1]
+_UNITS = sorted({unit_text(face.symbol) for of in DISPLAYED_KINDS for face in (of.metric, of.inch) if face}, key=len)[
+    ::-1
+]
 _UNIT = "|".join(map(re.escape, [*_UNITS, "%"]))
 _OF_NUMBER = re.compile(rf"(?<=\d) (?:{_UNIT})(?![\w/])|(?<=,) (?:{_UNIT})$|^(?:{_UNIT})$")
 """A unit behind its number, at the end of a head, or alone."""

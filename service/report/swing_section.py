@@ -8,7 +8,7 @@ from functools import cached_property
 from ...model.swing.errors import error_shares
 from ...model.swing.summary import SwingSummary, summarise
 from ...model.swing.swing import Swing
-from ...objectives.kinds import shown_in
+from ...objectives.kinds import metric_unit_in
 from ..designs.swing_curves import driven_side, error_kind
 from ..questions.swing.analysis import blocks as swing_blocks
 from ..questions.swing.analysis import swing_record, swing_title
@@ -52,7 +52,7 @@ class SwingOfSubject:
             return None
         shares = error_shares(design.mechanism, design.linkage, self.summary.swing, worst.crank_angle)
         total, unit_of_error = sum(share.error for share in shares), error_kind(self.summary.swing).metric
-        unit, factor = shown_in(unit_of_error.symbol, system)
+        unit, factor = metric_unit_in(unit_of_error.symbol, system)
         rows = tuple(
             (
                 share.source,

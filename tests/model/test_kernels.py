@@ -128,7 +128,7 @@ def test_on_a_full_disk_a_process_compiles_what_it_needs_and_no_other_is_started
 
     monkeypatch.setattr(KernelSource, "compile", compiles)
     monkeypatch.setattr(disk, "kernel_folder", lambda: tmp_path)
-    monkeypatch.setattr(disk, "compile_beside", lambda *given: begun.append(given[2]))
+    monkeypatch.setattr(disk, "compile_in_processes", lambda *given: begun.append(given[2]))
     monkeypatch.setattr(compile_all, "_tasks", lambda *_: tasks)
     write = Path.write_bytes
 
@@ -156,7 +156,7 @@ def test_a_wait_for_a_kernel_is_interrupted(tmp_path: Path, monkeypatch: pytest.
     monkeypatch.setattr(disk, "_start", lambda *_: [compiling])
     try:
         with interrupted_by(stop), pytest.raises(TimeoutError):
-            disk.compile_beside(tmp_path, "some.package", tmp_path / "never")
+            disk.compile_in_processes(tmp_path, "some.package", tmp_path / "never")
     finally:
         compiling.kill()
         compiling.wait()

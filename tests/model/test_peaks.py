@@ -21,7 +21,7 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances, Window
 from slidercrank.model.signals.averages import average_torque
-from slidercrank.model.signals.peaks import KEPT, find_peaks
+from slidercrank.model.signals.peaks import STORED_PEAKS, find_peaks
 from slidercrank.model.signals.screening import screen
 from slidercrank.model.signals.signals import Signal
 from tests.model.cases import (
@@ -127,9 +127,9 @@ def test_peaks_are_sorted_and_lie_where_they_say(name: str, signal: Signal) -> N
     machine = MACHINES[name]
     designs = DESIGNS[:50]
     found = find_peaks(machine, signal, designs, gradients=True)
-    assert found.values.shape == found.angles.shape == (50, KEPT)
+    assert found.values.shape == found.angles.shape == (50, STORED_PEAKS)
     assert found.gradients is not None
-    assert found.gradients.shape == (50, KEPT, 3)
+    assert found.gradients.shape == (50, STORED_PEAKS, 3)
     there = np.isfinite(found.values)
     assert np.all(there[:, 0])
     assert np.all(found.values[:, :-1] >= found.values[:, 1:])
@@ -169,13 +169,13 @@ def test_one_peak_asked_for_is_the_highest_of_all(seed: int) -> None:
         dataclasses.replace(machine, loads=(spikes,)),
     ):
         for signal in OF_ONE:
-            one, all_of_them = (find_peaks(other, signal, designs, limit=kept) for kept in (1, KEPT))
+            one, all_of_them = (find_peaks(other, signal, designs, limit=kept) for kept in (1, STORED_PEAKS))
             np.testing.assert_array_equal(one.values, all_of_them.values[:, :1])
             np.testing.assert_array_equal(one.angles, all_of_them.angles[:, :1])
 
 
 def test_no_designs_have_no_peaks() -> None:
-    assert find_peaks(SMOOTH, Signal.TORQUE, np.empty((0, 3))).values.shape == (0, KEPT)
+    assert find_peaks(SMOOTH, Signal.TORQUE, np.empty((0, 3))).values.shape == (0, STORED_PEAKS)
 
 
 def test_flywheel_alone_has_a_constant_torque() -> None:

@@ -99,7 +99,7 @@ BODIES = Mechanism(
 )
 """Rigid bodies with a counterweight, whose mass centre is given by radius and angle."""
 
-_RUBBED = replace(
+_PRESSURE_SPEEDS = replace(
     BODIES,
     varying=(),
     friction=Friction(
@@ -110,7 +110,7 @@ _RUBBED = replace(
     ),
 )
 RUBBED = replace(
-    _RUBBED,
+    _PRESSURE_SPEEDS,
     varying=(
         vary("slider_mass", 0.5, 3.0),
         vary("friction.guide", 0.02, 0.25),

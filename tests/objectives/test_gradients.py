@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.signals.peaks import KEPT
+from slidercrank.model.signals.peaks import STORED_PEAKS
 from slidercrank.objectives.bars import OfBars, Part
 from slidercrank.objectives.closed_form import ClosedFormQuantity
 from slidercrank.objectives.pin_rubbing import PinRubbing
@@ -65,7 +65,7 @@ def same_piece(quantity: Quantity, machine: Mechanism, designs: Array, which: An
             return quantity.evaluate(machine, displaced).values
         there: Pieces | Part
         if isinstance(quantity, OfBars):  # without gradients, which take most of the time
-            there = quantity.joined(machine, displaced, KEPT, False)
+            there = quantity.joined(machine, displaced, STORED_PEAKS, False)
         else:
             there = quantity.pieces(machine, displaced)
         away = np.abs(there.labels - label[index, None])

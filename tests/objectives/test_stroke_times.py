@@ -166,7 +166,7 @@ def test_a_single_harmonic_takes_the_time_of_its_closed_form() -> None:
         found = elapsed.up_to(theta) - elapsed.up_to(np.zeros(1))
         # 1 - a is known to rounding alone: the time near it to 1e-16 / (1 - a) of itself.
         np.testing.assert_allclose(found, wanted, rtol=1e-13 + 4e-16 / (1.0 - abs(a)), atol=1e-13)
-        assert elapsed.whole_turn == pytest.approx(TURN / math.sqrt(1.0 - a * a), rel=1e-13 + 4e-16 / (1.0 - abs(a)))
+        assert elapsed.full_turn == pytest.approx(TURN / math.sqrt(1.0 - a * a), rel=1e-13 + 4e-16 / (1.0 - abs(a)))
 
 
 def test_a_profile_that_moves_with_the_mirror_image_swaps_the_strokes() -> None:

@@ -65,7 +65,7 @@ def test_quantities_are_those_of_a_single_design(friction: bool) -> None:
             f"peak_actuator_{kind}": abs(one.peak_drive.value),
             f"holding_{kind}": max(map(abs, one.drive_start + one.drive_end)),
             error: one.position_error.value,
-            "swing_energy": one.energy_forth,
+            "swing_energy": one.energy_forward,
             "swing_transmission_angle": one.least_transmission.value,
             "actuator_travel": one.travel,
         }
@@ -74,7 +74,7 @@ def test_quantities_are_those_of_a_single_design(friction: bool) -> None:
         if friction and one.efficiency is not None:
             expected["swing_efficiency"] = one.efficiency
         for name, value in expected.items():
-            assert found.pop(name) == pytest.approx(value, rel=1e-9, abs=1e-9 * abs(one.energy_forth)), name
+            assert found.pop(name) == pytest.approx(value, rel=1e-9, abs=1e-9 * abs(one.energy_forward)), name
         if friction:
             slow = summarise(replace(machine, friction=Friction()), linkage, slowly(swing))
             held = max(map(abs, slow.drive_start + slow.drive_end))

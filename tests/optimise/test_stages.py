@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from slidercrank.model.arrays import Array, Whole
+from slidercrank.model.arrays import Array, IntArray
 from slidercrank.model.kernel.interruption import interrupted_by
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.loads.position_table import PositionTable
@@ -141,7 +141,7 @@ def test_designs_with_thousands_of_steps_are_analysed_few_at_a_time_and_come_out
 def test_a_cancelled_front_has_as_many_designs_as_are_analysed_in_a_moment(monkeypatch: pytest.MonkeyPatch) -> None:
     analysed: list[int] = []
 
-    def slowly(given: Problem, variants: Whole, dimensions: Array, *rest: ReportProgress) -> Columns:
+    def slowly(given: Problem, variants: IntArray, dimensions: Array, *rest: ReportProgress) -> Columns:
         if "polishing" in heard:
             analysed.append(len(dimensions))
             time.sleep(0.1 * len(dimensions))

@@ -16,7 +16,7 @@ import pytest
 import slidercrank as sc
 from slidercrank.model.errors import AssemblyError, InputError
 from slidercrank.objectives.keys import kind_of_key, split_unit
-from slidercrank.objectives.kinds import PRESSURE, SHOWN, unit_text
+from slidercrank.objectives.kinds import DISPLAYED_KINDS, PRESSURE, unit_text
 from slidercrank.objectives.tables.curve_extremes import defined_curves
 from slidercrank.service.api.app import create_app
 from slidercrank.service.designs.measured_file import read_measured
@@ -32,7 +32,7 @@ from tests.doors.scripts import JOBS
 from tests.service.machines import SORTS, Random, linkage_of, some_design, some_problem
 
 METRIC = "|".join(
-    sorted((re.escape(unit_text(kind.metric.symbol)) for kind in SHOWN if kind.inch), key=len, reverse=True)
+    sorted((re.escape(unit_text(kind.metric.symbol)) for kind in DISPLAYED_KINDS if kind.inch), key=len, reverse=True)
 )
 _LB_IN2 = 1.0 / (0.45359237 * 0.0254**2)
 _PSI = PRESSURE.display_unit("inch").factor * 1e5

@@ -50,7 +50,7 @@ def test_json_has_the_numbers_of_python(command: Command, driver: Any) -> None:
         f"peak_drive_{unit}": expected.peak_drive.value,
         f"drive_at_start_forth_{unit}": expected.drive_start[0],
         f"drive_at_end_back_{unit}": expected.drive_end[1],
-        "energy_forth_J": expected.energy_forth,
+        "energy_forth_J": expected.energy_forward,
         "travel_mm": 1e3 * expected.travel,
         "peak_power_W": expected.peak_power.value,
         "least_transmission_angle_deg": math.degrees(expected.least_transmission.value),

@@ -13,7 +13,18 @@ import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.objectives.kinds import ANGLE, FORCE, LENGTH, PERCENT, RATIO, SHOWN, TORQUE, Kind, System, unit_text
+from slidercrank.objectives.kinds import (
+    ANGLE,
+    DISPLAYED_KINDS,
+    FORCE,
+    LENGTH,
+    PERCENT,
+    RATIO,
+    TORQUE,
+    Kind,
+    System,
+    unit_text,
+)
 from slidercrank.service.designs.display_units import record_in
 from slidercrank.service.figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, panel_in_units
 from slidercrank.service.figures.panels import draw_panel_figure
@@ -26,11 +37,11 @@ from tests.service.conftest import Command
 
 LBF_IN = 4.4482216152605 * 0.0254
 METRIC = "|".join(
-    sorted((re.escape(unit_text(kind.metric.symbol)) for kind in SHOWN if kind.inch), key=len, reverse=True)
+    sorted((re.escape(unit_text(kind.metric.symbol)) for kind in DISPLAYED_KINDS if kind.inch), key=len, reverse=True)
 )
 
 
-@pytest.mark.parametrize("kind", [*SHOWN, PERCENT, RATIO], ids=lambda kind: kind.name)
+@pytest.mark.parametrize("kind", [*DISPLAYED_KINDS, PERCENT, RATIO], ids=lambda kind: kind.name)
 def test_a_number_in_inches_is_the_metric_one_times_the_factor_with_four_digits_at_least(kind: Kind) -> None:
     random = np.random.default_rng(7)
     face = kind.display_unit("inch")

@@ -16,7 +16,7 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.objectives.keys import key_in, metric_key, split_unit
-from slidercrank.objectives.kinds import KINDS, RATIO, SHOWN, shown_in
+from slidercrank.objectives.kinds import DISPLAYED_KINDS, KINDS, RATIO, metric_unit_in
 from slidercrank.objectives.units import kind_for, per_si, to_si
 from slidercrank.service.designs.columns import find_column
 from slidercrank.service.designs.display_units import record_in, result_in, row_in
@@ -24,7 +24,7 @@ from slidercrank.service.runs.result import result_of, rows_from_csv
 from tests.service import fronts
 from tests.service.conftest import Command
 
-FACES = [face for kind in SHOWN for face in (kind.metric, kind.inch) if face is not None]
+FACES = [face for kind in DISPLAYED_KINDS for face in (kind.metric, kind.inch) if face is not None]
 
 
 def reads(symbol: str, unit: str) -> bool:
@@ -38,10 +38,10 @@ def test_factors_and_symbols_are_those_that_job_files_are_read_with(face: object
 
 
 def test_both_units_of_a_kind_measure_the_same() -> None:
-    for kind in SHOWN:
+    for kind in DISPLAYED_KINDS:
         for face in (kind.metric, kind.inch):
             assert face is None or reads(face.symbol, kind.unit)
-    assert {kind for kind in KINDS if kind not in SHOWN} == {RATIO}
+    assert {kind for kind in KINDS if kind not in DISPLAYED_KINDS} == {RATIO}
 
 
 @pytest.mark.parametrize(
@@ -86,7 +86,7 @@ def test_what_is_no_number_stays_at_any_depth() -> None:
 
 
 def test_a_unit_of_an_own_quantity_stays() -> None:
-    assert shown_in("EUR", "inch") == ("EUR", 1.0)
+    assert metric_unit_in("EUR", "inch") == ("EUR", 1.0)
     assert row_in({"price_EUR": 2.0}, "inch") == {"price_EUR": 2.0}
 
 

@@ -115,16 +115,16 @@ class LimitedPressure(Engine):
                 f"{1e-5 * self.high:.6g} bar; raise it, or lower the compression ratio or the intake pressure"
             )
         k, share = self.heat_capacity_ratio, self.burning_share
-        at_once = (self.high - self.compressed) * self.clearance / (k - 1.0)
+        instant_heat = (self.high - self.compressed) * self.clearance / (k - 1.0)
         if share < 0.0:
             reached = self.compressed + self.heat * (k - 1.0) / self.clearance
             raise InputError(
                 f"the heat must reach the peak pressure of {1e-5 * self.high:.6g} bar, which takes "
-                f"{1e-6 * at_once:.6g} MJ/m^3; got {1e-6 * self.heat:.6g} MJ/m^3, which reaches {1e-5 * reached:.6g} "
-                "bar; raise the heat, lower the peak pressure, or leave it out"
+                f"{1e-6 * instant_heat:.6g} MJ/m^3; got {1e-6 * self.heat:.6g} MJ/m^3, which reaches "
+                f"{1e-5 * reached:.6g} bar; raise the heat, lower the peak pressure, or leave it out"
             )
         if share > 1.0:
-            heat_limit = at_once + self.high * k / (k - 1.0)
+            heat_limit = instant_heat + self.high * k / (k - 1.0)
             raise InputError(
                 f"burning must end within the stroke, with at most {1e-6 * heat_limit:.6g} MJ/m^3 of heat; got "
                 f"{1e-6 * self.heat:.6g} MJ/m^3; lower the heat, or raise the peak pressure"

@@ -46,10 +46,10 @@ def _choice() -> Any:
     return chosen
 
 
-def _either(own_code: int, formula: Any, otherwise: Any) -> Any:
+def _either(load_code: int, formula: Any, otherwise: Any) -> Any:
     @analytic
     def chosen(code: Any, position: Any, velocity: Any, way: Any, first: Any, second: Any) -> Any:
-        if code == own_code:
+        if code == load_code:
             return formula(position, velocity, way, first, second)
         return otherwise(code, position, velocity, way, first, second)
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ....model.arrays import Array, Mask, Whole, distinct
+from ....model.arrays import Array, IntArray, Mask, distinct
 from ...front.dominance import dominating, nondominated
 from ...front.front import ParetoFront
 from ...front.hypervolume import ReportProgress, choose
@@ -122,7 +122,7 @@ def _candidate_count(problem: Problem) -> int:
     return max(_FEWEST, int(1.3 * problem.settings.designs))
 
 
-def _rows_to_polish(problem: Problem, group: Archive, evaluator: Evaluator, run: Run) -> Whole:
+def _rows_to_polish(problem: Problem, group: Archive, evaluator: Evaluator, run: Run) -> IntArray:
     """Return the rows of designs to polish for the front; a recorded step."""
     best, rows = np.argmin(group.values, axis=0), np.arange(len(group))
     if len(rows) > _POOL:
@@ -130,7 +130,7 @@ def _rows_to_polish(problem: Problem, group: Archive, evaluator: Evaluator, run:
     always = tuple(int(np.flatnonzero(rows == row)[0]) for row in dict.fromkeys(best.tolist()))
     values, report = group.values[rows], run.stage_reporter(SELECTING)
 
-    def compute() -> tuple[Whole]:
+    def compute() -> tuple[IntArray]:
         return (choose(values, _candidate_count(problem), always=always, report=report),)
 
     return rows[evaluator.step("choice", (values,), compute)[0]]
@@ -162,10 +162,10 @@ def _polish_extremes(evaluators: list[Evaluator], group: Archive, span: Array) -
         yield index, firm.join(alone[lost | (firm.violation > FEASIBLE)], unrestricted)
 
 
-def _distinct_points(u: Array) -> Whole:
+def _distinct_points(u: Array) -> IntArray:
     """Return the rows of points (n, k) that differ from those before."""
-    is_apart = np.abs(u[:, None] - u).max(axis=2, initial=0.0) > _ONE
-    return np.flatnonzero((is_apart | np.triu(np.ones_like(is_apart))).all(axis=1))
+    is_distinct = np.abs(u[:, None] - u).max(axis=2, initial=0.0) > _ONE
+    return np.flatnonzero((is_distinct | np.triu(np.ones_like(is_distinct))).all(axis=1))
 
 
 def challengers(
@@ -226,7 +226,7 @@ def _compare_with_front(screened: Array, front: Array) -> tuple[Mask, Mask]:
     return dominating(screened, front, clearly=_CLEAR, slightly=_GAIN), undominated[len(front) :]
 
 
-def _best_contributors(screened: Array, rows: Whole, front: Array, count: int, report: ReportProgress) -> Whole:
+def _best_contributors(screened: Array, rows: IntArray, front: Array, count: int, report: ReportProgress) -> IntArray:
     """Return at most `count` of some rows: those that add most to the hypervolume of the front."""
     if len(rows) <= count:
         return rows

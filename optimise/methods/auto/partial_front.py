@@ -7,9 +7,9 @@ import time
 
 import numpy as np
 
-from ....model.arrays import Array, Whole
+from ....model.arrays import Array, IntArray
 from ....model.kernel.interruption import interrupted_by
-from ....objectives.own.quantity import runs_own
+from ....objectives.own.quantity import runs_custom_function
 from ...front.front import ParetoFront
 from ...problem.problem import Problem
 from ...search.assemble import assemble, columns_of, empty_front, span_of
@@ -42,7 +42,11 @@ def partial_front(problem: Problem, evaluators: list[Evaluator], run: Run, *, si
             raise Cancelled
 
     try:
-        with interrupted_by(give_up, farewell=0.0) if any(map(runs_own, problem.own)) else contextlib.nullcontext():
+        with (
+            interrupted_by(give_up, farewell=0.0)
+            if any(map(runs_custom_function, problem.own))
+            else contextlib.nullcontext()
+        ):
             return _front(problem, evaluators, run)
     except Cancelled:
         return empty_front(problem, evaluators, run, "cancelled", _SLOW)
@@ -81,9 +85,11 @@ def _add_archive(problem: Problem, evaluators: list[Evaluator], archive: Archive
             break
 
 
-def _rows_in_time(problem: Problem, evaluators: list[Evaluator], candidates: FrontCandidates, rows: Whole) -> Whole:
+def _rows_in_time(
+    problem: Problem, evaluators: list[Evaluator], candidates: FrontCandidates, rows: IntArray
+) -> IntArray:
     """Return the rows whose quantities can be computed within a moment, usually all of them."""
-    count = _TRIED if any(map(runs_own, problem.own)) else 1
+    count = _TRIED if any(map(runs_custom_function, problem.own)) else 1
     seconds_per_design, end = 1e-9, time.perf_counter() + 0.5 * _ANALYSING
     while count <= _TRIED and count < len(rows) and (begin := time.perf_counter()) < end:
         sample = candidates[rows[:: -(-len(rows) // count)]]
@@ -93,7 +99,7 @@ def _rows_in_time(problem: Problem, evaluators: list[Evaluator], candidates: Fro
     return rows[_spread(candidates.values[rows], max(1, int(_ANALYSING / seconds_per_design)))]
 
 
-def _spread(values: Array, count: int) -> Whole:
+def _spread(values: Array, count: int) -> IntArray:
     """Return at most `count` rows of objectives (n, m), never fewer than the best of each; spread over the first."""
     if len(values) <= count:
         return np.arange(len(values))

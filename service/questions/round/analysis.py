@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.keys import key_in, metric_key, split_unit
-from ....objectives.kinds import LENGTH, SMALL_LENGTH, Kind, System, shown_in
+from ....objectives.kinds import LENGTH, SMALL_LENGTH, Kind, System, metric_unit_in
 from ....objectives.units import quote
 from ....optimise.front.progress import stage_text
 from ....optimise.front.rounded import Rounded, drop_conversion_rounding
@@ -156,7 +156,7 @@ def _record_in(units: System, record: dict[str, Any], rounded: Rounded) -> dict[
         row.update({key: drop_conversion_rounding(row[key]) for key in keys})
     converted["allowed"] = {key: drop_conversion_rounding(value) for key, value in converted["allowed"].items()}
     for miss in (miss for row in converted["designs"] for miss in row["misses"]):
-        miss["unit"], factor = shown_in(miss["unit"], units)
+        miss["unit"], factor = metric_unit_in(miss["unit"], units)
         miss.update(amount=factor * miss["amount"], allowed=drop_conversion_rounding(factor * miss["allowed"]))
     return converted
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from ....model.linkage.dimensions import DIMENSIONS
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....objectives.kinds import LENGTH, RATIO, SHOWN, Kind, System, display_unit, shown_in
+from ....objectives.kinds import DISPLAYED_KINDS, LENGTH, RATIO, Kind, System, display_unit, metric_unit_in
 from ....objectives.registry import QUANTITIES
 from ....objectives.tables.sensitivity import sensitivity
 from ...render.blocks import Block, Table, Text, Unit, Value, column, heading, note, words
@@ -63,10 +63,10 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Sensitivity:
 
 def in_units(numbers: Sensitivity, system: System) -> dict[str, Any]:
     """Return the numbers in a system of units: each entry in its unit there, derivatives per mm or per in."""
-    per, length = shown_in("mm", system)
+    per, length = metric_unit_in("mm", system)
 
     def entry(row: dict[str, Any]) -> dict[str, Any]:
-        unit, factor = shown_in(row["unit"], system)
+        unit, factor = metric_unit_in(row["unit"], system)
         converted: dict[str, Any] = {}
         for key, value in row.items():
             scale = factor / length if "_per_mm" in key else factor if "tolerance" in key or key == "value" else None
@@ -87,7 +87,7 @@ def blocks(numbers: Sensitivity) -> list[Block]:
         slopes = [row[f"{name}_per_mm{side}"] for name in DIMENSIONS for side in ("", "_below")]
         if row["quantity"] in plain or row["value"] is None or (row["value"] == 0.0 and not any(slopes)):
             continue
-        kind = next((kind for kind in SHOWN if kind.metric.symbol == row["unit"]), RATIO)
+        kind = next((kind for kind in DISPLAYED_KINDS if kind.metric.symbol == row["unit"]), RATIO)
         cells: list[Text] = []
         for name in DIMENSIONS:
             slope = _derivative(row, f"{name}_per_mm", _per_length(kind), 4)

@@ -14,7 +14,7 @@ from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import TURN, cycle_turns
 from ....model.signals.first_greatest import angle_in_cycle
 from ....model.strength.bar_stress import bar_stress
-from ....model.strength.places import WholeBar
+from ....model.strength.places import LinkBody
 from ....model.strength.stress_cycle import stress_peaks
 from ....objectives.bars import LINKS, NEAR
 from ....objectives.kinds import ANGLE, LENGTH, PRESSURE
@@ -102,7 +102,7 @@ def _extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str, fl
     extremes: dict[str, float | None] = {}
     cycle = TURN * cycle_turns(mechanism)
     for place, (sign, criterion) in enumerate(zip(_SIGNS, STATIC, strict=True)):
-        stress_path = (WholeBar(LINKS[name].part),)
+        stress_path = (LinkBody(LINKS[name].part),)
         (peak,) = stress_peaks(mechanism, stress_path, row_of(linkage), np.array([criterion]), limit=1)
         share, _, *angles = peak.places[0, 0]
         value = peak.values[0, 0]

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ....objectives.kinds import System, shown_in
+from ....objectives.kinds import System, metric_unit_in
 from ....objectives.quantity import Quantity
 from ....objectives.tables.sweep import Axis
 from ....optimise.front.constant import is_constant
@@ -83,7 +83,7 @@ def sweep_figure(
         left, foot = 0.95 + _WIDTH * (n % columns), height - 0.95 - _SIDE - (_SIDE + 0.85) * (n // columns)
         grids, values = sweep_grid(table, axes, item)
         grids = [grid * factor for grid, (_, factor) in zip(grids, titles, strict=True)]
-        symbol, factor = shown_in(item.unit.symbol, system)
+        symbol, factor = metric_unit_in(item.unit.symbol, system)
         values = factor * values.reshape([len(grids[k]) for k in drawn])
         panel = add_axes(figure, left, foot, _WIDTH - (1.15 if len(drawn) == 1 else 1.75), _SIDE)
         style_axes(panel)
@@ -106,7 +106,7 @@ def sweep_figure(
 
 def _axis_title(axis: Axis, system: System) -> tuple[str, float]:
     """Return the title of an axis with its unit, and the size of that unit in its column's unit."""
-    symbol, factor = shown_in("rpm" if axis.parameter == "speed" else "mm", system)
+    symbol, factor = metric_unit_in("rpm" if axis.parameter == "speed" else "mm", system)
     return with_unit(axis.parameter, symbol), factor
 
 

@@ -179,7 +179,7 @@ def swing_record(mechanism: Mechanism, summary: SwingSummary) -> SwingNumbers:
             record[f"drive_at_{end}_{way}{drive.suffix}"] = finite_or_none(drive.factor * value + 0.0)
     record |= {
         "holds_by_friction": summary.holds,
-        "energy_forth_J": finite_or_none(summary.energy_forth),
+        "energy_forth_J": finite_or_none(summary.energy_forward),
         "energy_back_J": finite_or_none(summary.energy_back),
         "stored_energy_J": finite_or_none(summary.stored),
         "efficiency": summary.efficiency,

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from ....objectives.kinds import System, shown_in
+from ....objectives.kinds import System, metric_unit_in
 from ....optimise.decisions.wish import Wishes
 from ...designs.display_units import row_in
 from ...render.blocks import Block, Phrase, Sentence, Table, Text, column, heading, recorded, words
@@ -91,7 +91,7 @@ def _blocks(wished: Wished, row: Mapping[str, Any]) -> list[Block]:
 
 def _outcome(outcome: Outcome, units: System) -> dict[str, Any]:
     quantity = outcome.quantity
-    unit, factor = shown_in(quantity.unit.symbol, units)
+    unit, factor = metric_unit_in(quantity.unit.symbol, units)
     numbers = {name: getattr(outcome, name) for name in ("wished", "reached", "before", "short", "changed")}
     converted = {
         name: None if value is None else value * quantity.unit.factor * factor for name, value in numbers.items()

@@ -73,7 +73,7 @@ def test_places_of_the_slider_state_the_same_swing() -> None:
             continue  # a spring on the crank counts turns
         found, wanted = summarise(machine, linkage, places), summarise(machine, linkage, angles)
         assert found.peak_drive.value == pytest.approx(wanted.peak_drive.value, rel=1e-7)
-        assert found.energy_forth == pytest.approx(wanted.energy_forth, rel=1e-7, abs=1e-7)
+        assert found.energy_forward == pytest.approx(wanted.energy_forward, rel=1e-7, abs=1e-7)
         assert found.travel == pytest.approx(abs(places.end - places.start), rel=1e-12)
         seen.add((places.driver, places.side, machine.branch))
     assert len(seen) >= 6

@@ -64,7 +64,7 @@ def test_two_places_are_the_swing_between_the_angles_that_reach_them() -> None:
         if turns:  # a spring on the crank is wound by them
             continue
         assert made.peak_drive.value == pytest.approx(expected.peak_drive.value, rel=1e-5, abs=1e-9)
-        assert made.energy_forth == pytest.approx(expected.energy_forth, rel=1e-5, abs=1e-9)
+        assert made.energy_forward == pytest.approx(expected.energy_forward, rel=1e-5, abs=1e-9)
     assert sides == {"left", "right"}
 
 

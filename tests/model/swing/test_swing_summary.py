@@ -74,7 +74,7 @@ def test_energy_of_the_drive_is_what_is_stored_and_done() -> None:
         energy[1] -= math.copysign(1.0, b - a) * float(np.trapezoid(np.interp(points, knots, table.forces), points))
         wanted = energy[1] - energy[0]
         size = 1e-10 * (scale + 1.0)
-        assert found.energy_forth == pytest.approx(wanted, rel=1e-10, abs=size)
+        assert found.energy_forward == pytest.approx(wanted, rel=1e-10, abs=size)
         assert found.energy_back == pytest.approx(-wanted, rel=1e-10, abs=size)
 
 
@@ -112,7 +112,7 @@ def test_energy_with_every_load_is_that_of_a_fine_sum() -> None:
         curves = swing_curves(machine, require_swing(machine, linkage, swing), swing, share)
         summed = float(np.trapezoid(curves.drive * curves.rate, share))
         size = float(np.abs(curves.drive * curves.rate).max())
-        assert found.energy_forth == pytest.approx(summed, abs=2e-5 * size)
+        assert found.energy_forward == pytest.approx(summed, abs=2e-5 * size)
 
 
 def test_friction_costs_the_energy_that_both_ways_do_not_give_back() -> None:
@@ -121,9 +121,9 @@ def test_friction_costs_the_energy_that_both_ways_do_not_give_back() -> None:
         found = summarise(still, linkage, slowly(swing))
         if found.locked is not None:
             continue
-        assert found.energy_forth + found.energy_back > 0.0
+        assert found.energy_forward + found.energy_back > 0.0
         free = summarise(replace(still, friction=Friction()), linkage, slowly(swing))
-        assert free.energy_forth + free.energy_back == pytest.approx(0.0, abs=1e-9 * abs(free.energy_forth) + 1e-12)
+        assert free.energy_forward + free.energy_back == pytest.approx(0.0, abs=1e-9 * abs(free.energy_forward) + 1e-12)
         assert free.stored == found.stored
         if found.efficiency is not None:
             assert 0.0 < found.efficiency < 1.0
@@ -232,7 +232,7 @@ def test_energy_near_a_dead_point_is_that_of_the_potential(near: float, law: Law
     wanted = 9.81 * (heights[1] - heights[0])
     assert found.stored == pytest.approx(wanted, rel=1e-8)
     if law != "constant":  # which moves at the ends
-        assert found.energy_forth == pytest.approx(wanted, rel=1e-7)
+        assert found.energy_forward == pytest.approx(wanted, rel=1e-7)
         assert found.energy_back == pytest.approx(-wanted, rel=1e-7)
     assert found.efficiency == pytest.approx(1.0, abs=1e-9)
 
@@ -251,7 +251,7 @@ def test_efficiency_is_of_friction_alone() -> None:
     for driver in ("crank", "slider"):
         swing = Swing(start=math.radians(10.0), end=math.radians(170.0), driver=driver)
         found = summarise(even, Linkage(0.5, 1.5), swing)
-        assert found.stored == found.energy_forth == 0.0
+        assert found.stored == found.energy_forward == 0.0
         assert found.efficiency is None
 
 
@@ -265,7 +265,7 @@ def test_a_place_that_may_lock_leaves_peaks_undefined() -> None:
     assert found.locked.share == 0.0
     assert bend < 0.3
     assert math.isnan(found.peak_drive.value)
-    assert math.isnan(found.energy_forth)
+    assert math.isnan(found.energy_forward)
     assert found.efficiency is None
     later = summarise(machine, linkage, Swing(start=math.radians(60.0), end=math.radians(2.0), driver="slider"))
     assert later.locked is not None
@@ -281,7 +281,7 @@ def test_a_dashpot_holds_nothing_and_takes_nothing_slowly() -> None:
     moved = summarise(
         Mechanism(loads=(Viscous(coefficient=100.0),)), SUPPORT, replace(OVER, law="harmonic", duration=1.0)
     )
-    assert moved.energy_forth > 0.0
+    assert moved.energy_forward > 0.0
     assert not moved.holds
 
 
@@ -298,7 +298,7 @@ def test_crank_and_rod_on_each_other_are_refused() -> None:
 def test_a_linkage_that_weighs_nothing_takes_nothing(driver: str) -> None:
     found = summarise(Mechanism(), SUPPORT, replace(OVER, driver=driver))  # type: ignore[arg-type]
     assert found.peak_drive.value == 0.0
-    assert found.energy_forth == found.stored == 0.0
+    assert found.energy_forward == found.stored == 0.0
     assert found.efficiency is None
     assert found.position_error is None
     assert found.peak_power is None
