@@ -23,7 +23,7 @@ Table = dict[str, Any]
 
 NEAR = 1e-6
 """Of the range of an objective over the front: ends as near as this are the best."""
-_WANTED = {
+_SENSES = {
     "peak_torque": "minimise",
     "rms_torque": "minimise",
     "peak_power": "minimise",
@@ -56,13 +56,13 @@ def random_job(seed: int) -> Table:
     side = random.integers(0, 3)
     if side:
         variables["offset"] = [f"-{offset * spans[2]:.4g} mm", f"{-offset / spans[2] if side == 1 else offset:.4g} mm"]
-    wanted = random.choice(list(_WANTED), size=random.integers(3, 5), replace=False)
+    wanted = random.choice(list(_SENSES), size=random.integers(3, 5), replace=False)
     job: Table = {
         "name": f"ends {seed}",
         **random_machine(random, slowest=30.0),
         "variables": variables,
         "constraints": {"transmission_angle": {"min": f"{random.uniform(10.0, 30.0):.1f} deg"}},
-        "objectives": {str(name): _WANTED[str(name)] for name in wanted},
+        "objectives": {str(name): _SENSES[str(name)] for name in wanted},
         "optimiser": {"designs": int(random.choice([20, 60])), "seed": seed},
     }
     stroke = np.sqrt((rod + crank) ** 2 - offset**2) - np.sqrt((rod - crank) ** 2 - offset**2)

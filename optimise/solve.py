@@ -169,14 +169,14 @@ def _search_and_deliver(problem: Problem, evaluators: list[Evaluator], run: Run)
         front = deliver(problem, evaluators, archive, run)
         if front is not None:
             return front
-    message = diagnosis.message or valueless_in_all(problem, diagnosis.feasible) or _THIN
+    message = diagnosis.message or valueless_in_all(problem, diagnosis.feasible) or _NARROW_RANGES
     if diagnosis.message and prove_infeasible(problem, poll=partial(run.stage_reporter("proving"), 0, 1)):
         message += "; proven: no design within the ranges meets them all"
     return empty_front(problem, evaluators, run, "infeasible", message)
 
 
 _DIAGNOSING = "diagnosing"
-_THIN = (
+_NARROW_RANGES = (
     "some designs meet all requirements within rounding, but none meets the equalities exactly; widen the ranges "
     "a little"
 )

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from scipy.optimize import Bounds, LinearConstraint, NonlinearConstraint
 
 Row = tuple[Array, Array]
-_KEPT = 0.02
+_MARGIN = 0.02
 """Share of the rod by which it exceeds crank + |offset| where no transmission angle is asked: that of 11.5 deg."""
 
 
@@ -311,7 +311,7 @@ def _without_spurious(rows: list[Row], x: Array, problem: Problem, branch: Elimi
 def _share(constraints: tuple[Constraint, ...]) -> float:
     """Greatest allowed ratio of crank + |offset| to the rod."""
     floor = next((c.lower for c in constraints if c.quantity == TRANSMISSION_ANGLE.name and c.lower is not None), None)
-    return 1.0 - _KEPT if floor is None or not 0.0 < floor < 1.5 else float(np.cos(floor))
+    return 1.0 - _MARGIN if floor is None or not 0.0 < floor < 1.5 else float(np.cos(floor))
 
 
 def _turning(x: Array, constraints: tuple[Constraint, ...], width: int) -> list[Row]:

@@ -28,7 +28,7 @@ _MOST = 4_000_000  # open boxes that memory is kept for
 _POLISHED = 400  # added designs that are polished; more would take longer than the proof
 _STEPS = 8  # of their polish: most of the way; they need not be stationary
 _SHARE = 0.15  # of the time, kept for polishing
-_THIN = 50_000_000  # pairs of added designs and corners that are looked through for a smaller set
+_MOST_PAIRS = 50_000_000  # pairs of added designs and corners that are looked through for a smaller set
 
 
 def _objectives(problem: Problem, dimensions: Array) -> Array:
@@ -196,7 +196,7 @@ class Search:
         open_range = self._worst_open_range() if len(tree) else None
         return Certificate(
             status=status,
-            asked=self.epsilon,
+            requested=self.epsilon,
             epsilon=proven,
             delivered=delivered,
             gap=self.gap,
@@ -227,7 +227,7 @@ class Search:
 
     def _drop_redundant(self, needy: Array) -> None:
         """Leave out added designs whose corners others cover."""
-        if not len(self.tree) and len(self.added) * len(needy) <= _THIN:
+        if not len(self.tree) and len(self.added) * len(needy) <= _MOST_PAIRS:
             self.added = self.added[greedy_cover(needy, self.added.values, self.epsilon)]
 
     def _polish(self) -> None:

@@ -140,10 +140,10 @@ def extended(
         else:
             constraints_by_name[added.quantity] = Constraint(quantity=added.quantity, lower=ends[0], upper=ends[1])
     for name, requested in ranges.items():
-        own_range = dimensions[name]
-        ends = common(requested, (own_range.lower, own_range.upper))
+        range_of_name = dimensions[name]
+        ends = common(requested, (range_of_name.lower, range_of_name.upper))
         if ends is None:
-            existing = f"{_words((own_range.lower, own_range.upper), 1e3, 'mm')} is its range"
+            existing = f"{_words((range_of_name.lower, range_of_name.upper), 1e3, 'mm')} is its range"
             contradictions.append(f"{name} {_words(requested, 1e3, 'mm')}, where {existing}")
             keys.append(f"variables.{name}")
         else:

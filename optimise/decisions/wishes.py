@@ -94,9 +94,9 @@ def _read(front: ParetoFront, column: int, text_or_value: object) -> Wish:
     if (
         turning and quantity.domain is not None and value > quantity.domain.upper
     ):  # degrees without their unit, a ratio in percent
-        shown_value = f"{value * quantity.unit.factor:.6g} {quantity.unit.symbol}".rstrip()
+        value_text = f"{value * quantity.unit.factor:.6g} {quantity.unit.symbol}".rstrip()
         raise InputError(
-            f"the wish for {quantity.name}: {quantity.domain.rule}; got {shown_value}; {quantity.domain.remedy}"
+            f"the wish for {quantity.name}: {quantity.domain.rule}; got {value_text}; {quantity.domain.remedy}"
         )
     return Wish("limit" if limit else "value", value)
 

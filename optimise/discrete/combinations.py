@@ -24,7 +24,7 @@ from ..problem.violation import (
     greatest_violation,
 )
 
-_AT_ONCE, _AT_ONCE_ROBUST = 1 << 15, 1 << 10  # combinations judged between two reports of progress
+_BATCH, _ROBUST_BATCH = 1 << 15, 1 << 10  # combinations judged between two reports of progress
 
 
 _HELD = 1 << 17  # combinations that meet every requirement; of more, only the best are stored
@@ -151,7 +151,7 @@ def judge_all(axes: Axes, report: ReportProgress = ignore_progress, *, dimension
     no objectives.
     """
     judged = Judged.empty(axes.part)
-    step = _AT_ONCE_ROBUST if asks_robust(axes.part) and not dimensions_only else _AT_ONCE
+    step = _ROBUST_BATCH if asks_robust(axes.part) and not dimensions_only else _BATCH
     for begin in range(0, axes.count, step):
         report(begin, axes.count)
         batch = judge(axes.part, axes.designs(begin, begin + step), dimensions_only=dimensions_only)
@@ -214,9 +214,9 @@ def judge_near(
     best, judged_numbers = Judged.empty(axes.part), np.zeros(0, np.int64)
     fresh = np.unique(axes.numbers(neighbours(axes, designs, window)))
     while len(fresh):
-        for begin in range(0, len(fresh), _AT_ONCE):
+        for begin in range(0, len(fresh), _BATCH):
             report(len(judged_numbers) + begin, limit)
-            batch = judge(axes.part, axes.numbered(fresh[begin : begin + _AT_ONCE]))
+            batch = judge(axes.part, axes.numbered(fresh[begin : begin + _BATCH]))
             best = best.merge(batch.best()).best()
         judged_numbers = np.union1d(judged_numbers, fresh)
         fresh = np.zeros(0, np.int64)

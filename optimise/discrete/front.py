@@ -15,7 +15,7 @@ import numpy as np
 
 from ...model.arrays import Array, IntArray
 from ...objectives.tables.varying_column import columns_of_numbers
-from ..front.discrete_answer import DiscreteAnswer
+from ..front.discrete_answer import DiscreteSearch
 from ..front.dominance import nondominated
 from ..front.front import ParetoFront, Status
 from ..front.hypervolume import ReportProgress, choose
@@ -83,7 +83,7 @@ def discrete_front(
         chosen, judged = _designs_to_deliver(problem, axes, [part for part, _ in judged_parts])
     if not chosen:
         return nothing("infeasible", failure_message(problem, judged or Judged.empty(axes[0].part)))
-    summary = DiscreteAnswer(
+    summary = DiscreteSearch(
         exact=exact,
         combinations=count,
         judged=judged.judged if judged else len(chosen),
@@ -157,14 +157,14 @@ def _first_of_each_variant(chosen: Chosen) -> Chosen:
 
 
 def _front_of_problem(
-    problem: Problem, front: ParetoFront, continuous: ParetoFront, chosen: Chosen, summary: DiscreteAnswer
+    problem: Problem, front: ParetoFront, continuous: ParetoFront, chosen: Chosen, summary: DiscreteSearch
 ) -> ParetoFront:
     """Return the front of combinations as a front of the original problem."""
     columns = dict(front.columns)
     for place, (name, (column, unit)) in enumerate(columns_of_numbers(problem.mechanism.varying).items()):
         if column in columns and any(item.name == name for item in problem.discrete):
-            shown = front.dimensions[:, place] * unit.factor
-            columns[column] = np.array([drop_conversion_rounding(value) for value in shown.tolist()])
+            displayed = front.dimensions[:, place] * unit.factor
+            columns[column] = np.array([drop_conversion_rounding(value) for value in displayed.tolist()])
     # A design of discrete values is one of the continuous problem too.
     best = front.values.min(axis=0, initial=np.inf).tolist()
     least = tuple(

@@ -18,9 +18,9 @@ from .engine import LONGEST, Engine, Poll, Serial
 
 Value = TypeVar("Value")
 Subject = TypeVar("Subject")
-Asked = TypeVar("Asked", bound=Hashable)
+Question = TypeVar("Question", bound=Hashable)
 Part = TypeVar("Part")
-Work = Callable[[Subject, Asked, Array], Part]
+Work = Callable[[Subject, Question, Array], Part]
 """Work on rows, a function of a module: of the subject, what is asked, and rows (n, k). It judges each row by
 itself, to the last bit, so that chunks do not show."""
 
@@ -96,8 +96,8 @@ class Chunked(Generic[Subject]):
 
     def __call__(
         self,
-        work: Work[Subject, Asked, Part],
-        question: Asked,
+        work: Work[Subject, Question, Part],
+        question: Question,
         rows: Array,
         *,
         kind: Hashable = None,
@@ -133,7 +133,7 @@ class Chunked(Generic[Subject]):
         return parts
 
     def _mapped(
-        self, work: Work[Subject, Asked, Part], question: Asked, rows: Array, pace: _Pace, per_worker: int
+        self, work: Work[Subject, Question, Part], question: Question, rows: Array, pace: _Pace, per_worker: int
     ) -> list[Part]:
         engine = self.engine
         if not isinstance(engine, Serial) and not self.shared.portable:
@@ -151,7 +151,7 @@ class Chunked(Generic[Subject]):
 
 
 def _run_timed(
-    work: Work[Subject, Asked, Part], shared: Shared[Subject], question: Asked, rows: Array
+    work: Work[Subject, Question, Part], shared: Shared[Subject], question: Question, rows: Array
 ) -> tuple[float, Part]:
     start = perf_counter()
     part = work(shared.value, question, rows)

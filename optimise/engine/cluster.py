@@ -59,12 +59,12 @@ class Cluster:
         """
         scheme, _, rest = address.partition("://")
         if scheme not in ("tcp", "tls") or "@" in rest or not rest.rpartition(":")[2].isdigit():
-            address_shown = (
+            printable_address = (
                 f"***@{address.rpartition('@')[2]}" if "@" in address else address
             )  # before it may be a password
             raise InputError(
                 "a scheduler's address must look like tcp://host:8786 or tls://host:8786, without a user; got "
-                f"{address_shown!r}; correct it"
+                f"{printable_address!r}; correct it"
             )
         if (scheme == "tls") != (tls is not None):
             raise InputError(

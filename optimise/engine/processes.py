@@ -131,7 +131,7 @@ class Processes:
             import multiprocessing
 
             pool = ProcessPoolExecutor(
-                self.workers, mp_context=multiprocessing.get_context("spawn"), initializer=follow_parent
+                self.workers, mp_context=multiprocessing.get_context("spawn"), initializer=end_with_parent
             )
             try:
                 with block_interrupts():
@@ -163,7 +163,7 @@ def _ready() -> None:
     """Do nothing, when the process has started."""
 
 
-def follow_parent() -> None:
+def end_with_parent() -> None:
     """Prepare a process: Ctrl-C is for its parent, and it ends with its parent, also when that is killed."""
     import multiprocessing
     from multiprocessing.connection import wait as wait_for

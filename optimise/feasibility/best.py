@@ -16,7 +16,7 @@ from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
 from ..search.mirror import drop_mirrored_branches
 from ..search.sampling import first_samples
-from ..search.search import BANDS, ENOUGH, Archive, Callback, Run, explore, is_out_of_reach, samples_per_branch
+from ..search.search import BANDS, ENOUGH, Archive, Callback, Run, explore, is_beyond_sampling, samples_per_branch
 
 _SAMPLES = 2048
 """Designs of a round where only the dimensions count."""
@@ -70,7 +70,7 @@ def _sampled(full: Problem, light: Problem, evaluators: list[Evaluator], run: Ru
             (index, evaluator, first_samples(count, evaluator.dimension, light.settings.seed, index))
             for index, evaluator in enumerate(evaluators)
         )
-        if found >= ENOUGH or (not found and is_out_of_reach(light, evaluators, BANDS[-2])):
+        if found >= ENOUGH or (not found and is_beyond_sampling(light, evaluators, BANDS[-2])):
             run.report_round("sampling", evaluators, archive)
             return archive
     return explore(full, evaluators, run)

@@ -58,16 +58,16 @@ class Relaxation:
         """Return the relaxation in words. other_requirements: what the other requirements are called."""
         limit_word = {"at least": "at most", "at most": "at least", "exactly": "at the nearest"}[self.relation]
         requested_value = "is kept where a job sets none" if self.standing else "is asked"
-        requirement = f"{self.title} {self.relation} {self._number_asked()}"
+        requirement = f"{self.title} {self.relation} {self._requested_number()}"
         return (
             f"{requirement} {requested_value}, {limit_word} {self.with_unit} is possible with {other_requirements} met"
         )
 
     def instead(self) -> str:
         """Return the reachable requirement to ask for instead, in words."""
-        return f"{self.title} {self.relation} {self.with_unit} instead of {self._number_asked()}"
+        return f"{self.title} {self.relation} {self.with_unit} instead of {self._requested_number()}"
 
-    def _number_asked(self) -> str:
+    def _requested_number(self) -> str:
         return f"{self.requested:.10g} {self.unit}".rstrip()
 
 

@@ -48,30 +48,30 @@ def unswung(problem: Problem) -> str:
             return ""
         stuck.append((machine, able))
     factor, unit = (180.0 / math.pi, "deg") if motion.stated_for == "crank" else (1e3, "mm of the slider")
-    asked = f"the swing from {factor * motion.start:.6g} to {factor * motion.end:.6g} {unit}"
+    movement = f"the swing from {factor * motion.start:.6g} to {factor * motion.end:.6g} {unit}"
     if any(
         start_column(problem.part(branch.variant).mechanism) is not None for branch in elimination_branches(problem)
     ):
-        asked = f"the swing by {factor * (motion.end - motion.start):.6g} {unit}" if motion.follows else "the swing"
+        movement = f"the swing by {factor * (motion.end - motion.start):.6g} {unit}" if motion.follows else "the swing"
     if not closing and motion.stated_for == "slider":
         return (
-            f"no design within the ranges reaches {asked} with the crank pin on the {motion.side} of the line to "
+            f"no design within the ranges reaches {movement} with the crank pin on the {motion.side} of the line to "
             "the slider pin: at both ends the slider's distance from the crank pivot must be between |rod - crank| "
             "and rod + crank; change the ranges, the positions, crank_side or the branch"
         )
     if not closing:
         return (
-            f"no design within the ranges closes over {asked}, which needs rod > |offset - crank sin(crank "
+            f"no design within the ranges closes over {movement}, which needs rod > |offset - crank sin(crank "
             "angle)|; allow a longer rod or an offset nearer to the crank pin, or swing less far"
         )
     if not passing:
         return (
-            f"in every design within the ranges that closes, {asked} passes a dead point, where crank and rod are "
+            f"in every design within the ranges that closes, {movement} passes a dead point, where crank and rod are "
             "in line and the slider cannot drive the crank; stay on one side of it, change the ranges, or drive the "
             "crank"
         )
     return (
-        f"friction may lock every design within the ranges that can make {asked}; {_too_much(stuck, motion)}reduce "
+        f"friction may lock every design within the ranges that can make {movement}; {_too_much(stuck, motion)}reduce "
         "the friction, lengthen the rod, or drive the other end"
     )
 
@@ -90,13 +90,13 @@ def _too_much(stuck: list[tuple[Mechanism, Array]], motion: Swing) -> str:
 
 def _rubbing(machine: Mechanism, share: float) -> Mechanism:
     """Return a machine with a share of its coefficients of friction."""
-    own = machine.friction
+    friction = machine.friction
     pins = {
         name: replace(pin, coefficient=share * pin.coefficient)
         for name, pin in (
-            ("crank_pivot", own.crank_pivot),
-            ("crank_pin", own.crank_pin),
-            ("slider_pin", own.slider_pin),
+            ("crank_pivot", friction.crank_pivot),
+            ("crank_pin", friction.crank_pin),
+            ("slider_pin", friction.slider_pin),
         )
     }
-    return replace(machine, friction=replace(own, guide=share * own.guide, **pins))
+    return replace(machine, friction=replace(friction, guide=share * friction.guide, **pins))

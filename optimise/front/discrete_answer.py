@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, kw_only=True)
-class DiscreteAnswer:
+class DiscreteSearch:
     """Origin of the front of a problem with discrete numbers.
 
     exact: whether every combination was judged; else those next to the designs of the continuous front were.

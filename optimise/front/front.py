@@ -28,7 +28,7 @@ from ..problem.questions import question_to, subject_of
 from ..problem.requirements import Objective
 from ..problem.table_columns import least_field
 from .constant import spread
-from .discrete_answer import DiscreteAnswer
+from .discrete_answer import DiscreteSearch
 from .nonnegative import nonnegative_least_squares
 from .picking import Normalisation, Priority, by_range, knee, lexicographic, topsis
 from .picture import figure, svg
@@ -81,7 +81,7 @@ class ParetoFront:
     seed: int
     versions: dict[str, str] = field(default_factory=dict)
     variants: tuple[int, ...] = ()
-    discrete: DiscreteAnswer | None = None
+    discrete: DiscreteSearch | None = None
 
     @cached_property
     def designs(self) -> pd.DataFrame:
@@ -155,8 +155,8 @@ class ParetoFront:
         and for anything that the front does not have.
         """
         if row is None or subject_of(question) == "front":
-            answer: dict[str, Any] = question_to("front", question).answer_of(self, row, inputs)
-            return answer
+            record: dict[str, Any] = question_to("front", question).answer_of(self, row, inputs)
+            return record
         return self.part(row).ask(question, self.dimensions[row], **inputs)
 
     @property

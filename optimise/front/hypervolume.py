@@ -51,10 +51,10 @@ def hypervolume(values: Array, ideal: Array, span: Array, *, clip_at_ideal: bool
 @kernel
 def _shared_corners(chosen: Table, count: int, point: Row, corners: Table) -> int:
     """Store the undominated corners of the region that a point shares with the chosen ones; return their number."""
-    count_kept = 0
+    corner_count = 0
     for i in range(count):
         covered = False
-        for k in range(count_kept):
+        for k in range(corner_count):
             covered = True
             for j in range(point.shape[0]):
                 if corners[k, j] > max(chosen[i, j], point[j]):
@@ -65,7 +65,7 @@ def _shared_corners(chosen: Table, count: int, point: Row, corners: Table) -> in
         if covered:
             continue
         left = 0
-        for k in range(count_kept):
+        for k in range(corner_count):
             stays = False
             for j in range(point.shape[0]):
                 stays = stays or corners[k, j] < max(chosen[i, j], point[j])
@@ -75,8 +75,8 @@ def _shared_corners(chosen: Table, count: int, point: Row, corners: Table) -> in
                 left += 1
         for j in range(point.shape[0]):
             corners[left, j] = max(chosen[i, j], point[j])
-        count_kept = left + 1
-    return count_kept
+        corner_count = left + 1
+    return corner_count
 
 
 class Bounds:
@@ -88,15 +88,15 @@ class Bounds:
 
     def __init__(self, scaled: Array) -> None:
         """Begin without chosen designs."""
-        self.room = np.ascontiguousarray(REFERENCE - scaled.T)
-        self.boxes = self.room.prod(axis=0)
-        self.largest, self.second = np.zeros(self.room.shape), np.zeros(self.room.shape)
+        self.margins = np.ascontiguousarray(REFERENCE - scaled.T)
+        self.boxes = self.margins.prod(axis=0)
+        self.largest, self.second = np.zeros(self.margins.shape), np.zeros(self.margins.shape)
         n = len(scaled)
         self.most, self.more, self.both = np.zeros(n), np.zeros(n), np.zeros(n)
 
     def with_design(self, index: int) -> Array:
         """Return the bounds (n,) after choosing another design."""
-        shared = np.minimum(self.room, self.room[:, index : index + 1])
+        shared = np.minimum(self.margins, self.margins[:, index : index + 1])
         size = shared.prod(axis=0)
         with_largest = np.minimum(self.largest, shared)
         common = with_largest.prod(axis=0)

@@ -13,7 +13,7 @@ from ...model.arrays import Array
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_WIDTH, _HEIGHT, _ROOM = 320.0, 200.0, 30.0  # px of the SVG
+_WIDTH, _HEIGHT, _MARGIN = 320.0, 200.0, 30.0  # px of the SVG
 
 
 def svg(values: Array, labels: Sequence[str]) -> str:
@@ -21,14 +21,14 @@ def svg(values: Array, labels: Sequence[str]) -> str:
     x = values[:, 0]
     y = values[:, 1] if values.shape[1] > 1 else np.arange(len(values), dtype=np.float64)
     names = [*labels, "design"][:2]
-    horizontal = _ROOM + (_WIDTH - 2 * _ROOM) * _share(x)
-    down = _ROOM + (_HEIGHT - 2 * _ROOM) * (1.0 - _share(y))
+    horizontal = _MARGIN + (_WIDTH - 2 * _MARGIN) * _share(x)
+    down = _MARGIN + (_HEIGHT - 2 * _MARGIN) * (1.0 - _share(y))
     spots = "".join(
         f'<circle cx="{a:.1f}" cy="{b:.1f}" r="3" fill="currentColor" fill-opacity="0.6"/>'
         for a, b in zip(horizontal, down, strict=True)
     )
     frame = (
-        f'<path d="M{_ROOM:g} {_ROOM / 2:g} V{_HEIGHT - _ROOM / 2:g} H{_WIDTH - _ROOM / 2:g}" '
+        f'<path d="M{_MARGIN:g} {_MARGIN / 2:g} V{_HEIGHT - _MARGIN / 2:g} H{_WIDTH - _MARGIN / 2:g}" '
         'fill="none" stroke="#999"/>'
     )
     text = 'font-size="11" font-family="sans-serif" fill="currentColor"'

@@ -46,31 +46,32 @@ class Rounded:
     """Designs with round numbers near a design of a front, best first.
 
     First come non-dominated designs that meet every requirement within the allowed misses, least loss first; then
-    designs that miss little but lose clearly less. If `met` is False, these are the nearest designs: first that with
-    the least relative violation beyond the allowed misses, then those that miss more but lose clearly less. See
-    `rounding.rounded`.
+    designs that miss little but lose clearly less. If `meets_requirements` is False, these are the nearest designs:
+    first that with the least relative violation beyond the allowed misses, then those that miss more but lose clearly
+    less. See `rounding.rounded`.
 
-    problem: the problem that they answer, with its choices in place. given: (3 + v,), the design. steps: steps of the
-    rounded numbers, SI. allowed: allowed misses of requirements, SI, by quantity. dimensions: (n, 3 + v). before: (m,),
-    the design's objectives, SI. values: (n, m). losses: (n, m), loss of each objective as a fraction of its range over
-    the front; negative for a gain. constraints: c constraints, including floors. held: (n, c), their values. reach:
-    multiples of a step tried on either side. judged: number of movable combinations, all judged. kept: number of those
-    that meet every requirement within the allowed misses. notes: unchanged numbers, in words.
+    problem: the problem that they answer, with its choices in place. design: (3 + v,), the one to round. steps: steps
+    of the rounded numbers, SI. allowed: allowed misses of requirements, SI, by quantity. dimensions: (n, 3 + v).
+    design_objectives: (m,), the design's objectives, SI. values: (n, m). losses: (n, m), loss of each objective as a
+    fraction of its range over the front; negative for a gain. constraints: c constraints, including floors.
+    constraint_values: (n, c). steps_tried: multiples of a step tried on either side. judged: number of movable
+    combinations, all judged. feasible_count: number of those that meet every requirement within the allowed misses.
+    notes: unchanged numbers, in words.
     """
 
     problem: Problem
-    given: Array
+    design: Array
     steps: Mapping[str, float]
     allowed: Mapping[str, float]
     dimensions: Array
-    before: Array
+    design_objectives: Array
     values: Array
     losses: Array
-    held: Array
+    constraint_values: Array
     constraints: tuple[Constraint, ...]
-    reach: int
+    steps_tried: int
     judged: int
-    kept: int
+    feasible_count: int
     notes: tuple[str, ...]
 
     def __len__(self) -> int:
@@ -80,9 +81,9 @@ class Rounded:
         return f"Rounded({self.problem.name!r}: {self.message})"
 
     @property
-    def met(self) -> bool:
+    def meets_requirements(self) -> bool:
         """Whether the designs meet every requirement within the allowed misses."""
-        return self.kept > 0
+        return self.feasible_count > 0
 
     @property
     def message(self) -> str:
@@ -92,17 +93,17 @@ class Rounded:
     def message_in(self, system: System) -> str:
         """Return the result of the search in words. system: system of its units."""
         if not self.judged:
-            return f"no rounded design within {counted(self.reach, 'step')} rotates fully; give smaller steps"
-        near = f"{counted(self.judged, 'rounded design')} within {counted(self.reach, 'step')}"
-        if self.reach < REACHES[0]:
+            return f"no rounded design within {counted(self.steps_tried, 'step')} rotates fully; give smaller steps"
+        near = f"{counted(self.judged, 'rounded design')} within {counted(self.steps_tried, 'step')}"
+        if self.steps_tried < REACHES[0]:
             near += f" (not {REACHES[0]}, because {len(self.steps)} numbers are rounded together)"
-        if self.met:
-            keep = "keeps" if self.kept == 1 else "keep"
+        if self.meets_requirements:
+            keep = "keeps" if self.feasible_count == 1 else "keep"
             tolerance = f" within {self._allowed_in_words(system)}" if self.allowed else ""
             missing = sum(bool(self._excessive_misses(row)) for row in range(len(self)))
             lose = "others lose clearly less but miss" if missing > 1 else "another one loses clearly less but misses"
             supplement = f"; {lose} little" if missing else ""
-            return f"{self.kept} of {near} {keep} every requirement{tolerance}{supplement}"
+            return f"{self.feasible_count} of {near} {keep} every requirement{tolerance}{supplement}"
         subject = f"none of {near}"
         if not len(self):
             return f"{subject} has a value for every requirement; give smaller steps"
@@ -113,7 +114,9 @@ class Rounded:
     @cached_property
     def violations(self) -> Array:
         """Relative violation (n, c) of every constraint; zero or less if it is met."""
-        columns = [violated_by(constraint, self.held[:, j]) for j, constraint in enumerate(self.constraints)]
+        columns = [
+            violated_by(constraint, self.constraint_values[:, j]) for j, constraint in enumerate(self.constraints)
+        ]
         return np.stack(columns, axis=1) if columns else np.zeros((len(self), 0))
 
     def tightest(self, row: int) -> str | None:
@@ -130,9 +133,9 @@ class Rounded:
         for place in np.argsort(-self.violations[row], kind="stable").tolist():
             if self.violations[row, place] <= FEASIBLE:
                 break
-            constraint, value = self.constraints[place], self.held[row, place]
+            constraint, value = self.constraints[place], self.constraint_values[row, place]
             quantity = self.problem.quantity(constraint.quantity)
-            slack = slack_of(constraint, self.held[row : row + 1, place])[0]
+            slack = slack_of(constraint, self.constraint_values[row : row + 1, place])[0]
             misses.append(
                 Miss(
                     quantity=constraint.quantity,
@@ -182,7 +185,7 @@ class Rounded:
             )
         for place, objective in enumerate(self.problem.objectives):
             quantity = self.problem.quantity(objective.quantity)
-            now, before = self.values[:, place], self.before[place]
+            now, before = self.values[:, place], self.design_objectives[place]
             with np.errstate(invalid="ignore", divide="ignore"):
                 change = np.where(now == before, 0.0, now - before)
                 percent = np.where(change == 0.0, 0.0, 100.0 * change / abs(before))
@@ -192,7 +195,9 @@ class Rounded:
         table["loss_percent"] = 100.0 * self.losses.max(axis=1) if len(self) else np.zeros(0)
         for place, constraint in enumerate(self.constraints):
             quantity = self.problem.quantity(constraint.quantity)
-            table[slack_field(quantity)] = slack_of(constraint, self.held[:, place]) * quantity.unit.factor + 0.0
+            table[slack_field(quantity)] = (
+                slack_of(constraint, self.constraint_values[:, place]) * quantity.unit.factor + 0.0
+            )
         return table
 
     @cached_property

@@ -27,7 +27,7 @@ from ..problem.requirements import Constraint, Range
 from ..problem.violation import FEASIBLE, constraints_of
 from .constant import spread
 from .rounded import Rounded
-from .rounding_search import RoundingSearch, Steps, shown_number
+from .rounding_search import RoundingSearch, Steps, number_text
 
 _SMALLEST = 1e-9  # of the greatest number of a range: a step below is rounding
 _LARGE = 0.1  # of a bound: a miss without a unit that was probably meant in another unit
@@ -83,18 +83,18 @@ def rounding(
     best = yield from search.best(int(count))
     return Rounded(
         problem=part,
-        given=given,
+        design=given,
         steps=moved,
         allowed=allowed,
         dimensions=best,
-        before=search.values(given[None])[0],
+        design_objectives=search.values(given[None])[0],
         values=search.values(best),
         losses=search.losses(search.values(best)),
-        held=search.constrained_values(best, search.constraints),
+        constraint_values=search.constrained_values(best, search.constraints),
         constraints=search.constraints,
-        reach=search.reach,
+        steps_tried=search.window,
         judged=search.judged,
-        kept=search.kept,
+        feasible_count=search.feasible_count,
         notes=tuple(all_notes),
     )
 
@@ -177,10 +177,10 @@ def _steps(to: float | Mapping[str, float], part: Problem) -> dict[str, float]:
             raise InputError(f"the step of {name} must be above zero and finite; got {step!r}")
         size = max(abs(ranges[name].lower), abs(ranges[name].upper))
         if step < _SMALLEST * size:
-            shown_step, least, greatest = (shown_number(part, name, value) for value in (step, _SMALLEST * size, size))
+            step_text, least, greatest = (number_text(part, name, value) for value in (step, _SMALLEST * size, size))
             raise InputError(
                 f"the step of {name} must be at least {least}, {_SMALLEST:g} of {greatest}, the greatest in its range; "
-                f"got {shown_step}; give a greater one"
+                f"got {step_text}; give a greater one"
             )
     return {name: float(steps[name]) for name in ranges if name in steps}
 

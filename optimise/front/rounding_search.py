@@ -35,7 +35,7 @@ _MOST, _MOST_ROBUST = 1 << 18, 1 << 13  # combinations judged at once
 _NEAREST = 8192  # designs whose cycle is computed at most, for those that miss more but lose less
 _BLOCK, _SLOW_BLOCK = 1 << 15, 1 << 8  # designs between two reports; of those whose cycle is computed
 _LITTLE = 0.01  # of a bound: greatest miss of designs listed after those that meet all
-_WORTH = 0.01  # of a range: least loss that justifies looking for them
+_ACCEPTED_LOSS = 0.01  # of a range: least loss that justifies looking for them
 _CLEARLY = 0.75  # of the previous loss: greatest loss that justifies a larger miss
 _TIE = 9  # decimals of a fraction of a range: smaller differences are rounding
 
@@ -54,7 +54,7 @@ Steps = Generator[Stage, None, T]
 """A search that yields its progress and returns its result; closing it ends it."""
 
 
-def shown_number(part: Problem, name: str, value: float) -> str:
+def number_text(part: Problem, name: str, value: float) -> str:
     """Return the value, SI, of a number in a problem's designs as text in its display unit."""
     unit = columns_of_numbers(part.mechanism.varying)[name][1]
     return f"{value * unit.factor:.6g} {unit.symbol}".rstrip()
@@ -66,20 +66,20 @@ class RoundingSearch:
     def __init__(
         self,
         part: Problem,
-        given: Array,
+        design: Array,
         span: Array,
         steps: Mapping[str, float],
         allowed: Mapping[str, float],
     ) -> None:
         """Prepare; see `rounding.rounding`. Raises `InputError` for steps without a multiple."""
-        self.part, self.given, self.span, self.steps, self.ranges = part, given, span, steps, part.ranges
+        self.part, self.design, self.span, self.steps, self.ranges = part, design, span, steps, part.ranges
         self.allowed = allowed
         self.constraints = constraints_of(part)
         self.quick = [item for item in self.constraints if not costly(part.quantity(item.quantity))]
         self.slow = [item for item in self.constraints if item not in self.quick]
         self.most = _MOST_ROBUST if asks_robust(part) else _MOST
-        self.before = all_minimised(part, self.values(given[None]))[0]
-        self.reach, self.judged, self.kept = 0, 0, 0
+        self.design_objectives = all_minimised(part, self.values(design[None]))[0]
+        self.window, self.judged, self.feasible_count = 0, 0, 0
         self._ladders(1)
 
     def best(self, count: int) -> Steps[Array]:
@@ -87,8 +87,8 @@ class RoundingSearch:
 
         Yields a `Stage` before every block of designs.
         """
-        for reach in self._reaches():
-            designs, self.reach = self._window(reach), reach
+        for window in self._reaches():
+            designs, self.window = self._window(window), window
             misses = yield from self._in_blocks(
                 "screening combinations", designs, self._violation_function(self.quick), _BLOCK
             )
@@ -103,12 +103,12 @@ class RoundingSearch:
             if has_values.any():
                 break
             misses[feasible_rows] = np.inf  # without a value of an objective
-        self.judged, self.kept = len(designs), int(has_values.sum())
+        self.judged, self.feasible_count = len(designs), int(has_values.sum())
         if not has_values.any():
             return (yield from self._nearest(designs, misses, rows, count))
         best = self._ranked(designs[feasible_rows[has_values]], values[has_values])[:count]
         loss = float(self.losses(self.values(best[:1])).max())
-        if len(best) == count or loss <= _WORTH:
+        if len(best) == count or loss <= _ACCEPTED_LOSS:
             return best
         misses[feasible_rows] = np.inf
         near = misses <= _LITTLE
@@ -124,7 +124,7 @@ class RoundingSearch:
         """Return the losses of objectives (n, m) against the design's, in units of `span`."""
         now = all_minimised(self.part, values)
         with np.errstate(invalid="ignore"):
-            lost = np.where(now == self.before, 0.0, now - self.before) / self.span
+            lost = np.where(now == self.design_objectives, 0.0, now - self.design_objectives) / self.span
         return np.asarray(np.where(np.isnan(lost), np.inf, lost))
 
     def constrained_values(self, designs: Array, constraints: Sequence[Constraint]) -> Array:
@@ -148,15 +148,15 @@ class RoundingSearch:
             blocks.append(function(designs[begin : begin + size]))
         return np.concatenate(blocks)
 
-    def _ladders(self, reach: int) -> list[list[float]]:
+    def _ladders(self, window: int) -> list[list[float]]:
         """Return the possible values of each number of a design."""
-        ladders = [[float(value)] for value in self.given]
+        ladders = [[float(value)] for value in self.design]
         for place, name in enumerate(self.ranges):
             if name in self.steps:
-                ladders[place] = self._multiples(name, float(self.given[place]), reach)
+                ladders[place] = self._multiples(name, float(self.design[place]), window)
         return ladders
 
-    def _multiples(self, name: str, value: float, reach: int) -> list[float]:
+    def _multiples(self, name: str, value: float, window: int) -> list[float]:
         step, lower, upper = self.steps[name], self.ranges[name].lower, self.ranges[name].upper
         place = value / step
         is_multiple = abs(place - round(place)) <= FEASIBLE * max(1.0, abs(place))
@@ -164,31 +164,31 @@ class RoundingSearch:
         slack = FEASIBLE * max(abs(lower), abs(upper))
         exact, side = Decimal(repr(step)), self.part.slow_side() if name == "offset" else None
         # A multiple as written: the step's decimals times a whole number, rounded once.
-        every = [float(exact * k) for k in range(low - reach + 1, high + reach)]
+        every = [float(exact * k) for k in range(low - window + 1, high + window)]
         multiples = [x for x in every if lower - slack <= x <= upper + slack and (side is None or side * x > 0.0)]
-        if not multiples and reach == 1:
+        if not multiples and window == 1:
             raise InputError(
-                f"the step of {name} must have a multiple within its range, {shown_number(self.part, name, lower)} to "
-                f"{shown_number(self.part, name, upper)}"
-                f"{'' if side is None else ', is_multiple the side that slow_stroke asks for'}; got "
-                f"{shown_number(self.part, name, step)}; give a smaller one, or none, so that it stays"
+                f"the step of {name} must have a multiple within its range, {number_text(self.part, name, lower)} to "
+                f"{number_text(self.part, name, upper)}"
+                f"{'' if side is None else ', on the side that slow_stroke asks for'}; got "
+                f"{number_text(self.part, name, step)}; give a smaller one, or none, so that it stays"
             )
         return multiples
 
     def _reaches(self) -> list[int]:
         """Return the increasing widths of the windows; fewer than usual for very many numbers."""
         every = (*range(1, REACHES[0]), *REACHES)
-        fitting = [reach for reach in every if math.prod(map(len, self._ladders(reach))) <= self.most]
+        fitting = [window for window in every if math.prod(map(len, self._ladders(window))) <= self.most]
         if not fitting:
             raise InputError(
                 f"at most {int(math.log2(self.most))} numbers may be rounded together; got {len(self.steps)}; leave "
                 "some without a step"
             )
-        return [reach for reach in fitting if reach >= REACHES[0]] or fitting[-1:]
+        return [window for window in fitting if window >= REACHES[0]] or fitting[-1:]
 
-    def _window(self, reach: int) -> Array:
+    def _window(self, window: int) -> Array:
         """Return the combinations (n, 3 + v) of multiples near the design that rotate fully or make the swing."""
-        grid = np.meshgrid(*self._ladders(reach), indexing="ij")
+        grid = np.meshgrid(*self._ladders(window), indexing="ij")
         designs = np.stack([values.ravel() for values in grid], axis=1)
         if self.part.motion is not None:
             return np.asarray(designs[running(self.part.mechanism, self.part.motion, designs)])
@@ -197,7 +197,7 @@ class RoundingSearch:
     def _steps_away(self, designs: Array) -> Array:
         """Return the greatest distance (n,) of designs from the given one, in steps."""
         steps = np.array([self.steps.get(name, np.inf) for name in self.ranges])
-        return np.asarray((np.abs(designs - self.given) / steps).max(axis=1))
+        return np.asarray((np.abs(designs - self.design) / steps).max(axis=1))
 
     def _ranked(self, designs: Array, values: Array) -> Array:
         """Return designs in order of greatest loss, then of the sum of losses, then of the distance in steps."""
@@ -249,7 +249,7 @@ class RoundingSearch:
         for place, objective in enumerate(self.part.objectives):
             if not costly(self.part.quantity(objective.quantity)):
                 now = minimised(objective, self.part.evaluate(designs, [objective.quantity])[:, 0])
-                losses = np.fmax(losses, (now - self.before[place]) / self.span[place])
+                losses = np.fmax(losses, (now - self.design_objectives[place]) / self.span[place])
         return losses
 
     def _staircase(self, designs: Array, rows: IntArray, misses: Array, losses: Array) -> IntArray:

@@ -22,7 +22,7 @@ from ...model.file_names import path_from_text, path_text
 from ...objectives.units import quote
 from ..problem.problem import Problem
 from .catalogue import catalogues, with_catalogues, with_options
-from .custom_quantities import declared, modules_beside
+from .custom_quantities import declared, function_modules
 from .file import LARGEST, read, require_plain
 from .load_file import load_files, with_loads
 from .messages import LONGEST, MOST, explain
@@ -36,7 +36,7 @@ from .target_motion import points_file, with_points
 from .toml_errors import with_lines
 from .varying import with_values
 
-__all__ = ["Job", "files_beside", "job_schema", "load_job", "parse_job", "read_job", "with_files"]
+__all__ = ["Job", "job_schema", "load_job", "needed_files", "parse_job", "read_job", "with_files"]
 
 
 def load_job(
@@ -121,12 +121,12 @@ def _named(path: str | PathLike[str]) -> Iterator[None]:
         raise error from None
 
 
-def files_beside(path: str | PathLike[str]) -> list[Path]:
+def needed_files(path: str | PathLike[str]) -> list[Path]:
     """Return the files beside a job file that it needs: tables, and modules of its own functions."""
     file = path_from_text(path)
     data, folder = read(file), file.parent
     files = [name for name in (points_file(data), speeds_file(data), *load_files(data), *catalogues(data)) if name]
-    return [*(folder / path_from_text(name) for name in dict.fromkeys(files)), *modules_beside(data, folder)]
+    return [*(folder / path_from_text(name) for name in dict.fromkeys(files)), *function_modules(data, folder)]
 
 
 def parse_job(

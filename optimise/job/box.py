@@ -111,7 +111,7 @@ def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> B
 
 def _require_within(quantity: Quantity, constraint: Constraint, box: Box, problem: Problem) -> None:
     """Raise InfeasibleError unless the constraint overlaps what is possible."""
-    key, bounds = key_of(["constraints", quantity.name]), problem.reach_of(quantity)
+    key, bounds = key_of(["constraints", quantity.name]), problem.common_bounds(quantity)
     if bounds is None:
         return
     least, greatest = box.possible(quantity)
@@ -211,7 +211,7 @@ def beyond_both(problem: Problem, ratio_quantity: Quantity, share: Range = _ANY)
     constraints = {
         constraint.quantity: constraint
         for constraint in problem.constraints
-        if problem.reach_of(ratio_quantity) is not None
+        if problem.common_bounds(ratio_quantity) is not None
     }
     ratio, angle = constraints.get(ratio_quantity.name), constraints.get(TRANSMISSION_ANGLE.name)
     if ratio is None or angle is None or ratio.lower is None or angle.lower is None:

@@ -130,7 +130,7 @@ def _column(place: int, text: str, column_name: str, custom_names: frozenset[str
         return Column(
             place, text, quantity.name, "max" if quantity.better == "low" else "min", unit, quantity.kind, added=True
         )
-    _require_kept(text, name, unit, column_name, custom_names)
+    _require_amount_name(text, name, unit, column_name, custom_names)
     return Column(place, text, identifier(name), None, unit, kind_of_amount(unit), is_amount=True)
 
 
@@ -146,7 +146,7 @@ def _quantities() -> dict[str, str]:
     return {identifier(quantity.title): name for name, quantity in FACTS.items()} | {name: name for name in FACTS}
 
 
-def _require_kept(text: str, name: str, unit: str, column_name: str, custom_names: frozenset[str]) -> None:
+def _require_amount_name(text: str, name: str, unit: str, column_name: str, custom_names: frozenset[str]) -> None:
     """Refuse a column without a name, and one that looks like a limit or a number of the job."""
     unit_text = f" ({unit})" if unit else ""
     misplaced = _MISPLACED.fullmatch(name)
@@ -163,10 +163,10 @@ def _require_kept(text: str, name: str, unit: str, column_name: str, custom_name
             f"{column_name}: a quantity needs min, max or equals; got none; write {quantity_name} max{unit_text} for "
             "its limit"
         )
-    own_path = name.removeprefix("variables.")
-    if own_path != name and _PATH.fullmatch(own_path):
+    number_path = name.removeprefix("variables.")
+    if number_path != name and _PATH.fullmatch(number_path):
         raise JobError(
-            f"{column_name}: a number of the job must be named by its path; got {name}; write {own_path}{unit_text}"
+            f"{column_name}: a number of the job must be named by its path; got {name}; write {number_path}{unit_text}"
         )
     for formula in (name, text):  # text: the brackets at its end may be those of a function
         if _is_known(formula, custom_names):

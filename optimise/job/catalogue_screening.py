@@ -30,14 +30,14 @@ ORDER = ("price", "mass")
 
 
 @dataclass(frozen=True)
-class _Asked:
+class _Request:
     """Requirement of a job on an amount. way: 1 for low, -1 for high, 0 for a value. bound: beyond it all are equal."""
 
     way: int
     bound: float | None = None
 
 
-def _requests(tables: Mapping[str, Any], columns: Sequence[Column]) -> dict[str, _Asked]:
+def _requests(tables: Mapping[str, Any], columns: Sequence[Column]) -> dict[str, _Request]:
     """Return the requirements of a job on the amounts of a catalogue."""
     objectives, constraints, quantity_tables = (
         _table_of(tables, name) for name in ("objectives", "constraints", "quantity")
@@ -60,7 +60,7 @@ def _requests(tables: Mapping[str, Any], columns: Sequence[Column]) -> dict[str,
         ways |= {_WAYS.get(word, 0) for word in stated_bounds}
         bound = None if wish is not None or len(stated_bounds) != 1 else _si(next(iter(stated_bounds.values())), column)
         if ways:
-            requests[column.name] = _Asked(ways.pop(), bound) if len(ways) == 1 else _Asked(0)
+            requests[column.name] = _Request(ways.pop(), bound) if len(ways) == 1 else _Request(0)
     return requests
 
 

@@ -30,7 +30,7 @@ from .box import Box, require_reachable
 from .linear_contradictions import require_compatible
 from .messages import key_of
 from .options import require_options
-from .pins import require_room_for_pins
+from .pins import require_eyes_wider_than_pins
 
 
 def require_consistent(problem: Problem) -> None:
@@ -44,7 +44,7 @@ def require_consistent(problem: Problem) -> None:
         _require_free(problem, objective.quantity)
     _require_one_density(problem)
     require_ranking(problem)
-    require_room_for_pins(problem)
+    require_eyes_wider_than_pins(problem)
     if problem.motion is not None:
         require_swinging(problem)
         return

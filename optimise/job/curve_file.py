@@ -27,7 +27,7 @@ _CLOSE = 1e-3  # relative: a record that ends this near to whole turns ends with
 _TURNS = {"deg": 360.0}  # exactly
 SHARE = 5e-4
 """Greatest change of a thinned curve over the difference of its greatest and its least value."""
-MOST_KEPT = 1000
+MOST_POINTS = 1000
 """Points of a curve that stays as it is."""
 
 
@@ -144,8 +144,8 @@ def _remedy(heads: Sequence[str], kinds: Sequence[Kind]) -> str:
     words = {squeezed(unit).casefold(): unit for kind in kinds for unit in (*kind.typed, kind.metric.symbol)}
     words |= {"grad": ANGLE.metric.symbol} if ANGLE in kinds else {}
     for unit in (unit for head in heads if not head.startswith("#") for unit in _units(head)):
-        if unit_meant := words.get(squeezed(unit).casefold()):
-            return f"the unit {quote(unit)} is not known; write {unit_meant}"
+        if intended_unit := words.get(squeezed(unit).casefold()):
+            return f"the unit {quote(unit)} is not known; write {intended_unit}"
     return "name the unit"
 
 
@@ -261,12 +261,12 @@ def opened(curve: Curve) -> Curve:
 
 
 def thinned(curve: Curve) -> Curve:
-    """Return a curve of more than `MOST_KEPT` points without those that straight lines replace; steps stay.
+    """Return a curve of more than `MOST_POINTS` points without those that straight lines replace; steps stay.
 
     No value of the curve changes by more than `SHARE` of its range: Ramer, Computer Graphics and Image Processing 1
     (1972) 244, with the deviation along the values, which is greatest at a point that is left out.
     """
-    if len(curve.arguments) <= MOST_KEPT:
+    if len(curve.arguments) <= MOST_POINTS:
         return curve
     bound = SHARE * float(np.ptp(curve.values))
     is_needed = np.zeros(len(curve.arguments), dtype=bool)

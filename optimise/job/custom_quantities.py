@@ -59,7 +59,7 @@ def one_line(text: str) -> str:
     return text
 
 
-MOST_OWN = 20
+MOST_QUANTITIES = 20
 """Functions and named formulas of a job."""
 Title = Annotated[str, Field(max_length=60), AfterValidator(one_line)]
 
@@ -179,7 +179,7 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
         )
     parts = parts if isinstance(parts, Mapping) else {}
     tables: dict[str, Stated] = {}
-    for name, part in itertools.islice(parts.items(), MOST_OWN):  # more are refused
+    for name, part in itertools.islice(parts.items(), MOST_QUANTITIES):  # more are refused
         if name in names:
             continue
         unit = part.get("unit", "") if isinstance(part, Mapping) else ""
@@ -245,7 +245,7 @@ def folders_of(folder: Path | None) -> list[str]:
     return [str(place.resolve()) for place in ((folder,) if folder else ()) + (Path(),)]
 
 
-def modules_beside(data: Mapping[str, Any], folder: Path) -> list[Path]:
+def function_modules(data: Mapping[str, Any], folder: Path) -> list[Path]:
     """Return the files beside a job file that its functions come from."""
     parts = data.get("quantity", {})
     functions = [part.get("function") for part in parts.values() if isinstance(part, Mapping)] if parts else []

@@ -32,7 +32,7 @@ SERIES = {f"R{count}": tuple(map(Decimal, _R40[:: 40 // count])) for count in (5
 """Preferred numbers of a decade, by series."""
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)\s*(.*?)\s*")
 _FRACTION = re.compile(r"\s*([+-]?\d{1,9})\s*/\s*(\d{1,9})\s*([A-Za-z].*)", re.ASCII)
-_ROOM = 1e-9  # relative: a multiple at the very end of a range counts
+_ROUNDING = 1e-9  # relative: a multiple at the very end of a range counts
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def read_grid(table: Mapping[str, Any], read: Callable[[object], float]) -> Grid
             f"must run from min to max; got {quote(table['min'])} to {quote(table['max'])}, an empty range; "
             f"{swap(table['min'], table['max'])}"
         )
-    rounding = _ROOM * max(abs(lower), abs(upper))
+    rounding = _ROUNDING * max(abs(lower), abs(upper))
     expand = _multiples if words == ["step"] else _preferred
     values, rule = expand(table, read, lower - rounding, upper + rounding)
     if not values:

@@ -123,8 +123,8 @@ def _choice() -> str:
     return f"{', '.join(shapes[:-1])} or {shapes[-1]}"
 
 
-_MEANT = {"resists": "opposes", "against": "opposes", "assists": "helps", "along": "helps"}
-_KINDS = Kinds(PARTS, _choice(), "give each its own [[load]]; loads add up", _MEANT)
+_SYNONYMS = {"resists": "opposes", "against": "opposes", "assists": "helps", "along": "helps"}
+_KINDS = Kinds(PARTS, _choice(), "give each its own [[load]]; loads add up", _SYNONYMS)
 
 if TYPE_CHECKING:
     Load = LoadPart

@@ -30,12 +30,12 @@ Schema = dict[str, Any]
 
 _WISHES = ("minimise", "maximise", "minimize", "maximize")
 
-_TABLE, _NUMBER, _WHOLE = "must be a table of keys", "must be a number", "must be a whole number"
+_TABLE, _NUMBER, _INTEGER = "must be a table of keys", "must be a number", "must be a whole number"
 _RULES = {
     **dict.fromkeys(("model_type", "model_attributes_type", "dict_type"), _TABLE),
     **dict.fromkeys(("tuple_type", "list_type"), "must be a list"),
     **dict.fromkeys(("float_type", "float_parsing"), _NUMBER),
-    **dict.fromkeys(("int_type", "int_from_float", "int_parsing"), _WHOLE),
+    **dict.fromkeys(("int_type", "int_from_float", "int_parsing"), _INTEGER),
     **dict.fromkeys(("bool_type", "bool_parsing"), "must be true or false"),
     "int_parsing_size": "must be a whole number of moderate size",
     "finite_number": "must be a finite number",

@@ -16,7 +16,7 @@ from ...objectives.units import quote
 from ..methods.registry import methods
 from ..problem.problem import Settings
 from .costs import CostsPart
-from .custom_quantities import MOST_OWN, Declared, QuantityPart, named, one_line
+from .custom_quantities import MOST_QUANTITIES, Declared, QuantityPart, named, one_line
 from .drive import DrivePart
 from .joints import ClearancePart, FrictionPart
 from .loads import Load
@@ -139,7 +139,7 @@ class Job(Part):
         "target slider motion, from which motion_deviation and motion_deviation_rms are measured",
         {"crank_angles": ["0 deg", "90 deg", "180 deg"], "positions": ["240 mm", "200 mm", "160 mm"]},
     )
-    quantity: Annotated[dict[str, QuantityPart], Field(max_length=MOST_OWN), AfterValidator(named)] = optional(
+    quantity: Annotated[dict[str, QuantityPart], Field(max_length=MOST_QUANTITIES), AfterValidator(named)] = optional(
         "custom formulas and functions as quantities, by name",
         {"clearance": {"formula": "offset - crank"}},
         {"least_jerk": {"function": "mymodule:greatest_jerk", "unit": "m/s^3"}},

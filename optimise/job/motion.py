@@ -141,7 +141,7 @@ class _Motion(Checked[Swing | None]):
         return Start(angle=getattr(self, keys[0]), place=getattr(self, keys[1]))
 
     @property
-    def margin_asked(self) -> float | None:
+    def requested_margin(self) -> float | None:
         """Least transmission angle of the swing that the table asks for, rad."""
         return cast("float | None", getattr(self, "margin"))  # noqa: B009
 
@@ -204,7 +204,7 @@ else:  # "from" is no name of a field in a class
     MotionPart = create_model("MotionPart", __base__=_Motion, __doc__=_Motion.__doc__, **_ENTRIES)
 
 
-def require_swing_asked(swing: Swing | None, objectives: Part, constraints: Part) -> None:
+def require_swing_motion(swing: Swing | None, objectives: Part, constraints: Part) -> None:
     """Raise JobError if a job asks for a quantity of a swing that its motion does not have."""
     for table, part in (("objectives", objectives), ("constraints", constraints)):
         for quantity in swing_facts():
@@ -269,7 +269,7 @@ def require_start(varying: Mapping[str, bool]) -> None:
             )
 
 
-def require_apart(motion: Swing | None, varying: tuple[Varying, ...]) -> None:
+def require_one_sided_starts(motion: Swing | None, varying: tuple[Varying, ...]) -> None:
     """Raise JobError if starts may lie on both sides of a fixed end: the best swing would vanish."""
     if motion is None or motion.follows:
         return

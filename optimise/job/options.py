@@ -53,7 +53,7 @@ def _reasons(problem: Problem, variant: int) -> Iterator[str]:
         return
     for constraint in part.constraints:
         quantity = part.quantity(constraint.quantity)
-        if part.reach_of(quantity) is None or not quantity.of_dimensions:
+        if part.common_bounds(quantity) is None or not quantity.of_dimensions:
             continue
         least, greatest = box.possible(quantity)
         rounding = SLACK * max(abs(least), abs(greatest))

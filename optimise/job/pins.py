@@ -10,7 +10,7 @@ from ...objectives.link_stress import LinkStress
 from ..problem.problem import Problem
 
 
-def require_room_for_pins(problem: Problem) -> None:
+def require_eyes_wider_than_pins(problem: Problem) -> None:
     """Raise `InfeasibleError` if stresses are requested and no choice has eyes wider than their pins."""
     names = {*(item.quantity for item in problem.constraints), *(item.quantity for item in problem.objectives)}
     stresses = [item for item in map(problem.quantity, names) if isinstance(item, LinkStress)]

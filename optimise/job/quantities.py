@@ -137,7 +137,7 @@ class FormulaTarget(Target):
 WORDS: tuple[Word, ...] = ("min", "max", "equals")
 SLOW_STROKE = "slow_stroke"
 """The requirement that is a word."""
-_WANTED = '"minimise", "maximise" or { target = value }'
+_SENSES = '"minimise", "maximise" or { target = value }'
 
 
 def _sense(value: object) -> object:
@@ -147,9 +147,9 @@ def _sense(value: object) -> object:
             return SENSES[value]
         near = closest(value, ("minimise", "maximise"))
         hint = f'; did you mean "{near}"?' if near else ""
-        raise InputError(f"must be {_WANTED}; got {quote(value)}{hint}")
+        raise InputError(f"must be {_SENSES}; got {quote(value)}{hint}")
     if not isinstance(value, Mapping | Target):
-        raise InputError(f"must be {_WANTED}; got {quote(value)}")
+        raise InputError(f"must be {_SENSES}; got {quote(value)}")
     return value
 
 

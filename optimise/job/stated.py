@@ -24,11 +24,18 @@ from .contradictions import require_consistent
 from .custom_quantities import formulas_of, functions_of
 from .messages import key_of
 from .model import Job
-from .motion import require_apart, require_no_speed, require_speed, require_start, require_swing_asked, with_margin
+from .motion import (
+    require_no_speed,
+    require_one_sided_starts,
+    require_speed,
+    require_start,
+    require_swing_motion,
+    with_margin,
+)
 from .quantities import constraints_of, objectives_of, slow_stroke_of
 from .robust import robustly
 from .target_motion import require_target
-from .varying import discrete_of, ends_of, is_choice, reach_of, variants_of, varying_machine
+from .varying import dimension_ranges, discrete_of, ends_of, is_choice, variants_of, varying_machine
 
 
 def problem_of(
@@ -47,9 +54,9 @@ def problem_of(
         require_no_speed({*variables.paths, *chosen})
     chosen |= {path for path, stated_value in variables.paths.items() if is_choice(stated_value)}
     require_start({path: path in chosen for path in {**variables.paths, **dict.fromkeys(chosen)}})
-    require_swing_asked(motion, job.objectives, job.constraints)
+    require_swing_motion(motion, job.objectives, job.constraints)
     machine = varying_machine(job)
-    require_apart(motion, machine.varying)
+    require_one_sided_starts(motion, machine.varying)
     amounts = amounts_of({part.name: [option.amounts for option in part.option] for part in job.choice}, job.quantity)
     custom = (
         *amounts,
@@ -58,10 +65,10 @@ def problem_of(
         *installed,
         *(() if motion is None else swing_quantities(motion)),
     )
-    formulas = Formulas(custom, machine, reach_of(job), formulas_of(job.quantity), turning=motion is None)
+    formulas = Formulas(custom, machine, dimension_ranges(job), formulas_of(job.quantity), turning=motion is None)
     choices, variants, catalogue = variants_of(job, formulas, {of.name: of for of in amounts})
     objectives = tuple(objectives_of(job.objectives, formulas))
-    constraints = with_margin(_joined(constraints_of(job.constraints, formulas), formulas), job.motion.margin_asked)
+    constraints = with_margin(_joined(constraints_of(job.constraints, formulas), formulas), job.motion.requested_margin)
     named_quantities = {item.quantity for item in objectives} | {item.quantity for item in constraints}
     missing = [of for of in amounts if of.name in named_quantities]
     quantities = QUANTITIES | {of.name: of for of in (*custom, *formulas.formula_quantities.values())}

@@ -29,7 +29,7 @@ _MOST = 200
 
 
 @dataclass(frozen=True)
-class OwnName:
+class FormulaName:
     """A name that formulas of this job alone may have. kind: of its values; None while that is not known."""
 
     name: str
@@ -49,12 +49,12 @@ class StatedFormula:
     wrong: str | None
 
 
-def own_names(tables: Mapping[str, Any]) -> list[OwnName]:
+def formula_names(tables: Mapping[str, Any]) -> list[FormulaName]:
     """Return the names that formulas may have in this job alone: its own quantities, and the numbers that vary."""
     kinds = _Kinds(tables)
-    names = [OwnName(name, _title(name, part), kinds.quantity_kind(name)) for name, part in kinds.stated.items()]
-    names += [OwnName(name, name.replace("_", " "), kind) for name, kind in kinds.amounts.items()]
-    return [*names, *(OwnName(path, number_in_words(path), kind) for path, kind in kinds.varying)]
+    names = [FormulaName(name, _title(name, part), kinds.quantity_kind(name)) for name, part in kinds.stated.items()]
+    names += [FormulaName(name, name.replace("_", " "), kind) for name, kind in kinds.amounts.items()]
+    return [*names, *(FormulaName(path, number_in_words(path), kind) for path, kind in kinds.varying)]
 
 
 def stated_formulas(tables: Mapping[str, Any]) -> list[StatedFormula]:

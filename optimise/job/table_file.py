@@ -43,7 +43,7 @@ from .table_layout import (
 
 _MOST_COLUMNS = 1000
 _NAMED = 6  # columns in what is said of a file
-_AT_ONCE = 50_000  # rows of which the cells are kept as single texts
+_BATCH = 50_000  # rows of which the cells are kept as single texts
 _MARKS = (
     (codecs.BOM_UTF8, "utf-8"),
     (codecs.BOM_UTF32_LE, "utf-32-le"),
@@ -341,7 +341,7 @@ def _read(text: str, name: str, *, ragged: bool) -> TableFile:
 def _portions(rows: Iterable[tuple[int, list[str]]], width: int, name: str, *, ragged: bool) -> Iterator[_Portion]:
     """Yield some rows at a time, each of `width` cells; short ones are filled up if they may be `ragged`."""
     rows = iter(rows)
-    while block := list(itertools.islice(rows, _AT_ONCE)):
+    while block := list(itertools.islice(rows, _BATCH)):
         for place, cells in block:
             if len(cells) != width and (any(cell.strip() for cell in cells[width:]) or not (ragged or cells[width:])):
                 raise InputError(

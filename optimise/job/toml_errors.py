@@ -19,7 +19,7 @@ from .model import Job
 from .schema import schema_of
 
 _LONGEST = 1000  # of a line that is read and edited
-_MOST_SHOWN = 200  # characters of a line that are repeated
+_LONGEST_EXCERPT = 200  # characters of a line that are repeated
 _MOST_JOINED = 8  # lines that may be one
 _LIST = "x = ["
 """What stands before a line of a list that began above it."""
@@ -37,9 +37,9 @@ _TEXT = r"""(?:"(?:[^"\\]|\\.)*"|'[^']*')"""
 _PASSED = rf"({_TEXT}|#.*)|"
 """Whole texts and comments, which an edit leaves as they are."""
 _COMMENT = re.compile(rf"{_TEXT}|(\s*#.*)")
-_APART = r"=,;:\[\]{}()#\"'"
+_SEPARATORS = r"=,;:\[\]{}()#\"'"
 _VALUE = re.compile(
-    rf"{_PASSED}(?<=[=\[,;{{])(\s*)([+-]?\d+,\d+(?![\d,])[^{_APART}]*?|[^\s{_APART}][^{_APART}]*?)"
+    rf"{_PASSED}(?<=[=\[,;{{])(\s*)([+-]?\d+,\d+(?![\d,])[^{_SEPARATORS}]*?|[^\s{_SEPARATORS}][^{_SEPARATORS}]*?)"
     r"(?=\s*(?:[,;\]})]|//|--|/\*|$))"
 )
 _DIGITS = re.compile(r"([+-]?)(\d*)([.,]?)(\d*)([eE][+-]?\d+)?", re.ASCII)
@@ -66,7 +66,7 @@ def _rewrite(wrong: str, right: str, rule: str) -> Edit:
 
 _TEXT_QUOTED, _VALUE_QUOTED = "text must be in quotes", "a value with a unit must be in quotes"
 _STRAIGHT, _EQUALS = "text must be in straight quotes", "there must be = between a key and its value"
-_COMMENTED, _APART_BY = "a comment must begin with #", "values must be separated by commas"
+_COMMENTED, _COMMA_RULE = "a comment must begin with #", "values must be separated by commas"
 _BRACES, _SQUARE = "keys within a value must be in braces", "a list must be in square brackets"
 _BELOW, _ABOVE = "a lower limit is written with min", "an upper limit is written with max"
 _ONE_NAME = "a key must not contain spaces"
@@ -78,7 +78,7 @@ _SIGNS: tuple[Edit, ...] = (
     _edit(f"[{SPACES}]", " ", "a space must be an ordinary one, not a non-breaking one (␣) of Word or a web page"),
 )
 """Before values are read."""
-_COMMAS = _edit(r"(?<!\d,\d)(?<!\d,\d\d)(?<!\d,\d\d\d)\s*;\s*(?!\s*(?:$|[+-]?\d+,\d))", ", ", _APART_BY)
+_COMMAS = _edit(r"(?<!\d,\d)(?<!\d,\d\d)(?<!\d,\d\d\d)\s*;\s*(?!\s*(?:$|[+-]?\d+,\d))", ", ", _COMMA_RULE)
 _EDITS: tuple[Edit, ...] = (
     _edit(r"(?:^\s*[;!%]|//|--|/\*)\s*(.*?)\s*(?:\*/\s*(.*))?$", r"# \2 \3", _COMMENTED),
     _edit(r"\s*(?::=?|=[=>]|<-)\s*", " = ", _EQUALS),
@@ -90,7 +90,7 @@ _EDITS: tuple[Edit, ...] = (
     _edit(r"(?<={)\s*>=?\s*", " min = ", _BELOW),
     _edit(r"(?<={)\s*<=?\s*", " max = ", _ABOVE),
     _COMMAS,
-    _edit(r"(?<=[\"'\]}\w])\s+(?=[\"'\[{\d]|[\w-]+\s*=)", ", ", _APART_BY),
+    _edit(r"(?<=[\"'\]}\w])\s+(?=[\"'\[{\d]|[\w-]+\s*=)", ", ", _COMMA_RULE),
     _edit(r",\s*,", ",", "there must be one comma between values"),
     _edit(r"\s*[;,]$", "", "a line must not end with a comma or semicolon"),
     _edit(r"\s*[;,]?\s+(?=[\w.-]+\s*=)", "\n", "each key must have a line of its own"),
@@ -112,7 +112,7 @@ _EDITS: tuple[Edit, ...] = (
         r"\"([+-]?[\d.]+)\"\s+([^\W\d][^\",;\]}]*)$", r'"\2 \3"', "a unit must be within the quotes of its number"
     ),
     _rewrite(r"^(\s*)\"([\w.-]+)\s*=\s*([^\"]*)\"$", r'\2\3 = "\4"', "only a value may be in quotes"),
-    _edit(rf"(?<==)\s*([^\W\d][^{_APART}]*(?:,[^{_APART}]*)*?)\s*$", r' "\2"', _TEXT_QUOTED),
+    _edit(rf"(?<==)\s*([^\W\d][^{_SEPARATORS}]*(?:,[^{_SEPARATORS}]*)*?)\s*$", r' "\2"', _TEXT_QUOTED),
     _edit(r"(?<=[\"\]}])\s+(?=[^\W\d][\w ,.-]*$)", "  # ", _COMMENTED),
     _edit(r"^(?=(?:[^\W\d][\w,.:-]*\s+){3,}[\w.]+$)", "# ", _COMMENTED),
     _rewrite(
@@ -237,7 +237,7 @@ def _edited(line: str, path: Path) -> tuple[list[str], str]:
     unread = _unread_size([line]) if len(line) <= _LONGEST else 0
     while unread > 0:
         rule, values = _with_values(line, path)
-        combined = [(f"{rule}; {_APART_BY}", _COMMAS(values)[1])] if rule else []
+        combined = [(f"{rule}; {_COMMA_RULE}", _COMMAS(values)[1])] if rule else []
         tried = [*(edit(line) for edit in _SIGNS), (rule, values), *combined, *(edit(line) for edit in _EDITS)]
         tried += _with_a_sign_more_or_less(line)
         rule, line = min(tried, key=lambda one: max(_unread_size([one[1]]), 0))
@@ -353,14 +353,14 @@ def _repeated(lines: Sequence[str], inner: str | None) -> str:
     if path == other and brackets:
         remedy = "move the lines below it there"
     elif path == other:
-        own = next((one.split("#")[0].strip() for one in reversed(lines) if _HEADER.fullmatch(one[:_LONGEST])), "")
-        moved = [n for n in range(first + 1, last + 1) if _refused([own], lines[n - 1])]
+        header = next((one.split("#")[0].strip() for one in reversed(lines) if _HEADER.fullmatch(one[:_LONGEST])), "")
+        moved = [n for n in range(first + 1, last + 1) if _refused([header], lines[n - 1])]
         known = [item for name in schema_of(Job)["properties"] for item in headings([name], schema_of(Job)).items()]
         fits = [one for one, keys in known if path[-1] in keys and not _refused([one], lines[-1])]
         if moved and fits:
             rule = f"this value belongs below the heading {fits[0]}"
-            return f"{_line_prefix(last, path)}{rule}; got it below {own}; write {fits[0]} above line {moved[0]}"
-        remedy = f"remove one, or begin another with {own} above it" if own.startswith("[[") else "remove one"
+            return f"{_line_prefix(last, path)}{rule}; got it below {header}; write {fits[0]} above line {moved[0]}"
+        remedy = f"remove one, or begin another with {header} above it" if header.startswith("[[") else "remove one"
     return f"{_line_prefix(last, path)}may be given only once; got {key_of(other)} in line {first} already; {remedy}"
 
 
@@ -403,7 +403,7 @@ def _same(first: str, second: str) -> int:
 
 def _quote_line(line: str, place: int = 0) -> str:
     """Return a line for a message: printable, and of a long one what stands around a place in it."""
-    first = max(place - _MOST_SHOWN // 2, 0) if len(line) > _MOST_SHOWN else 0
+    first = max(place - _LONGEST_EXCERPT // 2, 0) if len(line) > _LONGEST_EXCERPT else 0
     text = re.sub(f"[{SPACES}]", "␣", line[first:].strip(" \t").replace("\n", " and below it "))
     text = "".join(sign if sign.isprintable() else "?" for sign in text)
-    return f"{'...' * (first > 0)}{text[:_MOST_SHOWN]}{'...' * (len(text) > _MOST_SHOWN)}"
+    return f"{'...' * (first > 0)}{text[:_LONGEST_EXCERPT]}{'...' * (len(text) > _LONGEST_EXCERPT)}"

@@ -43,7 +43,7 @@ MOST = 200
 """Combinations of choices that are enumerated."""
 _MOST_READ = 2000
 """Numbers that vary, counted in every combination: each takes up to 1 ms, with fifty loads."""
-_STRAY = 1e-12  # rounding of a factor
+_ROUNDING = 1e-12  # rounding of a factor
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ def ends_of(stated: tuple[float, float] | Choices | Grid) -> Range:
     return Range(lower=stated[0], upper=stated[1])
 
 
-def reach_of(job: Job) -> dict[str, Range]:
+def dimension_ranges(job: Job) -> dict[str, Range]:
     """Return where each dimension may lie, whatever is chosen."""
     ranges_by_name = {}
     for name in DIMENSIONS:
@@ -224,8 +224,8 @@ def _variant(job: Job, names: list[str], chosen: tuple[_Option, ...]) -> Variant
     except JobError:
         for name, option in zip(names, chosen, strict=True):  # one that is wrong by itself is named
             single = next(iter(_single(name, option)), None)
-            own = f"variables.{single}" if single else f"choice {quote(name)}, option {quote(option.label)}"
-            with_values(job, {path: value for path, value in option.values.items() if path in values}, own)
+            name_of_part = f"variables.{single}" if single else f"choice {quote(name)}, option {quote(option.label)}"
+            with_values(job, {path: value for path, value in option.values.items() if path in values}, name_of_part)
         raise
     return Variant(
         mechanism=varying_machine(other),
@@ -251,13 +251,13 @@ def _of_options(names: list[str], chosen: tuple[_Option, ...]) -> dict[str, Any]
 
 def _slow_stroke(chosen: tuple[_Option, ...]) -> SlowStroke | None:
     """Return which stroke the options want to be the slow one. Raises JobError if they differ."""
-    wanted = {option.slow_stroke: option.label for option in chosen if option.slow_stroke is not None}
-    if len(wanted) > 1:
+    stroke_labels = {option.slow_stroke: option.label for option in chosen if option.slow_stroke is not None}
+    if len(stroke_labels) > 1:
         raise JobError(
             "choice: options that are chosen together must have the same slow stroke; got "
-            f"{' and '.join(f'{stroke} with {quote(label)}' for stroke, label in wanted.items())}; leave out one"
+            f"{' and '.join(f'{stroke} with {quote(label)}' for stroke, label in stroke_labels.items())}; leave out one"
         )
-    return next(iter(wanted), None)
+    return next(iter(stroke_labels), None)
 
 
 def _single(name: str, option: _Option) -> tuple[str, ...]:
@@ -304,8 +304,8 @@ def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
     sets = []
     for place, low, high in _differing(jobs[0].machine(), jobs[1].machine(), ""):
         factor = high / upper if upper else low / lower
-        stray = _STRAY * abs(factor) * max(abs(lower), abs(upper))
-        if not (abs(low - factor * lower) <= stray and abs(high - factor * upper) <= stray):
+        tolerance = _ROUNDING * abs(factor) * max(abs(lower), abs(upper))
+        if not (abs(low - factor * lower) <= tolerance and abs(high - factor * upper) <= tolerance):
             raise JobError(
                 f"{key}: must not vary over a range, because the machine does not depend on it linearly; make it a "
                 "choice instead"

@@ -21,7 +21,7 @@ from .scalar import Form, Programme
 _POPULATION = 20  # of differential evolution, members an unknown
 _RECOMBINATION = 0.9  # high: such valleys are not along an axis
 _CONVERGED = 1e-12  # of the objective: spread of a population that ends it
-_TOLD = 20  # generations between two entries of the history
+_REPORT_EVERY = 20  # generations between two entries of the history
 _FAR = 1e3  # violation where no linkage turns fully
 _STREAM = 3500  # of the seed
 _SAMPLED = 256  # points an iteration of SHGO
@@ -100,13 +100,13 @@ def _evolve(
     k, count = evaluator.dimension, 0
     members = 1 << (_POPULATION * k - 1).bit_length()  # scipy takes a power of two of Sobol points
     generations = max(1, budget(problem) // (len(evaluators) * members) - 1)
-    run.rounds = len(run.round_reports) + 1 + generations // _TOLD
+    run.rounds = len(run.round_reports) + 1 + generations // _REPORT_EVERY
     exact = _ExactEvaluation(index, evaluator, improvements)
 
     def report_generation(intermediate_result: Any) -> bool:
         nonlocal count
         count += 1
-        if count % _TOLD:
+        if count % _REPORT_EVERY:
             return False
         archive.screen(index, evaluator, np.asarray(intermediate_result.x)[None])
         run.report_round("evolving", evaluators, archive)

@@ -24,7 +24,7 @@ SAMPLES = 16384
 """Samples over all branches."""
 _ENOUGH = 32
 _STREAM = 3000  # of the seed
-REACH = 1e-6
+VIOLATION = 1e-6
 """Relative violation that a solver may leave: the delivery moves the design onto the constraints."""
 _STEPS = 100
 _AGAIN = 6
@@ -194,7 +194,7 @@ def _feasible_point(programme: Programme, z: Array) -> Array | None:
     u = np.clip(z[: programme.k], 0.0, 1.0)
     if not np.isfinite(u).all():
         return None
-    return u if programme.violation(u) <= REACH + FEASIBLE else None
+    return u if programme.violation(u) <= VIOLATION + FEASIBLE else None
 
 
 _gradient = partial(Method, family="gradient", objectives="one", budget=20_000, uses=("scipy",))

@@ -35,7 +35,7 @@ _STARTS = 4  # of each objective alone
 _WORSE = 0.1  # of the ranges: a branch whose best start is worse by less is tried too
 _UTOPIAN = 1e-3  # of the ranges: how far below the ideal Chebyshev's reference lies
 _SLIVER = 1e-3  # least share of an objective in a direction, so that its weight stays finite
-_TOLD = 16  # problems of a round
+_ROUND_SIZE = 16  # problems of a round
 _SLACK = 0.005  # of the ranges: samples above a ceiling by less may lead below it
 _CELLS = 20_000  # of the grid of ceilings at most
 _WIDER = 1.5  # how far beyond the triangle
@@ -136,11 +136,11 @@ class _Front:
     def solve(self, forms: list[Form], aimed: Callable[[Array], Form]) -> Archive:
         """Return the archive with the optima of the forms, and of those aimed at scaled objectives (m,) in gaps."""
         for _ in range(1 + _ROUNDS):
-            self.run.rounds = len(self.run.round_reports) + -(-len(forms) // _TOLD)
-            for begin in range(0, len(forms), _TOLD):
+            self.run.rounds = len(self.run.round_reports) + -(-len(forms) // _ROUND_SIZE)
+            for begin in range(0, len(forms), _ROUND_SIZE):
                 if is_budget_spent(self.problem, self.evaluators):
                     return self.archive
-                for form in forms[begin : begin + _TOLD]:
+                for form in forms[begin : begin + _ROUND_SIZE]:
                     for index, u in self._starts(form):
                         self.optimum(form, index, u)
                 self.run.report_round("scalarising", self.evaluators, self.archive)

@@ -181,8 +181,8 @@ class Analysis(Mapping[str, float]):
         from ...model.notebook_figure import NotebookFigure
 
         turns = cycle_turns(self.mechanism)
-        whole = turns * np.append(even_angles(360 * turns), 2.0 * np.pi)  # curves close
-        curves = {curve.name: curve for curve in cycle_curves(self.mechanism, self.linkage, whole)}
+        closed_angles = turns * np.append(even_angles(360 * turns), 2.0 * np.pi)  # curves close
+        curves = {curve.name: curve for curve in cycle_curves(self.mechanism, self.linkage, closed_angles)}
         found = NotebookFigure(figsize=(6.4, 8.0), layout="constrained")
         angle = curves["crank_angle"]
         for name, axes in zip(_PLOTTED, found.subplots(len(_PLOTTED), 1, sharex=True), strict=True):
@@ -209,9 +209,10 @@ class Analysis(Mapping[str, float]):
         return f"<div>{lines}{self.linkage._repr_html_() or ''}{table}</div>"
 
     def __repr__(self) -> str:
-        shown = [item for item in self.quantities if item.name in self.found][:4]
+        named_quantities = [item for item in self.quantities if item.name in self.found][:4]
         numbers = ", ".join(
-            f"{item.title} {item.unit.factor * self.found[item.name]:.4g} {item.unit.symbol}".rstrip() for item in shown
+            f"{item.title} {item.unit.factor * self.found[item.name]:.4g} {item.unit.symbol}".rstrip()
+            for item in named_quantities
         )
         parts = [numbers, f"{len(self.found)} quantities, {len(self.undefined)} undefined", self._violation_text()]
         return f"Analysis({self.linkage.label}: {'; '.join(filter(None, parts))})"

@@ -37,8 +37,8 @@ class Discrete:
 
     def values_in(self, ends: Range) -> Array:
         """Return the values within a range."""
-        room = SAME * max(abs(ends.lower), abs(ends.upper))
-        return np.array([value for value in self.values if ends.lower - room <= value <= ends.upper + room])
+        tolerance = SAME * max(abs(ends.lower), abs(ends.upper))
+        return np.array([value for value in self.values if ends.lower - tolerance <= value <= ends.upper + tolerance])
 
 
 def require_known(discrete: Sequence[Discrete], names: Sequence[str]) -> None:

@@ -44,13 +44,12 @@ def require_longer_slow_stroke(problem: Problem) -> None:
 def _require_quotients_of_slow_stroke(part: Problem) -> None:
     """Raise `InfeasibleError` for a bound on a ratio of stroke times that requires the other stroke to be slow."""
     for stroke, quantity in STROKE_TIME_RATIOS.items():
-        own = stroke == part.slow_stroke
+        is_slow = stroke == part.slow_stroke
         for item in part.constraints:
             for word, bound in item.sides if item.quantity == quantity.name else ():
-                if (bound <= 1.0 and word != "min") if own else (bound >= 1.0 and word != "max"):
+                if (bound <= 1.0 and word != "min") if is_slow else (bound >= 1.0 and word != "max"):
                     raise InfeasibleError(
                         f"constraints.slow_stroke: if the {part.slow_stroke} stroke is slow, {quantity.name} must be "
-                        f"{'above' if own else 'below'} 1; got constraints.{quantity.name} with {word} {bound:.6g}; "
-                        "leave "
-                        "out one of the two"
+                        f"{'above' if is_slow else 'below'} 1; got constraints.{quantity.name} with {word} "
+                        f"{bound:.6g}; leave out one of the two"
                     )

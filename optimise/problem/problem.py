@@ -38,7 +38,7 @@ from .discrete import Discrete, require_known
 from .questions import question_to
 from .requirements import Constraint, Objective, Range, Word, merged
 from .section_limits import SectionLimits
-from .table_columns import choice_field, least_amount_field, least_field, note_field, require_own_columns
+from .table_columns import choice_field, least_amount_field, least_field, note_field, require_free_columns
 
 if TYPE_CHECKING:
     from ...model.swing.summary import SwingSummary
@@ -166,7 +166,7 @@ class Problem:
             for own in self.variants or (self,):
                 require_no_winding(own.mechanism)
         self._take_formulas()
-        require_own_columns(self.own, self.mechanism.varying, self.choice_fields)
+        require_free_columns(self.own, self.mechanism.varying, self.choice_fields)
         _require_stroke(self.slow_stroke)
         for item in self.mechanism.varying:
             if item.name in DIMENSIONS:
@@ -222,8 +222,8 @@ class Problem:
 
     def _take_formulas(self) -> None:
         """Add the formulas that objectives and constraints name."""
-        asked = [item.quantity for item in self.objectives]
-        for name in (*asked, *(item.quantity for item in self.every_constraint)):
+        requested_names = [item.quantity for item in self.objectives]
+        for name in (*requested_names, *(item.quantity for item in self.every_constraint)):
             if is_formula(name, self.mechanism, self.own):
                 made = self.quantity(name)
                 if made.name != name:
@@ -234,9 +234,9 @@ class Problem:
                 object.__setattr__(self, "own", (*self.own, made))
 
     def __repr__(self) -> str:
-        wanted = ", ".join(f"{objective.sense} {objective.quantity}" for objective in self.objectives)
+        senses = ", ".join(f"{objective.sense} {objective.quantity}" for objective in self.objectives)
         count = f"{len(self.constraints)} constraint" + ("" if len(self.constraints) == 1 else "s")
-        return f"Problem({self.name!r}: {wanted}; {count})"
+        return f"Problem({self.name!r}: {senses}; {count})"
 
     def _repr_html_(self) -> str:
         """Picture of a linkage within the ranges and its requirements, for notebooks."""
@@ -247,8 +247,8 @@ class Problem:
             picture = ""
         rows = [(name, self.ranges[name]) for name in DIMENSIONS]
         ranges = "".join(f"<li>{name}: {1e3 * r.lower:g} to {1e3 * r.upper:g} mm</li>" for name, r in rows)
-        asked = "".join(f"<li>{escape(_in_words(self.quantity(c.quantity), c))}</li>" for c in self.constraints)
-        return f"<div><p>{escape(repr(self))}</p>{picture}<ul>{ranges}{asked}</ul></div>"
+        requirements = "".join(f"<li>{escape(_in_words(self.quantity(c.quantity), c))}</li>" for c in self.constraints)
+        return f"<div><p>{escape(repr(self))}</p>{picture}<ul>{ranges}{requirements}</ul></div>"
 
     def quantity(self, name: str) -> Quantity:
         """Return the quantity with a name, custom ones included, or the quantity of a formula as in job files.
@@ -309,13 +309,13 @@ class Problem:
         """
         self._require_chosen()
         if design is None:
-            told: dict[str, Any] = question_to("job", question).answer_of(self, None, inputs)
-            return told
+            record: dict[str, Any] = question_to("job", question).answer_of(self, None, inputs)
+            return record
         machine, sizes = one_design(self.mechanism, design)
         warn_of_lengths(self, sizes, self._greatest)
         linkage = Linkage(sizes[0], sizes[1], sizes[2], machine.branch)
-        answer: dict[str, Any] = question_to("design", question).answer(machine, linkage, self, inputs)
-        return answer
+        record: dict[str, Any] = question_to("design", question).record(machine, linkage, self, inputs)
+        return record
 
     def swing(
         self,
@@ -345,7 +345,7 @@ class Problem:
         from ...model.swing.swing_request import SwingRequest, resolve_swing
 
         self._require_chosen()
-        asked = SwingRequest(
+        requested_names = SwingRequest(
             start=start,
             end=end,
             slider_start=slider_start,
@@ -357,7 +357,7 @@ class Problem:
             actuator_tolerance=actuator_tolerance,
         )
         machine, sizes = one_design(self.mechanism, design)
-        machine, swing = resolve_swing(machine, self.motion, asked, {"side": "crank_side"})
+        machine, swing = resolve_swing(machine, self.motion, requested_names, {"side": "crank_side"})
         return summarise(machine, Linkage(sizes[0], sizes[1], sizes[2], machine.branch), swing)
 
     def _require_chosen(self) -> None:
@@ -419,14 +419,16 @@ class Problem:
         """The constraints, including those that come with choices."""
         return (*self.constraints, *(limit for variant in self.variants for limit in variant.limits))
 
-    def reach_of(self, of: Quantity) -> QuantityBounds | None:
+    def common_bounds(self, of: Quantity) -> QuantityBounds | None:
         """Return the bounds of a quantity if they hold for every machine of the problem."""
         return of.bounds if all(of.bounds_for(machine) is not None for machine in self.machines) else None
 
     def without_gradient(self) -> list[str]:
         """Return the quantities without a gradient in objectives and constraints, including those of choices."""
-        asked = {item.quantity for item in self.objectives} | {item.quantity for item in self.every_constraint}
-        return [item.name for item in self.own if item.name in asked and not item.has_gradient]
+        requested_names = {item.quantity for item in self.objectives} | {
+            item.quantity for item in self.every_constraint
+        }
+        return [item.name for item in self.own if item.name in requested_names and not item.has_gradient]
 
     def slow_side(self) -> float | None:
         """Sign of the offset (+1 or -1) that gives the required slow stroke; None if none is required.

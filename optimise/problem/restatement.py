@@ -86,9 +86,9 @@ def restate(problem: Problem, constraint: Constraint) -> Constraint:
     rises = known.rises == (known.factor > 0.0)
     ends = (constraint.lower, constraint.upper)[:: 1 if rises else -1]
     lower, upper = (None if end is None else known.quantity_value(end) for end in ends)
-    meant = problem.quantity(known.quantity)
+    quantity = problem.quantity(known.quantity)
     for value, least in ((lower, True), (upper, False)):
-        if value is not None and not _is_possible(meant, value, least=least):
+        if value is not None and not _is_possible(quantity, value, least=least):
             return constraint
     return Constraint(quantity=known.quantity, lower=lower, upper=upper)
 

@@ -42,8 +42,8 @@ def robust(problem: Problem, plan: Robust) -> Problem:
 
     Raises `InputError` for a quantity that is not in the problem, cannot be robust, or has no gradient.
     """
-    wanted = _chosen(problem, plan)
-    sides: dict[str, set[Side]] = {name: set() for name in wanted}
+    chosen_names = _chosen(problem, plan)
+    sides: dict[str, set[Side]] = {name: set() for name in chosen_names}
     for constraint in problem.every_constraint:
         if constraint.quantity in sides and not constraint.equality:
             sides[constraint.quantity] |= {"low"} if constraint.lower is not None else set()

@@ -44,7 +44,7 @@ def slack_field(quantity: Quantity) -> str:
     return f"{_SLACK}{quantity.field}"
 
 
-def require_own_columns(
+def require_free_columns(
     own: Iterable[Quantity], varying: Sequence[Varying], choices: Iterable[tuple[str, str]]
 ) -> None:
     """Raise `InputError` for a custom quantity or a choice whose column is already taken.

@@ -49,8 +49,8 @@ def _with_slow_stroke(problem: Problem, constraints: tuple[Constraint, ...]) -> 
     found = _with_floor(problem, constraints, TIME_RATIO, above=1.0)
     if problem.mechanism.speed_profile is None:
         return found
-    asked = (restate(problem, item) for item in found)
-    least = max(c.lower for c in asked if c.quantity == TIME_RATIO.name and c.lower is not None)
+    restated = (restate(problem, item) for item in found)
+    least = max(c.lower for c in restated if c.quantity == TIME_RATIO.name and c.lower is not None)
     assert problem.slow_stroke is not None
     name = STROKE_TIME_RATIOS[problem.slow_stroke].name
     upper = next((c.upper for c in constraints if c.quantity == name and c.upper is not None), None)
@@ -72,13 +72,13 @@ def _with_floor(
     A bound on a formula that restates the quantity counts as a bound on it.
     """
     assert of.floor is not None
-    own = [c for c in (restate(problem, item) for item in constraints) if c.quantity == of.name]
-    if any(c.lower is not None and (above is None or c.lower > above) for c in own):
+    bounds_of_quantity = [c for c in (restate(problem, item) for item in constraints) if c.quantity == of.name]
+    if any(c.lower is not None and (above is None or c.lower > above) for c in bounds_of_quantity):
         return constraints
-    upper, least = min((c.upper for c in own if c.upper is not None), default=None), above or 0.0
+    upper, least = min((c.upper for c in bounds_of_quantity if c.upper is not None), default=None), above or 0.0
     lower = of.floor if upper is None else min(of.floor, least + 0.5 * (upper - least))
-    kept = [c for c in constraints if c.quantity != of.name]
-    return (*kept, Constraint(quantity=of.name, lower=float(lower), upper=upper))
+    other_constraints = [c for c in constraints if c.quantity != of.name]
+    return (*other_constraints, Constraint(quantity=of.name, lower=float(lower), upper=upper))
 
 
 def minimised(objective: Objective, values: Array) -> Array:

@@ -28,7 +28,7 @@ from .search import Run
 
 SELECTING, FINISHING = "selecting designs", "finishing designs"
 """Stages after the rounds: selecting the best designs, then computing all their quantities."""
-_AT_ONCE = 100  # designs analysed between two polls for cancellation
+_BATCH = 100  # designs analysed between two polls for cancellation
 _GLIMPSE = 40  # designs of a round that count in the history of a search that was told to end: all would take seconds
 
 
@@ -136,7 +136,7 @@ def columns_of(
     for same in alike.values():
         rows_of_machine = np.flatnonzero(np.isin(variants, same))
         part = problem.part(same[0])
-        for rows in np.split(rows_of_machine, range(_AT_ONCE, len(rows_of_machine), _AT_ONCE)):
+        for rows in np.split(rows_of_machine, range(_BATCH, len(rows_of_machine), _BATCH)):
             report(count, len(dimensions))
             judged = analysis.columns_of if problem.motion is None else swinging.columns_of
             columns = judged(part.mechanism, dimensions[rows], custom=part.own)

@@ -11,7 +11,7 @@ from ..front.hypervolume import hypervolume, scaling
 _MOST = {1: 1, 2: 5000, 3: 5000, 4: 1000, 5: 600}
 """Designs of which the volume is told, by objectives: it takes 2 ms of these, and ten times as long of some more."""
 _OF_MANY = 200  # the same of six objectives; it takes 0.02 s
-_ROOM = 0.1  # of the best value: the least side of the box, where the first front is a point or nearly one
+_LEAST_SIDE = 0.1  # of the best value: the least side of the box, where the first front is a point or nearly one
 _OF_TARGET = 0.01  # the same of a target: designs that meet it differ by rounding
 
 
@@ -41,16 +41,19 @@ class Growth:
 
     def add(self, values: Array) -> float:
         """Add feasible designs, objectives (n, m), and return the volume that all designs dominate, in boxes."""
-        values = np.concatenate([self.front, self._thin_out(values[np.isfinite(values).all(axis=1)])])
+        values = np.concatenate([self.front, self._spread_sample(values[np.isfinite(values).all(axis=1)])])
         if not len(values):
             return 0.0
         values = values[nondominated(values)]
         if self._box is None:
             ideal, span = scaling(values)
-            self._box = ideal, np.maximum(span, np.maximum(_ROOM * np.abs(ideal), _OF_TARGET * np.abs(self._targets)))
-        self.front = self._thin_out(values)
+            self._box = (
+                ideal,
+                np.maximum(span, np.maximum(_LEAST_SIDE * np.abs(ideal), _OF_TARGET * np.abs(self._targets))),
+            )
+        self.front = self._spread_sample(values)
         self._volume = max(self._volume, hypervolume(self.front, *self._box, clip_at_ideal=self._within))
         return self._volume
 
-    def _thin_out(self, values: Array) -> Array:
+    def _spread_sample(self, values: Array) -> Array:
         return values[distinct(np.linspace(0, len(values) - 1, self._most).astype(int))] if len(values) else values

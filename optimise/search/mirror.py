@@ -48,7 +48,7 @@ def drop_mirrored_branches(problem: Problem, branches: tuple[EliminationBranch, 
             for second in group
             if (pair := _wider_and_narrower(first, second)) and first.sign < second.sign
         ]
-        if pairs and not _tells_signs_apart(parts[pairs[0][0].variant], [branch for branch, _ in pairs]):
+        if pairs and not _depends_on_offset_sign(parts[pairs[0][0].variant], [branch for branch, _ in pairs]):
             twins |= {id(twin) for _, twin in pairs}
     return tuple(branch for branch in branches if id(branch) not in twins)
 
@@ -67,7 +67,7 @@ def _wider_and_narrower(
     return None
 
 
-def _tells_signs_apart(part: Problem, branches: list[EliminationBranch]) -> bool:
+def _depends_on_offset_sign(part: Problem, branches: list[EliminationBranch]) -> bool:
     """Whether gravity, a load, friction, or any value of random designs differs between the offsets e and -e."""
     machine = part.mechanism.fullest
     if any(map(_may_differ, part.own)) or machine.gravity[1] or machine.acceleration or machine.friction.acts:

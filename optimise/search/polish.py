@@ -34,7 +34,7 @@ _NOISE = 1e-15  # of the objectives: rounding of the merit
 _STALLED = 1e-13  # gain (objectives scaled by their range) of two steps in a row that ends a design's polish
 _DIFFERENCE = 1e-6  # of the unit box, for differences of gradients
 _CURVATURE = 1e-6  # least eigenvalue of the step's Hessian, objectives and box scaled to one
-_APART = 1e-6  # of unit vectors: a smaller part is not an independent, or a common, direction
+_INDEPENDENT = 1e-6  # of unit vectors: a smaller part is not an independent, or a common, direction
 _HEAVIEST = 1e8  # largest penalty of a violation
 _PASSES = 5  # at a step where only the sum counts: a small gain along a kink does not justify leaving it
 _SHORTEST = 1e-13  # radius at which a design's polish ends
@@ -292,10 +292,10 @@ def convex(hessian: Array, normals: Array) -> Array:
     lengths = row_lengths(normals)
     if values[0] < _CURVATURE and lengths.any():
         _, sizes, directions = np.linalg.svd(normals[lengths > 0.0] / lengths[lengths > 0.0, None])
-        held_directions = directions[: len(sizes)][sizes > _APART]
+        held_directions = directions[: len(sizes)][sizes > _INDEPENDENT]
         flat = values < _CURVATURE
         # Directions on which no held row depends stay flat: weight would only stiffen the others.
-        dull = int((np.abs(held_directions @ vectors[:, flat]).max(axis=0, initial=0.0) <= _APART).sum())
+        dull = int((np.abs(held_directions @ vectors[:, flat]).max(axis=0, initial=0.0) <= _INDEPENDENT).sum())
         if dull < flat.sum():
             for weight in (1.0, 10.0, 100.0):
                 curved = hessian + weight * np.abs(values).max() * held_directions.T @ held_directions

@@ -33,7 +33,7 @@ VIOLATION = 1e2
 """C: the same for a constraint's relative violation, to begin with; it must exceed the multipliers of the limits."""
 ROUNDING = 1e-12
 """Losses and violations below it are rounding."""
-_REACH = 1.0  # pieces farther below the greatest cannot become it within a step
+_STEP_RANGE = 1.0  # pieces farther below the greatest cannot become it within a step
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ def solve_step(
     chosen, tops, loss, hold = aim
     k, count = len(u), len(chosen)
     low, high = np.maximum(-u, -radius), np.minimum(1.0 - u, radius)
-    close = goals.values > (tops - _REACH)[goals.owner]
+    close = goals.values > (tops - _STEP_RANGE)[goals.owner]
     pieces = [((goals.owner == owner) & close).nonzero()[0] for owner in chosen]
     near = np.isfinite(limits.values).nonzero()[0]
     holding = count if hold else 0

@@ -15,7 +15,7 @@ from .polish import ITERATIONS, Evaluates
 from .polish import polish as polish_here
 
 Lengths = IntArray
-_Asked = tuple[tuple[float, ...], tuple[int, ...] | None, int | None, bool]
+_PolishOptions = tuple[tuple[float, ...], tuple[int, ...] | None, int | None, bool]
 """Scale, chosen objectives and iterations of a polish, and whether the last column of its starts is `best_in`."""
 
 
@@ -69,7 +69,7 @@ def polish(
     return first.join(*(part for part, _ in rest))
 
 
-def _polish_rows(evaluator: Evaluator, options: _Asked, start: Array) -> tuple[Polished, int]:
+def _polish_rows(evaluator: Evaluator, options: _PolishOptions, start: Array) -> tuple[Polished, int]:
     """Return polished designs and the number of evaluations for them."""
     before, (scale, chosen, iterations, ends) = evaluator.evaluations, options
     best_in = start[:, -1].astype(np.int64) if ends else None

@@ -9,15 +9,15 @@ from ..front.hypervolume import scaling
 from ..front.neighbours import neighbours
 from .sobol import sobol
 
-FACES = 0.3
+BOUNDARY_SHARE = 0.3
 """Chance that a coordinate of a sample is snapped to one of its bounds: optima sit on faces and edges."""
 
-APART = 0.1
+LEAST_DISTANCE = 0.1
 """Distance in the unit box of starts that are to lead to different optima."""
 
 
 def distant_rows(merits: Array, points: Array, branch: IntArray, count: int) -> IntArray:
-    """Return rows of at most `count` points (n, k): least finite merit (n,) first, each `APART` from those before.
+    """Return rows of at most `count` points (n, k): least finite merit (n,) first, `LEAST_DISTANCE` apart.
 
     Points of different branches count as apart.
     """
@@ -27,7 +27,7 @@ def distant_rows(merits: Array, points: Array, branch: IntArray, count: int) -> 
     while len(rows) and len(chosen) < count:
         best = int(rows[0])
         chosen.append(best)
-        far = np.abs(points[rows] - points[best]).max(axis=1, initial=0.0) >= APART
+        far = np.abs(points[rows] - points[best]).max(axis=1, initial=0.0) >= LEAST_DISTANCE
         rows = rows[far | (branch[rows] != branch[best])]
     return np.array(chosen, dtype=np.int64)
 
@@ -44,7 +44,7 @@ def first_samples(count: int, dimension: int, seed: int, stream: int) -> Array:
     random = generator(seed, stream, 0)
     power = max(1, int(np.ceil(np.log2(max(2, count)))))
     points = sobol(power, dimension, random)[:count]
-    snapped = random.random(points.shape) < FACES
+    snapped = random.random(points.shape) < BOUNDARY_SHARE
     return np.asarray(np.where(snapped, np.round(points), points))
 
 

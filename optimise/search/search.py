@@ -93,7 +93,7 @@ class Archive(Candidates):
         self.become(together if as_they_are else together[rows])
 
 
-def _thin_out(values: Array) -> Array:
+def _spread_sample(values: Array) -> Array:
     return values[:: 1 + len(values) // _FRONT_SAMPLE]
 
 
@@ -171,7 +171,7 @@ class Run:
             self.checkpoints.seconds,
         )
         self.round_reports.append(entry)
-        self.fronts.append(_thin_out(feasible).copy())  # not a view, which would keep all of them
+        self.fronts.append(_spread_sample(feasible).copy())  # not a view, which would keep all of them
         if self.checkpoints.end_round():
             self._report(entry, self.progress)
         else:
@@ -180,9 +180,9 @@ class Run:
     def latest(self) -> Array:
         """Return the objectives (n, m) of the front after the last round, SI, as minimised; at most some hundreds."""
         if self.archive.is_feasible.all() and not len(self.candidates):
-            return _thin_out(self.archive.values)
+            return _spread_sample(self.archive.values)
         values = np.concatenate([self.archive.values, self.candidates.values])
-        return _thin_out(values[nondominated(values)])
+        return _spread_sample(values[nondominated(values)])
 
     def stage_reporter(self, name: str) -> ReportProgress:
         """Return the callback for a long stage, which ends a cancelled search and reports progress."""
@@ -263,7 +263,7 @@ def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = Non
             for index, evaluator in enumerate(evaluators)
         )
         if hits >= min(ENOUGH, samples) or (
-            not attempt and not hits and is_out_of_reach(problem, evaluators, bands[-1])
+            not attempt and not hits and is_beyond_sampling(problem, evaluators, bands[-1])
         ):
             break
     run.report_round("sampling", evaluators, archive)
@@ -296,7 +296,7 @@ def _samples_around(
     return sample_near(parents.u[on_branch][:, :dimension], parents.values[on_branch], count, width, random)
 
 
-def is_out_of_reach(problem: Problem, evaluators: list[Evaluator], band: float) -> bool:
+def is_beyond_sampling(problem: Problem, evaluators: list[Evaluator], band: float) -> bool:
     """Whether descent from the best samples stays outside the band of the last samples.
 
     Sixteen times as many samples in that band would cost more and prove less, as their best are not local optima. False

@@ -12,7 +12,7 @@ from .pieces import Rows
 from .recorded import polished
 from .sampling import distant_rows
 
-_AT_ONCE = 256  # points examined between two checks whether the best are among them
+_BATCH = 256  # points examined between two checks whether the best are among them
 
 
 class _Violations:
@@ -50,7 +50,7 @@ def greatest_of_starts(evaluator: Evaluator, u: Array, count: int) -> Array:
     def greatest() -> tuple[Array]:
         violations, bound = np.full(len(u), np.inf), evaluator.light_violation(u)
         order = np.argsort(bound, kind="stable")
-        for rows in np.split(order, range(_AT_ONCE, len(u), _AT_ONCE)):
+        for rows in np.split(order, range(_BATCH, len(u), _BATCH)):
             best = distant_rows(violations, u, _single_branch(u), count)
             if len(best) == count and violations[best].max() < bound[rows[0]] - FEASIBLE:
                 break

@@ -180,8 +180,8 @@ class _Programme:
 
     def __post_init__(self) -> None:
         moment = moving_moment(self.mechanism, self.linkage)
-        mass, reach = moment / float(self.linkage.crank), 1.0 if self.rod is None else self.rod.radius
-        self.unit = np.array([moment, moment, mass, mass * reach, mass * reach, mass * reach**2])
+        mass, arm_radius = moment / float(self.linkage.crank), 1.0 if self.rod is None else self.rod.radius
+        self.unit = np.array([moment, moment, mass, mass * arm_radius, mass * arm_radius, mass * arm_radius**2])
         self.force = moment * self.mechanism.speed**2  # of order of the forces, N
         self.count = 2 if self.rod is None else 6
 
@@ -264,9 +264,9 @@ class _Programme:
         """Return the answer with the same forces, and moment if it counts, that adds the least mass to the rod."""
         if self.rod is None:
             return x
-        first, reach = math.hypot(x[3], x[4]), self.rod.radius
-        inertia = first * reach if self.arm is None else max(0.0, float(x[5]))
-        mass = max(inertia / reach**2, first**2 / inertia) if inertia else 0.0
+        first, arm_radius = math.hypot(x[3], x[4]), self.rod.radius
+        inertia = first * arm_radius if self.arm is None else max(0.0, float(x[5]))
+        mass = max(inertia / arm_radius**2, first**2 / inertia) if inertia else 0.0
         light = np.array([x[0] + (x[2] - mass) * float(self.linkage.crank), x[1], mass, x[3], x[4], inertia])
         return light if self.greatest_moment is None or math.hypot(light[0], light[1]) <= self.greatest_moment else x
 

@@ -182,11 +182,11 @@ class _Task:
         of_crank = crank_loads(x[0], x[1], crank, joints, self.mechanism, self.material, self.limits)
         of_rod = rod_loads(x[2], x[3], rod, joints, self.whip, self.material, self.limits)
         found: dict[str, Any] = {}
-        for part, w, d, own, buckling_length, loads in (
+        for part, w, d, bar, buckling_length, loads in (
             ("crank", x[0], x[1], z[0], 2.0 * crank, of_crank),
             ("rod", x[2], x[3], z[1], rod, of_rod),
         ):
-            states = limit_states(w, d, own, buckling_length, loads.map_loads(above), self.material, self.limits, above)
+            states = limit_states(w, d, bar, buckling_length, loads.map_loads(above), self.material, self.limits, above)
             found |= {f"{part}: {name}": state for name, state in states.items()}
         return found
 

@@ -162,12 +162,12 @@ class _Programme:
     def _cone(self, angles: Array) -> tuple[Array, Array]:
         """Return x and the multipliers of the limit at crank angles (m,), by cvxpy."""
         cp = required("cvxpy", "tolerance allocation needs")
-        rows, room = self.error.rows(angles)
+        rows, margin = self.error.rows(angles)
         size = float(self.beta.sum())
         x = cp.Variable(len(self.beta))
         terms = zip(self.beta / size, x, -self.q, strict=True)
         cost = sum(share * cp.power(each, exponent, approx=False) for share, each, exponent in terms)
-        within = rows @ x <= room
+        within = rows @ x <= margin
         rules = [within, x >= self.least]
         ends = np.flatnonzero(np.isfinite(self.greatest))
         if len(ends):
@@ -216,10 +216,10 @@ class _Programme:
 
         def conditions(z: Array) -> Array:
             here, where = place(z)
-            rows, room = self.error.rows(where)
+            rows, margin = self.error.rows(where)
             pull = (weight * (1.0 + z[count:])) @ rows
             push = self.q * self.beta * here ** (-self.q - 1.0)
-            return np.concatenate([(pull / push - 1.0)[free], rows @ here - room])
+            return np.concatenate([(pull / push - 1.0)[free], rows @ here - margin])
 
         z = np.zeros(count + len(weight))
         if len(z):

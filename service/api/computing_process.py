@@ -15,7 +15,7 @@ from typing import Any
 from starlette.types import ASGIApp, Message
 
 from ...model.errors import SlidercrankError
-from ...optimise.engine.processes import follow_parent
+from ...optimise.engine.processes import end_with_parent
 from ..store import Limits
 
 ApplicationFactory = Callable[[], AbstractContextManager[ASGIApp]]
@@ -33,7 +33,7 @@ def answer_questions(connection: Connection, make: ApplicationFactory, limits: L
 
     Sends the messages of an answer, the last one when all is done, or an error if no application can be created.
     """
-    follow_parent()
+    end_with_parent()
     if hasattr(os, "nice"):
         os.nice(NICENESS)
     try:

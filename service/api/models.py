@@ -13,11 +13,11 @@ from ...objectives.kinds import System
 from ..store import State
 
 LARGEST = 2**53 - 1
-_WHOLE = re.compile(r"-?(0|[1-9][0-9]*)")
+_INTEGER = re.compile(r"-?(0|[1-9][0-9]*)")
 
 
 def _plain(text: Any) -> Any:
-    if isinstance(text, str) and not _WHOLE.fullmatch(text):
+    if isinstance(text, str) and not _INTEGER.fullmatch(text):
         raise PydanticKnownError("int_parsing")
     return text
 

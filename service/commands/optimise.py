@@ -172,7 +172,7 @@ def show_files(run: Path) -> None:
 
 def _problem(job: Path, settings: SettingOptions) -> tuple[Problem, dict[str, Any], list[Artefact]]:
     """Return the problem of a job file and its tables, both with the given options, and its files."""
-    from ...optimise.job import files_beside, load_job, read_job
+    from ...optimise.job import load_job, needed_files, read_job
     from ...optimise.job.notes import notes_of
     from ..jobs.own_run import files_of
     from ..workers.own_search import with_settings
@@ -181,7 +181,7 @@ def _problem(job: Path, settings: SettingOptions) -> tuple[Problem, dict[str, An
     for note in notes_of(tables):
         print_message(f"note: {note}")
     with disk(job.parent):
-        files = files_of(job, files_beside(job))
+        files = files_of(job, needed_files(job))
     return *with_settings(problem, tables, settings.overrides), files
 
 

@@ -115,11 +115,11 @@ def _tell_of(functions: Sequence[str], job: Path) -> None:
 
 def _source(job: Path) -> Artefact | None:
     """Return the original job file; None if it names other files, which the job's tables contain."""
-    from ...optimise.job import files_beside
+    from ...optimise.job import needed_files
     from ..store import Artefact
 
     suffix = job.suffix.lower()
-    if files_beside(job):
+    if needed_files(job):
         return None
     return Artefact(name=f"job{suffix}", media_type=_MEDIA[suffix], content=job.read_bytes())
 

@@ -16,7 +16,7 @@ from ...optimise.job.box import STROKE_RATIOS, beyond_both
 from ...optimise.job.file import require_few
 from ...optimise.job.messages import place_of
 from ...optimise.job.schema import schema_of
-from ...optimise.job.stated_formulas import OwnName, StatedFormula, own_names, stated_formulas
+from ...optimise.job.stated_formulas import FormulaName, StatedFormula, formula_names, stated_formulas
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint
 from .feasibility import Ends, Possible, possible
@@ -57,7 +57,7 @@ class Look:
     unchecked: list[str]
     sentences: list[str]
     formulas: list[StatedFormula] = field(default_factory=list)
-    names: list[OwnName] = field(default_factory=list)
+    names: list[FormulaName] = field(default_factory=list)
     swing: PossibleSwing | None = None
 
 
@@ -71,7 +71,7 @@ def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
     formulas = stated_formulas(tables)
     wrong = look.wrong if look.problem is not None else _with_formulas(look.wrong, formulas)
     swing = possible_swing(tables, look.problem)
-    return replace(look, wrong=wrong, formulas=formulas, names=own_names(tables), swing=swing)
+    return replace(look, wrong=wrong, formulas=formulas, names=formula_names(tables), swing=swing)
 
 
 def _with_formulas(wrong: list[Wrong], formulas: list[StatedFormula]) -> list[Wrong]:

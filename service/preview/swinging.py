@@ -59,7 +59,7 @@ def possible_swing(tables: Mapping[str, Any], full_problem: Problem | None) -> P
     try:
         part = MotionPart.model_validate(tables.get("motion", {}))
         swing, ranges = part.build(), ranges_of(tables.get("variables"))
-        margin = with_margin((), part.margin_asked)
+        margin = with_margin((), part.requested_margin)
     except (InputError, ValidationError):
         return None
     if swing is None or ranges is None:

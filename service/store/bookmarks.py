@@ -15,7 +15,7 @@ from .rows import the_job
 from .schema import bookmarks
 from .serialisation import plain
 
-MOST_KEPT = 500
+MOST_BOOKMARKS = 500
 """Most bookmarks of a job."""
 
 
@@ -69,8 +69,8 @@ def keep_design(
         count, last = connection.execute(
             select(func.count(), func.max(bookmarks.c.number)).where(bookmarks.c.job == job)
         ).one()
-        if count >= MOST_KEPT:
-            raise InputError(f"at most {MOST_KEPT} designs are kept of a job; job {job} has as many; delete some")
+        if count >= MOST_BOOKMARKS:
+            raise InputError(f"at most {MOST_BOOKMARKS} designs are kept of a job; job {job} has as many; delete some")
         number = (last or 0) + 1
         values = {"name": plain(name) or f"Kept {number}", "note": plain(note), "star": star, "design": design}
         fixed = {"variant": variant, "dimensions": json.dumps(dimensions), "decided": False, "reason": ""}

@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 Table = dict[str, Any]
 
 _FLOORS = {"transmission_angle": math.radians(10.0), "self_locking_margin": math.radians(5.0)}
-_WANTED = {
+_SENSES = {
     "peak_torque": "minimise",
     "rms_torque": "minimise",
     "peak_power": "minimise",
@@ -95,9 +95,9 @@ def random_job(*seed: int) -> Table:
     for place in random.permutation(len(more))[: random.integers(0, 3)]:
         path, values = more[place]
         variables[path] = {"choices": values}
-    free = [name for name in _WANTED if "equals" not in constraints.get(name, {})]
+    free = [name for name in _SENSES if "equals" not in constraints.get(name, {})]
     wanted = random.choice(free, int(random.choice([1, 2, 2, 3, 3])), replace=False)
-    job["objectives"] = {str(name): _WANTED[str(name)] for name in wanted}
+    job["objectives"] = {str(name): _SENSES[str(name)] for name in wanted}
     return job
 
 

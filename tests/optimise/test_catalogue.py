@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import JobError
-from slidercrank.optimise.job import files_beside, load_job, parse_job, read_job
+from slidercrank.optimise.job import load_job, needed_files, parse_job, read_job
 from slidercrank.optimise.job.catalogue import MOST_OPTIONS, read_catalogue
 from slidercrank.optimise.job.notes import notes_of
 from slidercrank.optimise.job.options import idle_options
@@ -118,7 +118,7 @@ def test_a_job_says_how_many_rows_are_solved_and_names_the_file(tmp_path: Path) 
     job = written(tmp_path, catalogue(0, 60))
     (note,) = [note for note in notes_of(read_job(job)) if "rows" in note]
     assert re.fullmatch(r"gearmotor: of 60 rows \d (is|are) searched; the others lose in peak_torque max .*", note)
-    assert files_beside(job) == [tmp_path / "gearmotors.csv"]
+    assert needed_files(job) == [tmp_path / "gearmotors.csv"]
     one = load_job(written(tmp_path, f"{HEADER}\nA,10,5,1\n"))
     assert [variant.labels for variant in one.variants] == [("A",)] * 3
 

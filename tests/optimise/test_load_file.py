@@ -12,8 +12,8 @@ import pytest
 
 from slidercrank.model.errors import JobError
 from slidercrank.model.machine.loads.load import Load
-from slidercrank.optimise.job import files_beside, load_job, parse_job, read_job, with_files
-from slidercrank.optimise.job.curve_file import MOST_KEPT, SHARE
+from slidercrank.optimise.job import load_job, needed_files, parse_job, read_job, with_files
+from slidercrank.optimise.job.curve_file import MOST_POINTS, SHARE
 from slidercrank.optimise.job.notes import sources_of
 
 RANGES = {"crank": ["20 mm", "80 mm"], "rod": ["120 mm", "300 mm"], "offset": ["0 mm", "60 mm"]}
@@ -164,12 +164,12 @@ def test_a_long_table_is_thinned_within_the_stated_bound_and_its_steps_stay(seed
 
 
 def test_a_thousand_points_stay_as_they_are() -> None:
-    at, force = noisy(np.random.default_rng(3), MOST_KEPT)
+    at, force = noisy(np.random.default_rng(3), MOST_POINTS)
     lines = [f"{a!r},{f!r}" for a, f in zip(at.tolist(), force.tolist(), strict=True)]
     angles, forces = read("\n".join(["angle_deg,force_N", *lines])).knots()
     assert forces[:-1] == tuple(force.tolist())
     np.testing.assert_array_equal(angles[:-1], [float(np.float64(a)) for a in angles[:-1]])
-    assert len(angles) == MOST_KEPT + 1
+    assert len(angles) == MOST_POINTS + 1
 
 
 def test_a_thinned_load_changes_quantities_by_no_more_than_the_bound_allows() -> None:
@@ -290,7 +290,7 @@ def test_a_file_beside_a_job_is_read_named_and_told(tmp_path: Path) -> None:
     )
     loads = load_job(tmp_path / "job.toml").mechanism.loads
     assert loads == (given(crank_angles=["0 deg", "90 deg"], forces=["-2 N", "1000.5 N"]),)
-    assert files_beside(tmp_path / "job.toml") == [tmp_path / "trace.csv"]
+    assert needed_files(tmp_path / "job.toml") == [tmp_path / "trace.csv"]
     assert sources_of(read_job(tmp_path / "job.toml")) == [
         "load #1, trace.csv: 2 rows of Winkel [°], Kraft [N]; first 0, -2; last 90, 1000.5; separated by semicolons; "
         "decimal comma"

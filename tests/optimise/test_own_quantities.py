@@ -18,7 +18,7 @@ from slidercrank.objectives.own import quantity as own_module
 from slidercrank.objectives.own.designs import magnitude
 from slidercrank.objectives.own.quantity import OwnQuantity
 from slidercrank.optimise.decisions.like import like
-from slidercrank.optimise.job import files_beside, load_job, parse_job
+from slidercrank.optimise.job import load_job, needed_files, parse_job
 from slidercrank.optimise.job.custom_quantities import FormulaPart, named
 from slidercrank.optimise.problem.requirements import Constraint, Objective
 from slidercrank.optimise.solve import solve
@@ -68,7 +68,7 @@ def test_page_of_the_documentation_runs_as_it_is_written(tmp_path: Path) -> None
     area = 0.012 * 0.020
     forces = front.designs["peak_slider_pin_force_N"]
     np.testing.assert_allclose(front.designs["pin_pressure_MPa"], forces / area / 1e6, rtol=1e-7)
-    assert files_beside(tmp_path / "job.toml") == [tmp_path / "mymodule.py"]
+    assert needed_files(tmp_path / "job.toml") == [tmp_path / "mymodule.py"]
 
 
 @pytest.mark.slow

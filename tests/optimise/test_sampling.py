@@ -5,19 +5,19 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slidercrank.optimise.search.sampling import FACES, draw_rows, first_samples, generator, sample_near
+from slidercrank.optimise.search.sampling import BOUNDARY_SHARE, draw_rows, first_samples, generator, sample_near
 
 
 @pytest.mark.parametrize("dimension", [1, 2, 3])
 def test_first_samples_lie_in_the_box_with_a_share_on_every_face(dimension: int) -> None:
-    """The share of a coordinate on its two bounds is FACES; five standard deviations of 4,096 draws."""
+    """The share of a coordinate on its two bounds is BOUNDARY_SHARE; five standard deviations of 4,096 draws."""
     points = first_samples(4096, dimension, 1, 0)
     assert points.shape == (4096, dimension)
     assert points.min() >= 0.0
     assert points.max() <= 1.0
     for column in points.T:
         for bound in (0.0, 1.0):
-            share = FACES / 2.0
+            share = BOUNDARY_SHARE / 2.0
             assert abs(np.mean(column == bound) - share) <= 5.0 * np.sqrt(share * (1.0 - share) / 4096)
 
 

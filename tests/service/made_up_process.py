@@ -29,7 +29,7 @@ from slidercrank.service.workers.worker_process import main
 
 ROUNDS = 20
 _LEFT: list[object] = []
-_WANTED = Wanted(quantity="time_ratio", sense="maximise", column="time_ratio", title="Time ratio", unit="")
+_SENSES = Wanted(quantity="time_ratio", sense="maximise", column="time_ratio", title="Time ratio", unit="")
 
 
 def solve(
@@ -65,7 +65,7 @@ def _result(status: str) -> Result:
         name="made up",
         status=status,
         message="1 design",
-        objectives=(_WANTED,),
+        objectives=(_SENSES,),
         designs=[{"time_ratio": 1.5}],
         hypervolume=0.5,
         evaluations=4 * ROUNDS,

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from slidercrank.model.file_names import path_from_text, path_text
-from slidercrank.optimise.job import files_beside, load_job
+from slidercrank.optimise.job import load_job, needed_files
 from slidercrank.service.jobs.own_run import files_of
 from slidercrank.service.store.address import shown_url, url_of
 from slidercrank.service.workers.worker_process import WorkerSettings
@@ -35,7 +35,7 @@ def test_files_that_a_job_names_are_kept_under_their_names(tmp_path: Path) -> No
     job = tmp_path / "job.toml"
     job.write_text(f'{fronts.JOB}\n[target_motion]\nfile = "Größe.csv"\n', encoding="utf-8")
     assert load_job(job).own
-    assert [file.name for file in files_of(job, files_beside(job))] == ["job.toml", "Größe.csv"]
+    assert [file.name for file in files_of(job, needed_files(job))] == ["job.toml", "Größe.csv"]
 
 
 def test_a_run_in_a_folder_of_such_a_name_is_read_exported_and_reported(

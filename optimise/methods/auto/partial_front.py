@@ -21,7 +21,7 @@ from .auto import add_projected
 
 _PROJECTING = 0.3  # s, for moving designs onto the constraints
 _ANALYSING = 0.7  # s, for the quantities of all designs
-_OWN = 0.8  # s since the search was told to end, after which no call of an own function goes on
+_FUNCTION_TIME = 0.8  # s since the search was told to end, after which no call of an own function goes on
 _BATCH = 16  # designs moved at a time
 _TRIED = 50  # designs that tell how long all take, of functions of its own in one call, else one to begin with
 _MOST = 1000  # designs: to choose among more would take longer
@@ -38,7 +38,7 @@ def partial_front(problem: Problem, evaluators: list[Evaluator], run: Run, *, si
     run.checkpoints.close()
 
     def give_up() -> None:
-        if silent or time.perf_counter() - begin > _OWN:
+        if silent or time.perf_counter() - begin > _FUNCTION_TIME:
             raise Cancelled
 
     try:

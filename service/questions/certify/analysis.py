@@ -65,7 +65,7 @@ def _record(certificate: Certificate, problem: Problem) -> dict[str, Any]:
         "name": problem.name,
         "status": certificate.status,
         "message": certificate.message,
-        "epsilon_asked": certificate.asked,
+        "epsilon_asked": certificate.requested,
         "epsilon": certificate.epsilon,
         "epsilon_of_delivered": certificate.delivered,
         "gap_of_delivered": certificate.gap,

@@ -66,7 +66,7 @@ def _answered(rounded: Rounded, row: int) -> Answer:
     return Answer(
         record=lambda units: _record_in(units, record, rounded),
         blocks=_blocks(rounded, record, row) if len(rounded) else [],
-        is_satisfied=rounded.met,
+        is_satisfied=rounded.meets_requirements,
         message=rounded.message,
         notes=rounded.notes,
         search_result=rounded,
@@ -116,9 +116,9 @@ def _record(rounded: Rounded) -> dict[str, Any]:
     part = rounded.problem
     original: dict[str, Any] = {
         name: factor * value
-        for (name, factor), value in zip(rounded.names.values(), rounded.given.tolist(), strict=True)
+        for (name, factor), value in zip(rounded.names.values(), rounded.design.tolist(), strict=True)
     }
-    for objective, value in zip(part.objectives, rounded.before.tolist(), strict=True):
+    for objective, value in zip(part.objectives, rounded.design_objectives.tolist(), strict=True):
         quantity = part.quantity(objective.quantity)
         original[quantity.field] = value * quantity.unit.factor
     allowed = {part.quantity(name): value for name, value in rounded.allowed.items()}
@@ -132,16 +132,16 @@ def _record(rounded: Rounded) -> dict[str, Any]:
         for row in range(len(rounded))
     ]
     return {
-        "met": rounded.met,
+        "met": rounded.meets_requirements,
         "message": rounded.message,
         "steps": {rounded.names[name][0]: rounded.names[name][1] * step for name, step in rounded.steps.items()},
         "allowed": {
             quantity.field: drop_conversion_rounding(value * quantity.unit.factor)
             for quantity, value in allowed.items()
         },
-        "within_steps": rounded.reach,
+        "within_steps": rounded.steps_tried,
         "judged": rounded.judged,
-        "kept": rounded.kept,
+        "kept": rounded.feasible_count,
         "given": original,
         "designs": rows,
         "notes": list(rounded.notes),
@@ -194,7 +194,11 @@ def _blocks(rounded: Rounded, record: dict[str, Any], row: int) -> list[Block]:
             Sentence(words(f"{number}: {{requirements}}", requirements=_requirements(design, rounded)))
             for number, design in enumerate(designs, 1)
         ),
-        *([Sentence(Phrase(rounded.message, rounded.message_in("inch")), space_before=True)] if rounded.met else []),
+        *(
+            [Sentence(Phrase(rounded.message, rounded.message_in("inch")), space_before=True)]
+            if rounded.meets_requirements
+            else []
+        ),
     ]
 
 
