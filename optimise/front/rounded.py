@@ -46,7 +46,7 @@ class Rounded:
     """Designs with round numbers near a design of a front, best first.
 
     First come non-dominated designs that meet every requirement within the allowed misses, least loss first; then
-    designs that miss little but lose clearly less. If `meets_requirements` is False, these are the nearest designs:
+    designs that miss little but lose clearly less. If `met` is False, these are the nearest designs:
     first that with the least relative violation beyond the allowed misses, then those that miss more but lose clearly
     less. See `rounding.rounded`.
 
@@ -81,7 +81,7 @@ class Rounded:
         return f"Rounded({self.problem.name!r}: {self.message})"
 
     @property
-    def meets_requirements(self) -> bool:
+    def met(self) -> bool:
         """Whether the designs meet every requirement within the allowed misses."""
         return self.feasible_count > 0
 
@@ -97,7 +97,7 @@ class Rounded:
         near = f"{counted(self.judged, 'rounded design')} within {counted(self.steps_tried, 'step')}"
         if self.steps_tried < REACHES[0]:
             near += f" (not {REACHES[0]}, because {len(self.steps)} numbers are rounded together)"
-        if self.meets_requirements:
+        if self.met:
             keep = "keeps" if self.feasible_count == 1 else "keep"
             tolerance = f" within {self._allowed_in_words(system)}" if self.allowed else ""
             missing = sum(bool(self._excessive_misses(row)) for row in range(len(self)))

@@ -66,7 +66,7 @@ def _answered(rounded: Rounded, row: int) -> Answer:
     return Answer(
         record=lambda units: _record_in(units, record, rounded),
         blocks=_blocks(rounded, record, row) if len(rounded) else [],
-        is_satisfied=rounded.meets_requirements,
+        is_satisfied=rounded.met,
         message=rounded.message,
         notes=rounded.notes,
         search_result=rounded,
@@ -132,7 +132,7 @@ def _record(rounded: Rounded) -> dict[str, Any]:
         for row in range(len(rounded))
     ]
     return {
-        "met": rounded.meets_requirements,
+        "met": rounded.met,
         "message": rounded.message,
         "steps": {rounded.names[name][0]: rounded.names[name][1] * step for name, step in rounded.steps.items()},
         "allowed": {
@@ -194,11 +194,7 @@ def _blocks(rounded: Rounded, record: dict[str, Any], row: int) -> list[Block]:
             Sentence(words(f"{number}: {{requirements}}", requirements=_requirements(design, rounded)))
             for number, design in enumerate(designs, 1)
         ),
-        *(
-            [Sentence(Phrase(rounded.message, rounded.message_in("inch")), space_before=True)]
-            if rounded.meets_requirements
-            else []
-        ),
+        *([Sentence(Phrase(rounded.message, rounded.message_in("inch")), space_before=True)] if rounded.met else []),
     ]
 
 
