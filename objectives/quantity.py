@@ -225,6 +225,12 @@ class Quantity(ABC):
         return self.kind.example if self.kind.unit else float(self.kind.example)
 
     @property
+    def required(self) -> str:
+        """What a job must have for it, in words; empty if every job has it."""
+        table = [f"it needs the table [{self.table}]"] if self.table else []
+        return "; ".join(dict.fromkeys([*table, *(need.rule for need in self.needs)]))
+
+    @property
     def has_gradient(self) -> bool:
         """Whether it has derivatives with respect to the dimensions."""
         return True

@@ -58,7 +58,7 @@ def listed(names: Collection[str]) -> str:
     few = ", ".join(sorted(names, key=FACTS.__contains__)[:_MOST_NAMES])
     left_over = len(names) - _MOST_NAMES
     return (
-        f"{few} and {left_over} more, all in `slidercrank schema` and slidercrank.quantities()"
+        f"{few} and {left_over} more, all in `slidercrank quantities` and slidercrank.quantities()"
         if left_over > 0
         else few
     )

@@ -42,7 +42,7 @@ _MORE_MEMORY = (
 _COMMANDS = (
     *("optimise", "analyse", "inverse", "swing", "sweep", "allocate", "balance", "sections"),
     *("certify", "compare", "like", "round", "wish"),
-    *("check", "schema", "front", "export", "report", "cases"),
+    *("check", "schema", "quantities", "front", "export", "report", "cases"),
     *("serve", "submit", "jobs", "watch", "cancel", "resume", "delete", "worker", "mcp", "doctor"),
 )
 _MODULES = {"check": "job", "schema": "job", "front": "runs", "watch": "submit"}

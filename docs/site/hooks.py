@@ -21,6 +21,8 @@ from docs.site.quantity_reference import quantity_reference
 ROOT = Path(__file__).resolve().parents[2]
 _MOVED = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
 """Pages that lie at the top of the repository, by where they are in the site."""
+_REPLACED = {"commands.md#quantities": "reference/quantities.md"}
+"""Links that the site replaces by its reference, which the repository does not have."""
 _FOLDERS = ("model", "objectives", "optimise")
 _LINK = re.compile(r"\[([^\]]*)\]\((?!https?://|#)([^)\s#]+)(#[^)\s]*)?\)")
 _FORMULA = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
@@ -74,8 +76,10 @@ def _from_docs(target: str) -> str:
 
 
 def _inside(found: re.Match[str]) -> str:
-    """Return a link that leads out of docs/ as one within the site, or its text where there is no page for it."""
+    """Return a link to the site's reference or to another page of the site, or its text where there is no page."""
     text, target, place = found.groups()
+    if reference := _REPLACED.get(target + (place or "")):
+        return f"[{text}]({reference})"
     if not target.startswith("../"):
         return found[0]
     name = target.removeprefix("../")

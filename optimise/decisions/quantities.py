@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pandas as pd
 
-from ...objectives.quantity import Quantity
 from ...objectives.registry import FACTS
 from ..problem.problem import Problem, require_problem
 
@@ -30,13 +29,8 @@ def quantities(problem: Problem | None = None) -> pd.DataFrame:
             "factor": item.unit.factor,
             "column": item.field,
             "better": item.better,
-            "needs": _needs(item),
+            "needs": item.required,
         }
         for item in listed
     }
     return pd.DataFrame.from_dict(rows, orient="index")
-
-
-def _needs(quantity: Quantity) -> str:
-    table = [f"it needs the table [{quantity.table}]"] if quantity.table else []
-    return "; ".join(dict.fromkeys([*table, *(need.rule for need in quantity.needs)]))

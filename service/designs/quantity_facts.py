@@ -21,6 +21,7 @@ def facts_of_all() -> list[dict[str, Any]]:
 def _quantity(quantity: Quantity) -> dict[str, Any]:
     return {
         **{fact: getattr(quantity, fact) for fact in _STATED},
+        "needs": quantity.required,
         "offered": list(quantity.offered),
         "column": quantity.field,
         "unit": quantity.unit.symbol,
@@ -32,7 +33,7 @@ def _quantity(quantity: Quantity) -> dict[str, Any]:
 
 _LENGTH: dict[str, Any] = {
     **{"unit": LENGTH.metric.symbol, "kind": LENGTH.plain, "group": Group.DIMENSIONS.value, "source": MECHANICS},
-    **{"better": "", "allowed_by": "", "offered": [], "motion": ""},
+    **{"better": "", "allowed_by": "", "needs": "", "offered": [], "motion": ""},
 }
 """Facts that the dimensions have in common."""
 

@@ -83,7 +83,7 @@ def test_names_and_formulas_stand_side_by_side_in_problems_analyses_and_sweeps()
         ),
         ("2 * efficiency", "efficiency is not defined here: "),
         ("3 mm", "the same for every design"),
-        ("xyzzy", " more, all in `slidercrank schema` and slidercrank.quantities()"),
+        ("xyzzy", " more, all in `slidercrank quantities` and slidercrank.quantities()"),
     ],
 )
 def test_wrong_formulas_are_sentences_and_no_list_of_all_names(formula: str, words: str) -> None:

@@ -134,9 +134,11 @@ def test_kinds_of_values_are_told_in_words(schema: dict[str, Any], words: str) -
 def test_links_stay_within_the_site_or_lose_their_target() -> None:
     text = (
         "[a](../model/linkage/linkage.py), [b](../README.md#start), [c](../Makefile), [d](jobs.md), [e](https://e.org)"
+        ", [f](commands.md#quantities)"
     )
     assert hooks.on_page_markdown(text) == (
         "[a][slidercrank.model.linkage.linkage], [b](index.md#start), c, [d](jobs.md), [e](https://e.org)"
+        ", [f](reference/quantities.md)"
     )
 
 

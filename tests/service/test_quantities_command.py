@@ -1,0 +1,41 @@
+"""`slidercrank quantities`: every quantity is listed, and explained as it says itself."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+import slidercrank as sc
+from slidercrank.objectives.registry import FACTS
+from tests.service.conftest import Command
+
+
+def test_every_quantity_is_listed_once_with_its_unit(command: Command) -> None:
+    lines = [line.split() for line in command("quantities").stdout.splitlines() if line.startswith("  ")]
+    listed = [words[0] for words in lines]
+    assert sorted(listed) == sorted(["crank", "rod", "offset", *FACTS])
+    for words in lines:
+        unit = FACTS[words[0]].unit.symbol.split() if words[0] in FACTS else ["mm"]
+        assert words[1 : 1 + len(unit)] == unit
+
+
+def test_the_json_has_what_python_has(command: Command) -> None:
+    listed = {item["name"]: item for item in json.loads(command("quantities", "--json").stdout)["quantities"]}
+    table = sc.quantities()
+    for key in ("title", "unit", "column", "better", "needs"):
+        assert {name: listed[name][key] for name in table.index} == table[key].to_dict()
+
+
+@pytest.mark.parametrize("name", ["peak_torque", "position_error", "swing_angle"])
+def test_a_named_quantity_is_explained(name: str, command: Command) -> None:
+    text, quantity = command("quantities", name).stdout, FACTS[name]
+    for fact in (quantity.sentence, quantity.formula, quantity.field, quantity.required.split("; ")[0]):
+        assert fact in text
+    assert json.loads(command("quantities", name, "--json").stdout)["quantities"][0]["formula"] == quantity.formula
+
+
+def test_an_unknown_quantity_is_refused_with_the_nearest_name(command: Command) -> None:
+    done = command("quantities", "peaktorque")
+    assert done.exit_code == 2
+    assert done.stderr == "slidercrank: no quantity is called 'peaktorque'; did you mean peak_torque?\n"
