@@ -56,7 +56,8 @@ class StandardForm:
     """A problem in standard form, over designs x = (crank, rod, offset, then the varying numbers), SI.
 
     names: names of the variables. lower, upper: their bounds (3 + k,). objectives, inequalities, equalities: labels of
-    the columns of F, G and H. Objectives to be maximised are negated; one with a target is the distance from it.
+    the columns of F, G and H. Objectives have the order of `Problem.objectives`, which is not that of the job: see
+    `objectives`. Those to be maximised are negated; one with a target is the distance from it.
     Each requirement is divided by the size of its bound. The first two inequalities keep the crank rotating fully:
     crank + offset and crank - offset below the rod. A swing has neither: its crank need not rotate fully.
     With eliminated equalities, x holds the remaining free unknowns, each from 0 to 1, and `designs` converts it to

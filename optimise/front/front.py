@@ -9,6 +9,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from html import escape
 from numbers import Real
+from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -36,6 +38,7 @@ from .progress import Progress
 from .rounded import Rounded
 from .rounding import doubtful_misses, ranges_or_sizes, rounding
 from .rounding_search import Stage
+from .saved_front import front_fields, write_front
 from .stationarity import STATIONARY, multipliers
 
 if TYPE_CHECKING:
@@ -158,6 +161,18 @@ class ParetoFront:
             record: dict[str, Any] = question_to("front", question).answer_of(self, row, inputs)
             return record
         return self.part(row).ask(question, self.dimensions[row], **inputs)
+
+    def save(self, file: str | PathLike[str]) -> None:
+        """Write the front as JSON, without its problem. Raises `OSError`."""
+        write_front(self, Path(file))
+
+    @classmethod
+    def load(cls, file: str | PathLike[str], problem: Problem) -> ParetoFront:
+        """Return a front that `save` wrote, unchanged to the last bit. problem: the problem that it was solved for.
+
+        Raises `InputError` for any other file, and for the front of another problem.
+        """
+        return cls(**front_fields(Path(file), problem))
 
     @property
     def violated(self) -> dict[str, Array]:

@@ -1,0 +1,152 @@
+"""A front as a JSON file, and back without losing a bit; its problem is not in the file."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...model.arrays import Array
+from ...model.errors import InputError
+from ..problem.problem import Problem
+from ..problem.violation import all_minimised
+from .discrete_answer import DiscreteSearch
+from .progress import Progress
+
+if TYPE_CHECKING:
+    from .front import ParetoFront
+
+_FORM = 1
+_SAME = 1e-6
+"""Relative difference of an objective: versions of this software and its libraries differ by rounding."""
+_AS_THEY_ARE = ("status", "message", "hypervolume", "evaluations", "seconds", "seed", "versions")
+
+
+def saved_front(front: ParetoFront) -> str:
+    """Return a front as JSON: arrays in SI, columns in their units; "inf", "-inf" and "nan" for such numbers."""
+    words = [name for name, column in front.columns.items() if column.dtype.kind == "U"]
+    record = {
+        "form": _FORM,
+        "name": front.problem.name,
+        "objectives": _objectives(front.problem),
+        "variables": front.dimensions.shape[1],
+        **{name: getattr(front, name) for name in _AS_THEY_ARE},
+        "history": [asdict(progress) for progress in front.history],
+        "discrete": front.discrete and asdict(front.discrete),
+        "words": words,
+        "columns": {name: column.tolist() for name, column in front.columns.items()},
+        "dimensions": front.dimensions.tolist(),
+        "variants": list(front.variants),
+        "values": front.values.tolist(),
+        "unknowns": [edges.shape[1] for edges in front.active],
+        "goals": [[owner.tolist(), slopes.tolist()] for owner, slopes in front.goals],
+        "active": [edges.tolist() for edges in front.active],
+    }
+    return json.dumps(_finite(record), ensure_ascii=False, indent=1, allow_nan=False)
+
+
+def write_front(front: ParetoFront, file: Path) -> None:
+    """Write a front to a file, completely or not at all. Raises `OSError`."""
+    unfinished = file.with_name(f".{file.name}.part")
+    unfinished.write_text(saved_front(front), encoding="utf-8")
+    unfinished.replace(file)
+
+
+def front_fields(file: Path, problem: Problem) -> dict[str, Any]:
+    """Return the fields of a saved front, for `ParetoFront`.
+
+    Raises `InputError` for a file that is not a saved front, and for the front of another problem.
+    """
+    try:
+        record = json.loads(file.read_text(encoding="utf-8"))
+        fields = _fields(record, problem)
+        objectives = record["objectives"]
+    except OSError as error:
+        raise InputError(f"{file} cannot be read: {error.strerror}; name a file that `save` wrote") from None
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise InputError(
+            f"{file} must be a front that `save` wrote; got another or a damaged file ({type(error).__name__}); solve "
+            "its problem again"
+        ) from None
+    _require_same(fields, objectives, problem, file)
+    return fields
+
+
+def _fields(record: dict[str, Any], problem: Problem) -> dict[str, Any]:
+    if record["form"] != _FORM:
+        raise ValueError(f"form {record['form']}")
+    words, count = set(record["words"]), len(record["values"])
+    goals = zip(record["goals"], record["unknowns"], strict=True)
+    active = zip(record["active"], record["unknowns"], strict=True)
+    columns = {
+        name: np.array(column, dtype=np.str_ if name in words else np.float64)
+        for name, column in record["columns"].items()
+    }
+    if any(len(column) != count for column in (*columns.values(), record["dimensions"], record["unknowns"])):
+        raise ValueError("columns of different lengths")
+    return {
+        "problem": problem,
+        **{name: _number(record[name]) for name in _AS_THEY_ARE},
+        "history": tuple(
+            Progress(**{key: _number(value) for key, value in item.items()}) for item in record["history"]
+        ),
+        "discrete": None
+        if record["discrete"] is None
+        else DiscreteSearch(**record["discrete"] | {"continuous": tuple(map(float, record["discrete"]["continuous"]))}),
+        "columns": columns,
+        "dimensions": _array(record["dimensions"], record["variables"]),
+        "variants": tuple(record["variants"]),
+        "values": _array(record["values"], len(record["objectives"])),
+        "goals": tuple((np.array(owner, dtype=np.float64), _array(slopes, free)) for (owner, slopes), free in goals),
+        "active": tuple(_array(edges, free) for edges, free in active),
+    }
+
+
+def _require_same(fields: dict[str, Any], objectives: list[Any], problem: Problem, file: Path) -> None:
+    """Raise `InputError` unless a problem has the objectives of a front, with the values of its first design."""
+    remedy = "load it with the problem that it was solved for"
+    if objectives != _objectives(problem):
+        saved, stated = (
+            ", ".join(f"{sense} {name}" for name, sense, _ in items) for items in (objectives, _objectives(problem))
+        )
+        raise InputError(f"the objectives of {file} are {saved}; those of the problem are {stated}; {remedy}")
+    if not len(fields["values"]):
+        return
+    try:
+        part = problem.part(fields["variants"][0] if fields["variants"] else 0)
+        values = all_minimised(part, part.evaluate(fields["dimensions"][:1]))[0]
+    except InputError as error:
+        raise InputError(f"{file} is the front of another problem: {error}; {remedy}") from None
+    for (name, _, _), saved, value in zip(objectives, fields["values"][0], values, strict=True):
+        if not (saved == value or abs(saved - value) <= _SAME * abs(saved)):
+            raise InputError(
+                f"{file} is the front of another problem: {name} of its first design is {abs(saved):.6g}, but "
+                f"{abs(value):.6g} for this problem (SI); {remedy}"
+            )
+
+
+def _objectives(problem: Problem) -> list[list[Any]]:
+    return [[objective.quantity, objective.sense, objective.target] for objective in problem.objectives]
+
+
+def _array(rows: list[Any], width: int) -> Array:
+    return np.array(rows, dtype=np.float64).reshape(len(rows), width)
+
+
+def _finite(value: Any) -> Any:
+    """Return a value with texts in place of numbers that JSON does not have."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    return value
+
+
+def _number(value: Any) -> Any:
+    return float(value) if value in ("inf", "-inf", "nan") else value
