@@ -314,7 +314,7 @@ class Problem:
         machine, sizes = one_design(self.mechanism, design)
         warn_of_lengths(self, sizes, self._greatest)
         linkage = Linkage(sizes[0], sizes[1], sizes[2], machine.branch)
-        record: dict[str, Any] = question_to("design", question).record(machine, linkage, self, inputs)
+        record: dict[str, Any] = question_to("design", question).answer(machine, linkage, self, inputs)
         return record
 
     def swing(
