@@ -19,10 +19,12 @@ if TYPE_CHECKING:
     from ...model.machine.mechanism import Mechanism
 
 GROUP = "slidercrank.questions"
+SUBJECTS = {"design": "a design", "front": "a front", "runs": "several runs", "job": "a job"}
+"""What a question can be about, in messages."""
 _REMEDIES = {
     "front": "write it like front.ask(question)",
     "job": "write it like problem.ask(question)",
-    "runs": "compare them by the command",
+    "runs": "use the command of that name, or a client of a service",
 }
 
 
@@ -87,5 +89,5 @@ def question_to(subject: str, name: str) -> Any:
             raise InputError(
                 f"the question {name} needs one design; got none; name one, as a row of a front or lengths"
             )
-        raise InputError(f"the question {name} needs a {of}; got a {subject}; {_REMEDIES[of]}")
+        raise InputError(f"the question {name} needs {SUBJECTS[of]}; got a {subject}; {_REMEDIES[of]}")
     return questions()[name]

@@ -12,10 +12,12 @@ from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.units import quote
 from ...optimise.job.model import Job as JobModel
+from ...optimise.problem.questions import SUBJECTS
 from ..designs.columns import find_column
 from ..designs.picking_options import require_single_choice
 from ..designs.stored_designs import front_of, stored_design
 from ..presets.jobs import shipped_jobs
+from ..questions.compare.runs import ComparedRun, compared_run
 from ..questions.discovery import (
     ALL,
     DESIGN_QUESTIONS,
@@ -40,7 +42,8 @@ _TABLES = ", ".join(f"{name} ({field.description})" for name, field in JobModel.
 _SHOWN = [f"{name} ({topic.shows})" for name, topic in TOPICS.items()]
 _SHOWN += [f"{name} ({command.help.partition('.')[0]}; alone)" for name, command in QUESTION_COMMANDS.items()]
 _SHOWN += [
-    f"{name} ({one.help.partition('.')[0]}; alone, of a {one.subject})" for name, one in FRONT_OR_JOB_QUESTIONS.items()
+    f"{name} ({one.help.partition('.')[0]}; alone, of {SUBJECTS[one.subject]})"
+    for name, one in FRONT_OR_JOB_QUESTIONS.items()
 ]
 _INPUTS: dict[str, dict[str, Any]] = {}
 for _topic in QUESTIONS.values():
@@ -119,6 +122,9 @@ class Design:
     crank: Dimension = None
     rod: Dimension = None
     offset: Dimension = None
+    runs: Annotated[list[str], Field(description="Names of the runs that `compare` is about.", max_length=50)] = field(
+        default_factory=list
+    )
 
     def machine(self, call: Call) -> Machine:
         """Return the machine. Raises `InputError` without one, and for two."""
@@ -150,6 +156,12 @@ class Design:
             require_single_choice(self.design, result, has_other_choice=False)
             row = self.design - 1
         return folder, front_of(call.problem_of_run(folder, result), result), row
+
+    def compared_runs(self, call: Call) -> list[ComparedRun]:
+        """Return several runs. Raises `InputError` for a single run or a job."""
+        if self.run is not None or self.job is not None:
+            raise InputError(f"this topic needs runs; got a {'run' if self.run else 'job'}; list the names of all runs")
+        return [compared_run(*call.run(name)) for name in self.runs]
 
     def _require_no_lengths(self) -> None:
         for name in self.lengths:

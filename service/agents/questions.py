@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -16,6 +16,7 @@ from ...objectives.units import closest
 from ...optimise.job.messages import nodes_at, toml
 from ...optimise.job.model import Job
 from ...optimise.job.schema import schema_of
+from ...optimise.problem.questions import SUBJECTS
 from ..designs.quantity_facts import facts_of_all
 from ..designs.rotating_crank import require_rotating_crank
 from ..jobs.find_run import run_folders
@@ -31,6 +32,7 @@ from .inputs import Design, Files, JobInput, TopicRequest
 
 if TYPE_CHECKING:
     from ...objectives.kinds import System
+    from ...optimise.problem.problem import Problem
     from ..render.blocks import Block
     from .inputs import Machine
 
@@ -56,7 +58,10 @@ def list_contents(call: Call) -> ToolAnswer:
         *("Included jobs:", *(f"  {job['name']}: {job['sentence'] or job['title']}" for job in jobs)),
         *(
             "Topics:",
-            *(f"  {topic['name']}, of a {topic['of']}: {topic['shows'].partition(chr(10))[0]}" for topic in topics),
+            *(
+                f"  {topic['name']}, of {SUBJECTS[topic['of']]}: {topic['shows'].partition(chr(10))[0]}"
+                for topic in topics
+            ),
         ),
         *("Quantities:", f"  {', '.join(facts['name'] for facts in quantities)}"),
         *("Runs, newest first:", *(f"  {run['run']}: {run['message']}" for run in runs)),
@@ -113,7 +118,7 @@ def ask(call: Call, *, subject: Design, question: TopicRequest) -> ToolAnswer:
     """Analyse one design: all its quantities, how it meets the rules of its job, and topics such as static_forces.
 
     The design is one of a run, its knee if none is named, or has lengths of your own for a job. Some topics are of
-    the front of a run, such as wish, or of a job, such as sweep.
+    the front of a run, such as wish, of several runs, compare, or of a job, such as sweep.
     """
     if question.alone in FRONT_OR_JOB_QUESTIONS:
         return _ask_front_or_job(call, subject, question, FRONT_OR_JOB_QUESTIONS[question.alone])
@@ -195,15 +200,18 @@ def _analyse_by_command(name: str, machine: Machine, question: TopicRequest) -> 
 def _ask_front_or_job(
     call: Call, subject: Design, question: TopicRequest, definition: FrontOrJobQuestion
 ) -> ToolAnswer:
-    """Answer a question about the front of a run, or about a job."""
+    """Answer a question about the front of a run, several runs, or a job."""
     place, row, inputs = dict[str, Any](), None, question.inputs
-    if definition.subject == "job":
-        target: Any = subject.problem(call)
-        problem, inputs = target, subject.lengths | inputs
+    problem: Problem | None = None
+    if definition.subject == "runs":
+        target: Any = subject.compared_runs(call)
+    elif definition.subject == "job":
+        target = problem = subject.problem(call)
+        inputs = subject.lengths | inputs
     else:
         folder, target, row = subject.front(call)
         problem, place = target.problem, {"run": path_text(folder)}
-    with ending_own(problem):
+    with nullcontext() if problem is None else ending_own(problem):
         result = definition.ask(target, inputs, row=row, listener=SearchListener(cancelled=call.cancelled))
     text = _answer_text(result.blocks, result.notes, question.units)
     return ToolAnswer(place | result.record(question.units), text, is_error=not result.is_satisfied)

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError, ServiceError
 from ...model.file_names import path_from_text
+from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..runs.result import Result, Row, read_row
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import result_from
@@ -208,6 +209,16 @@ class Client(Designs):
         """
         ways = without_none(knee=knee or None, topsis=topsis, lexicographic=lexicographic)
         return self._connection.ask(f"jobs/{number}/pick", {"where": list(where), **ways})
+
+    def comparison(self, numbers: Collection[int], **inputs: float) -> Record:
+        """Return the comparison of several jobs' fronts, as `slidercrank compare --json` prints it.
+
+        inputs: tolerance, the fraction of an objective's range that counts as equal.
+        """
+        question = FRONT_OR_JOB_QUESTIONS["compare"]
+        query = {"job": list(numbers), **question.read(inputs, None)}
+        record: Record = self._connection.ask(question.path, query)[question.key]
+        return record
 
     def figures(self, number: int) -> list[str]:
         """Return the names of the figures of a front; each design has one too, called design_1 and so on."""

@@ -38,6 +38,8 @@ class Designs:
         if question in FRONT_OR_JOB_QUESTIONS:
             if not FRONT_OR_JOB_QUESTIONS[question].path:
                 raise InputError(f"a service cannot answer {question}; use the command of that name, or problem.ask")
+            if FRONT_OR_JOB_QUESTIONS[question].subject == "runs":
+                raise InputError(f"{question} needs several jobs; got one; call client.comparison([1, 2])")
             return self._ask_wider(FRONT_OR_JOB_QUESTIONS[question], number, design, inputs)
         if design is None:
             raise InputError(f"{question} needs a design; got none; give its number")

@@ -11,10 +11,13 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
+from slidercrank.model.errors import InputError
 from slidercrank.optimise.decisions.compare import compare
 from slidercrank.optimise.front.front import ParetoFront
+from slidercrank.service.agents.call import Call
+from slidercrank.service.agents.server import TOOLS
 from slidercrank.service.figures.comparison import MOST_RUNS, PlottedRun, comparison_matrix
-from slidercrank.service.runs.result import result_of
+from slidercrank.service.runs.result import json_ready, result_of
 from slidercrank.service.runs.run_folder import RunFolder
 from tests.service import fronts
 from tests.service.conftest import Command
@@ -139,3 +142,34 @@ def test_runs_are_told_apart_without_colour() -> None:
     fills = ["white" if fill == "none" else fill for fill in (line.get_markerfacecolor() for line in lines)]
     greys = [float(np.dot(to_rgb(fill), (0.299, 0.587, 0.114))) for fill in fills]
     assert min(abs(a - b) for a, b in pairwise(greys)) > 0.2
+
+
+def test_agents_receive_what_the_command_prints(names: list[str], runs: Path, command: Command) -> None:
+    (ask,) = (tool for tool in TOOLS if tool.name == "ask")
+    call = Call(runs, frozenset(), lambda: False, lambda _: None)
+    for units in ("metric", "inch"):
+        inputs = {"runs": names, "topics": ["compare"], "inputs": {"tolerance": 0.01}, "units": units}
+        answer = ask.execute(call, inputs)
+        asked = ("compare", *names, "--tolerance", 0.01, "--units", units)
+        assert json_ready(answer.record) == json.loads(command(*asked, "--json").stdout)
+        assert answer.text.split() == command(*asked).stdout.split()
+    for wrong, rule in (
+        ({"run": names[0]}, "this topic needs runs; got a run; "),
+        ({"runs": names[:1]}, "a comparison needs at least two runs; got one; "),
+        ({"runs": [names[0], names[0]]}, "a run may be named only once; "),
+        ({"runs": names, "inputs": {"tolerance": -1.0}}, "tolerance must be at least 0.0; got -1.0; "),
+    ):
+        with pytest.raises(InputError, match=rule):
+            ask.execute(call, {"topics": ["compare"], **wrong})
+
+
+def test_the_command_says_what_differs_between_the_jobs(runs: Path, tmp_path: Path, command: Command) -> None:
+    job = fronts.job_file(tmp_path)
+    other = tmp_path / "other.toml"
+    other.write_text(job.read_text(encoding="utf-8").replace('"600 mm"', '"700 mm"'), encoding="utf-8")
+    one, two = keep(runs, "one", part(slice(0, 20)), job), keep(runs, "two", part(slice(10, 30), 2), other)
+    record = json.loads(command("compare", one, two, "--json").stdout)
+    assert record["differences"] == [{"place": "variables.rod", "values": ["60 mm to 600 mm", "60 mm to 700 mm"]}]
+    table = command("compare", one, two).stdout.partition("What differs between the jobs")[2]
+    assert table.split() == ["Place", "in", "the", "job", one, two, "variables.rod", *["60", "mm", "to", "600", "mm"],
+                             *["60", "mm", "to", "700", "mm"]]  # fmt: skip

@@ -8,7 +8,7 @@ from ..typed_input import TypedInput
 QUESTION = FrontOrJobQuestion(
     package=__name__,
     subject="job",
-    place=1005,
+    place=1006,
     help="""Sweep quantities over one or two of crank, rod, offset and speed.
 
     Where the linkage cannot rotate fully, or friction locks it, there is no value; the reason is shown instead.""",

@@ -10,8 +10,12 @@ from dataclasses import replace
 from typing import Any
 
 import httpx
+import numpy as np
 import pytest
 
+from slidercrank.model.errors import InputError
+from slidercrank.optimise.decisions.compare import compare
+from slidercrank.service.client import Client
 from slidercrank.service.designs.front_comparison import NEAR
 from slidercrank.service.jobs.differences import differences
 from slidercrank.service.store import Store
@@ -94,6 +98,31 @@ def test_the_best_of_each_objective_is_said_with_who_has_it(client: httpx.Client
     assert f"best time ratio: run {second} with {most + 1:.4g}, against {most:.4g} of run {first}" in found["sentences"]
     assert any(one.startswith("best least transmission angle: all reach") for one in found["sentences"])
     assert found["differences"] == []
+
+
+def test_measures_are_those_of_the_fronts_and_left_out_for_other_objectives(
+    store: Store, client: httpx.Client, solved: Solved
+) -> None:
+    chance = random.Random(6)
+    rows = [moved(solved, chance) for _ in range(2)]
+    numbers = [put_in(store, replace(solved.result, exact=None), TABLES, designs=own) for own in rows]
+    values = [np.array([[-float(str(row[key])) for key in KEYS] for row in own]) for own in rows]
+    with Client(str(client.base_url).removesuffix("/api/v1")) as service:
+        found = service.comparison(numbers, tolerance=0.01)
+        expected = compare(values, tolerance=0.01)
+        assert found["tolerance"] == 0.01
+        assert [run["run"] for run in found["runs"]] == [f"run {number}" for number in numbers]
+        assert np.array(found["coverage"]) == pytest.approx(expected.coverage)
+        assert np.array(found["epsilon"]) == pytest.approx(expected.epsilon)
+        assert found["dominates"] == expected.dominates.tolist()
+        fewer = replace(solved.result, exact=None, objectives=solved.result.objectives[:1])
+        measures = service.comparison([numbers[0], put_in(store, fewer, TABLES)])
+        assert measures.keys() == {"sentences", "differences"}
+        assert measures["sentences"][0].startswith("best time ratio: ")
+        with pytest.raises(InputError, match="compare may only be given tolerance; got of"):
+            service.comparison(numbers, of=1.0)
+        with pytest.raises(InputError, match="compare needs several jobs; got one"):
+            service.ask(numbers[0], None, "compare")
 
 
 def test_runs_without_designs_have_no_sentences_and_one_run_twice_is_refused(

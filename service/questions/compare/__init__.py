@@ -1,0 +1,26 @@
+"""Fronts of several runs compared with each other: numbers and text."""
+
+from ..front_or_job_question import FrontOrJobQuestion
+from ..typed_input import TypedInput
+
+QUESTION = FrontOrJobQuestion(
+    package=__name__,
+    subject="runs",
+    place=1005,
+    path="comparison",
+    posted=False,
+    key="comparison",
+    help="""Compare the fronts of several runs: hypervolume, coverage, epsilon, dominance, effort.
+
+    The runs must have the same objectives; their constraints and machines may differ. Also says which run is better
+    where, and what differs between the jobs.""",
+    inputs=(
+        TypedInput(
+            "tolerance",
+            help="Fraction of an objective's range that counts as equal.",
+            usual="1e-06",
+            least=0.0,
+            limits={"ge": 0.0, "allow_inf_nan": False},
+        ),
+    ),
+)

@@ -1,0 +1,206 @@
+"""Fronts of several runs compared: measures, which run is better where, and differences between the jobs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import combinations
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ....model.errors import InputError
+from ....objectives.kinds import TIME, System
+from ....optimise.decisions.compare import compare
+from ...designs.display_units import objective_in
+from ...designs.front_comparison import comparison_sentences
+from ...designs.picking_options import minimised_values
+from ...jobs.differences import differences
+from ...render.blocks import Block, Phrase, Sentence, Table, Text, Value, column, heading, note, sentence
+from ...runs.result import Result, Wanted, wanted_record
+from ..front_or_job_question import Answer
+
+if TYPE_CHECKING:
+    from ....optimise.decisions.compare import Comparison
+    from .runs import ComparedRun
+
+_SYSTEMS: tuple[System, ...] = ("metric", "inch")
+
+
+def answer(runs: Sequence[ComparedRun], *, tolerance: float = 1e-6, **_: Any) -> Answer:
+    """Return measures of the fronts, sentences, and differences between the jobs.
+
+    Runs with other objectives, or with undefined ones, have no measures; other objectives do not satisfy the request.
+    Raises `InputError` for fewer than two runs and for a repeated run.
+    """
+    if len(runs) < 2:
+        raise InputError("a comparison needs at least two runs; got one; name another")
+    for index, run in enumerate(runs):
+        if any(run.place == other.place for other in runs[:index]):
+            raise InputError(f"a run may be named only once; got {run.name} twice; leave one out")
+    solved = [run for run in runs if run.result.designs]
+    message = _objectives_message(solved)
+    comparison = None
+    if len(solved) > 1 and not message:
+        solved = [replace(run, result=_ordered(run.result, solved[0].result)) for run in solved]
+        values = [minimised_values(run.result) for run in solved]
+        if all(np.isfinite(front).all() for front in values):
+            comparison = compare(values, tolerance=tolerance)
+    places = differences([run.tables for run in runs if run.tables is not None])
+    sentences = {system: _sentences(solved, system) for system in _SYSTEMS}
+
+    def record(units: System) -> dict[str, Any]:
+        measures = {} if comparison is None else _measures(solved, comparison, units)
+        found = [{"place": place, "values": list(values)} for place, values in places]
+        return measures | {"sentences": sentences[units], "differences": found}
+
+    blocks = [] if comparison is None else [*_tables(solved, comparison), *_verdict(solved, comparison)]
+    blocks += _better(runs, sentences)
+    names = [run.name for run in runs if run.tables is not None]
+    return Answer(
+        record=record, blocks=[*blocks, *_differences(names, places)], is_satisfied=not message, message=message
+    )
+
+
+def _objectives_message(runs: Sequence[ComparedRun]) -> str:
+    """Return the rule if a run has other objectives than the first one."""
+    for run in runs[1:]:
+        if {_key(item) for item in run.result.objectives} != {_key(item) for item in runs[0].result.objectives}:
+            words = [f"{one.name} has {_objectives(one.result)}" for one in (runs[0], run)]
+            return f"the runs must have the same objectives; {', '.join(words)}"
+    return ""
+
+
+def _key(objective: Wanted) -> tuple[str, str, float | None]:
+    return objective.quantity, objective.sense, objective.target
+
+
+def _ordered(result: Result, first: Result) -> Result:
+    """Return a result with its objectives in the order of the first one."""
+    by_key = {_key(item): item for item in result.objectives}
+    return replace(result, objectives=tuple(by_key[_key(item)] for item in first.objectives))
+
+
+def _objectives(result: Result, system: System = "metric") -> str:
+    return ", ".join(
+        f"{item.sense} {item.quantity}" + ("" if item.target is None else f" {item.target:g} {item.unit}".rstrip())
+        for item in (objective_in(objective, system) for objective in result.objectives)
+    )
+
+
+def _sentences(solved: Sequence[ComparedRun], system: System) -> list[str]:
+    """Return which run is better where, in words; nothing for a single run with designs."""
+    if len(solved) < 2:
+        return []
+    return comparison_sentences([run.name for run in solved], [run.result for run in solved], system)
+
+
+def _better(runs: Sequence[ComparedRun], sentences: Mapping[System, Sequence[str]]) -> list[Block]:
+    """Return which run is better where as sentences; one that begins with the name of a folder keeps its letter."""
+    folders = tuple(run.name for run in runs if isinstance(run.place, Path))
+    texts = [
+        [text if text.startswith(folders) else f"{text[:1].upper()}{text[1:]}" for text in sentences[system]]
+        for system in _SYSTEMS
+    ]
+    return [sentence("{text}.", text=Phrase(*pair)) for pair in zip(*texts, strict=True)]
+
+
+def _measures(solved: Sequence[ComparedRun], comparison: Comparison, units: System) -> dict[str, Any]:
+    return {
+        "objectives": [wanted_record(objective_in(item, units)) for item in solved[0].result.objectives],
+        "tolerance": comparison.tolerance,
+        "union_hypervolume": comparison.union,
+        "runs": [
+            {
+                "run": run.name,
+                "name": run.result.name,
+                "method": run.method,
+                "seed": run.result.seed,
+                "status": run.result.status,
+                "designs": int(comparison.sizes[index]),
+                "in_union": int(comparison.in_union[index]),
+                "hypervolume": float(comparison.hypervolumes[index]),
+                "share_of_union": float(comparison.shares[index]),
+                "evaluations": run.result.evaluations,
+                "seconds": run.result.seconds,
+            }
+            for index, run in enumerate(solved)
+        ],
+        "coverage": comparison.coverage.tolist(),
+        "epsilon": comparison.epsilon.tolist(),
+        "dominates": comparison.dominates.tolist(),
+    }
+
+
+def _tables(solved: Sequence[ComparedRun], comparison: Comparison) -> list[Block]:
+    """Return the measures of the fronts and of each pair as tables."""
+    titles = ("run", "method", "seed", "designs", "in union front", "hypervolume", "% of union's", "evaluated")
+    rows: list[tuple[Text, ...]] = [
+        (
+            f"{index + 1} {run.name}",
+            run.method,
+            str(run.result.seed),
+            str(comparison.sizes[index]),
+            str(comparison.in_union[index]),
+            Value(float(comparison.hypervolumes[index]), decimals=5),
+            Value(100.0 * float(comparison.shares[index]), decimals=3),
+            str(run.result.evaluations),
+            Value(run.result.seconds, TIME, decimals=1),
+        )
+        for index, run in enumerate(solved)
+    ]
+    columns = [column(title, left=index == 0) for index, title in enumerate(titles)]
+    objectives = Phrase(*(_objectives(solved[0].result, system) for system in _SYSTEMS))
+    coverage = "Coverage: % of the column's designs that the row's designs weakly dominate"
+    epsilon = "Additive epsilon: largest shortfall of the row against the column, in ranges"
+    return [
+        heading("{count} runs: {objectives}", count=str(len(solved)), objectives=objectives),
+        note(
+            "Objectives are scaled by their ranges over the combined front. Hypervolume is a fraction of the box that "
+            "extends to 1.1 ranges."
+        ),
+        Table((*columns, column("time", TIME)), tuple(rows), ruled=True),
+        *_pairs(coverage, [[Value(100.0 * value, decimals=1) for value in row] for row in comparison.coverage]),
+        *_pairs(epsilon, [[Value(value, digits=3) for value in row] for row in comparison.epsilon]),
+    ]
+
+
+def _pairs(title: str, values: Sequence[Sequence[Value]]) -> list[Block]:
+    """Return a number for each pair of runs, which their places in the list of runs name."""
+    places = [str(index) for index in range(1, len(values) + 1)]
+    rows = (
+        (place, *("" if place == other else value for other, value in zip(places, row, strict=True)))
+        for place, row in zip(places, values, strict=True)
+    )
+    return [heading(title), Table((column(), *map(column, places)), tuple(rows), ruled=True)]
+
+
+def _verdict(solved: Sequence[ComparedRun], comparison: Comparison) -> list[Block]:
+    names = [run.name for run in solved]
+    sentences = []
+    open_pairs = 0
+    for a, b in combinations(range(len(names)), 2):
+        first, second = (a, b) if comparison.dominates[a, b] else (b, a)
+        if comparison.dominates[first, second]:
+            sentences.append(f"{names[first]} dominates {names[second]}: it matches or beats all its designs.")
+        elif comparison.coverage[a, b] == comparison.coverage[b, a] == 1.0:
+            sentences.append(f"{names[a]} and {names[b]} have the same front, within the tolerance.")
+        else:
+            open_pairs += 1
+    if open_pairs:
+        pairs = "the two" if len(names) == 2 else "all other pairs" if sentences else "any two"
+        sentences.append(f"Neither of {pairs} dominates: each has designs that the other does not match.")
+    return [sentence("{text}", text=text) for text in sentences]
+
+
+def _differences(names: Sequence[str], places: Sequence[tuple[str, Sequence[str | None]]]) -> list[Block]:
+    """Return the differences between the jobs of runs as a table."""
+    title = Sentence("What differs between the jobs", "heading", space_before=True)
+    if len(names) < 2:
+        return []
+    if not places:
+        return [title, sentence("The jobs are the same but for their names.")]
+    columns = (column(head, left=True) for head in ("Place in the job", *names))
+    rows = ((place, *(value or "–" for value in values)) for place, values in places)
+    return [title, Table(tuple(columns), tuple(rows))]

@@ -1,0 +1,48 @@
+"""Runs that are compared."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ....model.errors import SlidercrankError
+from ...runs.result import Result
+from ...runs.stored_runs import job_file
+
+
+@dataclass(frozen=True)
+class ComparedRun:
+    """A run that is compared.
+
+    name: its name in the answer. place: its folder, or its number in the store. tables: tables of its job, None without
+    a readable one.
+    """
+
+    name: str
+    place: Path | int
+    result: Result
+    tables: Mapping[str, Any] | None
+
+    @property
+    def method(self) -> str:
+        """The search method of its job."""
+        from ....optimise.job.model import Job
+
+        if self.tables is None:
+            return "unknown"
+        default = Job.model_fields["optimiser"].default.method
+        return str(self.tables.get("optimiser", {}).get("method", default))
+
+
+def compared_run(folder: Path, result: Result) -> ComparedRun:
+    """Return the run of a folder. result: its result."""
+    from ....optimise.job import read_job
+
+    file, tables = job_file(folder), None
+    with suppress(SlidercrankError):  # a job that cannot be read: its front can be compared all the same
+        tables = None if file is None else read_job(file)
+    place = folder.resolve()
+    return ComparedRun(place.name, place, result, tables)
