@@ -1,5 +1,7 @@
 /** Lines of designs over parallel axes: drawn one by one, and found under the pointer. */
 
+import { nearest } from "./by_pointer.js";
+
 const BESIDE = 8; // pixels up or down from a line within which it is pointed at
 
 /**
@@ -29,15 +31,11 @@ export function nearestLine({ across, heights }, mask, x, y) {
   const right = after < 0 ? count - 1 : after; // beyond the ends it is the end that counts
   const left = after <= 0 ? right : right - 1;
   const share = right === left ? 0 : (x - across[left]) / (across[right] - across[left]);
-  /** @type {number | null} */
-  let nearest = null;
-  let least = BESIDE;
-  for (let row = 0; row < mask.length; row += 1) {
-    if (!mask[row]) continue;
+  /** @param {number} row */
+  const distance = (row) => {
     const [from, to] = [heights[row * count + left], heights[row * count + right]];
-    if (from < 0 || to < 0) continue; // no line is drawn there
-    const distance = Math.abs(from + share * (to - from) - y);
-    if (distance < least) [nearest, least] = [row, distance];
-  }
-  return nearest;
+    const isDrawn = mask[row] && from >= 0 && to >= 0;
+    return isDrawn ? Math.abs(from + share * (to - from) - y) : Infinity;
+  };
+  return nearest(mask.length, distance, BESIDE);
 }

@@ -7,6 +7,7 @@ import { histograms } from "./histogram.js";
 import { line, nearestLine } from "./lines.js";
 import { FONT, layers, rgb, writeOver } from "./paint.js";
 import { byKeys } from "./by_keys.js";
+import { byPointer } from "./by_pointer.js";
 import { colours, logScale, scale } from "./scale.js";
 import { shadesOf } from "./shades.js";
 
@@ -61,7 +62,6 @@ export function parallel(chart) {
   let view; // nothing until it is drawn first
   /** @type {{ axis: number, from: number, span: number[] | null, moved: boolean } | null} */
   let dragged = null;
-  let pressed = false; // between the axes, where a click opens a design
 
   /** Lay out: where the axes are, and where every design is on them. */
   function lay() {
@@ -262,51 +262,31 @@ export function parallel(chart) {
     return [sorted(inside(limit.low, low), inside(limit.high, high))];
   }
 
-  /** @param {MouseEvent} event */
-  function axisAt(event) {
-    const box = stack.top.getBoundingClientRect();
-    const x = event.clientX - box.left;
-    const y = Math.min(view.height - ROOM, Math.max(ROOM, event.clientY - box.top));
+  /** @param {{ x: number, y: number }} here */
+  function axisAt({ x, y }) {
     const axis = view.across.findIndex((at) => Math.abs(at - x) <= NEAR);
-    return { axis, x, y };
+    return { axis, y: Math.min(view.height - ROOM, Math.max(ROOM, y)) };
   }
 
-  /** Return the design whose line passes nearest, a chosen one, or null. @param {MouseEvent} event */
-  function under(event) {
-    const box = stack.top.getBoundingClientRect();
-    return nearestLine(view, chart.limits.mask, event.clientX - box.left, event.clientY - box.top);
-  }
-
-  /** @param {PointerEvent} event */
-  function begin(event) {
-    if (!view || event.button !== 0) return;
-    const { axis, y } = axisAt(event);
-    if (axis < 0) {
-      pressed = true;
-      return;
-    }
+  /** Take hold of an axis, of an end of its limit, or of all of it; return whether there is an axis. @param {{ x: number, y: number }} here @param {PointerEvent} event */
+  function begin(here, event) {
+    const { axis, y } = axisAt(here);
+    if (axis < 0) return false;
     event.preventDefault();
-    stack.top.setPointerCapture(event.pointerId);
     const limit = chart.limits.of.get(view.axes[axis].key);
     const [span] = limit && !limit.words ? spans(axis, limit) : [];
     dragged = { axis, from: y, span: null, moved: false };
     if (span && Math.abs(y - span[0]) <= EDGE) dragged.from = span[1];
     else if (span && Math.abs(y - span[1]) <= EDGE) dragged.from = span[0];
     else if (span && y > span[0] && y < span[1]) dragged = { ...dragged, from: y, span };
+    return true;
   }
 
-  /** @param {PointerEvent} event */
-  function move(event) {
-    if (!view) return;
-    if (!dragged) {
-      const row = under(event);
-      stack.top.style.cursor =
-        axisAt(event).axis >= 0 ? "ns-resize" : row === null ? "default" : "pointer";
-      chart.point(row);
-      return;
-    }
-    const pending = axisAt(event).y;
-    if (!dragged.moved && Math.abs(pending - dragged.from) < 3) return;
+  /** Set the limit that a drag to a place is; return whether it is far enough for one. @param {{ x: number, y: number }} here */
+  function drag(here) {
+    if (!dragged) return false;
+    const pending = axisAt(here).y;
+    if (!dragged.moved && Math.abs(pending - dragged.from) < 3) return false;
     dragged.moved = true;
     let ends = [dragged.from, pending];
     if (dragged.span) {
@@ -324,7 +304,7 @@ export function parallel(chart) {
       chart.limit(key, {
         words: words.filter((_, index) => index >= first - 0.3 && index <= second + 0.3),
       });
-      return;
+      return true;
     }
     const bit = (at(high) - at(low)) / 500; // of the axis: nearer than this to its end is at the end
     const step = value(at(low) + bit) - low;
@@ -339,26 +319,26 @@ export function parallel(chart) {
       low: first <= low + step ? null : tidy(first),
       high: second >= value(at(high) - bit) ? null : tidy(second),
     });
+    return true;
   }
 
-  /** @param {PointerEvent} event */
-  const end = (event) => {
-    const row =
-      pressed && event.type === "pointerup" && axisAt(event).axis < 0 ? under(event) : null;
-    [dragged, pressed] = [null, false];
-    if (row !== null)
-      (event.shiftKey || event.ctrlKey || event.metaKey ? chart.select : chart.open)(row);
-  };
-  /** @param {MouseEvent} event */
-  const clear = (event) => {
-    const { axis } = axisAt(event);
+  const at = byPointer(stack.top, chart, {
+    isDrawn: () => Boolean(view),
+    under: ({ x, y }) => nearestLine(view, chart.limits.mask, x, y),
+    cursor: (here, row) =>
+      axisAt(here).axis >= 0 ? "ns-resize" : row === null ? "default" : "pointer",
+    begin,
+    drag,
+    end: (here) => {
+      const isOnAxis = dragged !== null || axisAt(here).axis >= 0;
+      dragged = null;
+      return !isOnAxis;
+    },
+  });
+  stack.top.addEventListener("dblclick", (event) => {
+    const { axis } = axisAt(at(event));
     if (axis >= 0) chart.limit(view.axes[axis].key, null);
-  };
-  stack.top.addEventListener("pointerdown", begin);
-  stack.top.addEventListener("pointermove", move);
-  stack.top.addEventListener("pointerup", end);
-  stack.top.addEventListener("pointercancel", end);
-  stack.top.addEventListener("dblclick", clear);
+  });
   let along = 0; // the axis along which keys go from design to design
   byKeys(place, {
     mask: () => chart.limits.mask,
@@ -379,10 +359,6 @@ export function parallel(chart) {
         by: key === "ArrowUp" ? -1 : 1,
       };
     },
-  });
-  stack.top.addEventListener("pointerleave", () => {
-    pressed = false;
-    if (!dragged) chart.point(null);
   });
 
   return {

@@ -3,6 +3,7 @@
 import { svg } from "../lib/dom.js";
 import { inShown } from "../lib/numbers.js";
 import { headed } from "../front/columns.js";
+import { nearest } from "./by_pointer.js";
 import { range, scale } from "./scale.js";
 
 const [WIDTH, HEIGHT] = [560, 340];
@@ -114,14 +115,12 @@ function pointed(picture, series, place, { at, open }) {
       ((clientX - box.left) * WIDTH) / box.width,
       ((clientY - box.top) * HEIGHT) / box.height,
     ];
-    /** @type {(typeof all)[0] | null} */
-    let nearest = null;
-    let least = NEAR * NEAR;
-    for (const one of all) {
-      const distance = (one.at[0] - x) ** 2 + (one.at[1] - y) ** 2;
-      if (distance < least) [nearest, least] = [one, distance];
-    }
-    return nearest;
+    const found = nearest(
+      all.length,
+      (n) => (all[n].at[0] - x) ** 2 + (all[n].at[1] - y) ** 2,
+      NEAR * NEAR,
+    );
+    return found === null ? null : all[found];
   };
   /** @param {(typeof all)[0] | null} one */
   const mark = (one) => {

@@ -5,6 +5,7 @@ import { drawAxes, wordTicks } from "./axes.js";
 import { drawLasso, thinned } from "./lasso.js";
 import { FONT, layers, squares, writeOver } from "./paint.js";
 import { byKeys } from "./by_keys.js";
+import { byPointer, nearest } from "./by_pointer.js";
 import { colours, logScale, range, scale } from "./scale.js";
 import { shadesOf } from "./shades.js";
 
@@ -226,49 +227,40 @@ export function scatter(chart) {
     writeOver(context, name, x + (left ? -9 : 9), y - 5, ink);
   }
 
-  /** @param {MouseEvent} event */
-  function at(event) {
-    const { left, top: above } = top.getBoundingClientRect();
-    return { x: event.clientX - left, y: event.clientY - above };
-  }
-
-  /** Return the design that is pointed at, a chosen one, or null. @param {{ x: number, y: number }} options */
-  function under({ x, y }) {
-    const { across, up } = view;
-    const { mask } = chart.limits;
-    /** @type {number | null} */
-    let nearest = null;
-    let least = NEAR * NEAR;
-    for (let row = 0; row < mask.length; row += 1) {
-      if (!mask[row]) continue;
-      const distance = (across[row] - x) ** 2 + (up[row] - y) ** 2;
-      if (distance < least) [nearest, least] = [row, distance];
-    }
-    return nearest;
-  }
-
-  /** @type {{ x: number, y: number } | null} */
-  let from = null;
-  top.addEventListener("pointerdown", (event) => {
-    if (!view || event.button !== 0) return;
-    from = at(event);
-    top.setPointerCapture(event.pointerId);
+  /** @type {{ x: number, y: number }} */
+  let from; // where the button went down
+  byPointer(top, chart, {
+    isDrawn: () => Boolean(view),
+    under: ({ x, y }) => {
+      const { across, up } = view;
+      const { mask } = chart.limits;
+      /** @param {number} row */
+      const distance = (row) =>
+        mask[row] ? (across[row] - x) ** 2 + (up[row] - y) ** 2 : Infinity;
+      return nearest(mask.length, distance, NEAR * NEAR);
+    },
+    cursor: (_, row) => (row === null ? "crosshair" : "pointer"),
+    begin: (here) => {
+      from = here;
+      return true;
+    },
+    drag,
+    end: () => {
+      const drawn = box ?? line;
+      [box, line] = [null, null];
+      if (drawn) drawOver();
+      return true;
+    },
   });
-  top.addEventListener("pointermove", (event) => {
-    if (!view) return;
-    const here = at(event);
-    if (!from) {
-      const row = under(here);
-      top.style.cursor = row === null ? "crosshair" : "pointer";
-      chart.point(row);
-      return;
-    }
-    if (!box && !line && Math.hypot(here.x - from.x, here.y - from.y) < 5) return;
+
+  /** Draw a box or a line from where the button went down; return whether it is far enough for one. @param {{ x: number, y: number }} here */
+  function drag(here) {
+    if (!box && !line && Math.hypot(here.x - from.x, here.y - from.y) < 5) return false;
     if (free) {
       line = [...(line ?? [[from.x, from.y]]), [here.x, here.y]];
       if (line.length > 2)
         chart.lasso(thinned(line).map(([x, y]) => [view.x.value(x), view.y.value(y)]));
-      return;
+      return true;
     }
     box = {
       x: Math.min(from.x, here.x),
@@ -280,22 +272,9 @@ export function scatter(chart) {
       limitOf(chart.x(), view.x, box.x, box.right),
       limitOf(chart.y(), view.y, box.bottom, box.y),
     );
-  });
-  /** @param {PointerEvent} event */
-  const end = (event) => {
-    if (!from) return;
-    const drawn = box ?? line;
-    [from, box, line] = [null, null, null];
-    if (drawn) drawOver();
-    else if (event.type === "pointerup") {
-      const row = under(at(event));
-      if (row !== null)
-        (event.shiftKey || event.ctrlKey || event.metaKey ? chart.select : chart.open)(row);
-    }
-  };
-  top.addEventListener("pointerup", end);
-  top.addEventListener("pointercancel", end);
-  top.addEventListener("pointerleave", () => from || chart.point(null));
+    return true;
+  }
+
   byKeys(place, {
     mask: () => chart.limits.mask,
     point: chart.point,

@@ -1,0 +1,70 @@
+/** Designs of a chart by the pointer: pointed at, opened or selected by a click; what a drag does is of the chart. */
+
+/** @typedef {{ x: number, y: number }} Place pixels in the chart */
+
+/**
+ * Let the pointer reach the designs of a chart. under(here): the design there, or null. cursor(here, row): how the pointer looks there.
+ * begin(here, event): whether a drag may begin there. drag(here): a drag goes on. end(dragged): the button is up again, after a drag or
+ * without one; return whether a press without a drag may open a design.
+ * @param {HTMLElement} top
+ * @param {{ point: (row: number | null) => void, open: (row: number) => void, select: (row: number) => void }} chart
+ * @param {{
+ *   isDrawn: () => boolean, under: (here: Place) => number | null, cursor: (here: Place, row: number | null) => string,
+ *   begin: (here: Place, event: PointerEvent) => boolean, drag: (here: Place) => boolean, end: (here: Place) => boolean,
+ * }} handlers drag: whether it has moved far enough to be one
+ */
+export function byPointer(top, chart, { isDrawn, under, cursor, begin, drag, end }) {
+  let [pressed, drags, moved] = [false, false, false];
+  /** @param {MouseEvent} event @returns {Place} */
+  const at = (event) => {
+    const box = top.getBoundingClientRect();
+    return { x: event.clientX - box.left, y: event.clientY - box.top };
+  };
+  top.addEventListener("pointerdown", (event) => {
+    if (!isDrawn() || event.button !== 0) return;
+    [pressed, drags, moved] = [true, begin(at(event), event), false];
+    if (drags) top.setPointerCapture(event.pointerId);
+  });
+  top.addEventListener("pointermove", (event) => {
+    if (!isDrawn()) return;
+    const here = at(event);
+    if (drags) {
+      moved = drag(here) || moved;
+      return;
+    }
+    const row = under(here);
+    top.style.cursor = cursor(here, row);
+    chart.point(row);
+  });
+  /** @param {PointerEvent} event */
+  const ended = (event) => {
+    if (!pressed) return;
+    const isClick = end(at(event)) && !moved && event.type === "pointerup";
+    [pressed, drags] = [false, false];
+    const row = isClick ? under(at(event)) : null;
+    if (row !== null)
+      (event.shiftKey || event.ctrlKey || event.metaKey ? chart.select : chart.open)(row);
+  };
+  top.addEventListener("pointerup", ended);
+  top.addEventListener("pointercancel", ended);
+  top.addEventListener("pointerleave", () => {
+    if (drags) return;
+    pressed = false;
+    chart.point(null);
+  });
+  return at;
+}
+
+/**
+ * Return which of `count` things is nearest, null where none is nearer than `least`. distance(n): of one of them.
+ * @param {number} count @param {(n: number) => number} distance @param {number} least
+ */
+export function nearest(count, distance, least) {
+  /** @type {number | null} */
+  let found = null;
+  for (let n = 0; n < count; n += 1) {
+    const here = distance(n);
+    if (here < least) [found, least] = [n, here];
+  }
+  return found;
+}
