@@ -69,7 +69,7 @@ class Checkpoints:
 
     told: number of rounds reported so far. before: number reported by the earlier run. repeated: number of records of
     the earlier run replayed so far, out of `resumed`. ended: time of the first request to end the search, by
-    `time.perf_counter`; else None.
+    `time.perf_counter`; else None. polled: called at every poll of a step that is computed.
 
     In `Record.words` a step is two words of digest, its number of evaluations, and its number of arrays. For each array
     follow its kind (0 for floats, 1 for integers), the number and sizes of its dimensions, and its numbers.
@@ -101,6 +101,7 @@ class Checkpoints:
         self._number = len(past)
         self._pending: list[Words] = []
         self.rounds = 0
+        self.polled: Callable[[], None] | None = None
         now = time.perf_counter()
         self._start = now - (past[-1].seconds if past else 0.0)
         self._when = now
@@ -119,6 +120,8 @@ class Checkpoints:
         """Raise `Cancelled` if the search must end. Call it in every computation, at least every second."""
         if self._next is None:
             self.interrupt()
+            if self.polled is not None:
+                self.polled()
 
     def interrupt(self) -> None:
         """Raise `Cancelled` if the search must end, even during replay; for code that may never end by itself."""

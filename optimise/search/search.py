@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -150,6 +151,10 @@ class Run:
             0 if self.previous is None else self.previous._earlier_rounds + len(self.previous.round_reports)
         )
 
+    def begin_round(self, stage: str) -> None:
+        """Report a stage at every poll until the round ends, so that a long step is not silent."""
+        self.checkpoints.polled = partial(self.report_stage, stage, 0, 1)
+
     def report_round(self, stage: str, evaluators: list[Evaluator], archive: Archive) -> None:
         """Record the end of a round; evaluators: the evaluators of the archive's designs.
 
@@ -171,6 +176,7 @@ class Run:
             self.checkpoints.seconds,
         )
         self.round_reports.append(entry)
+        self.checkpoints.polled = None
         self.fronts.append(_spread_sample(feasible).copy())  # not a view, which would keep all of them
         if self.checkpoints.end_round():
             self._report(entry, self.progress)
@@ -254,6 +260,7 @@ def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = Non
     samples = problem.settings.samples or FIRST
     loose = any(evaluator.loose for evaluator in evaluators)
     bands = BANDS[1:] if loose else BANDS[:-1]
+    run.begin_round("sampling")
     for attempt, band in enumerate(bands):
         archive.band = band
         # A small feasible region needs more points before the search gives it up.
@@ -276,6 +283,7 @@ def zoom(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: R
     """Sample around sparse parts of the front, more closely in every round."""
     samples = problem.settings.samples or SAMPLES
     for step in range(len(WIDTHS)):
+        run.begin_round("zooming")
         random = generator(problem.settings.seed, 1000, step)
         rows = random.choice(len(archive), _CROWD, replace=False) if len(archive) > _CROWD else slice(None)
         parents = archive[rows]

@@ -175,3 +175,16 @@ def test_the_choice_tells_of_every_gain_that_it_weighs() -> None:
 def test_a_short_stage_is_not_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(search, "REPORT_INTERVAL", 3600.0)
     assert not [entry for entry in searched()[1] if entry.steps]
+
+
+def test_a_long_step_reports_its_stage_at_every_poll_until_its_round_ends() -> None:
+    reports: list[Progress] = []
+    run = search.Run(GIVEN, 2, stages=reports.append)
+    run.begin_round("polishing")
+    for _ in range(3):
+        run.checkpoints.poll()
+    assert [(entry.stage, entry.step, entry.steps) for entry in reports] == [("polishing", 0, 1)] * 3
+    run.report_round("polishing", [], run.archive)
+    del reports[:]
+    run.checkpoints.poll()
+    assert not reports

@@ -37,8 +37,8 @@ from ..registry import Method
 
 ROUNDS = 4
 """Rounds of the polish: the later ones fill gaps that the first one leaves."""
-BATCH = 64
-"""Designs polished together."""
+BATCH = 256
+"""Designs polished together: enough for every worker, yet not too many to lose when a process is killed."""
 _POOL = 2000  # greedy choice among more would take longer than it gains
 _FEWEST = 16  # designs polished, however few are asked for: more of them reach the best
 _STARTS = 24  # for the best value of a single objective
@@ -78,8 +78,8 @@ def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run
     for attempt in range(ROUNDS):
         for index, u in starts:
             for begin in range(0, len(u), BATCH):
-                batch = u[begin : begin + BATCH]
-                candidates.add(index, polished(evaluators[index], batch, candidates.span))
+                run.begin_round("polishing")
+                candidates.add(index, polished(evaluators[index], u[begin : begin + BATCH], candidates.span))
                 run.report_round("polishing", free, archive)
         if attempt == ROUNDS - 1 or not len(candidates) or not free:
             break
