@@ -31,12 +31,13 @@ def compare(
     before: Annotated[Path, typer.Argument(help="A recording.")],
     after: Annotated[Path, typer.Argument(help="Another one.")],
     allowed: Annotated[Path | None, typer.Option(help="Differences that are meant, TOML.")] = None,
+    data: Annotated[bool, typer.Option("--data", help="Only codes, keys, options and numbers, not words.")] = False,
 ) -> None:
     """List what differs between two recordings; exit code 1 if anything does that is not allowed."""
     from .comparing import compare, read_allowances
 
     allowances = read_allowances(allowed) if allowed else []
-    found = compare(before, after, allowances)
+    found = compare(before, after, allowances, data=data)
     for case, text in found.differences.items():
         sys.stdout.write(f"{case}\n{text}\n")
     for one in allowances:

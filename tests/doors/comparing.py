@@ -3,6 +3,7 @@
 [[allowed]]
 cases = "turn/front-*"           # names of cases, with wildcards
 lines = "crank_mm"               # a regular expression that a differing line must match; any line if left out
+added = true                     # only lines that the second recording has besides; any if left out
 reason = "lengths have four digits"
 """
 
@@ -12,25 +13,31 @@ import re
 import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from difflib import unified_diff
+from difflib import SequenceMatcher
 from fnmatch import fnmatch
 from pathlib import Path
 
 _LINES, _WIDTH = 20, 160
+_WHOLE = re.compile(r"(?:exit code|status) \d+$|--- |only in ")
+_KEY = re.compile(r'^ *("[^"]*":) ?')
+_WORD = re.compile(r'^"[^\s"]*",?$')
+_DATUM = re.compile(r"(?<![\w.-])--[a-z][a-z-]+|(?<![\w.^])[-+\u2212]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?(?!\w)")
 
 
 @dataclass
 class Allowance:
-    """Differences that are meant. used: how many lines, or whole cases, it covered."""
+    """Differences that are meant. used: how many lines, or whole cases, it covered. added: whether only new lines."""
 
     cases: str
     reason: str
     lines: str = ""
+    added: bool = False
     used: int = 0
 
     def covers(self, case: str, line: str) -> bool:
-        """Return whether a line of a case may differ; if so it is counted."""
-        covered = fnmatch(case, self.cases) and re.search(self.lines, line) is not None
+        """Return whether a line of a case, with + or - before it, may differ; if so it is counted."""
+        covered = fnmatch(case, self.cases) and re.search(self.lines, line[1:]) is not None
+        covered = covered and not (self.added and line.startswith("-"))
         self.used += covered
         return covered
 
@@ -49,28 +56,64 @@ def read_allowances(file: Path) -> list[Allowance]:
     return [Allowance(**one) for one in tomllib.loads(file.read_text(encoding="utf-8")).get("allowed", [])]
 
 
-def compare(before: Path, after: Path, allowances: list[Allowance]) -> Comparison:
-    """Compare two folders that `record` wrote."""
+def data_of(lines: list[str]) -> list[str]:
+    """Return what programs read of a record, one a line: codes, files, keys, values of one word, options, numbers.
+
+    The words of sentences are left out, their numbers are not: what was only worded otherwise is the same. Drawings
+    within HTML are left out too.
+    """
+    data: list[str] = []
+    drawing = False
+    for line in lines:
+        drawing = (drawing or line.startswith("<svg")) and not line.startswith("</svg")
+        if drawing:
+            continue
+        if _WHOLE.match(line):
+            data.append(line)
+            continue
+        key = _KEY.match(line)
+        value = line[key.end() :] if key else line.strip()
+        before = f"{key[1]} " if key else ""
+        found = [value.rstrip(",")] if _WORD.match(value) else [_plain(datum) for datum in _DATUM.findall(value)]
+        data += [f"{before}{datum}" for datum in found] or ([before.strip()] if key else [])
+    return data
+
+
+def _plain(datum: str) -> str:
+    """Return an option as it is, and a number in one way of writing it: 9.10e-03 is 0.0091."""
+    return datum if datum.startswith("--") else f"{float(datum.replace(chr(0x2212), '-')):.12g}"
+
+
+def compare(before: Path, after: Path, allowances: list[Allowance], *, data: bool = False) -> Comparison:
+    """Compare two folders that `record` wrote. data: only what programs read, see `data_of`."""
     names = sorted({str(file.relative_to(top)) for top in (before, after) for file in top.rglob("*.txt")})
     found = Comparison(cases=len(names))
     for name in names:
         case = name.removesuffix(".txt")
         old, new = before / name, after / name
         if not (old.exists() and new.exists()):
-            line = f"only in {before if old.exists() else after}"
+            line = f"-only in {before}" if old.exists() else f"+only in {after}"
             if any(one.covers(case, line) for one in allowances):
                 found.allowed += 1
             else:
-                found.differences[case] = line
+                found.differences[case] = line[1:]
             continue
         texts = [file.read_text(encoding="utf-8").splitlines() for file in (old, new)]
-        _, _, *lines = unified_diff(texts[0], texts[1], n=0, lineterm="") if texts[0] != texts[1] else ("", "")
-        changed = [line for line in lines if not line.startswith("@@")]
-        left = [line for line in changed if not any(one.covers(case, line[1:]) for one in allowances)]
+        texts = [data_of(lines) for lines in texts] if data else texts
+        changed = list(_changed(*texts))
+        left = [line for line in changed if not any(one.covers(case, line) for one in allowances)]
         found.allowed += len(changed) - len(left)
         if left:
             found.differences[case] = "\n".join(_short(left))
     return found
+
+
+def _changed(before: list[str], after: list[str]) -> Iterator[str]:
+    """Yield lines that one of two texts has and the other has not, with - or + before them."""
+    for kind, start, end, begin, stop in SequenceMatcher(None, before, after, autojunk=False).get_opcodes():
+        if kind != "equal":
+            yield from (f"-{line}" for line in before[start:end])
+            yield from (f"+{line}" for line in after[begin:stop])
 
 
 def _short(lines: list[str]) -> Iterator[str]:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from slidercrank.service.questions.discovery import TOPICS
-from tests.doors.comparing import Allowance, compare
+from tests.doors.comparing import Allowance, compare, data_of, read_allowances
 from tests.doors.contents import text_of
 from tests.doors.coverage import untried_operations, untried_options
 from tests.doors.masks import masked
@@ -80,6 +80,50 @@ def test_a_digit_a_key_and_a_missing_case_are_told_and_what_may_differ_is_not(tm
     some = [Allowance("d*", "four digits", "rod"), Allowance("gone", "left out"), Allowance("key", "other", "rod")]
     assert list(compare(tmp_path / "before", tmp_path / "after", some).differences) == ["key"]
     assert [one.used for one in some] == [2, 1, 0]
+
+
+def test_data_of_a_record_are_the_same_for_other_words_and_differ_for_other_numbers_keys_and_options(
+    tmp_path: Path,
+) -> None:
+    lines = [
+        "front latest --json",
+        "exit code 0",
+        "--- standard output",
+        '{"a sentence": 1}',
+        '  "status": "done",',
+        '  "message": "6 designs, 0.50 m^2, none better",',
+        "Peak torque of 9.10e-03 N m at \u22124.5 deg, as --limit asks",
+        '<svg viewBox="0 0 10 20">',
+        "M 1 2",
+        "</svg>",
+    ]
+    data = data_of(lines)
+    read = ["--json", "exit code 0", "--- standard output", "1", '"status": "done"', '"message": 6', '"message": 0.5']
+    assert data == [*read, "0.0091", "-4.5", "--limit"]
+    reworded = [
+        line.replace("designs", "of them").replace("9.10e-03", "0.0091").replace("M 1", "M 3") for line in lines
+    ]
+    assert data_of(reworded) == data
+    for place, other in (
+        (1, "exit code 2"),
+        (4, '  "status": "failed",'),
+        (5, '  "note": "6 designs, 0.5 m^2"'),
+        (6, "Peak torque of 0.0092 N m at -4.5 deg, as --limit asks"),
+        (6, "Peak torque"),
+    ):
+        assert data_of([*lines[:place], other, *lines[place + 1 :]]) != data
+    for name, number in (("before", 5), ("after", 6)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "case.txt").write_text(f'"key": 1\nrod {number} mm\n', encoding="utf-8")
+    new = [Allowance("*", "new numbers only", added=True)]
+    found = compare(tmp_path / "before", tmp_path / "after", new, data=True)
+    assert (found.differences, found.allowed) == ({"case": "  - 5"}, 1)
+
+
+def test_differences_that_are_meant_have_a_reason() -> None:
+    allowances = read_allowances(Path(__file__).with_name("differences.toml"))
+    assert allowances
+    assert all(len(one.reason.split()) > 2 for one in allowances)
 
 
 def test_a_body_has_the_tables_and_the_texts_that_it_names() -> None:

@@ -169,10 +169,11 @@ def _tables(solved: Sequence[ComparedRun], comparison: Comparison) -> list[Block
 def _pairs(title: str, values: Sequence[Sequence[Value]]) -> list[Block]:
     """Return a number for each pair of runs, which their places in the list of runs name."""
     places = [str(index) for index in range(1, len(values) + 1)]
-    rows = (
-        (place, *("" if place == other else value for other, value in zip(places, row, strict=True)))
-        for place, row in zip(places, values, strict=True)
-    )
+    rows: list[tuple[Text, ...]] = []
+    for index, row in enumerate(values):
+        cells: list[Text] = [places[index], *row]
+        cells[1 + index] = ""  # a run against itself
+        rows.append(tuple(cells))
     return [heading(title), Table((column(), *map(column, places)), tuple(rows), ruled=True)]
 
 
