@@ -39,6 +39,9 @@ BookmarkNumber = Annotated[
 class NewBookmark(BaseModel, extra="forbid", strict=True):
     """A design to keep: one of the front, that with other dimensions, or one of dimensions alone.
 
+    A design that is kept already takes over the name, note, star, decision and reason that are given. decided: revokes
+    an earlier decision.
+
     design: its number. dimensions: of a row of a table of designs, in place of those of the design; without a design
     all of the lengths, varying numbers and choices. Lengths outside of the ranges of the job are allowed.
     """
@@ -50,6 +53,8 @@ class NewBookmark(BaseModel, extra="forbid", strict=True):
     name: _NAME = Field("", examples=["Round numbers"])
     note: _TEXT = Field("", examples=["rod from stock"])
     star: bool = False
+    decided: bool = False
+    reason: _TEXT = Field("", examples=["the least torque of those with 45 deg"])
 
 
 class BookmarkChange(BaseModel, extra="forbid", strict=True):
@@ -65,8 +70,10 @@ class BookmarkChange(BaseModel, extra="forbid", strict=True):
 class BookmarkedDesign(BaseModel):
     """A bookmarked design. at: when it was bookmarked, seconds since 1970. design: its origin in the front.
 
-    changed: whether its dimensions are others than those of that design. cells: every quantity and the slacks. broken:
-    columns of the requirements that it does not meet. outside: of dimensions that are outside the job.
+    changed: whether its dimensions are others than those of that design. numbers: the query that gives that design its
+    dimensions, empty if they are the same; null if no query can. decision: the decision for it in words, or empty.
+    cells: every quantity and the slacks. broken: columns of the requirements that it does not meet. outside: of
+    dimensions that are outside the job.
     """
 
     number: int = Field(ge=1, examples=[1])
@@ -77,6 +84,10 @@ class BookmarkedDesign(BaseModel):
     reason: str
     design: int | None
     changed: bool
+    numbers: dict[str, float | list[str]] | None = Field(
+        examples=[{"crank_mm": 40.0, "rod_mm": 64.0, "offset_mm": 20.0}]
+    )
+    decision: str = Field(examples=["Decided for Round numbers: the least torque"])
     at: float
     cells: Cells
     broken: list[str]
@@ -104,12 +115,7 @@ def add_bookmark(stored_front: FrontDep, request: NewBookmark, store: StoreDep) 
     """Keep a design with a name, a note and a star."""
     design = _requested_design(stored_front, request)
     _varied(stored_front, design)  # reject what cannot be computed before storing it
-    fields: dict[str, Any] = {
-        "name": request.name,
-        "note": request.note,
-        "star": request.star,
-        "design": request.design,
-    }
+    fields: dict[str, Any] = request.model_dump(exclude={"dimensions"})
     bookmark = keep_design(store, stored_front.job.id, dimensions=design.values, variant=design.variant, **fields)
     return _bookmark_model(stored_front, bookmark)
 
@@ -180,11 +186,23 @@ def _varied(stored_front: StoredFront, design: StoredDesign) -> Variation:
 def _bookmark_model(stored_front: StoredFront, bookmark: Bookmark) -> BookmarkedDesign:
     design = _design(stored_front, bookmark)
     varied = _varied(stored_front, design)
-    same = (
-        bookmark.design is not None
-        and stored_design(stored_front.problem, stored_front.result, bookmark.design).values == bookmark.dimensions
-    )
+    origin = bookmark.design and stored_design(stored_front.problem, stored_front.result, bookmark.design)
+    same = bool(origin) and bookmark.is_of(origin.variant, origin.values)
     fields = {name: value for name, value in vars(bookmark).items() if name not in ("job", "variant", "dimensions")}
     return BookmarkedDesign(
-        **fields, changed=not same, cells=json_ready(varied.row), broken=varied.broken, outside=varied.outside
+        **fields,
+        changed=not same,
+        numbers={} if same else _query(design) if origin and origin.variant == design.variant else None,
+        decision=bookmark.decision,
+        cells=json_ready(varied.row),
+        broken=varied.broken,
+        outside=varied.outside,
     )
+
+
+def _query(design: StoredDesign) -> dict[str, float | list[str]]:
+    """Return the query that gives another design of the same choices the dimensions of this one."""
+    lengths = {key: 1e3 * value for key, value in zip(_LENGTHS, design.values[:3], strict=True)}
+    pairs = zip(map(varying_column, design.part.mechanism.varying), design.values[3:], strict=True)
+    values = [f"{column}={value * unit.factor!r}" for (column, unit), value in pairs]
+    return {**lengths, **({"value": values} if values else {})}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated
 
 from fastapi import APIRouter, Depends, Query, Response
@@ -92,7 +91,7 @@ def animate_linkage(request: RequestedDesignDep) -> Response:
 
     design, named = request.design, {"name": request.stored_front.result.name, "design": request.words}
     swing = design.part.motion
-    content = _cached_file(request, "gif", lambda: animated_gif(design.mechanism, design.linkage, swing=swing, **named))
+    content = request.cached_file("gif", lambda: animated_gif(design.mechanism, design.linkage, swing=swing, **named))
     return _file(request, "gif", "image/gif", content, label="-motion")
 
 
@@ -101,8 +100,7 @@ def report_design(request: RequestedDesignDep, store: StoreDep, units: UnitsPara
     """Give the report of a design for a review as one HTML file without script, which fetches nothing."""
     from ..report.html import html_file
 
-    content = _cached_file(
-        request,
+    content = request.cached_file(
         f"report {units} {_bookmarks_version(request, store)}",
         lambda: html_file(_report(request, store, units)),
     )
@@ -114,8 +112,8 @@ def print_report(request: RequestedDesignDep, store: StoreDep, units: UnitsParam
     """Give the same report as PDF."""
     from ..report.pdf import pdf_file
 
-    content = _cached_file(
-        request, f"pdf {units} {_bookmarks_version(request, store)}", lambda: pdf_file(_report(request, store, units))
+    content = request.cached_file(
+        f"pdf {units} {_bookmarks_version(request, store)}", lambda: pdf_file(_report(request, store, units))
     )
     return _file(request, "pdf", "application/pdf", content, label="-report")
 
@@ -158,7 +156,3 @@ def _report(request: RequestedDesign, store: Store, units: System) -> Report:
 def _bookmarks_version(request: RequestedDesign, store: Store) -> int:
     """Return a number for the state of a job's bookmarks, which reports contain: it changes with each edit."""
     return hash(tuple(bookmarks_of(store, request.stored_front.job.id)))
-
-
-def _cached_file(request: RequestedDesign, kind: str, make: Callable[[], bytes]) -> bytes:
-    return request.stored_front.cached(request.key, kind, lambda: ([request.key], make()))

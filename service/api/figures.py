@@ -12,11 +12,12 @@ from pydantic import BaseModel, Field
 from ...model.errors import InputError, NotFound
 from ...objectives.kinds import System
 from ..runs.run_folder import slug
+from ..store.bookmarks import Bookmark, bookmarks_of
 from .computing import LongRoute
 from .exports import SEALED, file_responses
 from .models import UnitsParameter
 from .problems import problem_responses
-from .settings import SettingsDep
+from .settings import SettingsDep, StoreDep
 from .stored_fronts import FrontDep, Numbers, NumbersDep, RequestedDesign, StoredFront, requested_design
 
 if TYPE_CHECKING:
@@ -75,18 +76,29 @@ def list_figures(stored_front: FrontDep) -> FiguresModel:
 
 
 @router.get("/jobs/{number}/figures/{name}.png", **file_responses("image/png"))
-def draw_png(stored_front: FrontDep, name: Name, numbers: NumbersDep, units: UnitsParameter = "metric") -> Response:
+def draw_png(
+    stored_front: FrontDep, name: Name, numbers: NumbersDep, store: StoreDep, units: UnitsParameter = "metric"
+) -> Response:
     """Draw a figure; the sheet of a design also with other numbers."""
-    return _image(stored_front, name, "png", numbers, units)
+    return _image(stored_front, name, "png", numbers, bookmarks_of(store, stored_front.job.id), units)
 
 
 @router.get("/jobs/{number}/figures/{name}.svg", **file_responses("image/svg+xml"))
-def draw_svg(stored_front: FrontDep, name: Name, numbers: NumbersDep, units: UnitsParameter = "metric") -> Response:
+def draw_svg(
+    stored_front: FrontDep, name: Name, numbers: NumbersDep, store: StoreDep, units: UnitsParameter = "metric"
+) -> Response:
     """Draw a figure; the sheet of a design also with other numbers."""
-    return _image(stored_front, name, "svg", numbers, units)
+    return _image(stored_front, name, "svg", numbers, bookmarks_of(store, stored_front.job.id), units)
 
 
-def _image(stored_front: StoredFront, name: str, kind: Kind, numbers: Numbers | None, units: System) -> Response:
+def _image(
+    stored_front: StoredFront,
+    name: str,
+    kind: Kind,
+    numbers: Numbers | None,
+    bookmarks: Sequence[Bookmark],
+    units: System,
+) -> Response:
     """Return a figure; the datasheet of a design has the name of its file. Drawn figures are cached."""
     from ..figures.style import figure_bytes
 
@@ -94,21 +106,20 @@ def _image(stored_front: StoredFront, name: str, kind: Kind, numbers: Numbers | 
     if single is None and numbers is not None:
         rule = "other lengths and values only apply to a single design"
         raise InputError(f"{rule}; got figure {name!r}; ask for design_1 and so on")
-    request = None if single is None else requested_design(stored_front, int(single[1]), numbers)
-    key, headers = request.key if request else name, dict[str, str]()
+    headers: dict[str, str] = {"Content-Security-Policy": SEALED} if kind == "svg" else {}
+    cache_kind = f"{kind} {units}"
 
     def draw() -> tuple[Sequence[str], bytes]:
-        if request:
-            return (key,), figure_bytes(_datasheet(request, units), kind)
         figure = _front_figure(stored_front, name, units)
         return figure.names, figure_bytes(figure.draw(), kind)
 
-    drawn = stored_front.cached(key, f"{kind} {units}", draw)
-    if request:
+    if single is None:
+        drawn = stored_front.cached(name, cache_kind, draw)
+    else:
+        request = requested_design(stored_front, int(single[1]), numbers, bookmarks)
+        drawn = request.cached_file(cache_kind, lambda: figure_bytes(_datasheet(request, units), kind))
         file = f"{slug(stored_front.result.name)}-{stored_front.job.id}-{request.stem}-sheet.{kind}"
-        headers = {"Content-Disposition": f'inline; filename="{file}"'}
-    if kind == "svg":
-        headers["Content-Security-Policy"] = SEALED
+        headers["Content-Disposition"] = f'inline; filename="{file}"'
     return Response(drawn, media_type=_MEDIA[kind], headers=headers)
 
 

@@ -113,6 +113,7 @@ class JobRow(ResponseModel):
     events: Count = Field(description="the number of its last event")
     progress: RowProgress | None = Field(description="while it runs")
     summary: RowSummary | None
+    decision: str | None = Field(None, description="name of the design decided for", examples=["Round numbers"])
 
 
 class JobShown(JobRow, title="Job"):

@@ -25,9 +25,11 @@ from ..designs.stored_designs import StoredDesign, front_of, stored_design
 from ..designs.variation import Variation, variation_of, with_numbers
 from ..jobs.submission import LONGEST_ANSWER, bounded, parse_allowed
 from ..runs.result import Result, Row
+from ..runs.run_folder import slug
 from ..store import Job, Store
+from ..store.bookmarks import Bookmark, bookmarks_of
 from .models import PLAIN_DIGITS, JobNumber
-from .settings import part_of_app
+from .settings import StoreDep, part_of_app
 
 if TYPE_CHECKING:
     from ...optimise.decisions.wish import Wishes
@@ -208,27 +210,38 @@ NumbersDep = Annotated[Numbers | None, Depends(_numbers)]
 
 @dataclass(frozen=True)
 class RequestedDesign:
-    """A design of a front, perhaps with other numbers. changed: whether its numbers differ from the stored ones."""
+    """A design of a front, perhaps with other numbers. changed: whether its numbers differ from the stored ones.
+
+    bookmarks: those of the job, one of which may name the design.
+    """
 
     stored_front: StoredFront
     number: int
     design: StoredDesign
     changed: bool
+    bookmarks: Sequence[Bookmark] = ()
 
     @property
     def words(self) -> str:
-        """The design in titles."""
-        return f"design {self.number}" + (", changed" if self.changed else "")
+        """The design in titles: the name of its bookmark, or its number."""
+        variant, values = self.design.variant, self.design.values
+        names = (bookmark.name for bookmark in self.bookmarks if bookmark.is_of(variant, values))
+        return next(names, f"design {self.number}" + (", changed" if self.changed else ""))
 
     @property
     def stem(self) -> str:
         """The design in file names."""
-        return f"design-{self.number}" + ("-changed" if self.changed else "")
+        return slug(self.words)
 
     @property
     def key(self) -> str:
         """The key of the design in the cache of the front."""
         return f"design_{self.number}" + (f" {self.design.values}" if self.changed else "")
+
+    def cached_file(self, kind: str, make: Callable[[], bytes]) -> bytes:
+        """Return a cached file of the design, which shows its words, or make and cache it."""
+        key = f"{self.key} {self.words}"
+        return self.stored_front.cached(key, kind, lambda: ((key,), make()))
 
     def variation(self) -> Variation | None:
         """Return the variation with other numbers; None for the unchanged design."""
@@ -237,7 +250,9 @@ class RequestedDesign:
         )
 
 
-def requested_design(stored_front: StoredFront, number: int, numbers: Numbers | None) -> RequestedDesign:
+def requested_design(
+    stored_front: StoredFront, number: int, numbers: Numbers | None, bookmarks: Sequence[Bookmark] = ()
+) -> RequestedDesign:
     """Return a design of a front with numbers. Raises `NotFound`; `InputError` without full rotation."""
     stored, row = stored_front.design(number), stored_front.row(number)
     cells = {column: row.get(column) for column in numbers or ()}
@@ -246,17 +261,19 @@ def requested_design(stored_front: StoredFront, number: int, numbers: Numbers | 
         abs(value - stored_numbers[column]) <= _SAME * abs(stored_numbers[column])
         for column, value in (numbers or {}).items()
     ):
-        return RequestedDesign(stored_front, number, stored, changed=False)
+        return RequestedDesign(stored_front, number, stored, False, bookmarks)
     values = dict(numbers or {})
     lengths = [
         values.pop(name) / 1e3 if name in values else value
         for name, value in zip(_LENGTHS, stored.values[:3], strict=True)
     ]
-    return RequestedDesign(stored_front, number, with_numbers(stored, lengths, values), changed=True)
+    return RequestedDesign(stored_front, number, with_numbers(stored, lengths, values), True, bookmarks)
 
 
-def _requested_design(stored_front: FrontDep, design: DesignNumber, numbers: NumbersDep) -> RequestedDesign:
-    return requested_design(stored_front, design, numbers)
+def _requested_design(
+    stored_front: FrontDep, design: DesignNumber, numbers: NumbersDep, store: StoreDep
+) -> RequestedDesign:
+    return requested_design(stored_front, design, numbers, bookmarks_of(store, stored_front.job.id))
 
 
 RequestedDesignDep = Annotated[RequestedDesign, Depends(_requested_design)]

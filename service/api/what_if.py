@@ -16,12 +16,14 @@ from ..designs.variation import variation_of, with_numbers
 from ..designs.violations import violated_by, violations_in_words
 from ..questions.design_analysis import with_undefined_values
 from ..runs.result import json_ready
+from ..store.bookmarks import bookmarks_of
 from .computing import QuickRoute
 from .cycle import CurvesModel, CycleModel, cycle_model
 from .fronts import Cells, ColumnModel, OfDesign, Violated, Violations, column_models
 from .models import PLAIN_DIGITS
 from .problems import problem_responses
-from .stored_fronts import LONGEST, DesignNumber, FrontDep, Length
+from .settings import StoreDep
+from .stored_fronts import LONGEST, DesignNumber, FrontDep, Length, RequestedDesign, requested_design
 
 router = APIRouter(route_class=QuickRoute, tags=["designs"], responses=problem_responses(409))
 
@@ -46,11 +48,13 @@ class RequirementModel(BaseModel):
 class RequirementsModel(OfDesign):
     """The requirements of a job on a design, with the choices that the design made.
 
+    name: what the design is called: by its bookmark, or by its number.
     ranges: least and greatest of crank, rod, offset and the numbers that vary besides, by column. speed_rpm: of its
     crank, positive counter-clockwise.
     names: of quantities, as in job files, by column. tolerances: whether the machine has any.
     """
 
+    name: str = Field(examples=["Round numbers", "design 3"])
     ranges: dict[str, tuple[float, float]] = Field(examples=[{"crank_mm": (20.0, 60.0)}])
     requirements: list[RequirementModel]
     slow_stroke: str | None = Field(None, description="the stroke that must be the slow one", examples=["outward"])
@@ -79,7 +83,7 @@ class OtherLengths(BaseModel, extra="forbid", strict=True):
 
 
 class WhatIfModel(OfDesign):
-    """A design with other lengths, beside its front.
+    """A design with other lengths, beside its front. name: what it is called, as in `RequirementsModel`.
 
     design: every quantity and the slacks; undefined: why some of them have no value, by column. broken: columns of the
     requirements that it does not meet. outside: columns of lengths that leave their range. dominated_by: numbers of
@@ -88,6 +92,7 @@ class WhatIfModel(OfDesign):
     curves were asked for.
     """
 
+    name: str = Field(examples=["design 3, changed"])
     columns: list[ColumnModel]
     design: Cells = Field(examples=[{"crank_mm": 40.0, "rod_mm": 64.0, "offset_mm": 20.0, "peak_torque_Nm": 1.8}])
     undefined: dict[str, str] = Field(examples=[{"position_error_mm": "a position error comes from tolerances"}])
@@ -117,13 +122,14 @@ def show_curves(
 
 
 @router.get("/jobs/{number}/designs/{design}/requirements")
-def show_requirements(stored_front: FrontDep, design: DesignNumber) -> RequirementsModel:
+def show_requirements(stored_front: FrontDep, design: DesignNumber, store: StoreDep) -> RequirementsModel:
     """Give the ranges and the constraints that hold for a design, the floors that hold without being asked included."""
     stored = stored_front.design(design)
     requirements = [RequirementModel(**vars(item), slack=item.slack) for item in requirements_of(stored.part)]
     return RequirementsModel(
         job=stored_front.job.id,
         number=design,
+        name=requested_design(stored_front, design, None, bookmarks_of(store, stored_front.job.id)).words,
         ranges={bounds.column: (bounds.lower, bounds.upper) for bounds in ranges_of(stored.part)},
         requirements=requirements,
         slow_stroke=stored.part.slow_stroke,
@@ -134,7 +140,7 @@ def show_requirements(stored_front: FrontDep, design: DesignNumber) -> Requireme
 
 
 @router.post("/jobs/{number}/designs/{design}/what-if")
-def change_lengths(stored_front: FrontDep, design: DesignNumber, request: OtherLengths) -> WhatIfModel:
+def change_lengths(stored_front: FrontDep, design: DesignNumber, request: OtherLengths, store: StoreDep) -> WhatIfModel:
     """Analyse a design with other lengths and varying numbers, its choices kept; what if?"""
     if 0 < request.angles < LEAST:
         raise InputError(
@@ -154,6 +160,7 @@ def change_lengths(stored_front: FrontDep, design: DesignNumber, request: OtherL
     return WhatIfModel(
         job=stored_front.job.id,
         number=design,
+        name=RequestedDesign(stored_front, design, stored, True, bookmarks_of(store, stored_front.job.id)).words,
         columns=column_models(all_columns(changed.row)),
         design=json_ready(row),
         undefined=undefined,

@@ -25,15 +25,7 @@ def alternatives_of(bookmarks: Iterable[Bookmark], problem: Problem, result: Res
         design = StoredDesign(problem.part(bookmark.variant), bookmark.dimensions, bookmark.variant)
         varied = variation_of(design, result, minimised)
         alternatives.append(
-            Alternative(
-                name=bookmark.name,
-                note=bookmark.note,
-                decided=bookmark.decided,
-                reason=bookmark.reason,
-                row=varied.row,
-                broken=varied.broken,
-                outside=varied.outside,
-            )
+            Alternative(bookmark=bookmark, row=varied.row, broken=varied.broken, outside=varied.outside)
         )
     return alternatives
 

@@ -10,22 +10,15 @@ from ..render.numerals import rounded
 from .document import Block, Paragraph, Section, Table
 from .subject import Alternative, Subject
 
-_SAME = 1e-9  # of a length
-
 
 def decision_section(subject: Subject) -> Section | None:
     """Return the chosen design, and the others with the reasons against them; None before a decision."""
-    chosen = next((alternative for alternative in subject.alternatives if alternative.decided), None)
+    chosen = next((alternative for alternative in subject.alternatives if alternative.bookmark.decided), None)
     if chosen is None:
         return None
-    because = f": {chosen.reason}" if chosen.reason else "; no reason was given"
-    blocks: list[Block] = [Paragraph(f"Decided for {chosen.name}{because}.")]
-    lengths = [float(chosen.row[f"{name}_mm"] or 0.0) for name in DIMENSIONS]
-    reported_lengths = [1e3 * value for value in subject.design.values[:3]]
-    if any(
-        abs(alternative - reported) > _SAME * abs(reported)
-        for alternative, reported in zip(lengths, reported_lengths, strict=True)
-    ):
+    no_reason = "" if chosen.bookmark.reason else "; no reason was given"
+    blocks: list[Block] = [Paragraph(f"{chosen.bookmark.decision}{no_reason}.")]
+    if subject.bookmark != chosen.bookmark:
         blocks.append(Paragraph("This report is about another design.", "note"))
     ordered = [chosen, *(alternative for alternative in subject.alternatives if alternative is not chosen)]
     rows = [row_in(alternative.row, subject.system) for alternative in ordered]
@@ -35,7 +28,7 @@ def decision_section(subject: Subject) -> Section | None:
     numbers = [*columns, *(find_column(item.column, list(rows[0])) for item in objectives)]
     heads = tuple(f"{column.title}, {unit_text(column.unit)}" if column.unit else column.title for column in numbers)
     cells = tuple(
-        (alternative.name, *(rounded(row[column.key]) for column in numbers), _words(alternative, subject))
+        (alternative.bookmark.name, *(rounded(row[column.key]) for column in numbers), _words(alternative, subject))
         for alternative, row in zip(ordered, rows, strict=True)
     )
     share = 0.6 / len(numbers)
@@ -62,8 +55,8 @@ def _words(alternative: Alternative, subject: Subject) -> str:
     ]
     left = [titles.get(key, key) for key in alternative.outside]
     parts = [
-        alternative.reason,
-        alternative.note and f"note: {alternative.note}",
+        alternative.bookmark.reason,
+        alternative.bookmark.note and f"note: {alternative.bookmark.note}",
         missed and f"misses {', '.join(missed)}",
         left and f"outside the job: {', '.join(left)}",
     ]

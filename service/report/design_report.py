@@ -30,10 +30,11 @@ def design_report(subject: Subject, *, created: float | None = None) -> Report:
     when = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime(created))
     motion, decision = subject.design.part.motion, decision_section(subject)
     swing = None if motion is None else SwingOfSubject(subject, motion)
+    is_decided = subject.bookmark is not None and subject.bookmark.decided
     tolerances = tolerance_section(subject) if swing is None else swing.tolerances()
     return Report(
         title=f"{subject.result.name}: {subject.name}",
-        subtitle=f"Design report for review; run {subject.run}",
+        subtitle=f"{'Decided design' if is_decided else 'Design report'} for review; run {subject.run}",
         date=when,
         sections=(
             _summary(subject),

@@ -199,5 +199,4 @@ def linkage_picture(subject: Subject) -> Picture:
 
 
 def _datasheet(subject: Subject) -> Figure:
-    label = "the chosen design" if subject.changed is None else subject.label
-    return datasheet_of(subject.front, subject.number - 1, label, subject.system, subject.changed)
+    return datasheet_of(subject.front, subject.number - 1, subject.label, subject.system, subject.changed)

@@ -48,7 +48,7 @@ def _ranges(subject: Subject) -> Table:
         sense = objective.sense if objective.target is None else f"target {measured(objective.target, objective.unit)}"
         rows.append((objective.title, sense, *numbers))
     return Table(
-        f"Objectives: {subject.label}{',' if subject.changed else ''} within the front",
+        f"Objectives within the front: {subject.label}",
         ("objective", "wanted", "this design", "best", "worst", "unit", "rank"),
         tuple(rows),
         (0.29, 0.13, 0.13, 0.12, 0.12, 0.08, 0.13),

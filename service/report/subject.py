@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ...objectives.keys import key_in
 from ...objectives.kinds import System
@@ -20,18 +20,18 @@ from ..designs.violations import violated_by, violations_in_words
 from ..render.numerals import rounded
 from ..runs.result import Cell, Result, Row
 
+if TYPE_CHECKING:
+    from ..store.bookmarks import Bookmark
+
 
 @dataclass(frozen=True, kw_only=True)
 class Alternative:
-    """A bookmarked design, perhaps the chosen one. row: metric row. reason: reason for or against it.
+    """A bookmarked design, perhaps the chosen one. row: metric row.
 
     broken: columns of requirements that it misses. outside: columns of ranges that it leaves.
     """
 
-    name: str
-    note: str
-    decided: bool
-    reason: str
+    bookmark: Bookmark
     row: Row
     broken: Sequence[str] = ()
     outside: Sequence[str] = ()
@@ -100,12 +100,23 @@ class Subject:
         violated = record_in(violated_by(self.design.mechanism, row), self.system)
         return violations_in_words(violated, self.row)
 
+    @cached_property
+    def bookmark(self) -> Bookmark | None:
+        """The bookmark of the design, if it has one."""
+        of_design = (alternative.bookmark for alternative in self.alternatives)
+        design = self.design
+        return next((bookmark for bookmark in of_design if bookmark.is_of(design.variant, design.values)), None)
+
     @property
     def label(self) -> str:
-        """The design by its number."""
+        """The design by the name of its bookmark, or by its number."""
+        if self.bookmark:
+            return self.bookmark.name
         return f"design {self.number}" + ("" if self.changed is None else ", changed")
 
     @property
     def name(self) -> str:
         """The design among the others."""
+        if self.bookmark:
+            return self.label
         return f"{self.label} of {len(self.result.designs)}" if self.changed is None else self.label

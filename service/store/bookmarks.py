@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
-from sqlalchemy import Connection, and_, delete, func, insert, select, update
+from sqlalchemy import Connection, and_, delete, insert, select, update
 
 from ...model.errors import InputError, NotFound
 from .clock import now
@@ -17,6 +19,17 @@ from .serialisation import plain
 
 MOST_BOOKMARKS = 500
 """Most bookmarks of a job."""
+_SAME = 1e-9  # of a dimension: addresses and forms give it with fewer digits
+
+
+class Remarks(TypedDict, total=False):
+    """What people say about a bookmarked design. decided: revokes the earlier decision of its job."""
+
+    name: str
+    note: str
+    star: bool
+    decided: bool
+    reason: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,13 +53,22 @@ class Bookmark:
     dimensions: tuple[float, ...]
     at: float
 
+    def is_of(self, variant: int, dimensions: Sequence[float]) -> bool:
+        """Whether it is the bookmark of the design with these dimensions, apart from rounding."""
+        pairs = zip(self.dimensions, dimensions, strict=True) if variant == self.variant else [(0.0, 1.0)]
+        return all(math.isclose(own, other, rel_tol=_SAME, abs_tol=_SAME**2) for own, other in pairs)
+
+    @property
+    def decision(self) -> str:
+        """The decision for this design in words, with the reason if there is one; empty without a decision."""
+        return (f"Decided for {self.name}" + (f": {self.reason}" if self.reason else "")) * self.decided
+
 
 def bookmarks_of(store: Database, job: int) -> list[Bookmark]:
     """Return the bookmarks of a job, oldest first. Raises `NotFound` without the job."""
     with store.reading() as connection:
         the_job(connection, job)
-        rows = connection.execute(select(bookmarks).where(bookmarks.c.job == job).order_by(bookmarks.c.number))
-        return [_bookmark_from(row) for row in rows]
+        return _all_bookmarks(connection, job)
 
 
 def keep_design(
@@ -56,39 +78,35 @@ def keep_design(
     dimensions: tuple[float, ...],
     variant: int = 0,
     design: int | None = None,
-    name: str = "",
-    note: str = "",
-    star: bool = False,
+    **remarks: Unpack[Remarks],
 ) -> Bookmark:
     """Bookmark a design of a job and return it. Raises `NotFound` without the job, `InputError` beyond the limit.
 
-    name: "Kept 3" and so on if it is empty.
+    A design that is bookmarked already keeps its one bookmark, which takes over the remarks that are not empty. A new
+    bookmark without a name is "Kept 3" and so on.
     """
     with store.writing() as connection:
         the_job(connection, job, lock=True)
-        count, last = connection.execute(
-            select(func.count(), func.max(bookmarks.c.number)).where(bookmarks.c.job == job)
-        ).one()
-        if count >= MOST_BOOKMARKS:
-            raise InputError(f"at most {MOST_BOOKMARKS} designs are kept of a job; job {job} has as many; delete some")
-        number = (last or 0) + 1
-        values = {"name": plain(name) or f"Kept {number}", "note": plain(note), "star": star, "design": design}
-        fixed = {"variant": variant, "dimensions": json.dumps(dimensions), "decided": False, "reason": ""}
-        connection.execute(insert(bookmarks).values(job=job, number=number, at=now(), **values, **fixed))
-        return _the_bookmark(connection, job, number)
+        stored = _all_bookmarks(connection, job)
+        known = next((bookmark for bookmark in stored if bookmark.is_of(variant, dimensions)), None)
+        number = known.number if known else max((bookmark.number for bookmark in stored), default=0) + 1
+        if known is None:
+            if len(stored) >= MOST_BOOKMARKS:
+                raise InputError(
+                    f"at most {MOST_BOOKMARKS} designs are kept of a job; job {job} has as many; delete some"
+                )
+            fixed = {"design": design, "variant": variant, "dimensions": json.dumps(dimensions), "at": now()}
+            empty = {"name": f"Kept {number}", "note": "", "star": False, "decided": False, "reason": ""}
+            connection.execute(insert(bookmarks).values(job=job, number=number, **fixed, **empty))
+        return _changed(connection, job, number, {name: value for name, value in remarks.items() if value})
 
 
-def change_kept(store: Database, job: int, number: int, **changes: Any) -> Bookmark:
+def change_kept(store: Database, job: int, number: int, **remarks: Unpack[Remarks]) -> Bookmark:
     """Change name, note, star, decided or reason of a bookmark and return it; only one can be decided."""
     with store.writing() as connection:
         the_job(connection, job, lock=True)
         _the_bookmark(connection, job, number)
-        if changes.get("decided"):
-            connection.execute(update(bookmarks).where(bookmarks.c.job == job).values(decided=False))
-        values = {name: plain(value) if isinstance(value, str) else value for name, value in changes.items()}
-        if values:
-            connection.execute(update(bookmarks).where(_is_bookmark(job, number)).values(values))
-        return _the_bookmark(connection, job, number)
+        return _changed(connection, job, number, dict(remarks))
 
 
 def drop_kept(store: Database, job: int, number: int) -> None:
@@ -97,6 +115,20 @@ def drop_kept(store: Database, job: int, number: int) -> None:
         the_job(connection, job, lock=True)
         _the_bookmark(connection, job, number)
         connection.execute(delete(bookmarks).where(_is_bookmark(job, number)))
+
+
+def _changed(connection: Connection, job: int, number: int, remarks: Mapping[str, Any]) -> Bookmark:
+    if remarks.get("decided"):
+        connection.execute(update(bookmarks).where(bookmarks.c.job == job).values(decided=False))
+    values = {name: plain(value) if isinstance(value, str) else value for name, value in remarks.items()}
+    if values:
+        connection.execute(update(bookmarks).where(_is_bookmark(job, number)).values(values))
+    return _the_bookmark(connection, job, number)
+
+
+def _all_bookmarks(connection: Connection, job: int) -> list[Bookmark]:
+    rows = connection.execute(select(bookmarks).where(bookmarks.c.job == job).order_by(bookmarks.c.number))
+    return [_bookmark_from(row) for row in rows]
 
 
 def _is_bookmark(job: int, number: int) -> Any:

@@ -8,17 +8,22 @@ from dataclasses import astuple, dataclass
 from typing import Any, Literal, TypedDict
 
 from sqlalchemy import Row as Found
+from sqlalchemy import select
 
 from ...model.errors import InputError
-from .schema import jobs
+from .schema import bookmarks, jobs
 
 State = Literal["queued", "running", "done", "infeasible", "cancelled", "failed"]
 ENDED: tuple[State, ...] = ("done", "infeasible", "cancelled", "failed")
 RESUMABLE: tuple[State, ...] = ("cancelled", "failed")
 LIMITS = ("most_seconds", "most_evaluations", "most_memory")
 NOT_DONE = "cancelled before it was done"
-SHOWN = tuple(column for column in jobs.c if column.name not in ("tables", "result", "checksum"))
-"""Columns of a list of jobs: all but the long ones."""
+_DECISION = select(bookmarks.c.name).where(bookmarks.c.job == jobs.c.id, bookmarks.c.decided).limit(1)
+SHOWN = (
+    *(column for column in jobs.c if column.name not in ("tables", "result", "checksum")),
+    _DECISION.correlate(jobs).scalar_subquery().label("decision"),
+)
+"""Columns of a list of jobs: all but the long ones, and the name of the design decided for."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,7 +80,7 @@ class Job:
     lease_until: worker and end of lease of a running job. records: number of records to continue from. events: number
     of events. progress: fields of the latest `Progress`, or None; `front` included if the search gave one, see
     `Claim.report`. summary: summary of its result, see `serialisation.summary_of`, or None. origin: number of the job
-    from which it was copied and changed, or None.
+    from which it was copied and changed, or None. decision: name of the design decided for, or None.
     """
 
     id: int
@@ -101,6 +106,7 @@ class Job:
     progress: dict[str, Any] | None
     summary: dict[str, Any] | None
     origin: int | None = None
+    decision: str | None = None
 
     @classmethod
     def from_row(cls, row: Found[*tuple[Any, ...]], *, left_out: Sequence[str] = ()) -> Job:

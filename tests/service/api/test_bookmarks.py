@@ -55,11 +55,46 @@ def test_a_kept_what_if_has_the_numbers_of_the_what_if(client: httpx.Client, sol
 def test_a_design_of_the_front_and_one_of_dimensions_alone_are_kept(client: httpx.Client, solved: Solved) -> None:
     first = kept(client, solved, design=2)
     assert (first["name"], first["changed"], first["broken"], first["outside"]) == ("Kept 1", False, [], [])
-    dimensions = {key: first["cells"][key] for key in LENGTHS}
+    dimensions = {key: first["cells"][key] for key in LENGTHS} | {"rod_mm": 650.0}
     second = kept(client, solved, dimensions=dimensions)
-    assert (second["design"], second["changed"]) == (None, True)
-    numbers = {key: value for key, value in first["cells"].items() if isinstance(value, float)}
-    assert {key: second["cells"][key] for key in numbers} == pytest.approx(numbers, rel=1e-9, abs=1e-9)
+    assert (second["design"], second["changed"], second["numbers"]) == (None, True, None)
+    third = kept(client, solved, design=2, dimensions={"rod_mm": 640.0})
+    assert {key: second["cells"][key] for key in LENGTHS} == pytest.approx(dimensions, rel=1e-12)
+    assert third["numbers"] == pytest.approx(dimensions | {"rod_mm": 640.0}, rel=1e-12)
+
+
+def test_a_design_that_is_kept_twice_has_one_bookmark(client: httpx.Client, solved: Solved) -> None:
+    first = kept(client, solved, design=2, name="Stock", note="rod from stock", star=True)
+    dimensions = {key: first["cells"][key] for key in LENGTHS}  # the design again, as a table gives it
+    again = kept(client, solved, dimensions=dimensions, decided=True, reason="least torque")
+    expected = first | {"decided": True, "reason": "least torque", "decision": "Decided for Stock: least torque"}
+    assert again == expected
+    other = kept(client, solved, design=3, name="Longer", decided=True)
+    assert client.get(f"{solved.path}/kept").json()["designs"] == [first | {"reason": "least torque"}, other]
+
+
+def test_the_name_of_a_kept_design_is_in_its_files_its_answers_and_the_list(
+    client: httpx.Client, solved: Solved
+) -> None:
+    path = f"{solved.path}/designs/3"
+    assert client.get(f"{path}/requirements").json()["name"] == "design 3"
+    before = client.get(f"{path}/linkage.svg")
+    one = kept(client, solved, design=3, dimensions={"rod_mm": 650.0}, name="Größe A", decided=True)
+    query = {"angles": 0, **one["numbers"]}
+    assert client.post(f"{path}/what-if", json=query).json()["name"] == "Größe A"
+    assert client.post(f"{path}/what-if", json=query | {"rod_mm": 640.0}).json()["name"] == "design 3, changed"
+    for file in ("linkage.svg", "motion.html", "report.html"):
+        answer = client.get(f"{path}/{file}", params=one["numbers"])
+        assert "Größe A" in answer.text
+        assert "changed" not in answer.headers["content-disposition"]
+        assert "grosse-a" in answer.headers["content-disposition"]
+    assert client.get(f"{path}/linkage.svg").content == before.content
+    sheet = client.get(f"{solved.path}/figures/design_3.svg", params=one["numbers"])
+    assert "grosse-a-sheet" in sheet.headers["content-disposition"]
+    assert client.get(solved.path).json()["decision"] == "Größe A"
+    assert client.get("/api/v1/jobs").json()["jobs"][0]["decision"] == "Größe A"
+    client.patch(f"{solved.path}/kept/{one['number']}", json={"decided": False})
+    assert client.get(solved.path).json()["decision"] is None
 
 
 def test_at_most_one_is_decided_for_and_the_table_says_why(store: Store, client: httpx.Client, solved: Solved) -> None:

@@ -35,5 +35,7 @@ def test_the_report_of_a_command_has_the_decision_of_the_store(
     assert "Decided for Least torque: fits the gearmotor." in text
     assert "too tall" in text
     assert "This report is about another design." not in text
+    assert "Short test [job]: Least torque" in text
+    assert "Decided design for review" in text
     assert command("report", run, "--design", 1, "--runs", runs, "--out", out).exit_code == 0
     assert "This report is about another design." in out.read_text(encoding="utf-8")
