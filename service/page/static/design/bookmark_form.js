@@ -1,61 +1,66 @@
-/** Keep a design that is none of the list: with a name and a note, in the store. */
+/** Decide for a design, keep it, or search near it. */
 
 import { go, link } from "../lib/address.js";
 import { post } from "../lib/api.js";
-import { fill, formOf, h } from "../lib/dom.js";
+import { fill, first, formOf, h } from "../lib/dom.js";
+import { menu } from "../lib/menu.js";
 import { attempt, sayProblem } from "../lib/notices.js";
 import { sentenceOf } from "../lib/refusals.js";
 
 /**
- * Return the node. design: of the front, that it began as; dimensions(): its cells, null for the design itself; kept(): it is.
- * lengths(): that a search may begin near to; without it none is offered.
- * @param {{ job: string, design: number, dimensions: () => Record<string, Api.Row[string]> | null, kept?: () => unknown, lengths?: () => Page.Lengths }} options
+ * Return the node. design: of the front, that it began as; dimensions(): its cells, null for the design itself; kept(bookmark): it is.
+ * lengths(): that a search begins near to.
+ * @param {{ job: string, design: number, dimensions: () => Record<string, Api.Row[string]> | null, kept: (bookmark: Api.Kept) => unknown, lengths: () => Page.Lengths }} options
  */
-export function bookmarkForm({ job, design, dimensions, kept = () => {}, lengths }) {
-  const name = h("input", {
-    type: "text",
-    maxlength: 200,
-    autocomplete: "off",
-    placeholder: "Kept",
-  });
-  const note = h("input", { type: "text", maxlength: 4000, autocomplete: "off" });
-  const status = h("p", { class: "quiet", role: "status" });
-  const button = h("button", {}, "Keep");
-  const form = formOf(
-    () => keep(),
-    h("label", {}, "Name", name),
-    h("label", {}, "Note", note),
-    h("div", { class: "row" }, button),
-    status,
-  );
-
-  /** Keep the design, and say where it is. */
-  const keep = () =>
-    attempt(
-      async () => {
-        const bookmark = await post(`jobs/${job}/kept`, {
-          design,
-          dimensions: dimensions() ?? {},
-          name: name.value.trim(),
-          note: note.value.trim(),
-        });
-        fill(
-          status,
-          `“${bookmark.name}” is kept `,
-          h("a", { href: link(["jobs", job]) }, "beside the front"),
-          bookmark.outside.length > 0 && "; it is outside the job",
-          ".",
-        );
-        kept();
-      },
-      (problem) => (status.textContent = sentenceOf(problem)),
+export function bookmarkForm({ job, design, dimensions, kept, lengths }) {
+  const status = h("span", { class: "quiet", role: "status" });
+  /** @param {string} verb @param {"reason" | "note"} key @param {string} label */
+  const part = (verb, key, label) => {
+    const [name, words] = [200, 4000].map((maxlength) =>
+      h("input", { type: "text", maxlength, autocomplete: "off" }),
+    );
+    const decided = key === "reason";
+    const button = h("button", { class: decided ? "primary" : null }, verb);
+    /** Keep the design, and say where it is. */
+    const keep = async () => {
+      const bookmark = await post(`jobs/${job}/kept`, {
+        design,
+        dimensions: dimensions() ?? {},
+        name: name.value.trim(),
+        [key]: words.value.trim(),
+        decided,
+      });
+      fill(
+        status,
+        `${bookmark.decision || `“${bookmark.name}” is kept`}; see it `,
+        h("a", { href: link(["jobs", job]) }, "beside the front"),
+        ".",
+      );
+      kept(bookmark);
+      node.open = false;
+      first(node, "summary")?.focus();
+    };
+    const form = formOf(
+      () => attempt(keep, (problem) => (status.textContent = sentenceOf(problem)), button),
+      h("label", {}, "Name", name),
+      h("label", {}, label, words),
       button,
     );
+    const node = menu(
+      `${verb}${decided ? " for it" : ""}`,
+      h("div", { class: "chooser-list panel at-left keeping" }, form),
+    );
+    return node;
+  };
+  const deciding = part("Decide", "reason", "Because");
+  first(deciding, "summary")?.classList.add("primary");
   return h(
     "div",
     { class: "row keep-or-search" },
-    h("details", { class: "keeping" }, h("summary", { class: "button" }, "Keep this design"), form),
-    lengths && searchButton(job, lengths, { title: "Search near this" }),
+    deciding,
+    part("Keep", "note", "Note"),
+    searchButton(job, lengths, { title: "Search near it" }),
+    status,
   );
 }
 

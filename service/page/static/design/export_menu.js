@@ -38,7 +38,6 @@ export function exportMenu(job, number) {
       ),
     ),
   ];
-  const status = h("span", { class: "quiet", role: "status" });
   const print = h(
     "button",
     {
@@ -57,7 +56,6 @@ export function exportMenu(job, number) {
         : {};
       node.href = address(path, { ...lengths, ...units });
     }
-    status.textContent = lengths ? `of design ${number}, changed` : "";
   };
   show(null);
   const list = h(
@@ -67,7 +65,7 @@ export function exportMenu(job, number) {
   );
   const button = menu("Export", h("div", { class: "chooser-list panel at-left" }, list));
   return {
-    node: h("nav", { class: "exports row", "aria-label": "Exports" }, button, print, copy, status),
+    node: h("nav", { class: "exports row", "aria-label": "Exports" }, button, print, copy),
     show,
   };
 }

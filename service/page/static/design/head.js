@@ -13,7 +13,7 @@ export function focusLastStep(place) {
   if (words) first(place, `.design-head [aria-label="${words}"]`)?.focus({ preventScroll: true });
 }
 
-/** @typedef {{ job: string, number: number, front: Api.Front, others: { number: number, name: string, series: number | string }[] }} Place */
+/** @typedef {{ job: string, number: number, named: HTMLElement, front: Api.Front, others: { number: number, name: string, series: number | string }[] }} Place */
 
 /** Return what the reader looks at, whichever design it is. */
 function shown() {
@@ -21,8 +21,8 @@ function shown() {
   return { over: query.get("over"), tab: query.get("tab") };
 }
 
-/** Return the head. @param {Place} place */
-export function designHead({ job, number, front, others }) {
+/** Return the head. named: the name of the design. @param {Place} place */
+export function designHead({ job, number, named, front, others }) {
   const beside = others.map((one) => one.number).join(",");
   const { place, count, before, after, listed } = neighbours(job, number, front.count);
   /** @param {number | null} to @param {string} words @param {string} sign */
@@ -53,16 +53,16 @@ export function designHead({ job, number, front, others }) {
       h(
         "h1",
         {},
-        `Design ${number}`,
+        named,
         h(
           "span",
           { class: "quiet" },
-          ` of ${front.count}${listed ? `, ${place}. of the ${count} in the list` : ""}`,
+          ` · ${number} of ${front.count}${listed ? `, ${place}. of the ${count} in the list` : ""}`,
         ),
       ),
       step(before, "Previous design", "‹"),
       step(after, "Next design", "›"),
-      compare({ job, number, front, others }),
+      compare({ job, number, named, front, others }),
     ),
   );
 }

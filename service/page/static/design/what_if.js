@@ -8,7 +8,6 @@ import { link } from "../lib/address.js";
 import { frontMap } from "./front_map.js";
 import { difference, wanted } from "./numbers.js";
 import { lengthsOf } from "./loading.js";
-import { bookmarkForm } from "./bookmark_form.js";
 import { rankOf } from "./rank.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { headedRow, headsOf, numberCell, table } from "../lib/table.js";
@@ -25,7 +24,8 @@ const SAME = 1e-9; // relative
 /**
  * Put the sliders into `place`. path: of the design in the API; base: its row; ranges, requirements: of the API; objectives, front:
  * of the job; start: lengths to begin with, or null; wrong: why those of the link are none. changed(answer, {lengths, impossible}): the answer of the API that is drawn
- * and its numbers, null for the design itself; impossible: since the change has no answer. Returns {apply(row)}: to the numbers of another design.
+ * and its numbers, null for the design itself; impossible: since the change has no answer. Returns {apply(row), lengths(), dimensions()}:
+ * to the numbers of another design; those that it has, all of them or null for the design itself.
  * @param {HTMLElement} place
  * @param {{
  *   job: string, path: `jobs/${string}/designs/${number}`, base: Api.Row, columns: Api.Column[], ranges: Api.Requirements["ranges"], requirements: Api.Requirement[],
@@ -95,13 +95,6 @@ export function whatIf(
     { type: "button", onclick: () => apply(base), disabled: true },
     "Reset",
   );
-  const keep = bookmarkForm({
-    job,
-    design: Number(path.split("/").pop()),
-    dimensions: () =>
-      moved() ? { ...(answer ? lengthsOf(answer.design) : lengths), ...values } : null,
-    lengths: () => ({ ...(answer ? lengthsOf(answer.design) : lengths) }),
-  });
   fill(
     place,
     h("div", { class: "row heading" }, h("h2", {}, "What if?"), reset),
@@ -114,7 +107,6 @@ export function whatIf(
     rule,
     verdict,
     results,
-    keep,
     picture,
   );
   const map = frontMap(picture, { objectives, front });
@@ -236,7 +228,12 @@ export function whatIf(
   showLengths();
   tell();
   if (moved()) ask();
-  return { apply };
+  const lengthsNow = () => ({ ...(answer ? lengthsOf(answer.design) : lengths) });
+  return {
+    apply,
+    lengths: lengthsNow,
+    dimensions: () => (moved() ? { ...lengthsNow(), ...values } : null),
+  };
 }
 
 /**

@@ -14,11 +14,13 @@ import { designHead, focusLastStep } from "../design/head.js";
 import { playback } from "../mechanism/playback.js";
 import { inverseForm } from "../design/inverse.js";
 import { whatIf } from "../design/what_if.js";
+import { bookmarkForm } from "../design/bookmark_form.js";
 import { placeOf } from "../charts/cycle.js";
 import { keep } from "../lib/address.js";
 import { get, Problem } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { inShownUnits } from "../lib/numbers.js";
+import { capital } from "../lib/words.js";
 
 export const title = "Design";
 
@@ -48,7 +50,9 @@ export async function show(place, { parts, query, signal }) {
   if (signal.aborted) return;
 
   const objectives = front.objectives;
+  const named = h("span", {});
   const shared = {
+    named,
     job,
     number,
     front,
@@ -84,6 +88,9 @@ export async function show(place, { parts, query, signal }) {
     ].map((name) => [name, h("section", { class: name })]),
   );
   const files = exportMenu(job, number);
+  let own = requirements.name; // of the design itself
+  /** Say what the design is called that is shown. */
+  const rename = () => (named.textContent = capital(changed?.name ?? own));
   const [ofPlace, ofWay, ofTopics] = Array.from({ length: 3 }, () =>
     h(
       "p",
@@ -95,7 +102,22 @@ export async function show(place, { parts, query, signal }) {
   fill(
     place,
     designHead(shared),
-    files.node,
+    h(
+      "div",
+      { class: "row taking" },
+      bookmarkForm({
+        job,
+        design: number,
+        dimensions: () => sliders.dimensions(),
+        lengths: () => sliders.lengths(),
+        kept: ({ name }) => {
+          if (changed) changed.name = name;
+          else own = name;
+          rename();
+        },
+      }),
+      files.node,
+    ),
     places.objectives,
     places.beyond,
     h(
@@ -174,7 +196,7 @@ export async function show(place, { parts, query, signal }) {
     const [shown] = designs;
     const whose =
       shown !== main
-        ? `What if: design ${number}, changed`
+        ? `What if: ${changed?.name}`
         : refused
           ? `Design ${number} itself: the change is not possible`
           : "";
@@ -209,6 +231,7 @@ export async function show(place, { parts, query, signal }) {
       ...cycleOf(changed.cycle),
     };
     const moving = [variant ?? main, ...others];
+    rename();
     glance(moving);
     machines.show(moving);
     machines.fade(refused);
