@@ -94,12 +94,13 @@ class Designs:
         design: int | None = None,
         *,
         dimensions: Mapping[str, float | str] | None = None,
-        name: str = "",
-        note: str = "",
-        star: bool = False,
+        **remarks: Any,
     ) -> Record:
-        """Bookmark a design of a front, or one with other dimensions such as {"rod_mm": 330}, and return it."""
-        body = {"design": design, "dimensions": dict(dimensions or {}), "name": name, "note": note, "star": star}
+        """Bookmark a design of a front, or one with other dimensions such as {"rod_mm": 330}, and return it.
+
+        remarks: name, note, star, decided, reason. A bookmark that the design already has takes them over.
+        """
+        body = {"design": design, "dimensions": dict(dimensions or {}), **remarks}
         return self._connection.post(f"jobs/{number}/kept", body, again=False)
 
     def change_kept(self, number: int, kept: int, **changes: Any) -> Record:

@@ -66,22 +66,32 @@ def test_designing_a_press_from_nothing_to_a_decided_rounded_design_by_keyboard(
     page.get_by_label("Crank, step").press("Enter", timeout=PATIENCE)
     page.get_by_role("button", name="Apply round numbers 1", exact=True).press("Enter", timeout=PATIENCE)
     expect(page.locator("#what-if-crank_mm")).to_have_value(re.compile(r"^\d+(\.5)?$"), timeout=PATIENCE)
-    page.locator(".what-if summary").filter(has_text="Keep this design").press("Enter", timeout=PATIENCE)
-    typed(page.get_by_label("Name"), "Rounded")
-    page.get_by_role("button", name="Keep", exact=True).press("Enter")
+    page.get_by_text("Decide for it", exact=True).press("Enter", timeout=PATIENCE)
+    page.keyboard.press("Tab")
+    page.keyboard.type("Rounded A")
+    page.keyboard.press("Tab")
+    page.keyboard.type("round numbers")
+    page.keyboard.press("Enter")
+    expect(page.locator("h1")).to_contain_text("Rounded A", timeout=PATIENCE)
+    expect(page.get_by_text("Decide for it", exact=True)).to_be_focused()
     page.get_by_text("Export", exact=True).press("Enter")
     drawing = ezdxf.readfile(  # type: ignore[attr-defined]
         downloaded(page, page.get_by_role("link", name="DXF", exact=True), tmp_path)
     )
     assert not drawing.audit().has_errors
     report = downloaded(page, page.get_by_role("link", name="Report", exact=True), tmp_path)
-    assert "Press for bushings" in report.read_text(encoding="utf-8")
+    assert report.name == "press-for-bushings-1-rounded-a-report.html"
+    assert "Press for bushings: Rounded A" in report.read_text(encoding="utf-8")
     page.get_by_role("link", name="beside the front").press("Enter")
-    typed(page.get_by_label("Why, or why not, Rounded"), "round numbers")
-    with page.expect_response("**/kept"):  # with which the table is drawn anew
-        page.get_by_label("Why, or why not, Rounded").press("Tab")
-    page.get_by_label("Decided for Rounded").press("Space")
-    expect(page.locator(".decision")).to_contain_text("Decided for Rounded because round numbers", timeout=PATIENCE)
+    head = page.locator(".run-head")
+    expect(head).to_contain_text("Decided for Rounded A: round numbers", timeout=PATIENCE)
+    of_head = downloaded(page, head.get_by_role("link", name="Report of the decision"), tmp_path)
+    assert "Press for bushings: Rounded A" in of_head.read_text(encoding="utf-8")
+    page.get_by_role("navigation", name="Main").get_by_role("link", name="Runs").press("Enter")
+    expect(page.get_by_role("listitem")).to_contain_text("decided for Rounded A", timeout=PATIENCE)
+    page.go_back()
+    head.get_by_role("link", name="Decided for Rounded A").press("Enter", timeout=PATIENCE)
+    expect(page.locator("h1")).to_contain_text("Rounded A", timeout=PATIENCE)
 
 
 def test_studying_a_published_case_to_a_curve_over_the_slider_position_by_keyboard(
@@ -127,10 +137,8 @@ def test_deciding_together_in_two_windows_by_keyboard(browser: Browser, solved: 
         with theirs.expect_response("**/kept"):
             theirs.keyboard.press("Tab")
         theirs.get_by_label("Decided for Design 2").press("Space")
-        expect(theirs.locator(".decision")).to_contain_text("because fits the old frame", timeout=PATIENCE)
-        expect(mine.locator(".decision")).to_contain_text(
-            "Decided for Design 2 because fits the old frame", timeout=PATIENCE
-        )
+        expect(theirs.locator(".decision")).to_contain_text(": fits the old frame", timeout=PATIENCE)
+        expect(mine.locator(".decision")).to_contain_text("Decided for Design 2: fits the old frame", timeout=PATIENCE)
         expect(mine.get_by_role("button", name="Star of Design 2")).to_have_attribute("aria-pressed", "true")
     assert wrong == []
 

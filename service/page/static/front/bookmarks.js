@@ -4,7 +4,7 @@ import { link } from "../lib/address.js";
 import { address, get, patch, post, remove } from "../lib/api.js";
 import { fill, first, focused, h } from "../lib/dom.js";
 import { attempt, sayProblem } from "../lib/notices.js";
-import { apiSystem, withUnit } from "../lib/numbers.js";
+import { apiSystem, text, unitOf, withUnit } from "../lib/numbers.js";
 import { searchButton } from "../design/bookmark_form.js";
 import { lengthsOf } from "../design/loading.js";
 import { LENGTHS } from "./linkages.js";
@@ -14,9 +14,9 @@ import { headsOf, numberCell, table as tableOf } from "../lib/table.js";
 
 const EVERY = 5_000; // ms between two looks at what others keep
 
-/** Return {place, file, draw(), marks(), ask()} for the kept designs of an explorer. @param {Explorer} explorer */
+/** Return {place, file, draw(), marks(), ask()} for the kept designs of an explorer, at whose head the decision is. @param {Explorer} explorer */
 export function bookmarksPanel(explorer) {
-  const { data, job, chosen } = explorer;
+  const { data, job, chosen, decision } = explorer;
   const table = h("div", {
     class: "scroll",
     tabindex: 0,
@@ -26,7 +26,7 @@ export function bookmarksPanel(explorer) {
   const none = h(
     "p",
     { class: "quiet hint" },
-    "None yet. Keep a what-if or rounded design in its view, a wished one above, or the designs that are ticked in the table.",
+    "None yet. Keep a design in its view, a wished one above, or the designs that are ticked in the table.",
   );
   const add = h("button", {
     type: "button",
@@ -39,12 +39,10 @@ export function bookmarksPanel(explorer) {
   const stars = h("label", {}, only, " only with a star");
   const csv = h("a", { download: "" }, "Kept designs as CSV");
   const file = h("li", {}, csv);
-  const why = h("p", { class: "decision" });
   const place = h(
     "section",
     { class: "panel kept", "aria-labelledby": "kept-title" },
     h("div", { class: "row spread" }, h("h2", { id: "kept-title" }, "Kept designs"), stars, add),
-    why,
     none,
     table,
   );
@@ -98,59 +96,56 @@ export function bookmarksPanel(explorer) {
     await ask();
   }
 
-  /** Return the view of a kept design; null where more than its lengths is other than in the design that it began as. @param {Api.Kept} one */
-  function hrefOf({ design, changed, cells }) {
-    if (design === null) return null;
-    return changed
-      ? link(
-          ["jobs", job.id, "designs", design],
-          Object.fromEntries(LENGTHS.map((key) => [key, cells[key]])),
-        )
-      : explorer.hrefOf(design - 1);
+  /** Return the view of a kept design; null where more than its numbers is other than in the design that it began as. @param {Api.Kept} one */
+  function hrefOf({ design, numbers }) {
+    const value = Array.isArray(numbers?.value) ? numbers.value.join(",") : null;
+    const query = /** @type {Record<string, number>} */ ({ ...numbers });
+    return design && numbers && link(["jobs", job.id, "designs", design], { ...query, value });
   }
 
-  /** Return the link to the report of a kept design, with the alternatives and the reasons; null where it has no view. @param {Api.Kept} one */
-  function reportOf(one) {
-    const { design, changed, cells, name } = one;
-    if (!hrefOf(one)) return null;
-    const lengths = changed
-      ? Object.fromEntries(LENGTHS.map((key) => [key, Number(cells[key])]))
-      : {};
-    return h(
-      "a",
-      {
-        class: "button",
-        download: "",
-        "aria-label": `Report of the decision for ${name}`,
-        href: address(`jobs/${job.id}/designs/${design}/report.html`, {
-          ...lengths,
-          units: apiSystem(),
-        }),
-      },
-      "Report of the decision",
+  /** Say at the head of the run which design is decided for, with its report. @param {Api.Kept | undefined} one */
+  function showDecision(one) {
+    const href = one && hrefOf(one);
+    fill(
+      decision,
+      one && h("strong", {}, href ? h("a", { href }, one.decision) : one.decision),
+      one &&
+        href && [
+          " ",
+          h(
+            "a",
+            {
+              class: "button",
+              download: "",
+              href: address(`jobs/${job.id}/designs/${one.design}/report.html`, {
+                ...one.numbers,
+                units: apiSystem(),
+              }),
+            },
+            "Report of the decision",
+          ),
+        ],
     );
+    decision.hidden = !one;
   }
 
   /** @param {Api.Kept} one */
   function line(one) {
-    const { number, name } = one;
+    const { number, name, cells } = one;
     const href = hrefOf(one);
-    /** @param {"note" | "reason"} key @param {string} label */
-    const words = (key, label) =>
-      h(
-        "td",
-        {},
-        h("input", {
-          type: "text",
-          maxlength: 4000,
-          value: one[key],
-          "aria-label": `${label} ${name}`,
-          "data-act": `${key}-${number}`,
-          oninput: () => (typing = true),
-          onchange: ({ currentTarget }) => sent(number, { [key]: currentTarget.value }),
-          onblur: () => sent(),
-        }),
-      );
+    /** @param {"note" | "reason"} key @param {string} label @param {string} placeholder */
+    const words = (key, label, placeholder) =>
+      h("textarea", {
+        rows: 1,
+        maxlength: 4000,
+        value: one[key],
+        placeholder,
+        "aria-label": `${label} ${name}`,
+        "data-act": `${key}-${number}`,
+        oninput: () => (typing = true),
+        onchange: ({ currentTarget }) => sent(number, { [key]: currentTarget.value }),
+        onblur: () => sent(),
+      });
     return h(
       "tr",
       { class: one.decided ? "decided" : null },
@@ -174,13 +169,25 @@ export function bookmarksPanel(explorer) {
         "th",
         { scope: "row" },
         href ? h("a", { href }, name) : name,
+        h(
+          "div",
+          { class: "quiet" },
+          LENGTHS.map((key, n) => [
+            n ? " · " : "",
+            h(
+              "span",
+              { "data-key": key, "data-value": String(cells[key]) },
+              text(cells[key], "mm", 5),
+            ),
+          ]),
+          ` ${unitOf("mm")}`,
+        ),
         one.outside.length > 0 && h("div", { class: "at-limit" }, "outside the job"),
         one.broken.length > 0 && h("div", { class: "bad" }, "misses a requirement"),
       ),
       data.objectives.map(({ column, unit }) =>
-        numberCell(column, one.cells[column], withUnit(one.cells[column], unit, 5)),
+        numberCell(column, cells[column], withUnit(cells[column], unit, 5)),
       ),
-      words("note", "Note on"),
       h(
         "td",
         {},
@@ -193,36 +200,24 @@ export function bookmarksPanel(explorer) {
           onchange: () => change(number, { decided: true }),
         }),
       ),
-      words("reason", "Why, or why not,"),
-      LENGTHS.map((key) =>
-        h(
-          "td",
-          { class: "number quiet", "data-key": key, "data-value": String(one.cells[key] ?? "") },
-          withUnit(one.cells[key], "mm", 6),
-        ),
+      h(
+        "td",
+        { class: "words" },
+        words("reason", "Why, or why not,", "why, or why not"),
+        words("note", "Note on", "note"),
       ),
       h(
         "td",
         {},
-        searchButton(`${job.id}`, () => lengthsOf(one.cells), {
+        searchButton(`${job.id}`, () => lengthsOf(cells), {
           title: "Search near",
           name: `Search near ${name}`,
           act: `near-${number}`,
         }),
-      ),
-      h(
-        "td",
-        {},
         h(
           "button",
-          {
-            type: "button",
-            class: "small",
-            "aria-label": `Drop ${name}`,
-            title: "Drop",
-            onclick: () => drop(one),
-          },
-          "×",
+          { type: "button", "aria-label": `Drop ${name}`, onclick: () => drop(one) },
+          "Drop",
         ),
       ),
     );
@@ -237,38 +232,22 @@ export function bookmarksPanel(explorer) {
     table.hidden = listed.length === 0;
     for (const node of [stars, file]) node.hidden = designs.length === 0;
     csv.href = address(`jobs/${job.id}/kept.csv`, { units: apiSystem() });
-    const decided = designs.find((one) => one.decided);
-    fill(
-      why,
-      decided && [
-        h("strong", {}, `Decided for ${decided.name}`),
-        decided.reason && ` because ${decided.reason}`,
-        " ",
-        reportOf(decided),
-      ],
-    );
-    why.hidden = !decided;
+    showDecision(designs.find(({ decided }) => decided));
     /** @param {string} title */
     const unseen = (title) => h("span", { class: "hidden" }, title);
     const heads = [
       unseen("Star"),
-      "name",
+      "design",
       ...data.objectives.map(({ title }) => title),
-      "note",
       "decided",
       "because, or why not",
-      "crank",
-      "rod",
-      "offset",
-      unseen("Search near"),
-      unseen("Drop"),
+      unseen("Search near, drop"),
     ];
-    const words = 2 + data.objectives.length; // where those that are no numbers begin
     fill(
       table,
       tableOf(
         "Kept designs",
-        headsOf(heads, (n) => n > 1 && (n < words || n > words + 2) && n < heads.length - 2),
+        headsOf(heads, (n) => n > 1 && n < heads.length - 3),
         listed.map(line),
       ),
     );

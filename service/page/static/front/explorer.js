@@ -38,17 +38,17 @@ const ORDER = ["marks", "table", "chosen", "all"];
 
 /**
  * Fill a place with the explorer of a front; the promise is kept when it is drawn. values: columns that are here already. files: where the
- * files go that it makes.
+ * files go that it makes; decision: where it says which design is decided for.
  * @param {HTMLElement} place
- * @param {{ job: Api.Job, front: Api.Front, values: Api.Columns["values"], query: URLSearchParams, files: HTMLElement, signal: AbortSignal }} options
+ * @param {{ job: Api.Job, front: Api.Front, values: Api.Columns["values"], query: URLSearchParams, files: HTMLElement, decision: HTMLElement, signal: AbortSignal }} options
  */
-export async function explore(place, { job, front, values, query, files, signal }) {
+export async function explore(place, { job, front, values, query, files, decision, signal }) {
   const data = new FrontData(job.id, front, signal);
   const chosen = choicesFrom(query, front);
   const limits = new Limits(data, chosen.limits, chosen.lasso);
   data.take(values);
   await data.need(wanted(chosen, limits));
-  if (!signal.aborted) new Explorer(place, { job, data, chosen, limits, files, signal });
+  if (!signal.aborted) new Explorer(place, { job, data, chosen, limits, files, decision, signal });
 }
 
 /** Choices in a front, and the parts that show it; they tell it what the reader does. */
@@ -72,8 +72,9 @@ export class Explorer {
   /** @type {Awaited<ReturnType<typeof previousFront>>} */
   before = null; // the run that this one is a changed copy of
   count = h("p", { class: "count", role: "status" });
-  /** @param {HTMLElement} place @param {{ job: Api.Job, data: FrontData, chosen: Chosen, limits: Limits, files: HTMLElement, signal: AbortSignal }} options */
-  constructor(place, { job, data, chosen, limits, files, signal }) {
+  /** @param {HTMLElement} place @param {{ job: Api.Job, data: FrontData, chosen: Chosen, limits: Limits, files: HTMLElement, decision: HTMLElement, signal: AbortSignal }} options */
+  constructor(place, { job, data, chosen, limits, files, decision, signal }) {
+    this.decision = decision;
     this.place = place;
     this.job = job;
     this.front = data.front;

@@ -45,10 +45,16 @@ export function runRow(job, { picture, chosen, compare, changed }) {
 
 /** Return how far a job is, or what it found. @param {Api.JobRow} job */
 function standing(job) {
+  const { decision } = job;
   if (job.summary?.designs) {
     const { designs, best } = job.summary;
     return [
-      h("div", {}, counted(designs, "design")),
+      h(
+        "div",
+        {},
+        counted(designs, "design"),
+        decision && [" · ", h("strong", {}, `decided for ${decision}`)],
+      ),
       h(
         "div",
         { class: "quiet" },

@@ -194,12 +194,7 @@ export async function show(place, { parts, query, signal }) {
   /** Show the objectives of the first of some designs, and which allowable values all of them violate. @param {Page.Machine[]} designs */
   const glance = (designs) => {
     const [shown] = designs;
-    const whose =
-      shown !== main
-        ? `What if: ${changed?.name}`
-        : refused
-          ? `Design ${number} itself: the change is not possible`
-          : "";
+    const whose = refused ? `Design ${number} itself: the change is not possible` : "";
     showObjectives(places.objectives, {
       objectives,
       front: rows,

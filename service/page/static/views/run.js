@@ -20,6 +20,7 @@ export async function show(place, { parts, signal }) {
   const head = h("header", { class: "run-head" });
   const body = h("div", { class: "run-body" });
   const files = h("ul"); // of the front, that its explorer makes
+  const decision = h("p", { class: "decision", hidden: true }); // which it says too
   /** @type {{ control: AbortController, live: boolean } | null} */
   let inner = null; // ends what the body shows
   const explorer = import("../front/explorer.js"); // comes while the job is asked for
@@ -114,6 +115,7 @@ export async function show(place, { parts, signal }) {
               ]
             : null,
         ),
+        decision,
       ),
       h(
         "div",
@@ -144,7 +146,15 @@ export async function show(place, { parts, signal }) {
     if (!place || !asked) return;
     try {
       const [[front, { values }], { explore }] = await Promise.all([asked, explorer]);
-      await explore(place, { job, front, values, query: read().query, files, signal: own });
+      await explore(place, {
+        job,
+        front,
+        values,
+        query: read().query,
+        files,
+        decision,
+        signal: own,
+      });
     } catch (problem) {
       if (isAbort(problem)) return;
       if (statusOf(problem) === 404) await stand(null);
