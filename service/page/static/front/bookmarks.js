@@ -100,7 +100,9 @@ export function bookmarksPanel(explorer) {
   function hrefOf({ design, numbers }) {
     const value = Array.isArray(numbers?.value) ? numbers.value.join(",") : null;
     const query = /** @type {Record<string, number>} */ ({ ...numbers });
-    return design && numbers && link(["jobs", job.id, "designs", design], { ...query, value });
+    return design && numbers
+      ? link(["jobs", job.id, "designs", design], { ...query, value })
+      : null;
   }
 
   /** Say at the head of the run which design is decided for, with its report. @param {Api.Kept | undefined} one */
