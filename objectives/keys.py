@@ -25,6 +25,7 @@ _EXTRA_UNITS = {
 }
 """Units of keys beside those of their kinds."""
 _DISPLAY_UNITS += _EXTRA_UNITS
+_DISPLAY_UNITS += (display_unit("1/min", 60.0), display_unit("1/s"))  # of catalogues, such as an output speed
 _CURRENCY = re.compile("_([A-Z]{3})$")  # ISO 4217, of an amount such as a price
 _TO_METRIC = {inch: metric for metric, (inch, _) in _TO_INCH.items()}
 for _unit, _kind in _EXTRA_UNITS.items():

@@ -74,6 +74,12 @@ def message_of(
 
     if not np.isfinite(proven):
         return "nothing is proven yet: part of the design box has no bound; allow more time"
+    if proven >= 1.0 and proven > requested:
+        text = (
+            f"nothing useful is proven yet: by the bound so far, a design could be better by {share(proven)} of each "
+            "objective's range over the front, which is more than the whole front; allow more time or narrow the ranges"
+        )
+        return f"interrupted; {text}" if status == "cancelled" else text
     delivered_set = f"the {designs} designs" if designs > 1 else "the design"
     completed_set = f"{delivered_set} and {added} added ones" if added else delivered_set
     worst_loss = f"at most {share(proven)} of each objective's range"

@@ -12,8 +12,10 @@ from .combinations import Judged
 
 
 def rules_text(problem: Problem) -> str:
-    """Return the discrete numbers with their possible values."""
-    return ", ".join(f"{item.name} ({item.rule})" for item in problem.discrete)
+    """Return the choices with the number of their options, and the discrete numbers with their possible values."""
+    options = [len({variant.labels[place] for variant in problem.variants}) for place in range(len(problem.choices))]
+    choices = [f"{name} ({counted(count, 'option')})" for name, count in zip(problem.choices, options, strict=True)]
+    return ", ".join([*choices, *(f"{item.name} ({item.rule})" for item in problem.discrete)])
 
 
 def result_message(front: ParetoFront) -> str:

@@ -164,7 +164,7 @@ class ParetoFront:
 
     def save(self, file: str | PathLike[str]) -> None:
         """Write the front as JSON, without its problem. Raises `OSError`."""
-        write_front(self, Path(file))
+        write_front(vars(self), Path(file))
 
     @classmethod
     def load(cls, file: str | PathLike[str], problem: Problem) -> ParetoFront:
@@ -329,7 +329,9 @@ class ParetoFront:
         stay = []
         for name, label in zip(self.problem.choices, labels, strict=True):
             least = self.columns[key][row] if (key := least_field(name)) in self.columns else label
-            also = f"; the least that also suffices for the given design is {least}" if least not in ("", label) else ""
+            also = (
+                f"; the smallest one that suffices for the given design is {least}" if least not in ("", label) else ""
+            )
             stay.append(f"{name} stays {label}{also}")
         span = ranges_or_sizes(self.values, self.values[row], self._sizes)
         yield (yield from rounding(part, design, span, to, count=count, allow=allow, notes=stay))

@@ -23,6 +23,9 @@ from .slack import slack_of
 if TYPE_CHECKING:
     import pandas as pd
 
+_SAME = 1e-12
+"""Relative change of an objective that is rounding, such as of one that follows from a requirement alone."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Miss:
@@ -187,7 +190,8 @@ class Rounded:
             quantity = self.problem.quantity(objective.quantity)
             now, before = self.values[:, place], self.design_objectives[place]
             with np.errstate(invalid="ignore", divide="ignore"):
-                change = np.where(now == before, 0.0, now - before)
+                is_same = (now == before) | (np.abs(now - before) <= _SAME * np.abs(before))
+                change = np.where(is_same, 0.0, now - before)
                 percent = np.where(change == 0.0, 0.0, 100.0 * change / abs(before))
             table[quantity.field] = now * quantity.unit.factor
             table[f"change_{quantity.field}"] = change * quantity.unit.factor

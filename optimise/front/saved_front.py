@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -17,42 +18,39 @@ from ..problem.violation import all_minimised
 from .discrete_answer import DiscreteSearch
 from .progress import Progress
 
-if TYPE_CHECKING:
-    from .front import ParetoFront
-
 _FORM = 1
 _SAME = 1e-6
 """Relative difference of an objective: versions of this software and its libraries differ by rounding."""
 _AS_THEY_ARE = ("status", "message", "hypervolume", "evaluations", "seconds", "seed", "versions")
 
 
-def saved_front(front: ParetoFront) -> str:
-    """Return a front as JSON: arrays in SI, columns in their units; "inf", "-inf" and "nan" for such numbers."""
-    words = [name for name, column in front.columns.items() if column.dtype.kind == "U"]
+def saved_front(fields: Mapping[str, Any]) -> str:
+    """Return the fields of a front as JSON: arrays in SI, columns in their units; "inf", "-inf" and "nan" as texts."""
+    columns, dimensions, active = fields["columns"], fields["dimensions"], fields["active"]
     record = {
         "form": _FORM,
-        "name": front.problem.name,
-        "objectives": _objectives(front.problem),
-        "variables": front.dimensions.shape[1],
-        **{name: getattr(front, name) for name in _AS_THEY_ARE},
-        "history": [asdict(progress) for progress in front.history],
-        "discrete": front.discrete and asdict(front.discrete),
-        "words": words,
-        "columns": {name: column.tolist() for name, column in front.columns.items()},
-        "dimensions": front.dimensions.tolist(),
-        "variants": list(front.variants),
-        "values": front.values.tolist(),
-        "unknowns": [edges.shape[1] for edges in front.active],
-        "goals": [[owner.tolist(), slopes.tolist()] for owner, slopes in front.goals],
-        "active": [edges.tolist() for edges in front.active],
+        "name": fields["problem"].name,
+        "objectives": _objectives(fields["problem"]),
+        "variables": dimensions.shape[1],
+        **{name: fields[name] for name in _AS_THEY_ARE},
+        "history": [asdict(progress) for progress in fields["history"]],
+        "discrete": fields["discrete"] and asdict(fields["discrete"]),
+        "words": [name for name, column in columns.items() if column.dtype.kind == "U"],
+        "columns": {name: column.tolist() for name, column in columns.items()},
+        "dimensions": dimensions.tolist(),
+        "variants": list(fields["variants"]),
+        "values": fields["values"].tolist(),
+        "unknowns": [edges.shape[1] for edges in active],
+        "goals": [[owner.tolist(), slopes.tolist()] for owner, slopes in fields["goals"]],
+        "active": [edges.tolist() for edges in active],
     }
     return json.dumps(_finite(record), ensure_ascii=False, indent=1, allow_nan=False)
 
 
-def write_front(front: ParetoFront, file: Path) -> None:
-    """Write a front to a file, completely or not at all. Raises `OSError`."""
+def write_front(fields: Mapping[str, Any], file: Path) -> None:
+    """Write the fields of a front to a file, completely or not at all. Raises `OSError`."""
     unfinished = file.with_name(f".{file.name}.part")
-    unfinished.write_text(saved_front(front), encoding="utf-8")
+    unfinished.write_text(saved_front(fields), encoding="utf-8")
     unfinished.replace(file)
 
 

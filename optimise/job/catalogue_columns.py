@@ -26,7 +26,7 @@ _COLUMN = re.compile(rf"(?P<name>[^#]+?)(?:\s+(?P<word>min|max|equals))?\s*{_UNI
 _PATH = re.compile(rf"(?:{'|'.join(DIMENSIONS)}|(?:{'|'.join(ROOTS)})(?:\.\w+)+)")
 _LIMIT = {"min": "min", "minimum": "min", "max": "max", "maximum": "max", "equals": "equals"}
 _SAID = "|".join(sorted(_LIMIT, reverse=True))
-_MISPLACED = re.compile(rf"(?i)(?:(?P<first>{_SAID})\s+(?P<after>.+)|(?P<before>.+?)\s+(?P<last>{_SAID}))")
+_MISPLACED = re.compile(rf"(?i)(?:(?P<first>{_SAID})\.?\s+(?P<after>.+)|(?P<before>.+?)\s+(?P<last>{_SAID})\.?)")
 _RULE = (
     'must be a quantity or formula with min, max or equals, or the path of a number, and its unit, like "peak_torque '
     'max (N m)", or have a name of letters'

@@ -81,7 +81,7 @@ def _of_catalogue(table: Catalogue) -> Iterator[str]:
         sentences += [
             f"{'others' if table.excluded else 'the others'} lose in {_join_all(table.compared)}: {_join_first(few)}"
         ]
-        sentences += ["each design names the least row that also suffices"]
+        sentences += ["each design names the smallest row of the catalogue that suffices"]
     sentences += [f"not used, but stored with each design: {_join_all(table.idle)}"] if table.idle else []
     if sentences:
         yield f"{table.name}: {'; '.join(sentences)}"

@@ -6,6 +6,7 @@ read is kept, until all of it can be. A remedy is therefore always a line that t
 
 from __future__ import annotations
 
+import math
 import re
 import tomllib
 from collections import Counter
@@ -176,7 +177,7 @@ def in_words(text: str, error: str) -> str:
 
 
 def with_lines(message: str, text: str) -> str:
-    """Return a message on the tables of a TOML text, with the line number of each key."""
+    """Return a message on the tables of a TOML text, with the line number of each key; problems in their order."""
     keys = list(_paths(text.split("\n")))
     lines = {key_of(path[:-1]): number for number, path, brackets in reversed(keys) if brackets == "[["}
     lines |= {key_of(path): number for number, path, _ in keys}
@@ -187,7 +188,14 @@ def with_lines(message: str, text: str) -> str:
             key = re.sub(r"(\.| #)?[^.#]*$", "", key)
         return f"{match[1]}line {lines[key]}, {match[2]}" if key else match[0]
 
-    return re.sub(r"(?m)^( *)([^\s:;=][^:;=\n]*)(?=: )", numbered, message)
+    message = re.sub(r"(?m)^( *)([^\s:;=][^:;=\n]*)(?=: )", numbered, message)
+    heading, *problems = message.split("\n")
+
+    def place(problem: str) -> float:
+        match = re.match(r" *line (\d+), ", problem)
+        return float(match[1]) if match else math.inf
+
+    return "\n".join([heading, *sorted(problems, key=place)])
 
 
 def _code(line: str) -> str:

@@ -394,7 +394,7 @@ class Problem:
                 for name in self.choices
                 for head in self.heads(name)
             ),
-            *((least_field(name), "the least option that suffices") for name in least),
+            *((least_field(name), "the smallest sufficient option") for name in least),
             *((note_field(f"least {name}", head), _WITH_LEAST) for name in least for head in self.heads(name)),
             *((least_amount_field(name, of), _WITH_LEAST) for name in least for of in self.amounts(name)),
         ]

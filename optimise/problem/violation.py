@@ -10,6 +10,7 @@ from ...model.arrays import Array, Mask
 from ...model.cycle.gas_cycle import may_deliver_nothing
 from ...objectives.gas import VOLUMETRIC_EFFICIENCY
 from ...objectives.quantity import Quantity
+from ...objectives.robust.quantity import RobustQuantity
 from ...objectives.self_locking import SELF_LOCKING_MARGIN
 from ...objectives.stroke_times import STROKE_TIME_RATIOS
 from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
@@ -69,9 +70,13 @@ def _with_floor(
 ) -> tuple[Constraint, ...]:
     """Return constraints with a floor on a quantity unless they have one. above: a lower bound that does not count.
 
-    A bound on a formula that restates the quantity counts as a bound on it.
+    A bound on a formula that restates the quantity counts as a bound on it, and so does one on its robust form, except
+    for a floor with `above`.
     """
     assert of.floor is not None
+    forms = (problem.quantity(c.quantity) for c in constraints if c.lower is not None and above is None)
+    if any(isinstance(form, RobustQuantity) and form.inner.name == of.name for form in forms):
+        return constraints
     bounds_of_quantity = [c for c in (restate(problem, item) for item in constraints) if c.quantity == of.name]
     if any(c.lower is not None and (above is None or c.lower > above) for c in bounds_of_quantity):
         return constraints

@@ -51,9 +51,11 @@ def find_column(name: str, keys: Collection[str]) -> Column:
     from ...objectives.tables.varying_column import number_in_words
 
     slack = key.startswith("slack_")
-    title = _titles().get(
-        metric_key(key).removeprefix("slack_"), number_in_words(plain.removeprefix("slack_").removeprefix("choice_"))
-    )
+    words = number_in_words(plain.removeprefix("slack_").removeprefix("choice_"))
+    sufficient = [other.removeprefix("choice_") for other in keys if other.startswith("choice_least_")]
+    if any(plain.removeprefix("choice_").startswith(stem) for stem in sufficient):
+        words = words.replace("least", "smallest sufficient", 1)
+    title = _titles().get(metric_key(key).removeprefix("slack_"), words)
     return Column(
         key,
         f"slack of {title}" if slack else title,

@@ -15,6 +15,7 @@ from ...objectives.needs import Consequence
 from ...objectives.registry import QUANTITIES
 from ..designs.columns import Column, all_columns
 from ..designs.requirements import requirements_of
+from ..designs.rounding_noise import without_noise
 from ..designs.toleranced import format_toleranced
 from ..designs.trade_offs import trade_offs_of
 from ..drawings.design_drawing import design_drawing
@@ -50,10 +51,11 @@ def numbers_section(subject: Subject) -> Section:
     columns, absent = _columns_of_machine(subject)
     lengths = _dimensions_with_tolerance(subject)
     at_bound = {column.key for column in columns if column.key.startswith("slack_") and _active(subject, column)}
+    shown_row = without_noise(subject.row)
     rows = tuple(
         (
             column.title,
-            lengths.get(column.key, "0" if column.key in at_bound else rounded(subject.row[column.key])),
+            lengths.get(column.key, "0" if column.key in at_bound else rounded(shown_row[column.key])),
             unit_text(column.unit),
             as_stored(subject.row[column.key]),
             column.key,

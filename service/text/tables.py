@@ -12,9 +12,10 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.counted import counted
 from ...objectives.keys import metric_key
 from ..designs.columns import Column, chosen_columns, find_column
+from ..designs.rounding_noise import without_noise
 from ..designs.violations import front_violations_in_words, violations_in_words
 from ..render.terminal import print_table, table
-from ..runs.result import Cell, Result, Row
+from ..runs.result import Cell, Result, Row, Wanted
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -82,7 +83,7 @@ def show_design(
 
     custom: custom quantities of its job, whose titles and units say more than their column keys.
     """
-    custom_by_column = {quantity.field: quantity for quantity in custom}
+    row, custom_by_column = without_noise(row), {quantity.field: quantity for quantity in custom}
     rows = table("", ">", "")
     for key in only or row:
         value = row[key]
@@ -160,12 +161,9 @@ def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column])
         title = "\n".join(f"{line} " for line in (*narrow, column.unit))
         rich_table.add_column(title, justify="right", vertical="bottom", no_wrap=True)
     rich_table.add_column("", no_wrap=True)
-    best = {
-        (result.extremes[objective.quantity], objective.column)
-        for objective in result.objectives
-        if objective.quantity in result.extremes
-    }
-    texts = [_aligned([result.designs[row][column.key] for row in rows]) for column in columns]
+    best = {(row, objective.column) for objective in result.objectives for row in _best_rows(result, objective)}
+    designs = [without_noise(result.designs[row]) for row in rows]
+    texts = [_aligned([design[column.key] for design in designs]) for column in columns]
     for row, line in zip(rows, zip(*texts, strict=True), strict=True):
         knee = row == result.knee and len(result.objectives) > 1
         tops = [(row, column.key) in best for column in columns]
@@ -175,6 +173,16 @@ def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column])
         ]
         rich_table.add_row(str(row + 1), *cells, "knee" if knee else "", style="bold" if knee else "")
     return rich_table
+
+
+def _best_rows(result: Result, objective: Wanted) -> list[int]:
+    """Return the positions of the designs that are best in an objective, to rounding; none if all are equal."""
+    from ...optimise.front.constant import SAME
+
+    ranks = [objective.rank(row) for row in result.designs]
+    least = min(ranks)
+    best = [row for row, rank in enumerate(ranks) if math.isfinite(rank) and rank - least <= SAME * abs(least)]
+    return best if len(best) < max(len(ranks), 2) else []
 
 
 def _aligned(values: Sequence[Cell]) -> list[str]:

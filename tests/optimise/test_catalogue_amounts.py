@@ -73,7 +73,7 @@ def test_rounding_says_which_row_also_serves() -> None:
     front = sc.solve(sc.problem(tables | {"optimiser": {"samples": 8, "method": "random", "evaluations": 20}}))
     least = front.columns["choice_least_gearmotor"][0]
     assert least in ("GM 30", "GM 45")
-    said = f"gearmotor stays GM 150; the least that also suffices for the given design is {least}"
+    said = f"gearmotor stays GM 150; the smallest one that suffices for the given design is {least}"
     assert said in front.rounded(0, 1e-3).notes
 
 

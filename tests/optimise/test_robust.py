@@ -194,3 +194,14 @@ def test_the_figure_shows_nominal_and_robust_front_and_the_cost() -> None:
     assert len(words) == 3
     assert "99 % of machines" in words[1]
     assert any("cost" in text.get_text() and "N m" in text.get_text() for text in figure.texts)
+
+
+def test_a_robust_requirement_replaces_the_default_floor_and_has_the_only_slack() -> None:
+    tables = JOB | {"optimiser": {"method": "sobol", "evaluations": 300, "designs": 3}}
+    front = solve(parse_job(tables))
+    slacks = [name for name in front.columns if name.startswith("slack_least_transmission_angle")]
+    assert slacks == ["slack_least_transmission_angle_robust_deg"]
+    values = front.columns["least_transmission_angle_robust_deg"] - 40.0
+    np.testing.assert_allclose(front.columns[slacks[0]], values, rtol=0.0, atol=1e-7)
+    without = parse_job(tables | {"constraints": {"stroke": {"equals": "100 mm"}}})
+    assert "slack_least_transmission_angle_deg" in solve(without).columns

@@ -75,6 +75,6 @@ def test_the_api_checks_catalogues_gives_their_columns_and_filters_by_price(stor
         groups = {column["key"]: column["group"] for column in front["columns"]}
         assert {groups[key] for key in KEYS} == {groups["crank_mm"]}
         heads = {column["key"]: (column["title"], column["unit"]) for column in front["columns"]}
-        assert heads["least_gearmotor_price_EUR"] == ("least gearmotor price", "EUR")
+        assert heads["least_gearmotor_price_EUR"] == ("smallest sufficient gearmotor price", "EUR")
         look = client.post(f"{API}/preview", json={"job": PUSHER}).json()
         assert {"name": "price", "title": "price", "unit": "EUR"} in look["names"]

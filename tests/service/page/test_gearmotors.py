@@ -56,7 +56,7 @@ def test_a_pusher_comes_from_a_pasted_catalogue_to_round_numbers_that_its_motor_
     notes = page.locator(".rounding")
     motor = str(designs[-1]["choice_catalogue_1"])
     expect(notes).to_contain_text(
-        f"Catalogue 1 stays {motor}; the least that also suffices for the given design is "
+        f"Catalogue 1 stays {motor}; the smallest one that suffices for the given design is "
         f"{cheapest(story, designs[-1])}",
         timeout=60_000,
     )

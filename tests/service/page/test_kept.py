@@ -25,6 +25,20 @@ def opened(pages: Pages, solved: Solved, tmp_path_factory: pytest.TempPathFactor
         yield page, address, f"{address}{API}/jobs/{solved.number}"
 
 
+def test_that_nothing_is_kept_is_said_only_after_the_service_has_answered(
+    opened: tuple[Page, str, str], solved: Solved
+) -> None:
+    page, address, api = opened
+    for one in httpx.get(f"{api}/kept", timeout=60.0).json()["designs"]:
+        httpx.delete(f"{api}/kept/{one['number']}", timeout=60.0).raise_for_status()
+    page.route("**/kept", lambda _: None)  # the request waits
+    page.goto(f"{address}/#/jobs/{solved.number}")
+    expect(page.get_by_role("heading", name="Kept designs")).to_be_visible(timeout=30_000)
+    expect(page.get_by_text("None yet.")).to_be_hidden()
+    page.unroute("**/kept")
+    expect(page.get_by_text("None yet.")).to_be_visible()
+
+
 @pytest.mark.slow
 def test_a_what_if_outside_the_job_is_kept_and_decided_for(opened: tuple[Page, str, str], solved: Solved) -> None:
     page, address, api = opened

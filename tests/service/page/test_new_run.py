@@ -186,13 +186,15 @@ def test_wrong_input_is_said_beside_its_field_until_it_is_corrected_and_is_not_s
         re.compile(r"^Impossible: .*got exactly 1\.5")
     )
     expect(status(page)).to_have_text(IMPOSSIBLE)
-    start(page)
+    expect(page.get_by_role("button", name="Start the search")).to_be_disabled()
+    exact.press("Enter")
     expect(page.get_by_role("alert")).to_have_text(f"{IMPOSSIBLE} Change the marked fields.")
     assert store.jobs() == []
     expect(page.get_by_text("Time ratio exactly 1.5 is asked, at the nearest 1.2")).to_be_visible()
     page.get_by_label("time ratio", exact=True).and_(page.get_by_role("combobox")).select_option("max")
     page.get_by_label("time ratio, at most").fill("1.1")
     ready(page)
+    expect(page.get_by_role("button", name="Start the search")).to_be_enabled()
     for label, typed, number, said in (
         ("rod, from", "3 in + 5 mm", "81.2", '"3 in + 5 mm" = 81.2 mm'),
         ("rod, to", "1,500", "1500", '"1,500" is read as 1500 mm; write 1.500 if you mean that.'),

@@ -48,6 +48,7 @@ export function bookmarksPanel(explorer) {
   );
   /** @type {Api.Kept[]} */
   let designs = [];
+  let loaded = false; // whether the service has answered
   let turn = 0; // of the latest question
   let typing = false; // a note or a reason, which is not sent yet
   let late = false; // drawing waits until that is
@@ -58,7 +59,9 @@ export function bookmarksPanel(explorer) {
     await attempt(async () => {
       const before = marks().length;
       const answer = await get(`jobs/${job.id}/kept`, {}, explorer.signal);
-      if (request !== turn || JSON.stringify(answer.designs) === JSON.stringify(designs)) return;
+      if (request !== turn) return;
+      if (loaded && JSON.stringify(answer.designs) === JSON.stringify(designs)) return;
+      loaded = true;
       designs = answer.designs;
       drawTable();
       if (before || marks().length) explorer.update("all"); // else what is typed at the axes stays
@@ -230,7 +233,7 @@ export function bookmarksPanel(explorer) {
     if (late) return; // the field would be another one, without what stands in it
     const focusedAct = focused(place)?.dataset.act;
     const listed = only.checked ? designs.filter(({ star }) => star) : designs;
-    none.hidden = designs.length > 0;
+    none.hidden = !loaded || designs.length > 0;
     table.hidden = listed.length === 0;
     for (const node of [stars, file]) node.hidden = designs.length === 0;
     csv.href = address(`jobs/${job.id}/kept.csv`, { units: apiSystem() });

@@ -163,6 +163,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     file.refresh();
     refusal.hidden = true;
     checked = null;
+    start.ariaDisabled = null;
     check(form);
   }
   /** @param {string | null | undefined} focus */
@@ -221,6 +222,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     status.classList.toggle("good", answer.wrong.length === 0);
     if (count) say(count === 1 ? "One thing to correct." : `${count} things to correct.`);
     else say(answer.wrong.length ? IMPOSSIBLE : "Ready to start.");
+    start.ariaDisabled = answer.wrong.length && !count ? "true" : null; // not disabled: Enter still says what to change
     showFacts(facts, answer);
     if (answer.swing) drawn.swing(answer.swing);
     else drawn.show(answer.example);
