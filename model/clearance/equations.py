@@ -29,7 +29,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..dynamics.segments import find_pieces, load_on_slider, with_formulas
+from ..dynamics.segments import Segment, find_pieces, load_on_slider, with_formulas
 from ..kernel.arithmetic import analytic
 from ..kernel.kernel import Flags, Row, Table, kernel
 from ..kinematics.position import Motion
@@ -178,7 +178,7 @@ def load_along_x(
     find_pieces(d, block, 0, theta, d.branch * p.x, loads, piece, shift)
     # The block was derived for unit speed: velocity per unit of crank angle is then the velocity.
     m = Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, p.x, p.x_t, 0.0)
-    force = load_on_slider(m, d, block, 0, theta, outward, loads, piece, shift)
+    force = load_on_slider(m, d, theta, Segment(block, loads, outward, piece, shift))
     moving = d.branch * p.x_t > 0.0
     if moving != outward:  # near a dead centre the loose slider lags: loads that oppose its motion reverse with it
         force += with_formulas(0.0, m, d, block, 0, moving, loads) - with_formulas(0.0, m, d, block, 0, outward, loads)

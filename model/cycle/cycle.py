@@ -13,7 +13,7 @@ from ..dynamics.breakpoints import breakpoints_of
 from ..dynamics.contact import rubs, sides_of
 from ..dynamics.crank_loads import sense_of, torque_without_crank_loads
 from ..dynamics.rubbing import joint_forces
-from ..dynamics.segments import CycleWindow, enter, load_on_slider
+from ..dynamics.segments import CycleWindow, Segment, enter, load_on_slider
 from ..errors import InputError
 from ..kernel.kernel import Row, Table, kernel
 from ..linkage.linkage import Linkage
@@ -81,9 +81,10 @@ def _curves(
         d = design_at(block, 0)
         sine, cosine = math.sin(theta), math.cos(theta)
         _, outward = enter(d, block, 0, theta, loads, watch, piece, shift)
+        segment = Segment(block, loads, outward, piece, shift)
         m = design_motion(sine, cosine, d)
-        load = load_on_slider(m, d, block, 0, theta, outward, loads, piece, shift)
-        sides = sides_of(theta, d, block, 0, outward, loads, piece, shift, rubbing)
+        load = load_on_slider(m, d, theta, segment)
+        sides = sides_of(theta, d, segment, rubbing)
         f = joint_forces(sine, cosine, m, d, load, sides)
         j = influences(sine, cosine, m, d.l)
         out[0, i] = m.x
@@ -92,7 +93,7 @@ def _curves(
         out[3, i] = math.atan2(abs(m.l_cos), abs(m.l_sin))
         out[4, i] = load
         way = sense_of(d)
-        out[5, i] = torque_without_crank_loads(f.torque, d, block, 0, theta, way, loads, piece, shift)
+        out[5, i] = torque_without_crank_loads(f.torque, theta, way, segment)
         out[6, i] = f.pivot_x
         out[7, i] = f.pivot_y
         out[8, i] = f.crank_pin_x
@@ -102,7 +103,7 @@ def _curves(
         out[12, i] = f.guide
         out[13, i] = worst_case(j, d)
         out[14, i] = root_sum_square(j, d)
-        out[15, i] = -torque_without_crank_loads(0.0, d, block, 0, theta, way, loads, piece, shift)
+        out[15, i] = -torque_without_crank_loads(0.0, theta, way, segment)
 
 
 def cycle(

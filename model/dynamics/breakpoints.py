@@ -40,7 +40,7 @@ def _cut(blocks: Cube, loads: Loads, watch: CycleWindow, breakpoints: Breakpoint
         cuts = Cuts(breakpoints.angle[n], breakpoints.code[n], breakpoints.number[n], breakpoints.load[n])
         count = cut_cycle(d, block, 0, loads, watch, cuts)
         if rubbing:
-            count = cut_contacts(d, block, 0, loads, watch, cuts, count, piece, shift)
+            count = cut_contacts(d, block, loads, watch, cuts, count, piece, shift)
         breakpoints.many[n] = count
 
 

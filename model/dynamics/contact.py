@@ -16,6 +16,7 @@ from .rubbing import Sides, touch
 from .segments import (
     Cuts,
     CycleWindow,
+    Segment,
     add_cut,
     angle_within,
     crowded,
@@ -39,12 +40,10 @@ def rubs(mechanism: Mechanism) -> bool:
 
 
 @analytic
-def _touch(
-    theta: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any, grip: Any, swing: Any
-) -> Any:
+def _touch(theta: Any, d: Any, segment: Segment, grip: Any, swing: Any) -> Any:
     sine, cosine = math.sin(theta), math.cos(theta)
     m = motion(sine, cosine, d.r, d.l, d.e, d.branch)
-    load = load_on_slider(m, d, block, j, theta, outward, loads, piece, shift)
+    load = load_on_slider(m, d, theta, segment)
     return touch(sine, cosine, m, d, load, grip, swing)
 
 
@@ -57,21 +56,19 @@ def _senses(probe: Any, d: Any) -> Any:
 
 
 @analytic
-def sides_of(
-    probe: Any, d: Any, block: Any, j: Any, outward: Any, loads: Any, piece: Any, shift: Any, rubbing: Any
-) -> Any:
-    """Return the `Sides` of the previously entered segment around the crank angle `probe`."""
+def sides_of(probe: Any, d: Any, segment: Segment, rubbing: Any) -> Any:
+    """Return the `Sides` of the segment around the crank angle `probe`."""
     if not rubbing:
         return Sides(0.0, 0.0, 0.0, 0.0, 0.0)
     turn, swing, grip = _senses(probe, d)
-    slide = d.branch.real * (1.0 if outward else -1.0)
-    guide = _touch(probe, d, block, j, outward, loads, piece, shift, grip, swing)
+    slide = d.branch.real * (1.0 if segment.outward else -1.0)
+    guide = _touch(probe, d, segment, grip, swing)
     return Sides(turn, slide, swing, -1.0 if guide > 0.0 else 1.0, grip)
 
 
 @analytic
 def cut_contacts(
-    d: Any, block: Any, j: Any, loads: Any, watch: CycleWindow, cuts: Cuts, count: int, piece: Any, shift: Any
+    d: Any, block: Any, loads: Any, watch: CycleWindow, cuts: Cuts, count: int, piece: Any, shift: Any
 ) -> int:
     """Add cuts where the guide's force changes sides to the first `count` cuts; return their new number.
 
@@ -88,7 +85,8 @@ def cut_contacts(
         if b - a < 1e-12:
             continue
         probe = angle_within(a, b)
-        _, outward = enter(d, block, j, probe, loads, watch, piece, shift)
+        _, outward = enter(d, block, 0, probe, loads, watch, piece, shift)
+        segment = Segment(block, loads, outward, piece, shift)
         _, swing, grip = _senses(probe, d)
         low, high = crowded(a, kappa), crowded(b, kappa)
         points = max(3, int(_SAMPLES * (high - low) / _TURN) + 1)
@@ -98,7 +96,7 @@ def cut_contacts(
         while i <= points:
             sampled = a if i == 0 else b if i == points else uncrowded(low + (high - low) * i / points, kappa)
             theta = sampled if halvings == 0 else 0.5 * (p + q)
-            now = _touch(theta, d, block, j, outward, loads, piece, shift, grip, swing)
+            now = _touch(theta, d, segment, grip, swing)
             if halvings > 0:
                 halvings += 1
                 if now * before > 0.0:
@@ -120,45 +118,20 @@ def cut_contacts(
 
 
 @analytic
-def contact_shift(
-    z: Any,
-    stepped: Any,
-    d: Any,
-    block: Any,
-    j: Any,
-    theta: Any,
-    outward: Any,
-    loads: Any,
-    piece: Any,
-    shift: Any,
-    sides: Any,
-) -> float:
+def contact_shift(z: Any, stepped: Segment, d: Any, segment: Segment, theta: Any, sides: Any) -> float:
     """Return the imaginary part of such a cut's angle when the design `z` carries an imaginary step; `d` is without."""
-    moved = _touch(theta, z, stepped, j, outward, loads, piece, shift, sides.grip, sides.swing).imag
+    moved = _touch(theta, z, stepped, sides.grip, sides.swing).imag
     sine, cosine = math.sin(theta), math.cos(theta)
     s, c = complex(sine, cosine * STEP), complex(cosine, -sine * STEP)
     m = motion(s, c, d.r, d.l, d.e, d.branch)
-    load = load_on_slider(m, d, block, j, complex(theta, STEP), outward, loads, piece, shift)
+    load = load_on_slider(m, d, complex(theta, STEP), segment)
     rise = touch(s, c, m, d, load, sides.grip, sides.swing).imag / STEP
     return float(-moved / rise)
 
 
 @analytic
-def shift_of(
-    z: Any,
-    stepped: Any,
-    d: Any,
-    block: Any,
-    theta: Any,
-    cuts: Cuts,
-    i: Any,
-    outward: Any,
-    loads: Any,
-    piece: Any,
-    shift: Any,
-    sides: Any,
-) -> float:
-    """Return the imaginary part of any cut's angle, in the previously entered segment."""
+def shift_of(z: Any, stepped: Segment, d: Any, segment: Segment, theta: Any, cuts: Cuts, i: Any, sides: Any) -> float:
+    """Return the imaginary part of any cut's angle, at an end of a segment, as in `contact_shift`."""
     if cuts.code[i] == CONTACT:
-        return contact_shift(z, stepped, d, block, 0, theta, outward, loads, piece, shift, sides)
-    return cut_shift(z, stepped, 0, theta, cuts, i)
+        return contact_shift(z, stepped, d, segment, theta, sides)
+    return cut_shift(z, stepped.block, 0, theta, cuts, i)

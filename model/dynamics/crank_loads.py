@@ -11,24 +11,26 @@ from typing import Any
 from ..kernel.arithmetic import analytic
 from ..machine.design import AREA, DESIGN, LOAD_ROWS
 from ..machine.loads.load import Enters
+from .segments import Segment
 
 _CRANK_TORQUE = int(Enters.CRANK_TORQUE)
 
 
 @analytic
-def torque_without_crank_loads(
-    torque: Any, d: Any, block: Any, j: int, theta: Any, way: float, loads: Any, piece: Any, shift: Any
-) -> Any:
-    """Return a torque less those of the loads on the crank, N m, in a previously entered segment.
+def torque_without_crank_loads(torque: Any, theta: Any, way: float, segment: Segment) -> Any:
+    """Return a torque less those of the loads on the crank, N m, at a crank angle within a segment.
 
     way: 1 where the crank turns counter-clockwise, -1 clockwise.
     """
+    block, loads, _, piece, shift = segment
+    if not loads.on_crank:
+        return torque
     # Subtracted one by one within the loop, so that machines without such a load keep their last digits.
     for k in range(loads.kind.shape[0]):
         q = DESIGN + LOAD_ROWS * k
         if loads.kind[k] == _CRANK_TORQUE:
             q = q + AREA
-            torque = torque - (block[q, j] - way * block[q + 1, j] - block[q + 2, j] * (theta - block[q + 3, j]))
+            torque = torque - (block[q, 0] - way * block[q + 1, 0] - block[q + 2, 0] * (theta - block[q + 3, 0]))
         elif loads.factor[k, 2] != 0.0:
             i = piece[k]
             first, last = loads.start[k], loads.start[k + 1]
@@ -38,18 +40,9 @@ def torque_without_crank_loads(
                 torque = torque - loads.force[last - 1]
             else:
                 slope = (loads.force[i] - loads.force[i - 1]) / (loads.at[i] - loads.at[i - 1])
-                at = theta - block[q + 1, j] if loads.datum[k] > 0 else theta
+                at = theta - block[q + 1, 0] if loads.datum[k] > 0 else theta
                 torque = torque - (loads.force[i - 1] + slope * (at + shift[k] - loads.at[i - 1]))
     return torque
-
-
-@analytic
-def on_crank(loads: Any) -> bool:
-    """Return whether any load acts on the crank."""
-    is_loaded = False
-    for k in range(loads.kind.shape[0]):
-        is_loaded = is_loaded or loads.factor[k, 2] != 0.0
-    return is_loaded
 
 
 @analytic

@@ -57,6 +57,20 @@ class Cuts(NamedTuple):
     load: Integers
 
 
+class Segment(NamedTuple):
+    """What decides the loads within one segment of a design's cycle.
+
+    block: derived numbers (rows, 1), real or with an imaginary step. outward: the slider's stroke. piece, shift: the
+    piece of every table and cylinder, and the turns that an angle table is off, filled by `enter`.
+    """
+
+    block: Any
+    loads: Loads
+    outward: bool
+    piece: Any
+    shift: Any
+
+
 @analytic
 def crank_angle_at(x: float, r: float, l: float, e: float, second: bool) -> float:
     """Return one of the two crank angles for slider position x.
@@ -263,18 +277,17 @@ def with_formulas(force: Any, m: Any, d: Any, block: Any, j: int, outward: bool,
 
 
 @analytic
-def load_on_slider(
-    m: Any, d: Any, block: Any, j: int, theta: Any, outward: bool, loads: Loads, piece: Any, shift: Any
-) -> Any:
-    """Return the load on the slider in a previously entered segment, N outward."""
+def load_on_slider(m: Any, d: Any, theta: Any, segment: Segment) -> Any:
+    """Return the load on the slider at a crank angle within a segment, N outward."""
+    block, loads, outward, piece, shift = segment
     force = smooth_load(m, d, d.outward_force if outward else d.inward_force)
-    force = with_formulas(force, m, d, block, j, outward, loads)
+    force = with_formulas(force, m, d, block, 0, outward, loads)
     for k in range(loads.kind.shape[0]):
         first, last = loads.start[k], loads.start[k + 1]
         if loads.kind[k] == _CYLINDER:
-            force = force + gas_force(m, d, block, j, k, outward, piece[k])
+            force = force + gas_force(m, d, block, 0, k, outward, piece[k])
         elif loads.kind[k] == _BURNING_CYLINDER:
-            force = force + burning_force(m, d, block, j, k, outward, piece[k])
+            force = force + burning_force(m, d, block, 0, k, outward, piece[k])
         if first == last:
             continue
         factor = loads.factor[k, 0] if outward else loads.factor[k, 1]
@@ -290,10 +303,10 @@ def load_on_slider(
                 if loads.datum[k] == 0:
                     force = force + factor * (loads.force[i - 1] + slope * (theta + shift[k] - loads.at[i - 1]))
                 else:
-                    at = theta - block[DESIGN + LOAD_ROWS * k + 1, j]
+                    at = theta - block[DESIGN + LOAD_ROWS * k + 1, 0]
                     force = force + factor * (loads.force[i - 1] + slope * (at + shift[k] - loads.at[i - 1]))
             else:
-                at = block[DESIGN + LOAD_ROWS * k, j] * (d.branch * m.x - block[DESIGN + LOAD_ROWS * k + 1, j])
+                at = block[DESIGN + LOAD_ROWS * k, 0] * (d.branch * m.x - block[DESIGN + LOAD_ROWS * k + 1, 0])
                 force = force + factor * (loads.force[i - 1] + slope * (at - loads.at[i - 1]))
     return force
 

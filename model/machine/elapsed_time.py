@@ -9,14 +9,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import legendre
 
-from ..arrays import Array
+from ..arrays import Array, Mask
+from ..quadrature import Samples, gauss, legendre_fit, resolve
 
 _TURN = 2.0 * math.pi
 _NODES = 20  # nodes in each panel
 _TAIL = 2  # last coefficients of a series, which show whether it has converged
 _CONVERGED = 1e-14  # relative size of the last coefficients of a converged series
 _NOISE = 32.0 * np.finfo(np.float64).eps  # error of p, so that 1 / p has p^-2 times this error
-_PANELS = 200_000
+_DEEPEST, _PANELS = 52, 200_000  # halvings of a panel, and panels, beyond which they are left as they are
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,24 +35,18 @@ class ElapsedTime:
     @classmethod
     def integrate(cls, ratio: Callable[[Array], Array], ends: Array) -> ElapsedTime:
         """Integrate 1 / p for a ratio p > 0. ends: increasing crank angles of a turn, rad; p is analytic in between."""
-        nodes, weights = legendre.leggauss(_NODES)
-        basis = weights[:, None] * legendre.legvander(nodes, _NODES - 1) * (np.arange(_NODES) + 0.5)
-        begin, end = ends[:-1], ends[1:]
-        starts, parts = [np.zeros(0)], [np.zeros((0, _NODES))]
-        while len(begin):
-            half = 0.5 * (end - begin)
-            values = 1.0 / ratio(begin[:, None] + half[:, None] * (1.0 + nodes))
+        nodes, basis = gauss(_NODES)[0], legendre_fit(_NODES).T
+
+        def sample(low: Array, width: Array) -> Samples:
+            values = 1.0 / ratio(low[:, None] + width[:, None] * nodes)
             coefficients = values @ basis
             tail = np.abs(coefficients[:, -_TAIL:]).sum(axis=1)
-            good = tail <= _CONVERGED * coefficients[:, 0] + _NOISE * values.max(axis=1) ** 2
-            good |= len(begin) > _PANELS
-            starts.append(begin[good])
-            parts.append(half[good, None] * coefficients[good])
-            middle = begin[~good] + half[~good]
-            begin, end = np.concatenate([begin[~good], middle]), np.concatenate([middle, end[~good]])
-        start = np.concatenate(starts)
+            rough: Mask = ~(tail <= _CONVERGED * coefficients[:, 0] + _NOISE * values.max(axis=1) ** 2)
+            return rough, [0.5 * width[:, None] * coefficients]
+
+        start, _, parts = resolve(sample, ends[:-1], np.diff(ends), deepest=_DEEPEST, limit=_PANELS)
         order = np.argsort(start)
-        integrals = legendre.legint(np.concatenate(parts)[order].T, lbnd=-1.0)
+        integrals = legendre.legint(parts[order].T, lbnd=-1.0)
         series = np.asarray(integrals, dtype=np.float64)
         panel_integrals = np.asarray(legendre.legval(1.0, series), dtype=np.float64)
         panels = np.append(start[order], ends[-1])

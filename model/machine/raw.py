@@ -49,7 +49,7 @@ class Loads(NamedTuple):
 
     kind: (k,), see `loads.registry.code_of`. datum: (k,). factor: (k, 3), whether a table acts in the outward
     stroke, in the inward stroke, and as a torque on the crank. start: (k + 1,), index at which a load's table begins.
-    at, force: knots of the tables.
+    at, force: knots of the tables. on_crank: whether any load is a torque on the crank.
     """
 
     kind: Integers
@@ -58,6 +58,7 @@ class Loads(NamedTuple):
     start: Integers
     at: Row
     force: Row
+    on_crank: bool
 
 
 def raw_vector(mechanism: Mechanism) -> Array:
@@ -153,6 +154,7 @@ def load_structure(mechanism: Mechanism) -> Loads:
         np.array(start, dtype=np.int64),
         np.array(at, dtype=np.float64),
         np.array(force, dtype=np.float64),
+        any(load.on_crank for load in mechanism.loads),
     )
 
 

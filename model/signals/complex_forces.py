@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..dynamics.contact import rubs, sides_of
 from ..dynamics.crank_loads import sense_of, torque_without_crank_loads
 from ..dynamics.rubbing import joint_forces
-from ..dynamics.segments import CycleWindow, enter, load_on_slider
+from ..dynamics.segments import CycleWindow, Segment, enter, load_on_slider
 from ..dynamics.torque import Forces
 from ..kernel.batches import in_chunks
 from ..kernel.kernel import ComplexCube, ComplexTable, Row, seldom_kernel
@@ -51,13 +51,12 @@ def _fill_forces(
             step = angles[n, k].imag
             s, c = complex(sine, cosine * step), complex(cosine, -sine * step)
             _, outward = enter(d, block, 0, theta, loads, watch, piece, shift)
-            sides = sides_of(theta, d, block, 0, outward, loads, piece, shift, rubbing)
+            sides = sides_of(theta, d, Segment(block, loads, outward, piece, shift), rubbing)
+            segment = Segment(curved, loads, outward, piece, shift)
             m = design_motion(s, c, z)
-            load = load_on_slider(m, z, curved, 0, angles[n, k], outward, loads, piece, shift)
+            load = load_on_slider(m, z, angles[n, k], segment)
             f = joint_forces(s, c, m, z, load, sides)
-            out[n, 0, k] = torque_without_crank_loads(
-                f.torque, d, curved, 0, angles[n, k], sense_of(d), loads, piece, shift
-            )
+            out[n, 0, k] = torque_without_crank_loads(f.torque, angles[n, k], sense_of(d), segment)
             out[n, 1, k] = f.pivot_x
             out[n, 2, k] = f.pivot_y
             out[n, 3, k] = f.crank_pin_x

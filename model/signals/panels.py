@@ -14,23 +14,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import legendre
 
-from ..arrays import Array
+from ..arrays import Array, Mask
+from ..quadrature import ANGLE_ROUNDING, DEGREE, FIT, MOST_HALVINGS, NODES, Samples, gauss, resolve, resolved_tail
 from .first_greatest import first_greatest
-from .quadrature import ANGLE_ROUNDING
 
 Curves = Callable[[Array], Array]
 
-_DEGREE = 15
 _PRODUCT = 24  # nodes that integrate the product of three polynomials exactly
-_TAIL = 3  # coefficients that show whether a panel is resolved ...
-_RESOLVED = 1e-12  # ... and their remaining size then, relative to the curve's size
-_DEEPEST = 24  # halvings of a panel
-_MOST = 20_000  # panels that halving may add: beyond that, only rounding of the curves remains
+_RESOLVED = 1e-12  # remaining size of the last coefficients of a resolved panel, relative to the curve's size
 _SHORTEST = 1e-12  # rad
-_NODES, _WEIGHTS = legendre.leggauss(_DEGREE + 1)
-_PRODUCT_NODES, _PRODUCT_WEIGHTS = legendre.leggauss(_PRODUCT)
-_AT_PRODUCT_NODES = legendre.legvander(_PRODUCT_NODES, _DEGREE)
-_FIT = (np.arange(_DEGREE + 1) + 0.5)[:, None] * (_WEIGHTS[:, None] * legendre.legvander(_NODES, _DEGREE)).T
+_PRODUCT_NODES, _PRODUCT_WEIGHTS = gauss(_PRODUCT)
+_AT_PRODUCT_NODES = legendre.legvander(2.0 * _PRODUCT_NODES - 1.0, DEGREE)
 
 
 @dataclass(frozen=True)
@@ -69,12 +63,12 @@ class Panels:
         if time is None:
             return self._mean_product(c, c)
         values, weight = c @ _AT_PRODUCT_NODES.T, self.coefficients[:, :, time] @ _AT_PRODUCT_NODES.T
-        integrals = 0.5 * (values**2 * weight) @ _PRODUCT_WEIGHTS
+        integrals = (values**2 * weight) @ _PRODUCT_WEIGHTS
         return float(np.sum(self.width * integrals) / np.sum(self.width)) / self.mean(time)
 
     def _mean_product(self, first: Array, second: Array) -> float:
         """Return the mean over the crank angle of the product of two curves, given by coefficients (p, 16)."""
-        products = np.sum(first * second / (2.0 * np.arange(_DEGREE + 1) + 1.0), axis=1)
+        products = np.sum(first * second / (2.0 * np.arange(DEGREE + 1) + 1.0), axis=1)
         return float(np.sum(self.width * products) / np.sum(self.width))
 
     def extremes(self, curve: int) -> tuple[Extreme, Extreme]:
@@ -98,7 +92,7 @@ class Panels:
 
     def _greatest(self, coefficients: Array, sign: float) -> Extreme:
         c = sign * coefficients
-        x = np.concatenate([[-1.0], _NODES, [1.0]])
+        x = np.concatenate([[-1.0], 2.0 * NODES - 1.0, [1.0]])
         samples = legendre.legval(x, c.T)  # (p, 18)
         top, spread = samples.max(axis=1), np.ptp(samples, axis=1)
         panel, place = np.unravel_index(int(np.argmax(samples)), samples.shape)
@@ -125,30 +119,17 @@ def panels_of(curves: Curves, ends: Array, sizes: Array) -> Panels:
     """
     low, width = ends[:-1], np.diff(ends)
     low, width = low[width > _SHORTEST], width[width > _SHORTEST]
-    resolved: list[tuple[Array, Array, Array]] = []
-    panel_limit, total = len(low) + _MOST, 0
-    for depth in range(_DEEPEST + 1):
-        angles = low[:, None] + 0.5 * width[:, None] * (1.0 + _NODES)
+
+    def sample(low: Array, width: Array) -> Samples:
+        angles = low[:, None] + width[:, None] * NODES
         values = curves(angles.ravel()).reshape(-1, *angles.shape)
-        fitted = np.einsum("ki,mpi->pkm", _FIT, values)
         steep = ANGLE_ROUNDING * np.ptp(values, axis=2).T / width[:, None]
-        rough = np.any(np.abs(fitted[:, -_TAIL:]).max(axis=1) > np.maximum(_RESOLVED * sizes, steep), axis=1)
-        if depth == _DEEPEST or total + 2 * len(low) > panel_limit:
-            rough[:] = False
-        total += len(low)
-        resolved.append((low[~rough], width[~rough], fitted[~rough]))
-        if not rough.any():
-            break
-        half = 0.5 * width[rough]
-        low, width = np.concatenate([low[rough], low[rough] + half]), np.concatenate([half, half])
-    lows, widths, coefficients = (np.concatenate(part) for part in zip(*resolved, strict=True))
+        rough: Mask = np.any(np.maximum(_RESOLVED * sizes, steep) < resolved_tail(values).T, axis=1)
+        return rough, [np.einsum("ki,mpi->pkm", FIT, values)]
+
+    lows, widths, coefficients = resolve(sample, low, width, limit=len(low) + MOST_HALVINGS)
     order = np.argsort(lows, kind="stable")
     return Panels(lows[order], widths[order], coefficients[order])
-
-
-def resolved_tail(values: Array) -> Array:
-    """Return the greatest of the last coefficients (p,) of curves at the nodes of panels (p, 16)."""
-    return np.asarray(np.abs(values @ _FIT[-_TAIL:].T).max(axis=1, initial=0.0))
 
 
 def _roots(coefficients: Array) -> Array:

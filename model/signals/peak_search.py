@@ -17,8 +17,8 @@ from typing import Protocol
 import numpy as np
 
 from ..arrays import Array, IntArray, Mask
+from ..quadrature import NODES, Samples, resolve, resolved_tail
 from .cycle_segments import Segments
-from .panels import resolved_tail
 
 _ROUGH = 1e-6  # greatest size of the last coefficients on a resolved panel, as a fraction of the curve's greatest size
 _DEEPEST = 8  # halvings of a panel
@@ -27,7 +27,7 @@ _CONVERGED = 1e-15
 _CONTINUOUS = 1e-11  # relative difference below which the two sides of a breakpoint count as continuous
 _SAME = 1e-7  # a flat top is not located better
 _ON_EDGE = 1e-13
-_NODES = np.concatenate([[0.0], 0.5 * (1.0 + np.polynomial.legendre.leggauss(16)[0]), [1.0]])
+_NODES = np.concatenate([[0.0], NODES, [1.0]])
 
 
 class Curve(Protocol):
@@ -122,20 +122,16 @@ class _Search:
         counts = self.counted[segment]
         row, probe, low, width, segment = row[counts], probe[counts], low[counts], width[counts], segment[counts]
         size = np.zeros(len(fineness))
-        resolved: list[tuple[IntArray, Array, Array, Array, IntArray]] = []
-        for depth in range(_DEEPEST + 1):
+
+        def sample(low: Array, width: Array, row: IntArray, probe: Array, segment: IntArray) -> Samples:
             place = low[:, None] + width[:, None] * _NODES
             curve, sizes = self.curve.evaluate(row, probe, place)
             np.maximum.at(size, row, sizes.max(axis=1, initial=0.0))
-            tail = resolved_tail(curve[:, 1:-1, 0])
-            rough = (tail > _ROUGH * size[row]) & (depth < _DEEPEST)
-            resolved.append((row[~rough], probe[~rough], place[~rough], self.judged(curve)[~rough], segment[~rough]))
-            if not rough.any():
-                break
-            half = 0.5 * width[rough]
-            row, probe, segment = (np.concatenate([part[rough]] * 2) for part in (row, probe, segment))
-            low, width = np.concatenate([low[rough], low[rough] + half]), np.concatenate([half, half])
-        row, probe, place, curve, segment = (np.concatenate(part) for part in zip(*resolved, strict=True))
+            rough: Mask = resolved_tail(curve[:, 1:-1, 0]) > _ROUGH * size[row]
+            return rough, [place, self.judged(curve)]
+
+        panels = resolve(sample, low, width, row, probe, segment, deepest=_DEEPEST)
+        _, _, row, probe, segment, place, curve = panels
         value, slope = np.where(np.isnan(curve[..., 0]), -np.inf, curve[..., 0]), curve[..., 1]
         greatest, rows = value.argmax(axis=1), np.arange(len(row))
         zeros = np.zeros(len(row), dtype=np.int64)

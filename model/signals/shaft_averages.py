@@ -12,8 +12,8 @@ import numpy as np
 
 from ..arrays import Array, IntArray, Mask
 from ..machine.speed_profile import time_per_angle
+from ..quadrature import NODES, WEIGHTS, Samples, resolve, resolved_tail
 from .cycle_segments import Segments
-from .panels import resolved_tail
 from .shaft import Shaft
 from .shaft_peaks import NOTHING
 from .shaft_segments import segments_of
@@ -21,9 +21,6 @@ from .shaft_segments import segments_of
 MEAN, SQUARE, SQUARE_OVER_TIME = range(3)
 """Rows of `Means`: mean and mean square over the crank angle, mean square over time."""
 _RESOLVED = 1e-12  # greatest size of the last coefficients on a resolved panel, relative to the curve's greatest size
-_DEEPEST = 24
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
-_NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
 
 
 @dataclass(frozen=True)
@@ -41,32 +38,29 @@ class Means:
 def shaft_means(shaft: Shaft, count: int) -> Means:
     """Return the means of n designs."""
     segments = segments_of(shaft.breaks, shaft.period)
-    row, probe, low, width, _ = segments.panels(shaft.fineness)
     rows = 2 if shaft.profile is None else 3
     sums, slopes, sizes = np.zeros((rows, count)), np.zeros((rows, count, shaft.numbers)), np.zeros((2, count))
-    for depth in range(_DEEPEST + 1):
-        angle = low[:, None] + width[:, None] * _NODES
+
+    def sample(low: Array, width: Array, row: IntArray, probe: Array) -> Samples:
+        angle = low[:, None] + width[:, None] * NODES
         curve, size = shaft.evaluate(row, probe, angle)
         value, time = curve[:, :, 0], _time_weight(shaft, angle)
         rough = _is_rough(value, size, sizes[0], row, width)
         if time is not None:
             rough |= _is_rough(np.sqrt(time) * value, np.sqrt(time) * size, sizes[1], row, width)
-        ready = ~rough if depth < _DEEPEST else np.ones(len(row), dtype=bool)
-        value, weight = value[ready], width[ready, None] * _WEIGHTS / shaft.period
-        weights = [weight] * 2 if time is None else [weight, weight, weight * time[ready]]
+        return rough, [angle, value]
+
+    row, probe, low, width, _ = segments.panels(shaft.fineness)
+    _, width, row, probe, angle, value = resolve(sample, low, width, row, probe)
+    weight, time = width[:, None] * WEIGHTS / shaft.period, _time_weight(shaft, angle)
+    weights = [weight] * 2 if time is None else [weight, weight, weight * time]
+    for index, row_weights in enumerate(weights):
+        np.add.at(sums[index], row, (row_weights * (value if index == MEAN else value**2)).sum(axis=1))
+    if shaft.gradients:
+        slope = shaft.evaluate(row, probe, angle, gradients=True)[0][:, :, 2:]
         for index, row_weights in enumerate(weights):
-            power = value if index == MEAN else value**2
-            np.add.at(sums[index], row[ready], (row_weights * power).sum(axis=1))
-        if shaft.gradients:
-            slope = shaft.evaluate(row[ready], probe[ready], angle[ready], gradients=True)[0][:, :, 2:]
-            for index, row_weights in enumerate(weights):
-                rate = row_weights if index == MEAN else 2.0 * row_weights * value
-                np.add.at(slopes[index], row[ready], np.einsum("pk,pkv->pv", rate, slope))
-        if not rough.any() or depth == _DEEPEST:
-            break
-        half = 0.5 * width[rough]
-        row, probe = (np.concatenate([part[rough]] * 2) for part in (row, probe))
-        low, width = np.concatenate([low[rough], low[rough] + half]), np.concatenate([half, half])
+            rate = row_weights if index == MEAN else 2.0 * row_weights * value
+            np.add.at(slopes[index], row, np.einsum("pk,pkv->pv", rate, slope))
     if shaft.gradients:
         _add_jumps(shaft, segments, slopes)
     sums[:, ~shaft.drives] = np.nan

@@ -17,7 +17,7 @@ from ..dynamics.contact import sides_of
 from ..dynamics.crank_loads import sense_of, torque_without_crank_loads
 from ..dynamics.inertia import reflected_inertia, shaking
 from ..dynamics.rubbing import Sides, joint_forces, touch
-from ..dynamics.segments import Cuts, CycleWindow, cut_shift, enter, load_on_slider
+from ..dynamics.segments import Cuts, CycleWindow, Segment, cut_shift, enter, load_on_slider
 from ..dynamics.speed_ratio import SpeedRatio, speed_ratio_at
 from ..kernel.arithmetic import STEP, analytic, magnitude, root
 from ..kernel.kernel import ComplexCube, Cube, Integers, IntegerTable, Row, Table, seldom_kernel
@@ -95,8 +95,8 @@ def _components(kind: Any, s: Any, c: Any, m: Any, d: Any, load: Any, sides: Any
     if kind <= _LINE or kind >= WORK:
         f = joint_forces(s, c, m, d, load, sides)
         if kind in (_TORQUE, _POWER):
-            block, theta, loads, piece, shift = place
-            torque = torque_without_crank_loads(f.torque, d, block, 0, theta, sense_of(d), loads, piece, shift)
+            theta, segment = place
+            torque = torque_without_crank_loads(f.torque, theta, sense_of(d), segment)
             return (torque * d.speed, zero) if kind == _POWER else (torque, zero)
         if kind in (_PIVOT, WORK + 2):
             x, y = f.pivot_x, f.pivot_y
@@ -176,7 +176,7 @@ def fill_curves(
             d = design_at(real, 0)
             local = items.probe[p] + axes.lead[k]
             _, outward = enter(d, real, 0, local, loads, watch, piece[i], shift[i])
-            signs = sides_of(local, d, real, 0, outward, loads, piece[i], shift[i], rubbing)
+            signs = sides_of(local, d, Segment(real, loads, outward, piece[i], shift[i]), rubbing)
             sides[i, 0], sides[i, 1], sides[i, 2] = signs.turn, signs.slide, signs.swing
             sides[i, 3], sides[i, 4] = signs.press, signs.grip
             out.outward[p, i] = 1 if outward else 0
@@ -210,10 +210,10 @@ def fill_curves(
                     s, c = complex(sine, cosine * step), complex(cosine, -sine * step)
                     at = complex(local, step)
                     m = design_motion(s, c, z)
-                    load = load_on_slider(m, z, stepped, 0, at, out.outward[p, i] == 1, loads, piece[i], shift[i])
+                    segment = Segment(stepped, loads, out.outward[p, i] == 1, piece[i], shift[i])
+                    load = load_on_slider(m, z, at, segment)
                     signs = Sides(sides[i, 0], sides[i, 1], sides[i, 2], sides[i, 3], sides[i, 4])
-                    place = (stepped, at, loads, piece[i], shift[i])
-                    x, y = _components(kind, s, c, m, z, load, signs, place, rate)
+                    x, y = _components(kind, s, c, m, z, load, signs, (at, segment), rate)
                     if kind in (_SHAKING_FORCE, _ROCKING_COUPLE):
                         x, y = axes.cosine[k] * x - axes.sine[k] * y, axes.sine[k] * x + axes.cosine[k] * y
                     if kind == _ROCKING_COUPLE:

@@ -7,7 +7,9 @@ from typing import Any
 
 from ..dynamics.crank_loads import sense_of, torque_without_crank_loads
 from ..dynamics.inertia import reflected_inertia, shaking
-from ..dynamics.rubbing import joint_forces
+from ..dynamics.rubbing import Sides, joint_forces
+from ..dynamics.segments import Segment, load_on_slider
+from ..dynamics.torque import forces
 from ..kernel.arithmetic import analytic, magnitude, root
 from ..kinematics.position import motion, third_derivative
 from ..machine.design import Design
@@ -76,23 +78,17 @@ def size_of_force(kind: Any, f: Any, m: Any, d: Design) -> Any:
 
 
 @analytic
-def signal(
-    kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any, sides: Any = None, place: Any = None
-) -> Any:
-    """Return the value of a `Signal` at one crank angle for the load on the slider (N, outward).
+def signal_of_forces(kind: Any, f: Any, m: Any, d: Design, theta: Any, segment: Segment) -> Any:
+    """Return the value of a `Signal` that follows from the joint forces and the loads on the crank."""
+    if kind in (_TORQUE, _POWER):
+        torque = torque_without_crank_loads(f.torque, theta, sense_of(d), segment)
+        return magnitude(torque * d.speed) if kind == _POWER else magnitude(torque)
+    return size_of_force(kind, f, m, d)
 
-    sides: signs of the sliding where there is friction (`rubbing.Sides`). place: block, column, crank angle, loads,
-    pieces and shifts, where loads may act on the crank.
-    """
-    if kind <= _LINE:
-        f = joint_forces(sine, cosine, m, d, load, sides)
-        if kind in (_TORQUE, _POWER):
-            torque = f.torque
-            if place is not None:
-                block, j, theta, loads, piece, shift = place
-                torque = torque_without_crank_loads(torque, d, block, j, theta, sense_of(d), loads, piece, shift)
-            return magnitude(torque * d.speed) if kind == _POWER else magnitude(torque)
-        return size_of_force(kind, f, m, d)
+
+@analytic
+def signal_of_motion(kind: Any, sine: Any, cosine: Any, m: Any, d: Design) -> Any:
+    """Return the value of a `Signal` that needs no joint forces."""
     if kind == _SPEED:
         return magnitude(m.x_1 * d.speed)
     if kind == _ACCELERATION:
@@ -108,6 +104,28 @@ def signal(
         return reflected_inertia(sine, cosine, m, d)
     x, y, moment = shaking(sine, cosine, m, d)
     return root(x * x + y * y) if kind == _SHAKING_FORCE else magnitude(moment)
+
+
+@analytic
+def signal(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any) -> Any:
+    """Return the value of a `Signal` at one crank angle for the load on the slider (N, outward), without friction."""
+    if kind <= _LINE:
+        return size_of_force(kind, forces(sine, cosine, m, d, load), m, d)
+    return signal_of_motion(kind, sine, cosine, m, d)
+
+
+@analytic
+def signal_within(
+    kind: Any, theta: Any, sine: Any, cosine: Any, m: Any, d: Design, segment: Segment, sides: Sides
+) -> Any:
+    """Return the value of a `Signal` at a crank angle within a segment.
+
+    sides: signs of the sliding there, all 0 without friction.
+    """
+    load = load_on_slider(m, d, theta, segment)
+    if kind <= _LINE:
+        return signal_of_forces(kind, joint_forces(sine, cosine, m, d, load, sides), m, d, theta, segment)
+    return signal_of_motion(kind, sine, cosine, m, d)
 
 
 @analytic

@@ -16,7 +16,17 @@ from ..arrays import Array, IntArray, Mask
 from ..dynamics.breakpoints import Breakpoints, breakpoints_of
 from ..dynamics.contact import rubs, shift_of, sides_of
 from ..dynamics.rubbing import joint_forces
-from ..dynamics.segments import Cuts, CycleWindow, angle_within, crowded, crowding, enter, load_on_slider, uncrowded
+from ..dynamics.segments import (
+    Cuts,
+    CycleWindow,
+    Segment,
+    angle_within,
+    crowded,
+    crowding,
+    enter,
+    load_on_slider,
+    uncrowded,
+)
 from ..kernel.arithmetic import STEP
 from ..kernel.kernel import ComplexCube, Cube, Flags, Integers, Row, Table, seldom_kernel
 from ..machine.derived import derived
@@ -84,7 +94,8 @@ def _stress(
     block, z_block = np.empty((rows, 1)), np.empty((rows, 1), np.complex128)
     last, last_column, last_probe, outward = -1, -2, 0.0, False
     d = design_at(block, 0)
-    sides = sides_of(0.0, d, block, 0, outward, loads, piece, shift, False)
+    segment = Segment(block, loads, outward, piece, shift)
+    sides = sides_of(0.0, d, segment, False)
     for p in range(points.design.shape[0]):
         n, v, probe, angle = points.design[p], points.column[p], points.probe[p], points.angle[p]
         if n != last:
@@ -93,20 +104,21 @@ def _stress(
             d = design_at(block, 0)
         if n != last or probe != last_probe:
             _, outward = enter(d, block, 0, probe, loads, watch, piece, shift)
-            sides = sides_of(probe, d, block, 0, outward, loads, piece, shift, rubbing)
+            segment = Segment(block, loads, outward, piece, shift)
+            sides = sides_of(probe, d, segment, rubbing)
         if n != last or v != last_column:
             for i in range(rows):
                 z_block[i, 0] = complex(block[i, 0], 0.0) if v < 0 else steps[n * nv + v, i, 0]
         last, last_column, last_probe = n, v, probe
-        z = design_at(z_block, 0)
+        z, stepped = design_at(z_block, 0), Segment(z_block, loads, outward, piece, shift)
         slip = STEP if v < 0 else 0.0
         if v >= 0 and points.cut[p] >= 0:
             mine = Cuts(cuts.angle[n], cuts.code[n], cuts.number[n], cuts.load[n])
-            slip = shift_of(z, z_block, d, block, angle, mine, points.cut[p], outward, loads, piece, shift, sides)
+            slip = shift_of(z, stepped, d, segment, angle, mine, points.cut[p], sides)
         sine, cosine = math.sin(angle), math.cos(angle)
         zs, zc = complex(sine, cosine * slip), complex(cosine, -sine * slip)
         m = design_motion(zs, zc, z)
-        load = load_on_slider(m, z, z_block, 0, complex(angle, slip), outward, loads, piece, shift)
+        load = load_on_slider(m, z, complex(angle, slip), stepped)
         f = joint_forces(zs, zc, m, z, load, sides)
         for part in range(2):
             w, t, rho = sizes[n, 3 * part], sizes[n, 3 * part + 1], sizes[n, 3 * part + 2]

@@ -16,6 +16,7 @@ from ..linkage.linkage import Linkage
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Mechanism
 from ..machine.raw import load_structure
+from ..quadrature import graded_gauss
 from .forces import SwingCurves, driver_ends, swing_curves
 from .law import corners, mirrored, shares_of
 from .swing import Swing, dead_points
@@ -24,7 +25,6 @@ _SAMPLES = 721
 _ZOOMS, _ZOOMED = 7, 41
 _EQUAL = 1e-12
 _PANELS, _GRADED = 12, 3
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _SIDES = 400
 _BISECTIONS = 55
 
@@ -139,17 +139,11 @@ class SwingCycle:
         towards its ends, since near a dead point the drive grows as the inverse root of the distance from it.
         """
         cuts = self._cuts(back)
-        edges = np.linspace(0.0, 1.0, _PANELS + 1)
-        half = 0.5 / _PANELS
-        u, w = (edges[:-1, None] + half + half * _NODES).ravel(), np.tile(half * _WEIGHTS, _PANELS)
-        slope = np.ones_like(u)
-        for _ in range(_GRADED):
-            slope = slope * 6.0 * u * (1.0 - u)
-            u = u * u * (3.0 - 2.0 * u)
+        u, w = graded_gauss(_PANELS, _GRADED)
         spans = np.diff(cuts)
         share = (cuts[:-1, None] + spans[:, None] * u).ravel()
         curves = self.curves(share, back=back)
-        parts = (spans[:, None] * (slope * w)).ravel() * curves.drive * curves.rate
+        parts = (spans[:, None] * w).ravel() * curves.drive * curves.rate
         total, gross = float(np.sum(parts)), float(np.sum(np.abs(parts)))
         return 0.0 if abs(total) <= _EQUAL * gross else total
 

@@ -12,7 +12,7 @@ from ..arrays import Array, IntArray
 from ..dynamics.contact import sides_of
 from ..dynamics.crank_loads import torque_without_crank_loads
 from ..dynamics.rubbing import joint_forces
-from ..dynamics.segments import CycleWindow, enter, load_on_slider
+from ..dynamics.segments import CycleWindow, Segment, enter, load_on_slider
 from ..dynamics.torque import balance, with_couple
 from ..kernel.arithmetic import analytic, inverse, magnitude
 from ..kernel.kernel import ComplexCube, ComplexTable, Cube, Integers, Row, Table, seldom_kernel
@@ -198,13 +198,15 @@ def _states(
         load, outward = 0j, False
         if path.forces:
             _, outward = enter(d, block, 0, probe_angle, loads, watch, piece, shift)
-            load = load_on_slider(m, z, stepped_block, 0, complex(theta, moved), outward, loads, piece, shift)
+        segment = Segment(stepped_block, loads, outward, piece, shift)
+        if path.forces:
+            load = load_on_slider(m, z, complex(theta, moved), segment)
         drive, guide, power = 0j, 0j, 0j
         j = influences(zs, zc, m, z.l)
         if path.slider:
             if path.forces:
                 angle = complex(theta, moved)
-                on_crank = torque_without_crank_loads(0j, z, stepped_block, 0, angle, turning, loads, piece, shift)
+                on_crank = torque_without_crank_loads(0j, angle, turning, segment)
                 rod_1 = motion(math.sin(probe_angle), math.cos(probe_angle), d.r, d.l, d.e, d.branch).rod_1
                 drive, guide = _pushed(zs, zc, m, z, load, on_crank, rod_1, path.rubbing)
                 power = drive * m.x_1 * speed
@@ -213,10 +215,10 @@ def _states(
             error = off * inverse(magnitude(m.x_1))
         else:
             if path.forces:
-                sides = sides_of(probe_angle, d, block, 0, outward, loads, piece, shift, path.rubbing)
+                sides = sides_of(probe_angle, d, Segment(block, loads, outward, piece, shift), path.rubbing)
                 f = joint_forces(zs, zc, m, z, load, sides)
                 angle = complex(theta, moved)
-                drive = torque_without_crank_loads(f.torque, z, stepped_block, 0, angle, turning, loads, piece, shift)
+                drive = torque_without_crank_loads(f.torque, angle, turning, segment)
                 guide, power = f.guide, drive * speed
             error = worst_case(j, z)
         out[p, 0], out[p, 1], out[p, 2], out[p, 3] = drive, power, error, guide

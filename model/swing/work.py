@@ -16,12 +16,12 @@ from ..arrays import Array
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import in_chunks
 from ..machine.mechanism import Mechanism
+from ..quadrature import graded_gauss
 from .closure import passes
 from .swing import Swing
 from .swing_batch import Pieces, SwingBatch
 from .swing_states import DRIVE, RATE
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _PANELS, _GRADED = 8, 1
 _CHUNK = 64
 _EQUAL = 1e-12
@@ -38,16 +38,6 @@ class Work:
 
     values: Array
     gradients: Array | None
-
-
-def graded() -> tuple[Array, Array]:
-    """Return nodes (g,) from 0 to 1, dense towards both ends, and their weights."""
-    edges, half = np.linspace(0.0, 1.0, _PANELS + 1), 0.5 / _PANELS
-    u, w = (edges[:-1, None] + half + half * _NODES).ravel(), np.tile(half * _WEIGHTS, _PANELS)
-    for _ in range(_GRADED):
-        w = w * 6.0 * u * (1.0 - u)
-        u = u * u * (3.0 - 2.0 * u)
-    return u, w
 
 
 def swing_work(mechanism: Mechanism, swing: Swing, designs: Array, *, gradients: bool = False) -> Work:
@@ -127,7 +117,7 @@ def _efficiency(mechanism: Mechanism, swing: Swing, designs: Array, gradients: b
 
 def _work(batch: SwingBatch, pieces: Pieces, gradients: bool) -> tuple[Array, Array]:
     """Return the work over one way (n,) and its derivatives by raw numbers (n, c)."""
-    u, w = graded()
+    u, w = graded_gauss(_PANELS, _GRADED)
     design, piece = np.nonzero(pieces.live)
     a, b, probe = pieces.cuts[design, piece], pieces.cuts[design, piece + 1], pieces.probe[design, piece]
     share = a[:, None] * (1.0 - u) + b[:, None] * u

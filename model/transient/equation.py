@@ -27,6 +27,7 @@ from ..dynamics.crank_loads import torque_without_crank_loads
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
+    Segment,
     angle_within,
     breakpoint_capacity,
     cut_cycle,
@@ -99,19 +100,20 @@ def _terms(
 ) -> None:
     still, spin, push, bare = design_at(block, 0), design_at(block, 1), design_at(block, 2), design_at(block, 3)
     square = design_at(block, 4)
+    segment = Segment(block, loads, outward, piece, shift)
     for i in range(angles.shape[0]):
         theta = angles[i]
         sine, cosine = math.sin(theta), math.cos(theta)
         m = design_motion(sine, cosine, still)
-        load = load_on_slider(m, still, block, 0, theta, outward, loads, piece, shift)
+        load = load_on_slider(m, still, theta, segment)
         out[0, i] = forces(sine, cosine, m, push, 0.0).torque
         out[1, i] = forces(sine, cosine, m, spin, 0.0).torque
         static = forces(sine, cosine, m, still, load).torque
-        out[2, i] = torque_without_crank_loads(static, still, block, 0, theta, way, loads, piece, shift)
+        out[2, i] = torque_without_crank_loads(static, theta, way, segment)
         dragged = with_formulas(smooth_load(m, spin, 0.0), m, spin, block, 1, outward, loads)
         out[3, i] = forces(sine, cosine, m, bare, dragged).torque
         load_torque = still.branch * load * m.x_1
-        out[4, i] = load_torque - torque_without_crank_loads(0.0, still, block, 0, theta, way, loads, piece, shift)
+        out[4, i] = load_torque - torque_without_crank_loads(0.0, theta, way, segment)
         squared = with_formulas(0.0, m, square, block, 4, outward, loads)
         out[5, i] = forces(sine, cosine, m, bare, squared).torque
 

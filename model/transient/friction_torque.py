@@ -28,7 +28,7 @@ import numpy as np
 from ..arrays import Array
 from ..dynamics.crank_loads import torque_without_crank_loads
 from ..dynamics.rubbing import Sides, joint_forces, touch
-from ..dynamics.segments import load_on_slider
+from ..dynamics.segments import Segment, load_on_slider
 from ..dynamics.torque import balance
 from ..errors import InputError
 from ..kernel.arithmetic import analytic, root
@@ -141,6 +141,7 @@ def _fill_friction_states(
     for accelerations, in place, given the motor's torques and the drive's inertia; 0 leaves them.
     """
     unit = design_at(block, push)
+    segment = Segment(stepped, loads, outward, piece, shift)
     mu = unit.guide_friction
     for i in range(angles.shape[0]):
         theta, w, a = angles[i], speeds[i], accelerations[i]
@@ -154,12 +155,12 @@ def _fill_friction_states(
             stepped[_ACCELERATION, 0] = complex(a, _STEP if derivative == 0 else 0.0)
             d = design_at(stepped, 0)
             m = design_motion(sine, cosine, d)
-            load = load_on_slider(m, d, stepped, 0, theta, outward, loads, piece, shift)
+            load = load_on_slider(m, d, theta, segment)
             guide = touch(sine, cosine, m, d, load, senses.turn, senses.swing)
             press = -1.0 if guide.real > 0.0 else 1.0
             sides = Sides(senses.turn, senses.slide, senses.swing, press, senses.turn)
             f = joint_forces(sine, cosine, m, d, load, sides)
-            torque = torque_without_crank_loads(f.torque, d, stepped, 0, theta, senses.turn, loads, piece, shift)
+            torque = torque_without_crank_loads(f.torque, theta, senses.turn, segment)
             rate = torque.imag / _STEP
             out[1 + derivative, i] = rate
             if derivative == 1:

@@ -19,6 +19,7 @@ from ..cycle.cycle import Cycle, cycle
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..machine.mechanism import Mechanism
+from ..quadrature import gauss
 from .equation import TURN
 
 Function = Callable[[Array], ArrayLike]
@@ -107,9 +108,9 @@ def over_angle(
     first = _values("speed", motion.speed, np.array([start]))[0]
     way = math.copysign(1.0, first)
     angle = start + way * TURN * np.linspace(0.0, turns, max(2, math.ceil(samples * turns)) + 1)
-    nodes, weights = np.polynomial.legendre.leggauss(4)
+    nodes, weights = gauss(4)
     step = np.diff(angle)[:, None]
-    inner_speeds = _values("speed", motion.speed, (angle[:-1, None] + step * 0.5 * (1.0 + nodes)).ravel())
+    inner_speeds = _values("speed", motion.speed, (angle[:-1, None] + step * nodes).ravel())
     speed, slope = _values("speed", motion.speed, angle), _values("slope", motion.slope, angle)
     all_speeds = np.concatenate([speed, inner_speeds])
     if not np.all(all_speeds * way > 0.0):
@@ -118,7 +119,7 @@ def over_angle(
             f"got {all_speeds[np.argmin(all_speeds * way)]:.6g} rad/s; give the motion over time"
         )
     _require_slope(motion.speed, motion.slope, angle)
-    time = np.concatenate([[0.0], np.cumsum(step[:, 0] * ((1.0 / inner_speeds).reshape(-1, 4) @ (0.5 * weights)))])
+    time = np.concatenate([[0.0], np.cumsum(step[:, 0] * ((1.0 / inner_speeds).reshape(-1, 4) @ weights))])
     return _motion(mechanism, linkage, time, angle, speed, speed * slope)
 
 

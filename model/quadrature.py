@@ -1,0 +1,99 @@
+"""Gauss-Legendre quadrature over the crank angle or over time, on panels that are halved until curves are resolved.
+
+A panel is resolved once the last coefficients of its polynomial have died out, by a measure that the curve's owner has.
+Owners weight the nodes: by one for means over the crank angle, by the time per angle for means over time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+from .arrays import Array, Mask
+
+DEGREE = 15
+"""Degree of the polynomial through the nodes of a panel."""
+DEEPEST = 24
+"""Halvings of a panel."""
+MOST_HALVINGS = 20_000
+"""Panels that halving adds for one design at most: beyond that, only rounding of the curves remains."""
+ANGLE_ROUNDING = 1e-13
+"""Shift of a curve, rad, by rounding of angles and positions: halving does not reduce its effect."""
+_TAIL = 3  # Legendre coefficients that show whether a panel is resolved
+
+
+@lru_cache(maxsize=8)
+def gauss(count: int) -> tuple[Array, Array]:
+    """Return Gauss's nodes on [0, 1] and their weights, whose sum is 1."""
+    nodes, weights = legendre.leggauss(count)
+    return 0.5 * (1.0 + nodes), 0.5 * weights
+
+
+@lru_cache(maxsize=8)
+def graded_gauss(panels: int, grades: int) -> tuple[Array, Array]:
+    """Return nodes on [0, 1], 20 in each panel and denser towards both ends, and their weights."""
+    nodes, weights = legendre.leggauss(20)
+    edges, half = np.linspace(0.0, 1.0, panels + 1), 0.5 / panels
+    u, w = (edges[:-1, None] + half + half * nodes).ravel(), np.tile(half * weights, panels)
+    for _ in range(grades):
+        w = w * 6.0 * u * (1.0 - u)
+        u = u * u * (3.0 - 2.0 * u)
+    return u, w
+
+
+@lru_cache(maxsize=8)
+def legendre_fit(count: int) -> Array:
+    """Return the matrix (count, count) from values at Gauss's nodes to the coefficients of their Legendre series."""
+    nodes, weights = legendre.leggauss(count)
+    return np.asarray((np.arange(count) + 0.5)[:, None] * (weights[:, None] * legendre.legvander(nodes, count - 1)).T)
+
+
+NODES, WEIGHTS = gauss(DEGREE + 1)
+"""Nodes of a panel on [0, 1], and their weights."""
+FIT = legendre_fit(DEGREE + 1)
+"""Matrix from values at the nodes to the coefficients of a panel's polynomial."""
+TAIL = np.ascontiguousarray(FIT[-_TAIL:])
+"""Its last rows."""
+
+
+def resolved_tail(values: Array) -> Array:
+    """Return the greatest size of the last coefficients (...,) of curves at the nodes of panels (..., 16)."""
+    return np.asarray(np.abs(values @ TAIL.T).max(axis=-1, initial=0.0))
+
+
+Samples = tuple[Mask, list[NDArray[Any]]]
+"""Panels (p,) that are not resolved, and arrays (p, ...) to be collected from those that are."""
+
+
+def resolve(
+    sample: Callable[..., Samples],
+    low: Array,
+    width: Array,
+    *labels: NDArray[Any],
+    deepest: int = DEEPEST,
+    limit: float = np.inf,
+) -> list[NDArray[Any]]:
+    """Return low, width, labels and samples of panels (p,), halved until they are resolved.
+
+    sample: function of low, width and labels. labels: arrays (p, ...) that both halves inherit. deepest: halvings of a
+    panel. limit: greatest number of panels.
+    """
+    resolved: list[list[NDArray[Any]]] = []
+    total = 0
+    for depth in range(deepest + 1):
+        rough, samples = sample(low, width, *labels)
+        if depth == deepest or total + 2 * len(low) > limit:
+            rough = np.zeros(len(low), dtype=bool)
+        total += len(low)
+        resolved.append([column[~rough] for column in (low, width, *labels, *samples)])
+        if not rough.any():
+            break
+        half = 0.5 * width[rough]
+        labels = tuple(np.concatenate([column[rough]] * 2) for column in labels)
+        low, width = np.concatenate([low[rough], low[rough] + half]), np.concatenate([half, half])
+    return [np.concatenate(column) for column in zip(*resolved, strict=True)]

@@ -1,0 +1,362 @@
+"""Means and mean squares of curves over one turn of a crank, with exact gradients: a signal, or those of the work.
+
+Smooth curves are integrated by the trapezoidal rule in the crowded angle, which converges geometrically for periodic
+analytic functions; piecewise curves by Gauss-Legendre panels between breakpoints. The nearer a linkage is to locking,
+the nearer are the curves' singularities, at the distance atanh(kappa) in the crowded angle (`segments.crowding`): nodes
+grow in number with 1 / kappa. The rod's direction would lose digits likewise; `_square_along` keeps them. Loads that
+jump at a dead centre do so while the slider stands still. Without friction, therefore, only steps of tables make the
+torque jump. A breakpoint that moves adds the jump times its own motion to the derivatives.
+
+Sizes of joint forces, |A| and the like, turn sharply where a force passes close to zero. Friction brings them into the
+torque. There panels are halved until the last Legendre coefficients of curve and derivatives have died out, or are
+rounding error from a load that changes over a tiny distance.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..arrays import Array
+from ..dynamics.contact import cut_contacts, shift_of, sides_of
+from ..dynamics.crank_loads import sense_of, torque_without_crank_loads
+from ..dynamics.rubbing import Sides, always_drives, joint_forces
+from ..dynamics.segments import (
+    Cuts,
+    CycleWindow,
+    Segment,
+    angle_within,
+    breakpoint_capacity,
+    crowded,
+    cut_cycle,
+    enter,
+    load_on_slider,
+    uncrowded,
+)
+from ..kernel.arithmetic import STEP, analytic, magnitude, root
+from ..kernel.batches import in_chunks
+from ..kernel.kernel import ComplexCube, Cube, Row, Table, kernel
+from ..kinematics.position import motion_of
+from ..machine.derived import derived
+from ..machine.design import Design, design_at
+from ..machine.mechanism import Mechanism
+from ..machine.numbers import numbers_of
+from ..machine.raw import Loads
+from ..quadrature import ANGLE_ROUNDING, DEEPEST, MOST_HALVINGS, NODES, TAIL, WEIGHTS
+from .signals import Signal, signal_of_forces, signal_of_motion
+
+WORK = -1
+"""Instead of a signal: the five curves of `turn_work`."""
+CURVES = 5
+"""Their number."""
+_TORQUE, _LINE = int(Signal.TORQUE), int(Signal.LINE_FORCE)
+_RULE = NODES, WEIGHTS, TAIL
+_TURN = 2.0 * math.pi
+_SMOOTH = 192  # nodes for a smooth curve
+# Measured on rods 0.1 % longer than crank + offset (kappa 0.21), over random machines: 128 nodes and 12 panels of 16
+# nodes leave an RMS torque off by 4e-9 and gradients by 7e-7; these 2e-14 and 2e-11. Below _EVEN there are more.
+_PANELS, _EVEN = 24, 0.21
+_RESOLVED = 1e-12, 1e-10  # size of the last coefficients, relative to the greatest of the curve and its derivatives
+_NOISE = 0.004  # rounding of a curve from the crank angle itself, in units of _RESOLVED, times kappa^2
+_SHARE = 0.1
+"""Permissible tail in a panel's mean of the work, as a fraction of that in a curve: narrow panels count less.
+
+Otherwise rounding, which halving does not reduce, would halve every panel of a linkage that nearly locks.
+"""
+
+
+class MeansTask(NamedTuple):
+    """Curves of a machine. kind: a `Signal` or `WORK`. jumps: whether the curves may jump at cuts.
+
+    rubbing: whether friction counts.
+    """
+
+    kind: int
+    loads: Loads
+    watch: CycleWindow
+    rubbing: bool
+    jumps: bool
+
+
+class CurveMeans(NamedTuple):
+    """Results of n designs. mean: (n, c) of c curves, infinite where friction locks. square: mean squares (n, c or 0).
+
+    mean_slope, square_slope: (n, c, v), derivatives of the means and half those of the mean squares, or without rows.
+    """
+
+    mean: Table
+    square: Table
+    mean_slope: Cube
+    square_slope: Cube
+
+
+class _Curve(NamedTuple):
+    """The curves of one design within a segment. gap: l - r - |e|, m. stepped: (v, rows, 1), with imaginary steps."""
+
+    kind: int
+    d: Design
+    gap: float
+    kappa: float
+    segment: Segment
+    sides: Sides
+    stepped: Any
+
+
+class _Room(NamedTuple):
+    """Work space and rule. rates: (c, 1 + v, nodes), curves and derivatives at a panel's nodes. greatest: their sizes.
+
+    real, stepped: curves at one node. stack: start, width and depth of the panels that remain. nodes, weights, tail:
+    see `quadrature`.
+    """
+
+    rates: Cube
+    real: Row
+    stepped: Any
+    weight: Row
+    greatest: Table
+    stack: Table
+    nodes: Row
+    weights: Row
+    tail: Table
+
+
+@analytic
+def _square_along(theta: Any, d: Any, gap: Any) -> Any:
+    """Return l^2 cos^2(phi), m^2, exact to rounding however close to locking; gap: l - r - |e|, m, equally exact.
+
+    l^2 - across^2 = (l - |across|) (l + |across|) loses its digits where the rod is nearly normal to the slider line.
+    With psi the crank angle from there, -pi/2 for e >= 0, the factors are gap + 2 r sin^2(psi / 2) and gap + 2 |e| + 2
+    r cos^2(psi / 2).
+    """
+    half = 0.5 * (theta - (0.5 if d.e < 0.0 else 1.5) * math.pi)
+    s, c = math.sin(half), math.cos(half)
+    return (gap + 2.0 * d.r * s * s) * (gap + 2.0 * abs(d.e) + 2.0 * d.r * c * c)
+
+
+@analytic
+def _fill_curves(kind: Any, theta: Any, square: Any, d: Any, segment: Segment, sides: Sides, out: Any) -> None:
+    """Fill `out` with a signal, the torque with its sign, or the curves of the work; square: real l^2 cos^2(phi)."""
+    sine, cosine = math.sin(theta), math.cos(theta)
+    l_sin = d.e - d.r * sine
+    plain = d.l * d.l - l_sin * l_sin
+    m = motion_of(sine, cosine, d.r, l_sin, d.branch * root(plain + (square - plain.real)))
+    if kind > _LINE:
+        out[0] = signal_of_motion(kind, sine, cosine, m, d)
+        return
+    load = load_on_slider(m, d, theta, segment)
+    if kind == _TORQUE:  # on its own: the compiler leaves out all that the torque alone does not need
+        torque = joint_forces(sine, cosine, m, d, load, sides).torque
+        out[0] = torque_without_crank_loads(torque, theta, sense_of(d), segment)
+        return
+    f = joint_forces(sine, cosine, m, d, load, sides)
+    if kind != WORK:
+        out[0] = signal_of_forces(kind, f, m, d, theta, segment)
+        return
+    out[0] = -sense_of(d) * d.branch * load * m.x_1
+    out[1] = magnitude(f.guide * m.x_1)
+    out[2] = root(f.pivot_x * f.pivot_x + f.pivot_y * f.pivot_y)
+    out[3] = root(f.crank_pin_x * f.crank_pin_x + f.crank_pin_y * f.crank_pin_y) * (1.0 - m.rod_1)
+    out[4] = root(f.slider_pin_x * f.slider_pin_x + f.slider_pin_y * f.slider_pin_y) * magnitude(m.rod_1)
+
+
+@analytic
+def _fill_panel(curve: _Curve, begin: float, width: float, points: int, room: _Room) -> None:
+    """Fill curves, derivatives and weights at the nodes of a panel of the crowded angle, Gauss's or equidistant."""
+    own, kappa = curve.segment, curve.kappa
+    is_even = points == _SMOOTH
+    for i in range(points):
+        tau = begin + width * (i / points if is_even else room.nodes[i])
+        theta = uncrowded(tau, kappa)
+        c, y = math.cos(tau), math.sin(tau)
+        share = 1.0 / points if is_even else room.weights[i]
+        room.weight[i] = share * width / _TURN * kappa / (c * c + kappa * kappa * y * y)
+        square = _square_along(theta, curve.d, curve.gap)
+        _fill_curves(curve.kind, theta, square, curve.d, own, curve.sides, room.real)
+        for k in range(room.rates.shape[0]):
+            room.rates[k, 0, i] = room.real[k]
+        for v in range(curve.stepped.shape[0]):
+            stepped = Segment(curve.stepped[v], own.loads, own.outward, own.piece, own.shift)
+            z = design_at(stepped.block, 0)
+            _fill_curves(curve.kind, theta, square, z, stepped, curve.sides, room.stepped)
+            for k in range(room.rates.shape[0]):
+                room.rates[k, v + 1, i] = room.stepped[k].imag / STEP
+
+
+@analytic
+def _is_rough(curve: _Curve, width: float, room: _Room) -> bool:
+    """Return whether the last Legendre coefficients on a panel exceed the tolerance; raise the greatest sizes."""
+    halve, points = False, room.nodes.shape[0]
+    resolved = max(1.0, _NOISE / (curve.kappa * curve.kappa))
+    for k in range(room.rates.shape[0]):
+        for row in range(room.rates.shape[1]):
+            least = greatest = room.rates[k, row, 0]
+            for i in range(points):
+                least, greatest = min(least, room.rates[k, row, i]), max(greatest, room.rates[k, row, i])
+            room.greatest[k, row] = max(room.greatest[k, row], greatest, -least)
+            allowed = (_RESOLVED[0] if row == 0 else _RESOLVED[1]) * resolved * room.greatest[k, row]
+            if curve.kind == WORK:
+                allowed = allowed * (_SHARE * _TURN / width)
+            else:
+                allowed = max(allowed, ANGLE_ROUNDING * ((greatest - least) / width))
+            for order in range(0 if halve else room.tail.shape[0]):
+                coefficient = 0.0
+                for i in range(points):
+                    coefficient += room.tail[order, i] * room.rates[k, row, i]
+                halve = halve or abs(coefficient) > allowed
+    return halve
+
+
+@analytic
+def _add_panel(points: int, n: int, room: _Room, means: CurveMeans) -> None:
+    """Add the panel in `room` to the means of design n."""
+    has_squares = means.square.shape[1] > 0
+    for k in range(room.rates.shape[0]):
+        value = room.rates[k, 0]
+        for row in range(room.rates.shape[1]):
+            rate = room.rates[k, row]
+            first = second = 0.0
+            for i in range(points):
+                first += room.weight[i] * rate[i]
+                second += room.weight[i] * value[i] * rate[i]
+            if row == 0:
+                means.mean[n, k] += first
+                if has_squares:
+                    means.square[n, k] += second
+            else:
+                means.mean_slope[n, k, row - 1] += first
+                if has_squares:
+                    means.square_slope[n, k, row - 1] += second
+
+
+@analytic
+def _add_segment(
+    curve: _Curve, a: float, b: float, points: int, left: int, n: int, room: _Room, means: CurveMeans
+) -> int:
+    """Add a segment between crank angles to the means of design n.
+
+    points: nodes of a panel. left: halvings that remain, -1 for none at all; return how many are left.
+    """
+    low, high = crowded(a, curve.kappa), crowded(b, curve.kappa)
+    panels = math.ceil(max(1.0, _EVEN / curve.kappa))
+    if points < _SMOOTH:
+        panels = panels * (int(_PANELS * (high - low) / _TURN) + 1)
+    for p in range(panels):
+        width = (high - low) / panels
+        room.stack[0, 0], room.stack[0, 1], room.stack[0, 2] = low + width * p, width, 0.0
+        top = 1
+        while top > 0:
+            top -= 1
+            begin, width, depth = room.stack[top, 0], room.stack[top, 1], room.stack[top, 2]
+            _fill_panel(curve, begin, width, points, room)
+            if left >= 0 and _is_rough(curve, width, room) and depth < DEEPEST and left > 0:
+                left -= 1
+                for half in range(2):  # the left one on top: panels are added up in order
+                    room.stack[top, 0] = begin + 0.5 * width * (1 - half)
+                    room.stack[top, 1], room.stack[top, 2] = 0.5 * width, depth + 1.0
+                    top += 1
+                continue
+            _add_panel(points, n, room, means)
+    return left
+
+
+@analytic
+def _add_jumps(curve: _Curve, cuts: Cuts, s: int, count: int, n: int, room: _Room, means: CurveMeans) -> None:
+    """Add to derivatives of design n what the moving ends of segment s contribute: the curve there times the motion."""
+    own = curve.segment
+    for end in range(2):
+        i, theta = (s + 1) % count if end else s, cuts.angle[s + 1] if end else cuts.angle[s]
+        square = _square_along(theta, curve.d, curve.gap)
+        _fill_curves(curve.kind, theta, square, curve.d, own, curve.sides, room.real)
+        sign = (1.0 if end else -1.0) / (STEP * _TURN)
+        for v in range(curve.stepped.shape[0]):
+            stepped = Segment(curve.stepped[v], own.loads, own.outward, own.piece, own.shift)
+            slip = shift_of(design_at(stepped.block, 0), stepped, curve.d, own, theta, cuts, i, curve.sides)
+            for k in range(means.mean.shape[1]):
+                means.mean_slope[n, k, v] += sign * room.real[k] * slip
+                if means.square.shape[1] > 0:
+                    means.square_slope[n, k, v] += 0.5 * sign * room.real[k] * room.real[k] * slip
+
+
+@kernel
+def fill_means(
+    task: MeansTask, blocks: Cube, steps: ComplexCube, gaps: Row, rule: tuple[Row, Row, Table], means: CurveMeans
+) -> None:
+    """Fill the means of n designs, whose fields are zero.
+
+    blocks: derived numbers (n, rows, 1). steps: (n v, rows, 1), with an imaginary step in each number in turn. gaps:
+    (n,), see `_gaps`.
+    """
+    loads, watch, nv = task.loads, task.watch, means.mean_slope.shape[2] if means.mean_slope.shape[0] else 0
+    capacity, curves = breakpoint_capacity(loads), means.mean.shape[1]
+    cuts = Cuts(np.empty(capacity), np.empty(capacity, np.int64), np.empty(capacity), np.empty(capacity, np.int64))
+    piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
+    room = _Room(
+        np.empty((curves, nv + 1, _SMOOTH)),
+        np.empty(CURVES),
+        np.empty(CURVES, np.complex128),
+        np.empty(_SMOOTH),
+        np.empty((curves, nv + 1)),
+        np.empty((DEEPEST + 2, 3)),
+        rule[0],
+        rule[1],
+        rule[2],
+    )
+    for n in range(blocks.shape[0]):
+        block, gap = blocks[n], gaps[n]
+        d = design_at(block, 0)
+        if task.rubbing and not always_drives(d) > 0.0:
+            means.mean[n, :] = np.inf
+            continue
+        count = cut_cycle(d, block, 0, loads, watch, cuts)
+        if task.rubbing:
+            count = cut_contacts(d, block, loads, watch, cuts, count, piece, shift)
+        cuts.angle[count] = cuts.angle[0] + _TURN
+        # Same as `crowding`, but from the gap: no digits are lost, so no floor is needed.
+        kappa = math.sqrt(math.sqrt(gap * (gap + 2.0 * d.r)) / (gap + d.r))
+        halved = task.rubbing or task.kind == WORK
+        points = _SMOOTH if count == 1 and not halved else rule[0].shape[0]
+        left = MOST_HALVINGS if halved else -1
+        room.greatest[:] = 0.0
+        for s in range(count):
+            a, b = cuts.angle[s], cuts.angle[s + 1]
+            probe = angle_within(a, b)
+            _, outward = enter(d, block, 0, probe, loads, watch, piece, shift)
+            segment = Segment(block, loads, outward, piece, shift)
+            sides = sides_of(probe, d, segment, task.rubbing)
+            curve = _Curve(task.kind, d, gap, kappa, segment, sides, steps[n * nv : (n + 1) * nv])
+            left = _add_segment(curve, a, b, points, left, n, room, means)
+            if task.jumps:
+                _add_jumps(curve, cuts, s, count, n, room, means)
+
+
+def turn_means(
+    task: MeansTask, raw: Array, mechanism: Mechanism, designs: Array, *, squares: bool, gradients: bool
+) -> CurveMeans:
+    """Return the means of fully turning designs (n, 3 + k), derivatives by the numbers of the designs.
+
+    raw: the machine's raw numbers. squares: whether mean squares are needed.
+    """
+    numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=gradients)
+    count, gaps, curves = len(designs), _gaps(*numbers.values.T[:3]), CURVES if task.kind == WORK else 1
+    shapes = [(count, curves), (count, curves if squares else 0)]
+    slopes = [(count if gradients else 0, columns, len(numbers.columns)) for _, columns in shapes]
+    means = CurveMeans(*map(np.zeros, shapes + slopes))
+
+    def work(begin: int, end: int) -> None:
+        blocks, steps = derived(raw, task.loads, numbers.columns, numbers.values[begin:end], steps=gradients)
+        part = CurveMeans(*(column[begin:end] if len(column) else column for column in means))
+        fill_means(task, blocks, steps, gaps[begin:end], _RULE, part)
+
+    in_chunks(count, work, knots=len(task.loads.at))
+    if gradients:
+        return CurveMeans(means.mean, means.square, numbers.chain(means.mean_slope), numbers.chain(means.square_slope))
+    return means
+
+
+def _gaps(crank: Array, rod: Array, offset: Array) -> Array:
+    """Return l - r - |e|, exact to its own rounding: the first difference's error is added (Knuth's two-sum)."""
+    first = rod - crank
+    back = first - rod
+    return np.asarray((first - np.abs(offset)) + ((rod - (first - back)) - (crank + back)))
