@@ -41,10 +41,7 @@ if TYPE_CHECKING:
 _TABLES = ", ".join(f"{name} ({field.description})" for name, field in JobModel.model_fields.items())
 _SHOWN = [f"{name} ({topic.shows})" for name, topic in TOPICS.items()]
 _SHOWN += [f"{name} ({command.help.partition('.')[0]}; alone)" for name, command in QUESTION_COMMANDS.items()]
-_SHOWN += [
-    f"{name} ({one.help.partition('.')[0]}; alone, of {SUBJECTS[one.subject]})"
-    for name, one in FRONT_OR_JOB_QUESTIONS.items()
-]
+_SHOWN += [f"{name} ({one.shows}; alone, of {SUBJECTS[one.subject]})" for name, one in FRONT_OR_JOB_QUESTIONS.items()]
 _INPUTS: dict[str, dict[str, Any]] = {}
 for _topic in QUESTIONS.values():
     for _input in _topic.inputs:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Response
@@ -10,7 +9,6 @@ from pydantic import BaseModel, Field
 from pydantic_core import to_json
 
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
-from ..questions.typed_input import TypedInput
 from ..render.formatting import plain_blocks
 from ..runs.result import json_ready
 from .blocks import AnswerBlock, answer_blocks
@@ -21,16 +19,8 @@ from .stored_fronts import FrontDep, StoredFront
 
 router = APIRouter(route_class=LongRoute, tags=["fronts"], responses=problem_responses(409))
 
-LONGEST_PROOF = 20.0
-"""s, for the search of a proof."""
 QUESTION = FRONT_OR_JOB_QUESTIONS["certify"]
-_LIMITED = [
-    replace(one, usual="10.0", limits={**one.limits, "le": LONGEST_PROOF})
-    if isinstance(one, TypedInput) and one.name == "seconds"
-    else one
-    for one in QUESTION.inputs
-]
-CertificateInputs = Annotated[dict[str, Any], inputs_in_address(_LIMITED, map(parameter_of, _LIMITED))]
+CertificateInputs = Annotated[dict[str, Any], inputs_in_address(QUESTION.inputs, map(parameter_of, QUESTION.inputs))]
 _EXAMPLE = {"status": "proven", "epsilon_asked": 0.01, "epsilon": 0.0098, "boxes": 41_210, "open_boxes": 0}
 
 

@@ -22,7 +22,7 @@ def parameter_of(item: Input, prefix: str = "") -> inspect.Parameter:
     kind = float if item.words is None else item.words
     examples = [round(item.unit.factor * item.read(item.example, item.name), 9)] if item.example else None
     query = Query(**_limits(item), description=f"{prefix}{item.help}", examples=examples)
-    default = item.value if isinstance(item, TypedInput) else None
+    default = item.served_value if isinstance(item, TypedInput) else None
     return inspect.Parameter(
         item.key,
         inspect.Parameter.KEYWORD_ONLY,

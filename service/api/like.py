@@ -9,6 +9,7 @@ from pydantic import Field
 
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..runs.result import json_ready
+from .blocks import AnswerBlock, answer_blocks
 from .computing import LongRoute
 from .fronts import OfDesign
 from .input_parameters import body_of
@@ -22,16 +23,21 @@ _EXAMPLE = {"status": "done", "message": "1 design, 4120 evaluated", "distance":
 
 
 class LikeModel(OfDesign):
-    """Design like one of a front. like: what `slidercrank like --json` prints; without a design status and message."""
+    """Design like one of a front. like: what `slidercrank like --json` prints; without a design status and message.
+
+    blocks: the answer as sentences and tables.
+    """
 
     like: dict[str, Any] = Field(examples=[_EXAMPLE])
+    blocks: list[AnswerBlock]
 
 
 def find_like(stored_front: FrontDep, design: DesignNumber, given: Any, units: UnitsParameter = "metric") -> LikeModel:
     """Find the design most like one of a front that also meets further conditions; nothing is saved."""
     stored_front.row(design)
     nearest = QUESTION.ask(stored_front.front, given.model_dump(), row=design - 1)
-    return LikeModel(job=stored_front.job.id, number=design, like=json_ready(nearest.record(units)))
+    record, blocks = json_ready(nearest.record(units)), answer_blocks(nearest.blocks)
+    return LikeModel(job=stored_front.job.id, number=design, like=record, blocks=blocks)
 
 
 find_like.__annotations__["given"] = body_of(QUESTION, "LikeWhere")

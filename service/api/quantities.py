@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import get_args
+from typing import get_args, get_origin
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
@@ -11,7 +11,9 @@ from ...objectives.formula.expression import ARGUMENTS
 from ...objectives.kinds import DISPLAYED_KINDS, KINDS, metric_unit_in
 from ..designs.quantity_facts import facts_of_all
 from ..questions.design_question import DesignQuestion
-from ..questions.discovery import DESIGN_QUESTIONS, QUESTION_COMMANDS, TOPICS
+from ..questions.discovery import DESIGN_QUESTIONS, FRONT_OR_JOB_QUESTIONS, QUESTION_COMMANDS, TOPICS
+from ..questions.front_or_job_question import FrontOrJobQuestion
+from ..questions.typed_input import TypedInput
 
 router = APIRouter(tags=["designs"])
 
@@ -102,7 +104,8 @@ class UnitTable(BaseModel):
 class InputModel(BaseModel):
     """An input of a question. key: name in the address. title: label of its field. unit: of the key. usual: default.
 
-    words: that it may be, none for a number. required: whether there is no answer without it. example: as typed.
+    words: that it may be, none for a number. several: whether it is a list of texts. required: whether there is no
+    answer without it. example: as typed.
     """
 
     key: str = Field(examples=["crank_angle_deg"])
@@ -111,6 +114,7 @@ class InputModel(BaseModel):
     unit: str = Field(examples=["deg"])
     usual: str = Field(examples=["30 deg"])
     words: list[str] = Field(examples=[[]])
+    several: bool = False
     required: bool
     example: str = Field(examples=[""])
 
@@ -118,23 +122,29 @@ class InputModel(BaseModel):
 class TopicModel(BaseModel):
     """A question to a design. path: after that of the design. title: for a heading. shows: what it is about, in words.
 
-    command: of the command line, which tells the same. figure: whether it is drawn at the path with .svg.
+    command: of the command line, which tells the same. figure: whether it is drawn at the path with .svg. posted:
+    whether the inputs are the body of the request.
     """
 
     name: str = Field(examples=["balance"])
     path: str = Field(examples=["topics/balance"])
     command: str = Field(examples=["analyse --show balance"])
     figure: bool
+    posted: bool = False
     title: str = Field(examples=["Balance"])
     shows: str = Field(examples=["shaking force and moment"])
     inputs: list[InputModel] = Field(examples=[[]])
 
 
 class TopicList(BaseModel):
-    """The topics that a design may have, in their order. questions: those that are commands of their own."""
+    """The topics that a design may have, in their order. questions: those that are commands of their own.
+
+    fronts: questions to a front; their paths are whole, with the numbers of job and design in braces.
+    """
 
     topics: list[TopicModel]
     questions: list[TopicModel]
+    fronts: list[TopicModel]
 
 
 @router.get("/units")
@@ -183,23 +193,29 @@ def list_quantities() -> QuantityList:
 
 @router.get("/topics")
 def list_topics() -> TopicList:
-    """List the topics that a design may have, and the questions that are commands of their own."""
+    """List the topics that a design may have, and the questions to a design or a front that are commands."""
     topics = [
         _topic(question, f"topics/{question.name}", f"analyse --show {question.name}") for question in TOPICS.values()
     ]
     questions = [_topic(DESIGN_QUESTIONS[name], name, says.called or name) for name, says in QUESTION_COMMANDS.items()]
-    return TopicList(topics=topics, questions=questions)
+    fronts = [
+        _topic(question, question.path, name)
+        for name, question in FRONT_OR_JOB_QUESTIONS.items()
+        if question.subject == "front"
+    ]
+    return TopicList(topics=topics, questions=questions, fronts=fronts)
 
 
-def _topic(question: DesignQuestion, path: str, command: str) -> TopicModel:
+def _topic(question: DesignQuestion | FrontOrJobQuestion, path: str, command: str) -> TopicModel:
     inputs = [
         InputModel(
             key=item.key,
             title=item.title or item.name.replace("_", " ").capitalize(),
             help=item.help,
             unit=item.unit.symbol,
-            usual=item.usual,
+            usual=item.served or item.usual if isinstance(item, TypedInput) else item.usual,
             words=get_args(item.words),
+            several=isinstance(item, TypedInput) and get_origin(item.type) is list,
             required=item.required,
             example=item.example,
         )
@@ -210,7 +226,8 @@ def _topic(question: DesignQuestion, path: str, command: str) -> TopicModel:
         name=question.name,
         path=path,
         command=command,
-        figure=question.command is None or question.command.figure is not None,
+        figure=isinstance(question, DesignQuestion) and (question.command is None or bool(question.command.figure)),
+        posted=isinstance(question, FrontOrJobQuestion) and question.posted,
         title=title,
         shows=question.shows,
         inputs=inputs,

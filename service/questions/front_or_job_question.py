@@ -67,6 +67,11 @@ class FrontOrJobQuestion:
         return self.package.rpartition(".")[2]
 
     @property
+    def shows(self) -> str:
+        """What it is about, in words."""
+        return self.help.partition(".")[0]
+
+    @property
     def flags(self) -> dict[str, str]:
         """Command-line options of the inputs, by name."""
         return {item.name: item.flag for item in self.inputs}

@@ -15,13 +15,15 @@ class TypedInput(Input):
     """An input with a plain type instead of a physical kind.
 
     type: a number, `str`, a `list` of texts, or a `dict` of texts by name, typed as "name=text" on the command line.
-    least: minimum of a number. limits: limits in services, by the names of `pydantic.Field`. form: form of a text with
-    a name, "REQUIREMENT=AMOUNT". metavar: placeholder of the option. sent: example in a body.
+    least: minimum of a number. limits: limits in services, by the names of `pydantic.Field`. served: default in
+    services, if different. form: form of a text with a name, "REQUIREMENT=AMOUNT". metavar: placeholder of the option.
+    sent: example in a body.
     """
 
     type: Any = float
     least: float | None = None
     limits: Mapping[str, Any] = field(default_factory=dict)
+    served: str = ""
     form: str = ""
     metavar: str | None = None
     sent: Any = None
@@ -30,6 +32,11 @@ class TypedInput(Input):
     def value(self) -> Any:
         """The default; None for texts."""
         return self.type(self.usual) if self.usual else None
+
+    @property
+    def served_value(self) -> Any:
+        """The default in services."""
+        return self.type(self.served) if self.served else self.value
 
     @property
     def schema(self) -> dict[str, Any]:

@@ -57,7 +57,7 @@ UNDECLARED = {
 """Subject and files of what is asked without a declaration of its own."""
 EVERYTHING = "(all of the service)"
 """Row with all modules of the service, also those that serve several questions or none."""
-SHOWN = ("certify", "compare", "trade-offs")
+SHOWN = ("certify", "compare", "like", "trade-offs")
 """What the page shows as it shows questions to a design, from the blocks of their answers."""
 _STATEMENT = re.compile(r";$|^(if|for|while|switch|try|do|(export )?(default )?(async )?(function|class))\b")
 

@@ -17,12 +17,18 @@ QUESTION = FrontOrJobQuestion(
     inputs=(
         TypedInput(
             "epsilon",
+            title="Largest gap, as a fraction of each objective's range",
             help="Distance to prove, as a fraction of each objective's range over the front.",
             usual=str(EPSILON),
             limits={"gt": 0.0, "lt": 1.0},
         ),
         TypedInput(
-            "seconds", help="Time limit; reports what is proven so far.", usual=str(SECONDS), limits={"gt": 0.0}
+            "seconds",
+            title="Time limit in seconds",
+            help="Time limit; reports what is proven so far.",
+            usual=str(SECONDS),
+            served="10.0",
+            limits={"gt": 0.0, "le": 20.0},
         ),
     ),
 )

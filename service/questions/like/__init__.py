@@ -18,6 +18,7 @@ QUESTION = FrontOrJobQuestion(
     inputs=(
         TypedInput(
             "where",
+            title="Conditions, separated by semicolons",
             type=list[str],
             help="Condition to meet as well: a quantity, a dimension or a formula, then >=, <= or =, then a value, "
             'such as "crank = 40 mm". May be repeated.',

@@ -180,3 +180,26 @@ def test_certify_has_a_tab_that_proves_what_the_command_line_does(
     shown = panel.locator(".answer :is(h3, p)").all_inner_texts()
     assert [text.replace("\u00a0", " ") for text in shown] == told
     assert findings(page) == []
+
+
+@pytest.mark.slow
+def test_like_has_a_tab_that_finds_what_the_api_does(opened: tuple[Page, str, str], solved: Solved) -> None:
+    page, address, api = opened
+    page.goto(f"{address}/#/help")
+    page.goto(f"{address}/#/jobs/{solved.number}/designs/2")
+    page.locator(".analyses").scroll_into_view_if_needed(timeout=30_000)
+    page.get_by_role("tab", name="Like").press("Enter", timeout=30_000)
+    panel = page.get_by_role("tabpanel")
+    where = panel.get_by_label("Conditions, separated by semicolons")
+    where.press("Enter")
+    expect(panel.get_by_role("alert")).to_contain_text("a value is needed")
+    (rod,) = (row["rod_mm"] for row in solved.result.designs[1:2])
+    conditions = [f"rod <= {0.9 * float(str(rod))!r} mm", "transmission_angle >= 20 deg"]
+    for asked, status in ((conditions, "done"), (["transmission_angle >= 89 deg"], "infeasible")):
+        where.fill(" ; ".join(asked))
+        where.press("Enter")
+        sent = httpx.post(f"{api}/designs/2/like", json={"where": asked}, timeout=60.0).json()
+        assert sent["like"]["status"] == status
+        (text, *_) = (block["text"] for block in sent["blocks"])
+        expect(panel.locator(".answer :is(h3, p)").first).to_contain_text(str(text[0]), timeout=60_000)
+    assert findings(page) == []

@@ -16,33 +16,18 @@ const TITLES = {
 /** The only one of a design that swings. @type {Record<string, string>} */
 const TITLES_OF_SWING = { swing: "The swing" };
 const WITHOUT = "This job has no tolerances. Add some under “Tolerances”.";
-const ELSEWHERE = ["inverse"]; // questions with a view of their own
-const CERTIFY = {
-  name: "certify",
-  path: "",
-  command: "certify",
-  title: "Certify",
-  shows: "how far the front can be from the true one, whatever the design",
-  figure: false,
-  inputs: [
-    ["epsilon", "Largest gap, as a fraction of each objective's range", "", "0.01"],
-    ["seconds", "Time limit", "s", "10"],
-  ].map(([key, title, unit, usual]) => ({
-    ...{ key, title, unit, usual },
-    ...{ help: "", words: [], required: false, example: "" },
-  })),
-};
+const ELSEWHERE = ["inverse", "round", "wish"]; // questions with a view of their own
 
 /**
- * Put the analyses into two places. questions: all of the service; swings: whether the crank does; tolerances: whether the job has any;
+ * Put the analyses into two places. questions, fronts: all of the service to a design, and to a front; swings: whether the crank does; tolerances: whether the job has any;
  * tab: the chosen one; chooseTab(tab): another one is, "" for the first.
  * Returns show(lengths): of a changed design, null for the design itself.
  * @param {{ sections: HTMLElement, tabs: HTMLElement }} places
- * @param {{ job: string, number: number, questions: Api.Topic[], swings: boolean, tolerances: boolean, tab: string, chooseTab: (tab: string) => void, signal: AbortSignal }} options
+ * @param {{ job: string, number: number, questions: Api.Topic[], fronts: Api.Topic[], swings: boolean, tolerances: boolean, tab: string, chooseTab: (tab: string) => void, signal: AbortSignal }} options
  */
 export function analyses(
   places,
-  { job, number, questions, swings, tolerances, tab, chooseTab, signal },
+  { job, number, questions, fronts, swings, tolerances, tab, chooseTab, signal },
 ) {
   const titles = swings ? TITLES_OF_SWING : TITLES;
   const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": "Analyses", onkeydown });
@@ -52,21 +37,16 @@ export function analyses(
     id: "analysis",
     tabindex: 0,
   });
+  /** @param {Api.Topic} of @param {string} path */
+  const withView = (of, path) => ({ ...of, view: question(of, { path, job, signal }) });
   /** @param {Api.Topic} of */
-  const withView = (of) => ({
-    ...of,
-    view: question(of, { path: `jobs/${job}/designs/${number}/${of.path}`, job, signal }),
-  });
-  const proof = question(CERTIFY, {
-    path: `jobs/${job}/certificate`,
-    job,
-    button: "Prove it",
-    signal,
-  });
-  const listed = [
-    ...questions.filter(({ name }) => !(name in titles || ELSEWHERE.includes(name))).map(withView),
-    { ...CERTIFY, view: proof },
-  ];
+  const isListed = ({ name }) => !(name in titles || ELSEWHERE.includes(name));
+  /** @param {Api.Topic} of */
+  const ofDesign = (of) => withView(of, `jobs/${job}/designs/${number}/${of.path}`);
+  const ofFront = fronts
+    .filter(isListed)
+    .map((of) => withView(of, of.path.replace("{number}", job).replace("{design}", `${number}`)));
+  const listed = [...questions.filter(isListed).map(ofDesign), ...ofFront];
   let chosen = Math.max(
     listed.findIndex(({ name }) => name === tab),
     0,
@@ -77,6 +57,7 @@ export function analyses(
 
   async function draw() {
     const { name, shows, command, view } = listed[chosen];
+    const isOfDesign = chosen < listed.length - ofFront.length;
     fill(
       tabs,
       listed.map((one, n) =>
@@ -102,13 +83,13 @@ export function analyses(
       h(
         "p",
         { class: "quiet hint" },
-        `${capital(shows)}${lengths && name !== CERTIFY.name ? "; of the changed design" : ""}. The same as `,
+        `${capital(shows)}${lengths && isOfDesign ? "; of the changed design" : ""}. The same as `,
         h("code", {}, `slidercrank ${command}`),
         ".",
       ),
       view.node,
     );
-    if (name !== CERTIFY.name) await view.ask(lengths); // a proof takes a while
+    if (isOfDesign) await view.ask(lengths); // others take a while, or need inputs
   }
 
   /** @param {number} n */
@@ -128,7 +109,7 @@ export function analyses(
   fill(
     places.sections,
     Object.entries(titles).map(([name, title]) => {
-      const [{ view }] = questions.filter((one) => one.name === name).map(withView);
+      const [{ view }] = questions.filter((one) => one.name === name).map(ofDesign);
       const lacks = name === "tolerances" && !tolerances;
       const body = h(
         "div",

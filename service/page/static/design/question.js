@@ -1,6 +1,6 @@
 /** A question to a design: a form made from what it may be asked with, and its answer as sentences, tables and figure. */
 
-import { address, get, isAbort, statusOf } from "../lib/api.js";
+import { address, get, isAbort, post, statusOf } from "../lib/api.js";
 import { link } from "../lib/address.js";
 import { blocks } from "../lib/blocks.js";
 import { fill, formOf, h, numberField } from "../lib/dom.js";
@@ -8,9 +8,9 @@ import { apiSystem, inShown, readySystem, unitOf } from "../lib/numbers.js";
 import { parseQuantity } from "../lib/quantity_text.js";
 import { sentenceOf } from "../lib/refusals.js";
 
-/** @typedef {Pick<Api.Topic, "title" | "inputs" | "figure">} Asked */
+/** @typedef {Pick<Api.Topic, "title" | "inputs" | "figure"> & { posted?: boolean }} Asked */
 
-/** Values of inputs by path and key, in units of the API: a view that is shown again has them. @type {Map<string, string | number | null>} */
+/** Values of inputs by path and key, in units of the API: a view that is shown again has them. @type {Map<string, string | number | string[] | null>} */
 const entered = new Map();
 window.addEventListener("hashchange", () => entered.clear());
 
@@ -21,7 +21,7 @@ window.addEventListener("hashchange", () => entered.clear());
  * @param {{ path: string, job: string, button?: string, initial?: Record<string, number>, action?: (answer: any, n: number) => Dom.Child, signal: AbortSignal }} options
  */
 export function question(
-  { title, inputs, figure },
+  { title, inputs, figure, posted = false },
   { path, job, button = "Compute", initial = {}, action, signal },
 ) {
   const fields = inputs.map((input) => ({
@@ -36,14 +36,16 @@ export function question(
   /** Return the values of the inputs by key in units of the API, null for the usual ones. Throws an Error where one is wrong. */
   const read = () =>
     Object.fromEntries(
-      fields.map(({ key, unit, words, required, example, title: name, field }) => {
+      fields.map(({ key, unit, words, several, required, example, title: name, field }) => {
         const {
           value = null,
           wrong,
           empty,
         } = words.length
           ? { value: field.value || null, wrong: "", empty: false }
-          : parseQuantity(field.value, unit);
+          : several
+            ? { value: listOf(field.value), wrong: "", empty: !field.value.trim() }
+            : parseQuantity(field.value, unit);
         if (wrong) throw new Error(wrong);
         if (empty && required) throw new Error(`${name}: a value is needed, such as ${example}.`);
         entered.set(`${path} ${key}`, value);
@@ -57,9 +59,19 @@ export function question(
     const request = (turn += 1);
     fill(answer, h("p", { class: "quiet busy", role: "status" }, "Computing …"));
     try {
-      const options = { ...lengths, units: apiSystem(), ...read() };
+      const query = { ...lengths, units: apiSystem() };
+      const options = { ...query, ...(posted ? {} : read()) };
       const [found] = await Promise.all([
-        get(/** @type {`jobs/${string}/designs/${string}/trade-offs`} */ (path), options, signal),
+        posted
+          ? post(/** @type {`jobs/${string}/designs/${number}/like`} */ (path), read(), {
+              query: { units: query.units },
+              signal,
+            })
+          : get(
+              /** @type {`jobs/${string}/designs/${string}/trade-offs`} */ (path),
+              options,
+              signal,
+            ),
         readySystem(),
       ]);
       if (request !== turn) return;
@@ -100,8 +112,24 @@ export function question(
   return { node: h("div", { class: "question" }, inputs.length > 0 && form, answer), ask };
 }
 
-/** @param {Api.Topic["inputs"][number]} input @param {string | number | null} value in the unit of the API */
-function fieldOf({ key, unit, usual, example, words }, value) {
+/** Return the texts that semicolons separate. @param {string} typed */
+function listOf(typed) {
+  return typed
+    .split(";")
+    .map((text) => text.trim())
+    .filter(Boolean);
+}
+
+/** @param {Api.Topic["inputs"][number]} input @param {string | number | string[] | null} value in the unit of the API */
+function fieldOf({ key, unit, usual, example, words, several }, value) {
+  if (several)
+    return h("input", {
+      type: "text",
+      name: key,
+      placeholder: example.replaceAll('"', ""),
+      autocomplete: "off",
+      value: Array.isArray(value) ? value.join("; ") : "",
+    });
   return words.length
     ? h(
         "select",

@@ -69,11 +69,11 @@ export async function getText(path, query = {}, signal = undefined) {
  * @template {Api.Text} Path
  * @param {Path} path
  * @param {unknown} body
- * @param {{ signal?: AbortSignal, headers?: Record<string, string> }} options
+ * @param {{ query?: Api.Query, signal?: AbortSignal, headers?: Record<string, string> }} options
  * @returns {Promise<Api.Answer<"post", Path>>}
  */
-export function post(path, body = undefined, { signal, headers } = {}) {
-  return ask("POST", address(path), body, signal, headers);
+export function post(path, body = undefined, { query, signal, headers } = {}) {
+  return ask("POST", address(path, query), body, signal, headers);
 }
 
 /**

@@ -178,6 +178,7 @@ export async function show(place, { parts, query, signal }) {
       job,
       number,
       questions,
+      fronts: asked.fronts,
       swings: !turns,
       tolerances: requirements.tolerances,
       tab,
