@@ -80,8 +80,8 @@ def data_of(lines: list[str]) -> list[str]:
 
 
 def _plain(datum: str) -> str:
-    """Return an option as it is, and a number in one way of writing it: 9.10e-03 is 0.0091."""
-    return datum if datum.startswith("--") else f"{float(datum.replace(chr(0x2212), '-')):.12g}"
+    """Return an option as it is, and a number in one way of writing it: 9.10e-03 is 0.0091, -0 is 0."""
+    return datum if datum.startswith("--") else f"{float(datum.replace(chr(0x2212), '-')) + 0.0:.12g}"
 
 
 def compare(before: Path, after: Path, allowances: list[Allowance], *, data: bool = False) -> Comparison:
