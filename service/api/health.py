@@ -50,9 +50,8 @@ async def show_live() -> Live:
 def show_ready(store: StoreDep) -> Ready:
     """Return that the database can be read and written, how many workers there are, and how many jobs wait."""
     store.require_ready()
-    busy = [worker.busy for worker in store.workers() if worker.at_work]
-    waiting = store.counts().get("queued", 0)
-    return Ready(takes_jobs=bool(busy), workers=len(busy), busy=sum(busy), waiting=waiting)
+    crew = store.crew()
+    return Ready(takes_jobs=crew.workers > 0, **vars(crew))
 
 
 class Metrics(Collector):

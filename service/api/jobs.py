@@ -17,6 +17,7 @@ from starlette.exceptions import HTTPException
 from ...model.errors import InputError, NotFound
 from ..page.router import content_tag, response_with_etag
 from ..store import State
+from ..store.listing import Order
 from .exports import download, formats
 from .models import LARGEST, PLAIN_DIGITS, FrontPointsList, JobFiles, JobNumber, JobPage, JobShown
 from .problems import problem_responses, tagged_json
@@ -37,15 +38,18 @@ def list_jobs(
     state: Annotated[list[State], Query(description="only of these states")] = [],  # noqa: B006 - FastAPI copies it
     name: Annotated[str, Query(max_length=200, description="only those whose name contains this")] = "",
     before: Annotated[
-        int | None, Query(ge=1, le=LARGEST, description="older than the job with this number"), PLAIN_DIGITS
+        int | None, Query(ge=1, le=LARGEST, description="only those that follow the job with this number"), PLAIN_DIGITS
     ] = None,
     limit: Annotated[int, Query(ge=1, le=1000, description="at most this many jobs"), PLAIN_DIGITS] = 100,
+    sort: Annotated[
+        Order, Query(description="state: waiting and running ones first; decided: those decided first")
+    ] = "newest",
 ) -> dict[str, Any]:
-    """Return jobs, latest first, as a list shows them: `/jobs/{number}` has all of one, `/front-points` pictures."""
-    jobs = store.jobs(states=state, name=name, before=before, limit=limit + 1)
+    """Return jobs as a list shows them: `/jobs/{number}` has all of one, `/front-points` pictures."""
+    jobs = store.jobs(states=state, name=name, before=before, limit=limit + 1, order=sort)
     page = jobs[:limit]
     rows = [job.record() if job.state == "running" else {**job.record(), "progress": None} for job in page]
-    return {"jobs": rows, "next": page[-1].id if len(jobs) > limit else None}
+    return {"jobs": rows, "workers": str(store.crew()), "next": page[-1].id if len(jobs) > limit else None}
 
 
 @router.get("/front-points", **tagged_json(FrontPointsList, "The points"))

@@ -133,9 +133,10 @@ class JobShown(JobRow, title="Job"):
 
 
 class JobPage(ResponseModel):
-    """Some jobs, latest first."""
+    """Some jobs in the order that was asked for."""
 
     jobs: list[JobRow]
+    workers: str = Field(description="the workers in a line", examples=["2 workers, 1 busy, 3 waiting"])
     next: int | None = Field(description="`before` of the next page; null on the last one")
 
 

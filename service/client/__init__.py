@@ -94,13 +94,21 @@ class Client(Designs):
         return self._connection.post(f"jobs/{number}/clone", body, key=key or uuid.uuid4().hex)
 
     def jobs(
-        self, *, states: Collection[str] = (), name: str = "", before: int | None = None, limit: int = 100
+        self,
+        *,
+        states: Collection[str] = (),
+        name: str = "",
+        before: int | None = None,
+        limit: int = 100,
+        sort: str = "newest",
     ) -> list[Record]:
-        """Return jobs, latest first. states: all if empty. name: part of the name. before: number of a newer job.
+        """Return jobs. states: all if empty. name: part of the name. sort: newest, oldest, name, state or decided.
+
+        before: number of a job; only those that follow it.
 
         Each has the fields of a list; `job` gives all fields of one job, `front_points` some designs of several.
         """
-        query = {"state": list(states), "name": name, "limit": limit, **without_none(before=before)}
+        query = {"state": list(states), "name": name, "limit": limit, "sort": sort, **without_none(before=before)}
         listed: list[Record] = self._connection.ask("jobs", query)["jobs"]
         return listed
 

@@ -11,6 +11,7 @@ from sqlalchemy import Row as Found
 from sqlalchemy import select
 
 from ...model.errors import InputError
+from ...objectives.counted import counted
 from .schema import bookmarks, jobs
 
 State = Literal["queued", "running", "done", "infeasible", "cancelled", "failed"]
@@ -18,10 +19,12 @@ ENDED: tuple[State, ...] = ("done", "infeasible", "cancelled", "failed")
 RESUMABLE: tuple[State, ...] = ("cancelled", "failed")
 LIMITS = ("most_seconds", "most_evaluations", "most_memory")
 NOT_DONE = "cancelled before it was done"
-_DECISION = select(bookmarks.c.name).where(bookmarks.c.job == jobs.c.id, bookmarks.c.decided).limit(1)
+_DECISIONS = select(bookmarks.c.name).where(bookmarks.c.job == jobs.c.id, bookmarks.c.decided).limit(1)
+DECISION = _DECISIONS.correlate(jobs).scalar_subquery()
+"""The name of the design decided for in a job."""
 SHOWN = (
     *(column for column in jobs.c if column.name not in ("tables", "result", "checksum")),
-    _DECISION.correlate(jobs).scalar_subquery().label("decision"),
+    DECISION.label("decision"),
 )
 """Columns of a list of jobs: all but the long ones, and the name of the design decided for."""
 
@@ -207,3 +210,22 @@ class Worker:
     def at_work(self) -> bool:
         """Whether it was heard from recently."""
         return self.silent <= SILENT
+
+
+@dataclass(frozen=True, kw_only=True)
+class Crew:
+    """The workers of a store and what is left for them.
+
+    workers: number of workers heard from recently. busy: those that have a job. waiting: number of jobs without one.
+    """
+
+    workers: int
+    busy: int
+    waiting: int
+
+    def __str__(self) -> str:
+        """The crew in a line."""
+        left = f"{self.waiting} waiting"
+        if not self.workers:
+            return f"no worker, {left}: start one with slidercrank worker"
+        return f"{counted(self.workers, 'worker')}, {self.busy} busy, {left}"

@@ -17,6 +17,7 @@ from ..runs.stored_runs import result_from
 from . import queue
 from .claim import Claim
 from .clock import Jumps, now
+from .listing import Order, in_order
 from .records import ENDED, NO_LIMITS, NOT_DONE, SHOWN, Artefact, Event, Job, Limits, News, Queueing, State
 from .rows import add_events, become, damaged, news_of, records_of, require_resumable, require_sum, the_job, the_record
 from .schema import artefacts, designs, events, exact, jobs
@@ -124,8 +125,9 @@ class Store(Workers):
             reason = f"waits: {error}"
             return [replace(job, reason=reason) if job.state in ("queued", "running") else job for job in listed]
         if any(job.state == "queued" and not job.reason for job in listed):
-            crew = [worker.busy for worker in self.workers() if worker.at_work]
-            reason = "" if not all(crew) else f"every worker is busy ({len(crew)})" if crew else "no worker is running"
+            crew = self.crew()
+            busy = f"every worker is busy ({crew.workers})" if crew.workers else "no worker is running"
+            reason = busy if crew.busy == crew.workers else ""
             return [replace(job, reason=reason) if job.state == "queued" and not job.reason else job for job in listed]
         return listed
 
@@ -148,21 +150,20 @@ class Store(Workers):
         before: int | None = None,
         numbers: Collection[int] = (),
         limit: int = 100,
+        order: Order = "newest",
     ) -> list[Job]:
-        """Return jobs, latest first. states: states to include, all if empty. name: part of the name, case ignored.
+        """Return jobs in an order. states: states to include, all if empty. name: part of the name, case ignored.
 
-        before: number of a job; only older jobs, for paging. numbers: numbers to include, all if empty. limit: maximum
-        number of jobs.
+        before: number of a job; only jobs after it in this order, for paging. numbers: numbers to include, all if
+        empty. limit: maximum number of jobs.
         """
-        query = select(*SHOWN).order_by(jobs.c.id.desc()).limit(limit)
+        query = in_order(select(*SHOWN), order, before).limit(limit)
         if numbers:
             query = query.where(jobs.c.id.in_(numbers))
         if states:
             query = query.where(jobs.c.state.in_(states))
         if name:
             query = query.where(jobs.c.name.icontains(plain(name), autoescape=True))
-        if before is not None:
-            query = query.where(jobs.c.id < before)
         with self.reading() as connection:
             listed = [Job.from_row(row) for row in connection.execute(query)]
         return self._waiting(listed)

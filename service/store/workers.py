@@ -7,7 +7,7 @@ from sqlalchemy import delete, exists, func, insert, not_, or_, select, update
 from .clock import now
 from .database import Database
 from .queue import ENDED_LEASE, LEFT
-from .records import Worker
+from .records import Crew, Worker
 from .schema import jobs, workers
 
 _FORGOTTEN = 7 * 86_400.0  # s
@@ -34,6 +34,13 @@ class Workers(Database):
         query = select(jobs.c.id).where(or_(jobs.c.state == "queued", LEFT)).limit(1)
         with self.reading() as connection:
             return connection.execute(query).first() is not None
+
+    def crew(self) -> Crew:
+        """Return the workers heard from recently, and the number of jobs that wait for one."""
+        busy = [worker.busy for worker in self.workers() if worker.at_work]
+        with self.reading() as connection:
+            waiting = connection.scalar(select(func.count()).where(jobs.c.state == "queued")) or 0
+        return Crew(workers=len(busy), busy=sum(busy), waiting=waiting)
 
     def workers_at_work(self) -> int:
         """Return the number of workers heard from recently, busy or not."""

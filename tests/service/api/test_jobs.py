@@ -193,6 +193,10 @@ def test_jobs_are_listed_by_pages_states_and_names(client: httpx.Client, store: 
     assert listed(limit=2, before=4) == ([3, 2], 2)
     assert listed(limit=2, before=2) == ([1], None)
     assert listed(limit=5) == ([5, 4, 3, 2, 1], None)
+    assert listed(limit=2, sort="name") == ([1, 3], 3)
+    assert listed(limit=3, sort="name", before=3) == ([5, 2, 4], None)
+    assert "query sort" in refused(client.get("/jobs", params={"sort": "size"}), 422)
+    assert client.get("/jobs").json()["workers"] == "no worker, 4 waiting: start one with slidercrank worker"
     assert listed(name="feeder") == ([5, 3, 1], None)
     assert listed(name="feeder", state="queued") == ([5, 3], None)
     assert listed(state=["queued", "cancelled"], limit=4) == ([5, 4, 3, 2], 2)

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
+from typing import Any, get_args
 
+import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError, QueueFull
-from slidercrank.service.store import Artefact, Store
+from slidercrank.service.store import Artefact, Job, State, Store
+from slidercrank.service.store.bookmarks import keep_design
+from slidercrank.service.store.listing import Order
 from tests.service.store.contents import (
     TABLES,
     add,
@@ -44,6 +48,37 @@ def test_jobs_are_listed_latest_first_in_pages_by_state_and_by_name(store: Store
     assert [job.id for job in store.jobs(numbers=[numbers[0], 99, numbers[2]])] == [numbers[2], numbers[0]]
     assert store.jobs(numbers=[numbers[2]], before=numbers[2]) == []
     assert store.counts() == {"queued": 2, "running": 1}
+
+
+def test_every_order_of_jobs_is_that_of_its_key_page_by_page(store: Store) -> None:
+    random = np.random.default_rng(3)
+    numbers = [add(store, str(name)).id for name in random.choice(["press", "Press", "Äpfel", "sieve", "100 %"], 23)]
+    for number in random.choice(numbers, 7, replace=False):
+        store.cancel(int(number))
+    for _ in range(4):
+        taken(store)
+    for number in random.choice(numbers, 6, replace=False):
+        keep_design(store, int(number), dimensions=(0.04, 0.1, 0.0), name="Rounded", decided=bool(number % 2))
+    keys: dict[Order, Callable[[Job], Any]] = {
+        "newest": lambda job: -job.id,
+        "oldest": lambda job: job.id,
+        "state": lambda job: get_args(State).index(job.state),
+        "decided": lambda job: job.decision is None,
+    }
+    for order, key in keys.items():
+        expected = [job.id for job in sorted(store.jobs(), key=lambda job: (key(job), -job.id))]
+        assert [job.id for job in store.jobs(order=order)] == expected
+        pages: list[int] = []
+        while page := [job.id for job in store.jobs(order=order, limit=5, before=pages[-1] if pages else None)]:
+            pages += page
+        assert pages == expected
+    names = [job.name.lower() for job in store.jobs(order="name") if job.name.isascii()]
+    assert names == sorted(names)
+    waiting = [job.id for job in store.jobs(order="state", states=["queued"], name="press")]
+    assert waiting == [job.id for job in store.jobs(states=["queued"], name="press")]
+    assert str(store.crew()) == "no worker, 12 waiting: start one with slidercrank worker"
+    store.greet("one")
+    assert str(store.crew()) == "1 worker, 0 busy, 12 waiting"
 
 
 def test_the_highest_priority_is_claimed_first_then_the_oldest(store: Store) -> None:

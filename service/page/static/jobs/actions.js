@@ -21,7 +21,7 @@ export function actions(job, changed, { primary = false } = {}) {
       "button",
       {
         type: "button",
-        class: primary && name === path ? "primary" : null,
+        class: primary && path === "resume" ? "primary" : null,
         "data-act": name,
         "aria-label": `${label} ${runName}`,
         onclick: (event) =>

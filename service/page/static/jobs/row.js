@@ -34,8 +34,7 @@ export function runRow(job, { picture, chosen, compare, changed }) {
       "div",
       { class: "what" },
       h("a", { class: "name", href: link(["jobs", job.id]), "data-act": "open" }, job.name),
-      h("div", { class: "quiet" }, `run ${job.id} · `, moment(job)),
-      badge(job),
+      h("div", { class: "quiet" }, badge(job), ` · run ${job.id} · `, moment(job)),
     ),
     picture,
     h("div", { class: "found" }, standing(job)),
@@ -57,7 +56,7 @@ function standing(job) {
       ),
       h(
         "div",
-        { class: "quiet" },
+        { class: "quiet best" },
         "best: ",
         Object.entries(best)
           .map(([key, value]) => named(key, value))
@@ -79,7 +78,7 @@ function standing(job) {
       h(
         "div",
         { class: "quiet" },
-        `${stage}, ${part}${grouped(done)} of ${grouped(of)} · ${counted(feasible, "feasible design")}`,
+        `${stage}, ${part}${grouped(done)} of ${grouped(of)} · ${counted(feasible, "feasible design")} · by ${job.worker}`,
       ),
     ];
   }

@@ -12,11 +12,13 @@ export const title = "Runs";
 
 const EACH = 2000; // ms between two looks while the page is seen
 const PAGE = 25;
+const SORTS = /** @type {const} */ (["newest", "oldest", "name", "state", "decided"]);
 
 /** The list of runs, kept up to date while it is looked at. @param {HTMLElement} place @param {Page.Visit} options */
 export async function show(place, { query, signal }) {
-  /** @type {{ state: string, name: string, before: string }} */
+  /** @type {{ state: string, name: string, before: string, sort: typeof SORTS[number] }} */
   const filters = {
+    sort: SORTS.find((sort) => sort === query.get("sort")) ?? SORTS[0],
     state: query.get("state") ?? "",
     name: query.get("name") ?? "",
     before: query.get("before") ?? "",
@@ -29,11 +31,13 @@ export async function show(place, { query, signal }) {
   const status = h("p", { class: "quiet", role: "status" });
   const pages = h("nav", { class: "row", "aria-label": "Pages" });
   const comparing = h("div", { class: "row" });
+  const workers = h("span", { class: "quiet workers" });
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
 
   const changed = () => {
-    keep({ ...filters, jobs: [...compared].join(",") });
+    const sort = filters.sort === SORTS[0] ? null : filters.sort;
+    keep({ ...filters, sort, jobs: [...compared].join(",") });
   };
   const search = h(
     "form",
@@ -63,11 +67,26 @@ export async function show(place, { query, signal }) {
         ),
       ),
     ),
+    h(
+      "label",
+      {},
+      "Sort by ",
+      h(
+        "select",
+        {
+          name: "sort",
+          "aria-label": "Sort by",
+          onchange: (event) => choose("sort", event.currentTarget.value),
+        },
+        SORTS.map((sort) => h("option", { selected: sort === filters.sort }, sort)),
+      ),
+    ),
     comparing,
+    workers,
   );
-  /** @param {"name" | "state"} key @param {string} value */
+  /** @param {"name" | "state" | "sort"} key @param {string} value */
   const choose = (key, value) => {
-    filters[key] = value;
+    Object.assign(filters, { [key]: value });
     filters.before = "";
     changed();
     clearTimeout(timer);
@@ -108,7 +127,13 @@ export async function show(place, { query, signal }) {
       const [page] = await Promise.all([
         get(
           "jobs",
-          { limit: PAGE, state: filters.state || null, name: filters.name || null, before },
+          {
+            limit: PAGE,
+            state: filters.state || null,
+            name: filters.name || null,
+            sort: filters.sort,
+            before,
+          },
           signal,
         ),
         readySystem(),
@@ -155,6 +180,7 @@ export async function show(place, { query, signal }) {
       rows.delete(number);
       forget(number);
     }
+    workers.textContent = page.workers;
     const some = filters.name || filters.state || filters.before;
     const empty = !page.jobs.length && !some;
     place.classList.toggle("empty", empty);
@@ -166,13 +192,14 @@ export async function show(place, { query, signal }) {
       page.jobs.length || empty
         ? ""
         : filters.before
-          ? "There are no older runs."
+          ? "There are no further runs."
           : "No run matches; change the name or the state.";
     const { next } = page;
     fill(
       pages,
-      filters.before && h("button", { type: "button", onclick: () => turn("") }, "Newest"),
-      next !== null && h("button", { type: "button", onclick: () => turn(String(next)) }, "Older"),
+      filters.before && h("button", { type: "button", onclick: () => turn("") }, "First page"),
+      next !== null &&
+        h("button", { type: "button", onclick: () => turn(String(next)) }, "Next page"),
     );
   }
 
