@@ -86,12 +86,30 @@ class Fit(NamedTuple):
     shift: Array
 
 
+class _Case(NamedTuple):
+    """One linkage and the points (n,) of the desired motion. b: its branch, +1 or -1. shifts: whether a shift is free.
+
+    sines, cosines: of the crank angles of the points. at: their positions, m. d, slope, bend: work space, each point's
+    deviation and its derivatives by the phase.
+    """
+
+    r: float
+    l: float
+    e: float
+    b: float
+    sines: Row
+    cosines: Row
+    at: Row
+    shifts: bool
+    d: Row
+    slope: Row
+    bend: Row
+
+
 @analytic
-def _measure(
-    phase: Any, rms: Any, shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any
-) -> tuple[float, float]:
-    """Return the deviation at a phase and the best shift, zero where fixed; `d` receives each point's deviation."""
-    sines, cosines, at = points
+def _measure(phase: Any, rms: Any, case: _Case) -> tuple[float, float]:
+    """Return the deviation at a phase and the best shift, zero where fixed; fills each point's deviation."""
+    r, l, e, b, sines, cosines, at, shifts, d, _, _ = case
     n = at.shape[0]
     # Angle-sum formulas avoid a sine or cosine within the loop.
     p, q = r * math.sin(phase), r * math.cos(phase)
@@ -112,11 +130,9 @@ def _measure(
 
 
 @analytic
-def _newton(
-    phase: Any, shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any, slope: Any, bend: Any
-) -> float:
-    """Return Newton's step of the phase for the mean square of `d`, the deviations there; zero where not convex."""
-    sines, cosines, at = points
+def _newton(phase: Any, case: _Case) -> float:
+    """Return Newton's step of the phase for the mean square of the deviations there; zero where not convex."""
+    r, l, e, b, sines, cosines, at, shifts, d, slope, bend = case
     n = at.shape[0]
     p, q = math.sin(phase), math.cos(phase)
     mean = mean_slope = 0.0
@@ -134,13 +150,13 @@ def _newton(
 
 
 @analytic
-def _section(low: Any, high: Any, rms: Any, shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any) -> float:
+def _section(low: Any, high: Any, rms: Any, case: _Case) -> float:
     """Return the phase of the least deviation between two phases, by golden section."""
     p, q = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
     at_p = at_q = 0.0
     left = True
     for step in range(_SECTIONS):
-        value, _ = _measure(p if left else q, rms, shifts, r, l, e, b, points, d)
+        value, _ = _measure(p if left else q, rms, case)
         if left:
             at_p = value
         else:
@@ -157,14 +173,13 @@ def _section(low: Any, high: Any, rms: Any, shifts: Any, r: Any, l: Any, e: Any,
 
 
 @analytic
-def _bound(
-    phase: Any, half: Any, bend: Any, shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any, slope: Any
-) -> Any:
+def _bound(phase: Any, half: Any, bend: Any, case: _Case) -> Any:
     """Return the greatest deviation at a phase, and its lower bound within `half` of that phase.
 
-    With the shift free, the common part of all deviations, and of their slopes, does not count.
+    bend: bound of the deviations' curvature. With the shift free, the common part of deviations, and of their slopes,
+    does not count.
     """
-    sines, cosines, at = points
+    r, l, e, b, sines, cosines, at, shifts, d, slope, _ = case
     p, q = r * math.sin(phase), r * math.cos(phase)
     high = low = -math.inf
     common = rising = falling = 0.0
@@ -190,9 +205,7 @@ def _bound(
 
 
 @analytic
-def _branch_and_bound(
-    shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, cells: Any, d: Any, slope: Any
-) -> float:
+def _branch_and_bound(case: _Case, cells: Any) -> float:
     """Return the phase of the least greatest deviation.
 
     The curvature of a deviation is bounded by the slider's greatest acceleration over a turn. Cells of the phase whose
@@ -202,13 +215,13 @@ def _branch_and_bound(
     bend, half = 0.0, math.pi / _PHASES
     for j in range(_PHASES):
         theta = 2.0 * half * j
-        bend = max(bend, abs(motion(math.sin(theta), math.cos(theta), r, l, e, b).x_2))
+        bend = max(bend, abs(motion(math.sin(theta), math.cos(theta), case.r, case.l, case.e, case.b).x_2))
         cells[0, j] = theta
     bend *= 1.1  # between the samples
     count, best, at_best = _PHASES, math.inf, 0.0
     for _ in range(_HALVINGS):
         for j in range(count):
-            value, cells[1, j] = _bound(cells[0, j], half, bend, shifts, r, l, e, b, points, d, slope)
+            value, cells[1, j] = _bound(cells[0, j], half, bend, case)
             if value < best:
                 best, at_best = value, cells[0, j]
         open_cells = 0
@@ -220,16 +233,14 @@ def _branch_and_bound(
         for j in range(open_cells):
             cells[0, 2 * j], cells[0, 2 * j + 1] = cells[2, j] - half, cells[2, j] + half
         count = 2 * open_cells
-    return _section(at_best - 4.0 * half, at_best + 4.0 * half, False, shifts, r, l, e, b, points, d)
+    return _section(at_best - 4.0 * half, at_best + 4.0 * half, False, case)
 
 
 @analytic
-def _least_square(
-    shifts: Any, r: Any, l: Any, e: Any, b: Any, points: Any, d: Any, slope: Any, bend: Any, grid: Any
-) -> float:
+def _least_square(case: _Case, grid: Any) -> float:
     """Return the phase of the least root mean square deviation, searched from the grid's best stretches."""
     for j in range(_PHASES):
-        grid[j], _ = _measure(_TURN * j / _PHASES, True, shifts, r, l, e, b, points, d)
+        grid[j], _ = _measure(_TURN * j / _PHASES, True, case)
     best_phase, least, last, j = 0.0, math.inf, -math.inf, -1
     for _ in range(_STRETCHES):
         best = -1
@@ -243,10 +254,10 @@ def _least_square(
             break
         j, last = best, grid[best]
         low, high = _TURN * (j - 1) / _PHASES, _TURN * (j + 1) / _PHASES
-        phase = _section(low, high, True, shifts, r, l, e, b, points, d)
+        phase = _section(low, high, True, case)
         for turn in range(_NEWTON + 1):
-            value, _ = _measure(phase, True, shifts, r, l, e, b, points, d)
-            step = _newton(phase, shifts, r, l, e, b, points, d, slope, bend)
+            value, _ = _measure(phase, True, case)
+            step = _newton(phase, case)
             if abs(step) > 1e-5 or turn == _NEWTON:  # golden section errs by less where the square is convex
                 break
             phase += step
@@ -257,16 +268,17 @@ def _least_square(
 
 @seldom_kernel
 def _fit(designs: Table, b: float, angles: Row, at: Row, rms: bool, turns: bool, shifts: bool, out: Table) -> None:
-    d, cells, points = np.empty(at.shape[0]), np.empty((3, 4 * _PHASES)), (np.sin(angles), np.cos(angles), at)
-    slope, bend, grid = np.empty(at.shape[0]), np.empty(at.shape[0]), np.empty(_PHASES)
+    d, slope, bend = np.empty(at.shape[0]), np.empty(at.shape[0]), np.empty(at.shape[0])
+    sines, cosines, cells, grid = np.sin(angles), np.cos(angles), np.empty((3, 4 * _PHASES)), np.empty(_PHASES)
     for row in range(designs.shape[0]):
         r, l, e = designs[row, 0], designs[row, 1], designs[row, 2]
+        case = _Case(r, l, e, b, sines, cosines, at, shifts, d, slope, bend)
         phase = 0.0
         if turns and rms:
-            phase = _least_square(shifts, r, l, e, b, points, d, slope, bend, grid)
+            phase = _least_square(case, grid)
         elif turns:
-            phase = _branch_and_bound(shifts, r, l, e, b, points, cells, d, slope)
-        out[row, 0], out[row, 2] = _measure(phase, rms, shifts, r, l, e, b, points, d)
+            phase = _branch_and_bound(case, cells)
+        out[row, 0], out[row, 2] = _measure(phase, rms, case)
         out[row, 1] = phase
 
 

@@ -36,7 +36,17 @@ from ..machine.two_turns import cycle_turns, halves
 from .places import StressLocation, StressLocations, stress_at_locations
 from .section_forces import Stress, at_share
 from .stress_points import field_of
-from .stress_search import LISTED, STATIONS, Candidates, choose, climb, empty_candidates, first_candidates, propose
+from .stress_search import (
+    LISTED,
+    STATIONS,
+    Candidates,
+    SampledStress,
+    choose,
+    climb,
+    empty_candidates,
+    first_candidates,
+    propose,
+)
 
 STORED_MAXIMA = 8
 """Maxima stored per design, highest first."""
@@ -103,10 +113,11 @@ def _of_samples(bars: StressLocations, sides: Array, criteria: Array, margin: fl
     space = np.empty((STATIONS, int(np.diff(start).max(initial=1)))), np.empty((2, LISTED), np.int64)
     best = np.empty((len(sides), len(criteria), STATIONS))
     candidates = empty_candidates(candidate_count)
-    count = propose(start, first, stress, 0, sides, criteria, margin, *space, best, candidates)
+    samples = SampledStress(theta, first, stress, sides)
+    count = propose(start, samples, criteria, margin, *space, best, candidates)
     candidates = first_candidates(candidates, count)
     values, angles, chosen = np.empty(count), np.empty((count, 2)), np.empty((n, limit), np.int64)
-    climb(theta, first, stress, 0, sides, criteria, candidates, values, angles)
+    climb(samples, criteria, candidates, values, angles)
     choose(candidates, criteria, values, angles, chosen)
     rows = chosen[chosen >= 0]
     at = candidates.at[rows]
@@ -146,8 +157,9 @@ def _close_in(bars: StressLocations, sides: Array, criteria: Array, maxima: _Max
         candidates = Candidates(
             maxima.bar[waiting], maxima.side[waiting], maxima.pull[waiting], sample_rows, maxima.share[waiting]
         )
+        samples = SampledStress(theta, np.arange(len(theta)) % 2 == 0, stress, sides)
         values, angles = np.empty(c), np.full((c, 2), np.nan)
-        climb(theta, np.arange(len(theta)) % 2 == 0, stress, 0, sides, criteria, candidates, values, angles)
+        climb(samples, criteria, candidates, values, angles)
         angles = np.where(is_counted, angles, angles[:, ::-1])
         moved = np.abs(angles - maxima.angle[waiting])
         maxima.value[waiting], maxima.share[waiting], maxima.angle[waiting] = values, candidates.share, angles

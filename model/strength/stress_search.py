@@ -21,7 +21,7 @@ LISTED = 6
 """Local maxima of a place's stress over the cycle."""
 _ITERATIONS = 60
 _CONVERGED = 1e-11  # fraction of the length
-_TURN = 2.0 * math.pi
+_SLOPE = 7  # first column of the slopes over the crank angle
 _PLACE, _ANGLE = 1e-5, 1e-9  # fraction of the length, 1 - cosine of crank angles: maxima this near are one
 
 
@@ -90,13 +90,23 @@ def _list_maxima(row: Any, first: Any, begin: Any, count: Any, sign: Any, listed
     return n
 
 
+class SampledStress(NamedTuple):
+    """Samples (s,) of a link's stress over the cycles of designs, one design after the other.
+
+    theta: crank angles, rad. first: whether a segment begins. stress: (s, 2 WIDE), coefficients and their slopes over
+    the crank angle. sides: (f,), 1 or -1.
+    """
+
+    theta: Row
+    first: Flags
+    stress: Table
+    sides: Row
+
+
 @seldom_kernel
 def propose(
     start: Integers,
-    first: Flags,
-    stress: Table,
-    base: int,
-    sides: Row,
+    samples: SampledStress,
     criteria: Table,
     margin: float,
     space: Table,
@@ -106,9 +116,10 @@ def propose(
 ) -> int:
     """List the samples next to maxima within the fraction `margin` of the greatest; return their number.
 
-    stress: (s, 2 WIDE). base: first column of the link. criteria: (m, 2), p and q. space: (STATIONS, samples of a
+    start: (n + 1,), where the samples of each design begin. criteria: (m, 2), p and q. space: (STATIONS, samples of a
     design), listed: (2, LISTED), best: (sides, m, STATIONS), work space. candidates: with room for all possible ones.
     """
+    stress, sides = samples.stress, samples.sides
     total = 0
     ups, downs = listed[0], listed[1]
     for n in range(start.shape[0] - 1):
@@ -121,7 +132,7 @@ def propose(
                 xi = j / (STATIONS - 1.0)
                 top, bottom = -math.inf, math.inf
                 for k in range(count):
-                    value = _stress_at_share(stress, begin + k, base, sides[f], xi)
+                    value = _stress_at_share(stress, begin + k, 0, sides[f], xi)
                     top, bottom = max(top, value), min(bottom, value)
                 for g in range(criteria.shape[0]):
                     best[f, g, j] = criteria[g, 0] * top - criteria[g, 1] * bottom
@@ -138,14 +149,14 @@ def propose(
                         continue
                     row, xi = space[j], j / (STATIONS - 1.0)
                     for k in range(count):
-                        row[k] = _stress_at_share(stress, begin + k, base, sides[f], xi)
+                        row[k] = _stress_at_share(stress, begin + k, 0, sides[f], xi)
                     high_count = low_count = 1
                     ups[0] = downs[0] = 0
                     for end in range(2):  # one call, as the compiler inlines each call separately
                         if end == 0 and p > 0.0:
-                            high_count = _list_maxima(row, first, begin, count, 1.0, ups)
+                            high_count = _list_maxima(row, samples.first, begin, count, 1.0, ups)
                         elif end == 1 and q > 0.0:
-                            low_count = _list_maxima(row, first, begin, count, -1.0, downs)
+                            low_count = _list_maxima(row, samples.first, begin, count, -1.0, downs)
                     for pair in range(high_count * low_count):
                         up, down = ups[pair // low_count], downs[pair % low_count]
                         height = (p * row[up] if p > 0.0 else 0.0) - (q * row[down] if q > 0.0 else 0.0)
@@ -158,75 +169,68 @@ def propose(
     return total
 
 
+@analytic
+def _climb_angle(samples: SampledStress, side: Any, sign: Any, xi: Any, k: int) -> Any:
+    """Return the sample before the maximum of sign times the stress at a place near sample k, and what is there.
+
+    Those are the crank angle of the maximum, the stress, and its slope over the place. Stays within the segment.
+    """
+    stress, first, last = samples.stress, samples.first, samples.theta.shape[0] - 1
+    t = 0.0
+    for _ in range(_ITERATIONS):
+        rate = sign * _stress_at_share(stress, k, _SLOPE, side, xi)
+        if rate > 0.0 and k < last and not first[k + 1]:
+            if sign * _stress_at_share(stress, k + 1, _SLOPE, side, xi) < 0.0:
+                t = 1.0
+                break
+            k += 1
+        elif rate < 0.0 and not first[k]:
+            k -= 1
+            if sign * _stress_at_share(stress, k, _SLOPE, side, xi) > 0.0:
+                t = 1.0
+                break
+        else:
+            break
+    f0, g0 = _stress_at_share(stress, k, 0, side, xi), _slope_at_share(stress, k, 0, side, xi)
+    if t == 0.0:
+        return k, samples.theta[k], f0, g0
+    h = samples.theta[k + 1] - samples.theta[k]
+    f1, g1 = _stress_at_share(stress, k + 1, 0, side, xi), _slope_at_share(stress, k + 1, 0, side, xi)
+    s0 = h * _stress_at_share(stress, k, _SLOPE, side, xi)
+    s1 = h * _stress_at_share(stress, k + 1, _SLOPE, side, xi)
+    # The slope of the cubic is s0 + b t + a t^2, s0 and s1 = s0 + b + a of opposite signs.
+    a, b = 3.0 * (s0 + s1) - 6.0 * (f1 - f0), 6.0 * (f1 - f0) - 4.0 * s0 - 2.0 * s1
+    width = sign * math.sqrt(max(b * b - 4.0 * a * s0, 0.0))
+    t = min(1.0, max(0.0, 2.0 * s0 / (width - b)))
+    u = 1.0 - t
+    h0, h1, d0, d1 = u * u * (1.0 + 2.0 * t), t * t * (3.0 - 2.0 * t), t * u * u, -t * t * u
+    r0 = h * _slope_at_share(stress, k, _SLOPE, side, xi)
+    r1 = h * _slope_at_share(stress, k + 1, _SLOPE, side, xi)
+    value, slope = h0 * f0 + h1 * f1 + d0 * s0 + d1 * s1, h0 * g0 + h1 * g1 + d0 * r0 + d1 * r1
+    return k, samples.theta[k] + h * t, value, slope
+
+
 @seldom_kernel
-def climb(
-    theta: Row,
-    first: Flags,
-    stress: Table,
-    base: int,
-    sides: Row,
-    criteria: Table,
-    candidates: Candidates,
-    values: Row,
-    angles: Table,
-) -> None:
+def climb(samples: SampledStress, criteria: Table, candidates: Candidates, values: Row, angles: Table) -> None:
     """Move candidates to the maxima that they are next to: values (c,), places and angles (c, 2) of them.
 
     `candidates` is updated in place. The search stays within the segment.
     """
-    last = theta.shape[0] - 1
     for c in range(candidates.bar.shape[0]):
-        side, p, q = sides[candidates.side[c]], criteria[candidates.pull[c], 0], criteria[candidates.pull[c], 1]
+        side, criterion = samples.sides[candidates.side[c]], candidates.pull[c]
         xi, lower, upper, ended = candidates.share[c], 0.0, 1.0, False
         old_xi = old_slope = value = 0.0
         for outer in range(_ITERATIONS):
             slope = value = 0.0
             for end in range(2):
-                weight = p if end == 0 else -q
+                weight = criteria[criterion, 0] if end == 0 else -criteria[criterion, 1]
                 if weight == 0.0:
                     continue
                 sign = 1.0 if weight > 0.0 else -1.0
-                k, t = candidates.at[c, end], 0.0
-                for _ in range(_ITERATIONS):
-                    rate = sign * _stress_at_share(stress, k, base + 7, side, xi)
-                    if rate > 0.0 and k < last and not first[k + 1]:
-                        if sign * _stress_at_share(stress, k + 1, base + 7, side, xi) < 0.0:
-                            t = 1.0
-                            break
-                        k += 1
-                    elif rate < 0.0 and not first[k]:
-                        k -= 1
-                        if sign * _stress_at_share(stress, k, base + 7, side, xi) > 0.0:
-                            t = 1.0
-                            break
-                    else:
-                        break
+                k, angles[c, end], height, rise = _climb_angle(samples, side, sign, xi, candidates.at[c, end])
                 candidates.at[c, end] = k
-                f0, g0 = _stress_at_share(stress, k, base, side, xi), _slope_at_share(stress, k, base, side, xi)
-                if t == 0.0:
-                    angles[c, end] = theta[k]
-                    value += weight * f0
-                    slope += weight * g0
-                    continue
-                h = theta[k + 1] - theta[k]
-                f1, g1 = _stress_at_share(stress, k + 1, base, side, xi), _slope_at_share(stress, k + 1, base, side, xi)
-                s0, s1 = (
-                    h * _stress_at_share(stress, k, base + 7, side, xi),
-                    h * _stress_at_share(stress, k + 1, base + 7, side, xi),
-                )
-                # The slope of the cubic is s0 + b t + a t^2, s0 and s1 = s0 + b + a of opposite signs.
-                a, b = 3.0 * (s0 + s1) - 6.0 * (f1 - f0), 6.0 * (f1 - f0) - 4.0 * s0 - 2.0 * s1
-                width = sign * math.sqrt(max(b * b - 4.0 * a * s0, 0.0))
-                t = min(1.0, max(0.0, 2.0 * s0 / (width - b)))
-                angles[c, end] = theta[k] + h * t
-                u = 1.0 - t
-                h0, h1, d0, d1 = u * u * (1.0 + 2.0 * t), t * t * (3.0 - 2.0 * t), t * u * u, -t * t * u
-                value += weight * (h0 * f0 + h1 * f1 + d0 * s0 + d1 * s1)
-                r0, r1 = (
-                    h * _slope_at_share(stress, k, base + 7, side, xi),
-                    h * _slope_at_share(stress, k + 1, base + 7, side, xi),
-                )
-                slope += weight * (h0 * g0 + h1 * g1 + d0 * r0 + d1 * r1)
+                value += weight * height
+                slope += weight * rise
             if slope > 0.0:
                 lower = xi
             elif slope < 0.0:

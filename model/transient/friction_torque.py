@@ -115,34 +115,53 @@ def next_acceleration(a: Any, excess: Any, slope: Any, least: Any, low: Any, hig
     return new + outside * (0.5 * (low + high) - new), low, high
 
 
+class _SpanCase(NamedTuple):
+    """A design within a span.
+
+    stepped: its numbers, whose speed and acceleration are overwritten. block: its columns; push: the one at speed 0 and
+    acceleration 1, without gravity. piece, shift: pieces and shifts of the loads there.
+    """
+
+    stepped: ComplexTable
+    block: Table
+    push: int
+    loads: Loads
+    outward: bool
+    senses: Senses
+    piece: Integers
+    shift: Row
+
+
+class _Motor(NamedTuple):
+    """What drives. torques: (n,), N m. inertia: of the drive, kg m^2. step_limit: greatest number of steps to solve."""
+
+    torques: Row
+    inertia: float
+    step_limit: int
+
+
+@analytic
+def _heat_of(f: Any, m: Motion, d: Any) -> float:
+    """Return the friction heat per angle that the crank turns, J, from the forces in all joints."""
+    pivot = d.crank_pivot_circle.real * math.hypot(f.pivot_x.real, f.pivot_y.real)
+    in_crank = d.crank_pin_circle.real * math.hypot(f.crank_pin_x.real, f.crank_pin_y.real)
+    in_slider = d.slider_pin_circle.real * math.hypot(f.slider_pin_x.real, f.slider_pin_y.real)
+    pins = pivot + in_crank * (1.0 - m.rod_1.real) + in_slider * abs(m.rod_1.real)
+    return float(pins + d.guide_friction.real * abs(f.guide.real * m.x_1.real))
+
+
 @seldom_kernel
 def _fill_friction_states(
-    stepped: ComplexTable,
-    block: Table,
-    push: int,
-    loads: Loads,
-    outward: bool,
-    senses: Senses,
-    piece: Integers,
-    shift: Row,
-    angles: Row,
-    speeds: Row,
-    accelerations: Row,
-    torques: Row,
-    inertia: float,
-    step_limit: int,
-    by_speed: bool,
-    out: Table,
+    case: _SpanCase, angles: Row, speeds: Row, accelerations: Row, motor: _Motor, by_speed: bool, out: Table
 ) -> None:
     """Fill the rows of `out` (6, n): those of `FrictionState`, in its order.
 
-    stepped: the design, whose speed and acceleration are overwritten. block: its columns; push: the one at speed 0 and
-    acceleration 1, without gravity. Loads' pieces are those of the span. step_limit: greatest number of steps to solve
-    for accelerations, in place, given the motor's torques and the drive's inertia; 0 leaves them.
+    accelerations: solved for, in place, under the motor, unless its number of steps is 0.
     """
-    unit = design_at(block, push)
-    segment = Segment(stepped, loads, outward, piece, shift)
+    stepped, senses, inertia = case.stepped, case.senses, motor.inertia
+    unit = design_at(case.block, case.push)
     mu = unit.guide_friction
+    segment = Segment(stepped, case.loads, case.outward, case.piece, case.shift)
     for i in range(angles.shape[0]):
         theta, w, a = angles[i], speeds[i], accelerations[i]
         sine, cosine = math.sin(theta), math.cos(theta)
@@ -165,10 +184,10 @@ def _fill_friction_states(
             out[1 + derivative, i] = rate
             if derivative == 1:
                 break
-            if steps < step_limit and least + inertia > 0.0:
-                excess = torques[i] - inertia * a - torque.real
+            if steps < motor.step_limit and least + inertia > 0.0:
+                excess = motor.torques[i] - inertia * a - torque.real
                 new, low, high = next_acceleration(a, excess, rate + inertia, least + inertia, low, high)
-                size = abs(new) + (abs(torques[i]) + abs(torque.real)) / (least + inertia)
+                size = abs(new) + (abs(motor.torques[i]) + abs(torque.real)) / (least + inertia)
                 step = abs(new - a) / size if size > 0.0 else 0.0
                 a, steps = new, steps + 1
                 if not has_converged(step, last):
@@ -177,11 +196,7 @@ def _fill_friction_states(
             accelerations[i] = a
             out[0, i] = torque.real
             out[3, i] = least
-            pivot = d.crank_pivot_circle.real * math.hypot(f.pivot_x.real, f.pivot_y.real)
-            in_crank = d.crank_pin_circle.real * math.hypot(f.crank_pin_x.real, f.crank_pin_y.real)
-            in_slider = d.slider_pin_circle.real * math.hypot(f.slider_pin_x.real, f.slider_pin_y.real)
-            pins = pivot + in_crank * (1.0 - m.rod_1.real) + in_slider * abs(m.rod_1.real)
-            out[4, i] = (pins + d.guide_friction.real * abs(f.guide.real * m.x_1.real)) * senses.turn * w
+            out[4, i] = _heat_of(f, m, d) * senses.turn * w
             out[5, i] = f.guide.real
             if not by_speed:
                 break
@@ -199,34 +214,26 @@ class CylinderFriction:
         self, block: Table, push: int, loads: Loads, outward: bool, senses: Senses, piece: Integers, shift: Row
     ) -> None:
         stepped = np.array(block[:, :1], dtype=np.complex128)
-        self._arguments = stepped, block, push, loads, outward, senses, piece, shift
+        self._case = _SpanCase(stepped, block, push, loads, outward, senses, piece, shift)
 
     def state_at(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
         """Return torque and heat of a motion (n,)."""
-        return self._fill(crank_angle, speed, acceleration, np.empty(0), 0.0, 0, by_speed=True)
+        return self._fill(crank_angle, speed, acceleration, _Motor(np.empty(0), 0.0, 0), by_speed=True)
 
     def accelerate(
         self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool
     ) -> tuple[Array, FrictionState]:
         """Return the accelerations under a motor torque, and torque and heat of the resulting motion."""
-        accelerations = np.array(guess)
-        state = self._fill(crank_angle, speed, accelerations, torque, inertia, ITERATIONS, by_speed=by_speed)
+        accelerations, motor = np.array(guess), _Motor(torque, inertia, ITERATIONS)
+        state = self._fill(crank_angle, speed, accelerations, motor, by_speed=by_speed)
         require_inertia_left(crank_angle, state.least + inertia)
         return accelerations, state
 
     def _fill(
-        self,
-        angle: Array,
-        speed: Array,
-        accelerations: Array,
-        torque: Array,
-        inertia: float,
-        step_limit: int,
-        *,
-        by_speed: bool,
+        self, angle: Array, speed: Array, accelerations: Array, motor: _Motor, *, by_speed: bool
     ) -> FrictionState:
         out = np.empty((6, len(angle)))
-        _fill_friction_states(*self._arguments, angle, speed, accelerations, torque, inertia, step_limit, by_speed, out)
+        _fill_friction_states(self._case, angle, speed, accelerations, motor, by_speed, out)
         torque, by_acceleration, rate, least, heat, _ = out
         return FrictionState(torque, by_acceleration, rate, least, heat, out[5:])
 
