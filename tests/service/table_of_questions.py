@@ -54,7 +54,12 @@ UNDECLARED = {
     "what-if": ("design", "service/designs/variation.py service/api/what_if.py"),
     "trade-offs": ("design", "service/designs/trade_offs.py"),
 }
-"""Subject and files of what is asked without a declaration of its own."""
+"""Subject and files of what is asked without a declaration of its own.
+
+A check is about tables that may be wrong or half written, which are no subject of a question; its interfaces share
+`look_at` and `job_in_words`. What-if is asked while a slider moves, and links to the designs that are better. Trade-offs
+need front and design.
+"""
 EVERYTHING = "(all of the service)"
 """Row with all modules of the service, also those that serve several questions or none."""
 SHOWN = ("certify", "compare", "like", "trade-offs")

@@ -74,7 +74,7 @@ export function helpLink({ key, title }, names) {
  * @param {Api.Row[string] | undefined} value @param {{ key: string, unit: string }} column
  * @param {{ tag?: "td" | "strong", digits?: number, name?: string }} looks
  */
-export function cell(value, column, { tag = "td", digits = 5, name = "" } = {}) {
+function cell(value, column, { tag = "td", digits = 5, name = "" } = {}) {
   return h(
     tag,
     {

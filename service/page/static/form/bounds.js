@@ -17,7 +17,7 @@ const MODES = [
 /** @type {Record<string, string[]>} */
 const KEYS = { any: [], equals: ["equals"], min: ["min"], max: ["max"], between: ["min", "max"] };
 /** What is asked of a bound, in words. @type {Record<string, string>} */
-export const SAID = { equals: "exactly", min: "at least", max: "at most" };
+const SAID = { equals: "exactly", min: "at least", max: "at most" };
 
 /**
  * Return the field of the requirement on a quantity {name, title, unit, sentence}.

@@ -142,7 +142,7 @@ export function plain(form, path, { control, label, why, wide = false, long = fa
 }
 
 /** Return a field of a list, its entries separated by commas. @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks */
-export function list(form, path, { label, why, example }) {
+function list(form, path, { label, why, example }) {
   const jobValue = form.at(path);
   const text = Array.isArray(jobValue)
     ? jobValue.join(", ")

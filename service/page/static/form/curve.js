@@ -177,7 +177,7 @@ function scalesOf(points, marks) {
 }
 
 /** Return a value to a digit that one can still see. @param {number} value @param {Page.Range} axis */
-export function rounded(value, { low, high }) {
+function rounded(value, { low, high }) {
   const step = 10 ** Math.floor(Math.log10((high - low) / FINE) + 1e-9);
   return Number((Math.round(value / step) * step).toPrecision(12));
 }

@@ -1,6 +1,6 @@
 /** Whether numbers are all the same but for rounding: the rule of slidercrank's optimise/front/constant.py, which says why. */
 
-export const SAME = 1e-9; // relative spread of what counts as one number
+const SAME = 1e-9; // relative spread of what counts as one number
 
 /**
  * Return whether the numbers from `low` to `high` are one. size: what they are rounded against besides, a target.
