@@ -77,8 +77,9 @@ def curve_in(table: TableFile, argument_kinds: Sequence[Kind], value_kinds: Sequ
     kinds = (*argument_kinds, *value_kinds)
     heads = [head for place, text in enumerate(table.heads) if (head := _head(place, text, kinds)) is not None]
     if not heads and len(table.heads) == 2:
-        units = zip(table.heads, (argument_kinds, value_kinds), strict=True)
-        example = ",".join(f"{text} ({_likely(text, kinds).metric.symbol})" for text, kinds in units)
+        columns = list(zip(table.heads, (argument_kinds, value_kinds), strict=True))
+        likely = [next((kind for kind in kinds if _names(text, kind)), kinds[0]) for text, kinds in columns]
+        example = ",".join(f"{text} ({kind.metric.symbol})" for text, kind in zip(table.heads, likely, strict=True))
         raise InputError(
             f"{table.name}: the columns have no units; got {', '.join(map(quote, table.heads))}; write, for example, "
             f"{quote(example)}"
@@ -99,11 +100,6 @@ def curve_in(table: TableFile, argument_kinds: Sequence[Kind], value_kinds: Sequ
         raise InputError(f"{table.name} must have at least two points; got {len(arguments)}; add rows")
     curve = Curve(table.name, x, y, arguments, values, (table.understood([x.place, y.place]),))
     return _rising(curve, table) if x.kind is not TIME else curve
-
-
-def _likely(text: str, kinds: Sequence[Kind]) -> Kind:
-    """Return the kind that a head names; the first one without a name."""
-    return next((kind for kind in kinds if _names(text, kind)), kinds[0])
 
 
 def _head(place: int, text: str, kinds: Sequence[Kind]) -> Head | None:

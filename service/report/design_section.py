@@ -6,8 +6,6 @@ import math
 from functools import partial
 from typing import get_args
 
-from matplotlib.figure import Figure
-
 from ...model.errors import InputError
 from ...objectives.keys import key_in
 from ...objectives.kinds import unit_text
@@ -40,7 +38,9 @@ def design_section(subject: Subject) -> Section:
                 "The design over a turn of the crank"
                 if subject.design.part.motion is None
                 else "The design over its swing",
-                partial(_datasheet, subject),
+                partial(
+                    datasheet_of, subject.front, subject.number - 1, subject.label, subject.system, subject.changed
+                ),
             ),
         ),
     )
@@ -198,7 +198,3 @@ def linkage_picture(subject: Subject) -> Picture:
         lambda: drawing_figure(design_drawing(subject.design, name=name, design=label, system=subject.system)),
         tallest=3.6,
     )
-
-
-def _datasheet(subject: Subject) -> Figure:
-    return datasheet_of(subject.front, subject.number - 1, subject.label, subject.system, subject.changed)

@@ -57,8 +57,7 @@ UNDECLARED = {
 """Subject and files of what is asked without a declaration of its own.
 
 A check is about tables that may be wrong or half written, which are no subject of a question; its interfaces share
-`look_at` and `job_in_words`. What-if is asked while a slider moves, and links to the designs that are better. Trade-offs
-need front and design.
+`look_at` and `job_in_words`. What-if is asked while a slider moves, and links to the designs that are better.
 """
 EVERYTHING = "(all of the service)"
 """Row with all modules of the service, also those that serve several questions or none."""
