@@ -11,8 +11,9 @@ friction.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -74,9 +75,22 @@ class SpeedProfileCycle:
         return self.work / self.period
 
 
-def speed_profile_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> SpeedProfileCurves:
-    """Return the curves of one fully turning linkage at crank angles (n,), rad."""
-    speed, acceleration = crank_speed(mechanism, crank_angle)
+class CrankMotion(NamedTuple):
+    """A crank speed over the crank angle besides the machine's own.
+
+    at: function of crank angles (n,), rad, that returns crank speed, rad/s, and acceleration, rad/s^2. knots: crank
+    angles (k,), rad, at which they are not analytic.
+    """
+
+    at: Callable[[Array], tuple[Array, Array]]
+    knots: Array
+
+
+def speed_profile_curves(
+    mechanism: Mechanism, linkage: Linkage, crank_angle: Array, motion: CrankMotion | None = None
+) -> SpeedProfileCurves:
+    """Return the curves of one fully turning linkage at crank angles (n,), rad. motion: instead of the machine's."""
+    speed, acceleration = crank_speed(mechanism, crank_angle) if motion is None else motion.at(crank_angle)
     curves = cycle(mechanism, linkage, crank_angle, speed=speed, acceleration=acceleration)
     shaken = shaking_curves(mechanism, linkage, crank_angle, speed=speed, acceleration=acceleration)
     named = {
@@ -94,9 +108,10 @@ def speed_profile_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: Ar
     return SpeedProfileCurves(speed, acceleration, curves, named)
 
 
-def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage) -> SpeedProfileCycle:
+def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage, motion: CrankMotion | None = None) -> SpeedProfileCycle:
     """Return the numbers of one fully turning linkage over a turn; of a cycle of two turns, per turn.
 
+    motion: crank motion instead of the machine's own, in its direction.
     Raises `InputError` for a machine at rest or under a constant acceleration, and where friction locks the linkage.
     """
     linkage = single(mechanism, linkage)
@@ -107,7 +122,7 @@ def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage) -> SpeedProfileC
         )
 
     def curve_rows(theta: Array) -> Array:
-        curves = speed_profile_curves(mechanism, linkage, theta)
+        curves = speed_profile_curves(mechanism, linkage, theta, motion)
         rows = [
             curves.speed,
             curves.acceleration,
@@ -117,7 +132,7 @@ def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage) -> SpeedProfileC
         return np.stack([*rows, *(curves.named_curves[name] ** 2 for name in _SQUARES)])
 
     turns = cycle_turns(mechanism)
-    cuts, knots = breakpoints(mechanism, linkage), speed_knots(mechanism)
+    cuts, knots = breakpoints(mechanism, linkage), speed_knots(mechanism) if motion is None else motion.knots
     start, end = cuts[0], cuts[0] + turns * TURN
     profile_knots = [start + np.mod(knots - start, TURN) + turn * TURN for turn in range(turns)]
     ends = np.unique(np.concatenate([cuts, *profile_knots, np.linspace(start, end, 1 + turns * _PIECES)]))

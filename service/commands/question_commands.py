@@ -77,21 +77,28 @@ def sizing_command(name: str) -> Callable[..., None]:
         units: Units = "metric",
         json: Json = False,
     ) -> None:
-        folder = drawable(files.get("figures"))
+        curves, folder = files.get("curves"), drawable(files.get("figures"))
+        require_ending("--curves", curves, ".csv")
         problem = turning_problem(job, says.called or name)
         words = {item.name: item.flag for item in question.inputs}
         bound_question = question.for_problem(problem.mechanism.nominal, size.linkage(problem), problem, inputs, words)
         for note in _print_answer(bound_question, units, json):
             print_message(note)
+        if curves is not None:
+            write_file(curves, csv_text(bound_question.written("curves", units)))
+            print_message(f"{curves}: {says.curves}")
         if folder is not None and says.figure is not None:
             write_figure(folder / f"{says.figure[0]}.png", lambda: bound_question.written("figure", units), units)
 
-    draws = [f"Save a figure of {says.figure[1]} as {says.figure[0]}.png in this folder."] if says.figure else []
+    written = [_file_option("curves", f"Write {says.curves} as CSV.")] if says.curves else []
+    if says.figure:
+        help = f"Save a figure of {says.figure[1]} as {says.figure[0]}.png in this folder."
+        written.append(_file_option("figures", help, "DIR"))
     command.__doc__ = says.help
     command.__annotations__ |= {
         "job": Annotated[JobFile, says.job],
         "inputs": Annotated[dict[str, Any], tuple(map(option_of, question.inputs))],
-        "files": Annotated[dict[str, Any], tuple(_file_option("figures", help, "DIR") for help in draws)],
+        "files": Annotated[dict[str, Any], tuple(written)],
     }
     return command
 
@@ -114,4 +121,4 @@ def _file_option(name: str, help: str, metavar: str = "FILE") -> inspect.Paramet
 
 
 inverse, swing = map(design_command, ("inverse", "swing"))
-allocate, balance, sections = map(sizing_command, ("allocate", "counterweight", "sections"))
+allocate, balance, law, sections = map(sizing_command, ("allocate", "counterweight", "law", "sections"))

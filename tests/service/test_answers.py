@@ -60,6 +60,8 @@ def some_inputs(
         timed = random.random() < 0.6
         more = {"law": "harmonic", "duration": float(random.uniform(0.2, 2.0))} if timed else {}
         return {"start": start, "end": start + 0.7, "driver": str(random.choice(["crank", "slider"])), **more}
+    if question.name == "law":
+        return {"objective": str(random.choice(["peak torque", "rms torque"]))}
     if question.name == "inverse":
         angle = float(random.uniform(0.3, 1.7))
         at = crank * math.cos(angle) + math.sqrt(rod**2 - (offset - crank * math.sin(angle)) ** 2)

@@ -39,7 +39,10 @@ MACHINES = ("loose", "cylinders", "engine")
 TOUCH, RATED = 0.0125, 55.5
 SIZING = tuple(name for name, command in QUESTION_COMMANDS.items() if command.sizes)
 SIZES = {"limit": (0.25, 0.5), "radius": (40, 120), "mass": (1, 6), "rod_radius": (30, 80), "rod_mass": (1, 3)}
+SIZES |= {"greatest_speed": (390, 480), "crank_acceleration": (1e4, 1e5)}
 """From and to, metric, of what sizing is asked with; moments count on arms of 100 to 500 mm."""
+LAW = ("greatest_speed", "crank_acceleration")
+"""What a motion law is asked with: other limits exclude each other when drawn at random."""
 
 
 @pytest.fixture(scope="module")
@@ -190,7 +193,7 @@ def test_random_designs_are_sized_alike_at_every_door(sizes: tuple[Client, int, 
     (client, number, job), random = sizes, np.random.default_rng(10)
     front, question = sc.solve(sc.load_job(job)), DESIGN_QUESTIONS[name]
     for row in random.choice(len(front), 3, replace=False).tolist():
-        given = {one: some_input(one, random) for one in question.inputs}
+        given = {one: some_input(one, random) for one in question.inputs if name != "law" or one.name in LAW}
         expected = client.ask(number, row + 1, name, **{one.key: value for one, value in given.items()})
         texts = {one: one.with_unit(value) for one, value in given.items()}
         assert front.ask(name, row, **{one.name: text for one, text in texts.items()}) == expected

@@ -142,6 +142,7 @@ def test_a_topic_shows_what_the_service_writes_in_either_system(opened: tuple[Pa
     [
         ("allocate", {"limit_mm": 0.3}, lambda record: record["error_mm"]),
         ("counterweight", {"radius_mm": 50.8}, lambda record: record["after"]["peak_shaking_force_N"]),
+        ("law", {"greatest_speed_rpm": 400.0}, lambda record: record["peak_torque_Nm"]),
         ("sections", {}, lambda record: record["crank_width_mm"]),
         ("swing", {"start_deg": 40.0, "end_deg": 70.0}, lambda record: record["travel_mm"]),
     ],
@@ -151,7 +152,7 @@ def test_a_command_has_a_form_and_its_answer_on_the_page(
 ) -> None:
     page, address = opened
     answer = asked(address, name, **fields)
-    unit = {"counterweight": 4.4482216152605}.get(name, 25.4)
+    unit = {"counterweight": 4.4482216152605, "law": 0.1129848290276167}.get(name, 25.4)
     for system, units in SYSTEMS.items():
         place = open_question(page, address, name, system) if name != "swing" else tab_of(page, address, system)
         for key, value in fields.items():

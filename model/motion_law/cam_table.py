@@ -1,0 +1,48 @@
+"""The cam table of a motion law: master time, crank angle, speed and acceleration, for a drive that interpolates.
+
+Between two points the crank angle is the polynomial of degree 5 in time with the angles, speeds and accelerations of
+both. Where a load steps, so does the acceleration: then two points have the same time, angle and speed, the first with
+the acceleration before the step, the second with that after it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array
+from ..transient.equation import TURN
+from .motion_law import MotionLaw
+
+POINTS = 1_000
+"""Least number of intervals of a table."""
+_STEP = 1e-9  # of the greatest acceleration: a smaller step is rounding
+
+
+@dataclass(frozen=True)
+class CamTable:
+    """Points (n,) of a turn, its end included: time, s; crank angle, rad, not taken modulo a turn; rad/s; rad/s^2."""
+
+    time: Array
+    crank_angle: Array
+    speed: Array
+    acceleration: Array
+
+
+def cam_table(law: MotionLaw, intervals: int = POINTS) -> CamTable:
+    """Return the table, whose points are the ends of all cells of the law and equal parts of the longest of them."""
+    turn = law.turn
+    parts = np.maximum(1, np.ceil(turn.width * intervals / TURN)).astype(np.int64)
+    cell = np.repeat(np.arange(len(parts)), parts)
+    place = (np.arange(len(cell)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[cell]
+    phi = np.append(turn.passed[cell] + place * turn.width[cell], TURN)
+    angle = turn.start % TURN + turn.way * phi
+    inside = np.append(angle[:-1], angle[0])
+    after, before = law.acceleration(inside), law.acceleration(inside, before=True)
+    time, speed = np.concatenate([[0.0], law.time(inside[1:-1]), [law.period]]), law.speed(inside)
+    steps = np.abs(after - before) > _STEP * float(np.abs(after).max())
+    first, last = np.arange(len(phi)) == 0, np.arange(len(phi)) == len(phi) - 1
+    double = np.repeat(np.arange(len(phi)), np.where(steps & ~first & ~last, 2, 1))
+    repeated = np.concatenate([double[1:] == double[:-1], [False]]) | last[double]
+    return CamTable(time[double], angle[double], speed[double], np.where(repeated, before[double], after[double]))

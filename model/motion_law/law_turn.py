@@ -1,0 +1,165 @@
+"""A turn of the crank, cut into cells, with the terms of the kinetic energy over the crank angle.
+
+With the kinetic energy K = J w^2 / 2 of all moving parts and phi the angle passed, in the direction of rotation,
+
+    dK / d(phi) = T - Q(phi),        w^2 = 2 K / J(phi),        alpha = (T - Q - K J' / J) / J,
+
+where T is the torque in that direction, and Q what gravity and loads take of it. J and Q follow from the equation of
+motion (`model.transient.equation`); the drive's inertia at the crank counts as one of the crank. Cells end at all
+breakpoints, so that every term is smooth within a cell, and is known at its 16 nodes of Gauss and Legendre.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from ..arrays import Array, Mask
+from ..errors import InputError
+from ..linkage.linkage import Linkage
+from ..linkage.single import single
+from ..machine.arrangement import require_one_cylinder
+from ..machine.mechanism import Mechanism
+from ..machine.two_turns import cycle_turns
+from ..transient.equation import TURN, CrankEquation
+from ..transient.turn import PeriodicTurn
+
+_NODES = 16
+
+
+def with_drive_inertia(mechanism: Mechanism) -> Mechanism:
+    """Return the machine at constant speed whose crank has the inertia of flywheel and rotor too."""
+    added = 0.0 if mechanism.drive is None else mechanism.drive.inertia
+    weight = mechanism.counterweight
+    heavy = replace(weight, inertia=weight.inertia + added) if added else weight
+    return replace(mechanism, counterweight=heavy, drive=None, speed_profile=None, acceleration=0.0)
+
+
+@dataclass(frozen=True)
+class LawTerms:
+    """J, J', Q, x' and x'' by the angle passed, SI; arrays of one shape."""
+
+    inertia: Array
+    inertia_slope: Array
+    load: Array
+    travel: Array
+    curvature: Array
+
+
+class LawTurn:
+    """Cells of a turn in the order of the crank's passage: n cells, 16 nodes each.
+
+    machine: the mechanism with the drive's inertia on its crank. way: +1 or -1, direction of rotation. start: crank
+    angle of the first cell, rad. passed: phi at the start of each cell, (n,), rad. width: (n,), rad. angle, inertia,
+    inertia_slope, load, travel, curvature: crank angle, J, J', Q, x' and x'' by phi at the nodes, (n, 16), SI.
+    """
+
+    def __init__(self, mechanism: Mechanism, linkage: Linkage, marks: tuple[float, ...] = ()) -> None:
+        """Take a machine and further crank angles at which cells end, rad.
+
+        Raises `AssemblyError` for a linkage that does not rotate fully, and `InputError` for machines without such an
+        equation: with friction, several cylinders, a cycle of two turns, or loads that depend on the speed.
+        """
+        self.machine = with_drive_inertia(mechanism)
+        self.linkage = single(self.machine, linkage)
+        _require_simple(self.machine)
+        equation = CrankEquation(self.machine, self.linkage, marks=marks)
+        equation.require_inertia(0.0)
+        dimensions = (float(linkage.crank), float(linkage.rod), float(linkage.offset))
+        self._take(PeriodicTurn(equation, dimensions))
+        if self._turn.terms.speed_dependent:
+            raise InputError(
+                "a motion law takes loads that are independent of the speed; got one that depends on it; leave out "
+                "viscous loads and drag"
+            )
+
+    def _take(self, turn: PeriodicTurn) -> None:
+        self._turn, self.way, self.nodes = turn, turn.way, turn.nodes
+        self.start, self.width = float(turn.low[0]), np.abs(turn.width)
+        self.passed = np.concatenate([[0.0], np.cumsum(self.width)[:-1]])
+        self.angle = turn.angle
+        slope, load = 2.0 * self.way * turn.terms.spin, self.way * turn.terms.static
+        self.terms = LawTerms(turn.terms.inertia, slope, load, *self.slider(turn.angle))
+        cells = np.arange(len(turn.width))
+        ends = [[values_at(values, cells, np.full(len(cells), end)) for end in (0.0, 1.0)] for values in (slope, load)]
+        angles = np.stack([turn.low, turn.low + turn.width])
+        self.end_terms = LawTerms(self.inertia_at(angles), *map(np.stack, ends), *self.slider(angles))
+
+    def finer(self, cells: Mask) -> LawTurn:
+        """Return the turn with chosen cells (n,) halved."""
+        turn = object.__new__(LawTurn)
+        turn.machine, turn.linkage = self.machine, self.linkage
+        turn._take(self._turn.cut(self._turn.low[cells] + 0.5 * self._turn.width[cells]))
+        return turn
+
+    @property
+    def weights(self) -> Array:
+        """Weights (n, 16) of an integral over phi."""
+        return self.width[:, None] * self._turn.weights
+
+    @property
+    def low(self) -> Array:
+        """Crank angle at the start of each cell, (n,), rad."""
+        return self._turn.low
+
+    @property
+    def work(self) -> float:
+        """Work that the loads take in a turn, J; gravity takes none."""
+        return float(np.sum(self.weights * self.terms.load))
+
+    def slider(self, crank_angle: Array) -> tuple[Array, Array]:
+        """Return x' and x'', by phi, m, at crank angles, rad."""
+        motion = self.linkage.at(crank_angle, speed=self.way)
+        return motion.slider_velocity, motion.slider_acceleration
+
+    def inertia_at(self, crank_angle: Array) -> Array:
+        """Return J, kg m^2, at crank angles, rad."""
+        return self._turn.equation.inertia(crank_angle)
+
+    def locate(self, crank_angle: Array) -> tuple[Array, Array]:
+        """Return the cells (n,) with crank angles, rad, and the places within them, from 0 to 1."""
+        phi = np.mod(self.way * (crank_angle - self.start), TURN)
+        cell = np.clip(np.searchsorted(self.passed, phi, side="right") - 1, 0, len(self.width) - 1)
+        return cell, (phi - self.passed[cell]) / self.width[cell]
+
+    def integrals(self, values: Array) -> Array:
+        """Return integrals over phi (n, 16) from the start of each cell to its nodes of values there."""
+        return np.asarray(self.width[:, None] * (values @ self._turn.sums.T))
+
+    def integral_of(self, values: Array, cell: Array, place: Array) -> Array:
+        """Return integrals over phi from the start of cells (n,) to places in them of values at all nodes."""
+        return np.asarray(self.width[cell] * np.einsum("ni,ni->n", integrals_to(place), values[cell]))
+
+
+def values_at(values: Array, cell: Array, place: Array) -> Array:
+    """Return values (n,) at places from 0 to 1 in cells, from those at all nodes (cells, 16)."""
+    basis = legendre.legvander(2.0 * place - 1.0, _NODES - 1) @ _SERIES
+    return np.asarray(np.einsum("ni,ni->n", basis, values[cell]))
+
+
+def integrals_to(place: Array) -> Array:
+    """Return weights (n, 16) of the integral from the start of a cell of unit width to places from 0 to 1."""
+    x = 2.0 * place - 1.0
+    return np.asarray(0.5 * legendre.legvander(x, _NODES) @ _INTEGRALS)
+
+
+_X, _ = legendre.leggauss(_NODES)
+_SERIES = np.linalg.inv(legendre.legvander(_X, _NODES - 1))
+_INTEGRALS = np.asarray(legendre.legint(np.eye(_NODES), lbnd=-1.0, axis=0)) @ _SERIES
+
+
+def _require_simple(mechanism: Mechanism) -> None:
+    """Raise `InputError` for machines whose torque is more than T = K' + Q."""
+    require_one_cylinder(mechanism.arrangement, "a motion law")
+    if cycle_turns(mechanism) > 1:
+        raise InputError(
+            "a motion law repeats after one turn; got loads with a cycle of 720 deg; give a machine whose cycle is one "
+            "turn"
+        )
+    if mechanism.friction.acts:
+        raise InputError(
+            "a motion law is found for joints without friction; got friction in joints or guide; leave [friction] out, "
+            "and give its force as a load that opposes motion"
+        )

@@ -1,0 +1,147 @@
+"""A motion law: crank speed over the crank angle, from a drive torque that is linear in each cell of the turn.
+
+The kinetic energy is K = K_start + integral of T - Q over the angle passed (`law_turn`): exact but for the integral of
+Q, a polynomial of degree 15 on each cell. The crank acceleration is continuous except where a load steps.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..arrays import Array
+from ..transient.equation import TURN
+from ..transient.speed_profile_cycle import CrankMotion
+from .law_turn import LawTurn, values_at
+
+_NEWTON = 8
+
+
+@dataclass(frozen=True)
+class MotionLaw:
+    """A law over the cells of a turn.
+
+    torque: drive torque in the direction of rotation at the start of each cell, N m, (n,). start_energy: K at the start
+    of the turn, J. The torque's mean equals that of the loads, so that the speed repeats.
+    """
+
+    turn: LawTurn
+    torque: Array
+    start_energy: float
+
+    @classmethod
+    def closed(cls, turn: LawTurn, torque: Array, start_energy: float) -> MotionLaw:
+        """Return the law with the constant torque added that makes it repeat."""
+        excess = float(turn.width @ (0.5 * (torque + np.roll(torque, -1)))) - turn.work
+        return cls(turn, torque - excess / float(turn.width.sum()), start_energy)
+
+    @cached_property
+    def energies(self) -> Array:
+        """K at the start of each cell, J, (n,)."""
+        gain = self.turn.width * 0.5 * (self.torque + np.roll(self.torque, -1))
+        gain -= np.sum(self.turn.weights * self.turn.terms.load, axis=1)
+        return self.start_energy + np.concatenate([[0.0], np.cumsum(gain)[:-1]])
+
+    @cached_property
+    def node_energies(self) -> Array:
+        """K at the nodes, J, (n, 16)."""
+        cell = np.repeat(np.arange(len(self.torque)), self.turn.angle.shape[1])
+        place = np.tile(_places(self.turn), len(self.torque))
+        return self._energy(cell, place).reshape(self.turn.angle.shape)
+
+    @property
+    def node_torques(self) -> Array:
+        """T at the nodes, N m, (n, 16)."""
+        return np.asarray(self.torque[:, None] + (np.roll(self.torque, -1) - self.torque)[:, None] * _places(self.turn))
+
+    @cached_property
+    def node_slowness(self) -> Array:
+        """Time per angle, s, at the nodes, (n, 16)."""
+        return np.asarray(np.sqrt(0.5 * self.turn.terms.inertia / self.node_energies))
+
+    @property
+    def period(self) -> float:
+        """Time of a turn, s."""
+        return float(np.sum(self.turn.weights * self.node_slowness))
+
+    @property
+    def rms_torque(self) -> float:
+        """Root mean square of the drive torque over the time of a turn, N m."""
+        return math.sqrt(float(np.sum(self.turn.weights * self.node_torques**2 * self.node_slowness)) / self.period)
+
+    def combined(self, other: MotionLaw, share: float) -> MotionLaw:
+        """Return the law whose K and T are those of this one and, by a share, of another on the same cells."""
+        torque = (1.0 - share) * self.torque + share * other.torque
+        return MotionLaw(self.turn, torque, (1.0 - share) * self.start_energy + share * other.start_energy)
+
+    def energy(self, crank_angle: Array) -> Array:
+        """Return K, J, at crank angles (n,), rad."""
+        return self._energy(*self.turn.locate(crank_angle))
+
+    def speed(self, crank_angle: Array) -> Array:
+        """Return the crank speed, rad/s, positive counter-clockwise, at crank angles (n,), rad."""
+        return np.asarray(self.turn.way * np.sqrt(2.0 * self.energy(crank_angle) / self.turn.inertia_at(crank_angle)))
+
+    def torque_at(self, crank_angle: Array) -> Array:
+        """Return the drive torque, N m, positive counter-clockwise, at crank angles (n,), rad."""
+        return np.asarray(self.turn.way * self._torque(*self.turn.locate(crank_angle)))
+
+    def acceleration(self, crank_angle: Array, *, before: bool = False) -> Array:
+        """Return the crank acceleration, rad/s^2, positive counter-clockwise, at crank angles (n,), rad.
+
+        before: whether it is that before a step of the load, if an angle lies on one.
+        """
+        cell, place = self.turn.locate(crank_angle)
+        if before:
+            first = place <= 0.0
+            cell, place = np.where(first, cell - 1, cell), np.where(first, 1.0, place)
+        inertia = self.turn.inertia_at(crank_angle)
+        load, slope = (
+            values_at(values, cell, place) for values in (self.turn.terms.load, self.turn.terms.inertia_slope)
+        )
+        energy = self._energy(cell, place)
+        return np.asarray(self.turn.way * (self._torque(cell, place) - load - slope * energy / inertia) / inertia)
+
+    @property
+    def motion(self) -> CrankMotion:
+        """The law as a crank motion, for the evaluation along any speed profile."""
+        return CrankMotion(lambda angle: (self.speed(angle), self.acceleration(angle)), np.mod(self.turn.low, TURN))
+
+    def time(self, crank_angle: Array) -> Array:
+        """Return the time from the start of the turn, s, at crank angles (n,), rad."""
+        cell, place = self.turn.locate(crank_angle)
+        return np.asarray(self._starts[cell] + self.turn.integral_of(self.node_slowness, cell, place))
+
+    def angle_at(self, time: Array) -> Array:
+        """Return the crank angle, rad, not taken modulo a turn, at times (n,) from 0 to the period, s."""
+        cell = np.clip(np.searchsorted(self._starts, time, side="right") - 1, 0, len(self._starts) - 1)
+        rest = time - self._starts[cell]
+        lasts = self.turn.integral_of(self.node_slowness, cell, np.ones(len(time)))
+        place = rest / lasts
+        for _ in range(_NEWTON):
+            error = self.turn.integral_of(self.node_slowness, cell, place) - rest
+            place = np.clip(
+                place - error / (self.turn.width[cell] * values_at(self.node_slowness, cell, place)), 0.0, 1.0
+            )
+        return np.asarray(self.turn.start + self.turn.way * (self.turn.passed[cell] + place * self.turn.width[cell]))
+
+    @cached_property
+    def _starts(self) -> Array:
+        lasts = np.sum(self.turn.weights * self.node_slowness, axis=1)
+        return np.concatenate([[0.0], np.cumsum(lasts)[:-1]])
+
+    def _torque(self, cell: Array, place: Array) -> Array:
+        return np.asarray(self.torque[cell] + (np.roll(self.torque, -1) - self.torque)[cell] * place)
+
+    def _energy(self, cell: Array, place: Array) -> Array:
+        first, rise = self.torque[cell], (np.roll(self.torque, -1) - self.torque)[cell]
+        gain = self.turn.width[cell] * place * (first + 0.5 * rise * place)
+        return np.asarray(self.energies[cell] + gain - self.turn.integral_of(self.turn.terms.load, cell, place))
+
+
+def _places(turn: LawTurn) -> Array:
+    """Return the places of the nodes within a cell, from 0 to 1."""
+    return np.asarray(0.5 * (1.0 + turn.nodes))

@@ -1,0 +1,68 @@
+"""Limits that leave no motion law: which, by how much, and what to change."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...model.errors import InputError
+from ...model.motion_law.law_turn import LawTurn
+from .law_limits import LawLimits, rpm
+from .programme import Margins, Programme, Requirement
+from .reachable import Reachable
+
+_AMPLE = 1e3  # times the greatest torque of the loads: as good as any
+_ROUNDING = 1e-9
+
+
+def require_room(turn: LawTurn, limits: LawLimits) -> None:
+    """Raise `InputError` where the least crank speed exceeds what the slider's speed allows."""
+    low, high = limits.energies(turn.angle, turn.terms.inertia, turn.terms.travel)
+    worst = np.unravel_index(int(np.argmax(low - high)), low.shape)
+    if not low[worst] <= high[worst]:
+        allowed = math.sqrt(2.0 * high[worst] / turn.terms.inertia[worst])
+        angle = math.degrees(float(turn.angle[worst])) % 360.0
+        raise InputError(
+            f"limits of a motion law exclude each other: at a crank angle of {angle:.6g} deg the slider's speed limit "
+            f"allows {rpm(allowed)}, and {limits.name('least_speed')} is {rpm(limits.least_speed)}; reduce the latter "
+            "or raise the slider's speed"
+        )
+
+
+def unreachable(turn: LawTurn, limits: LawLimits) -> InputError:
+    """Return the error for limits without a law: what excludes what, with the least change."""
+    request, load = limits.request, float(np.abs(turn.terms.load).max())
+    programme = Programme(turn, limits, Margins(*np.zeros((3, len(turn.width)))))
+    longest = math.inf if request.objective == "cycle time" else limits.cycle_time * (1.0 + _ROUNDING)
+    needs = Requirement(longest=None if math.isinf(longest) else longest)
+    reachable = Reachable(turn, limits)
+    shortest = reachable.within(_AMPLE * max(load, request.torque_limit or 0.0, 1.0)).shortest
+    if shortest > longest:
+        return InputError(
+            f"the limits of speed allow no cycle shorter than {shortest:.6g} s; {limits.name('cycle_time')} is "
+            f"{limits.cycle_time:.6g} s; extend it, or raise a limit"
+        )
+    slower = "; raise it, or widen the limits of speed" + ("" if math.isinf(longest) else ", or extend the cycle time")
+    if request.crank_acceleration is not None:
+        needed = programme.solve("acceleration", needs)
+        if needed is not None and needed.value > 1.0:
+            return InputError(
+                f"a law within these limits needs a crank acceleration of at least "
+                f"{needed.value * request.crank_acceleration:.6g} rad/s^2; {limits.name('crank_acceleration')} is "
+                f"{request.crank_acceleration:.6g} rad/s^2{slower}"
+            )
+    if request.torque_limit is not None:
+        solved = programme.solve("peak torque", needs)
+        by_reach = reachable.least_torque(request.torque_limit, longest, 0.0)
+        least = max(by_reach, 0.0 if solved is None else solved.value)
+        if least > request.torque_limit * (1.0 - _ROUNDING):
+            return InputError(
+                f"a law within these limits needs a torque of at least {least:.6g} N m; {limits.name('torque_limit')} "
+                f"is {request.torque_limit:.6g} N m{slower}"
+            )
+    return InputError(
+        "a motion law must be resolved between the limits of speed; got a machine whose kinetic energy is too small "
+        "beside the work of its loads, or limits that leave almost no room; state the inertia of the motor in [drive] "
+        "(motor_inertia, gear_ratio, flywheel), or widen the limits"
+    )

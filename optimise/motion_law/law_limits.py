@@ -1,0 +1,180 @@
+"""What a motion law shall be best for, and the limits that it keeps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import NamedTuple
+
+import numpy as np
+
+from ...model.arrays import Array, Mask
+from ...model.errors import InputError
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
+from ...model.motion_law.law_turn import LawTerms
+from ...model.transient.equation import TURN
+from ...objectives.dead_centre import before_dead_centre
+from .words import RANGE, LawObjective, Timing
+
+_EDGE = 1e-9  # rad
+
+
+@dataclass(frozen=True, kw_only=True)
+class LawRequest:
+    """A request for a motion law; SI, magnitudes.
+
+    objective: what is least. cycle_time: s, by default that of the machine's speed; if it is the objective, only the
+    default speeds follow from it. timing: whether the cycle may be shorter. torque_limit: greatest drive torque.
+    window: distance before the slider's dead centre within which window_speed limits the slider.
+    """
+
+    objective: LawObjective = "peak torque"
+    cycle_time: float | None = None
+    timing: Timing = "equal"
+    torque_limit: float | None = None
+    least_speed: float | None = None
+    greatest_speed: float | None = None
+    slider_speed: float | None = None
+    window: float | None = None
+    window_speed: float | None = None
+    crank_acceleration: float | None = None
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if isinstance(value, int | float) and not (math.isfinite(value) and value > 0.0):
+                raise InputError(f"{field.name} of a motion law must be positive and finite; got {value:g}")
+
+
+class AccelerationLimit(NamedTuple):
+    """|T - Q + by_energy K| <= greatest, N m."""
+
+    by_energy: Array
+    greatest: Array
+
+
+@dataclass(frozen=True)
+class LawLimits:
+    """Limits of a law for one machine; SI, infinite where there is none.
+
+    cycle_time: s. least_speed, greatest_speed: of the crank. window: crank angle at which the window begins, and the
+    angle passed in it, rad. names: the interface's names for the fields of the request.
+    """
+
+    request: LawRequest
+    cycle_time: float
+    least_speed: float
+    greatest_speed: float
+    window: tuple[float, float] | None
+    way: float
+    names: Mapping[str, str]
+
+    @property
+    def marks(self) -> tuple[float, ...]:
+        """Crank angles at which the window begins and ends, rad."""
+        return () if self.window is None else (self.window[0], self.window[0] + self.way * self.window[1])
+
+    def name(self, field: str) -> str:
+        """Return the interface's name of a field."""
+        return self.names.get(field, field)
+
+    def slider_speed(self, crank_angle: Array) -> Array:
+        """Return the greatest speed of the slider, m/s, at crank angles."""
+        speed = np.full(crank_angle.shape, self.request.slider_speed or math.inf)
+        if self.request.window_speed is not None:
+            speed[self._within(crank_angle)] = min(self.request.window_speed, self.request.slider_speed or math.inf)
+        return speed
+
+    def energies(self, crank_angle: Array, inertia: Array, travel: Array) -> tuple[Array, Array]:
+        """Return least and greatest K, J, at crank angles with J, kg m^2, and x', m."""
+        with np.errstate(divide="ignore"):
+            fastest = np.minimum(self.greatest_speed, self.slider_speed(crank_angle) / np.abs(travel))
+        return 0.5 * inertia * self.least_speed**2, 0.5 * inertia * fastest**2
+
+    def acceleration(self, terms: LawTerms) -> AccelerationLimit | None:
+        """Return the limit of the crank acceleration, as one of J alpha, at crank angles with terms of any shape."""
+        greatest = self.request.crank_acceleration
+        if greatest is None:
+            return None
+        return AccelerationLimit(-terms.inertia_slope / terms.inertia, greatest * terms.inertia)
+
+    def _within(self, crank_angle: Array) -> Mask:
+        if self.window is None:
+            return np.zeros(crank_angle.shape, np.bool_)
+        passed = np.mod(self.way * (crank_angle - self.window[0]) + _EDGE, TURN)
+        return np.asarray(passed <= self.window[1] + 2.0 * _EDGE)
+
+
+def resolve_limits(
+    mechanism: Mechanism, linkage: Linkage, request: LawRequest, names: Mapping[str, str] | None = None
+) -> LawLimits:
+    """Return the limits for a machine; names: the interface's names for the fields.
+
+    Raises `InputError` without a cycle time, for one half of a window, a window outside the stroke, speeds that exclude
+    each other or the cycle time, and an objective without what it needs.
+    """
+    labels = dict(names or {})
+
+    def name(field: str) -> str:
+        return labels.get(field, field)
+
+    speed = abs(mechanism.speed)
+    if request.cycle_time is None and not speed:
+        raise InputError(f"a motion law needs a cycle time; got a machine without speed; give {name('cycle_time')}")
+    if request.objective == "cycle time" and request.torque_limit is None:
+        raise InputError(f"the shortest cycle needs a greatest torque; got none; give {name('torque_limit')}")
+    if request.objective == "rms torque" and request.timing == "at most":
+        raise InputError(
+            f"the RMS torque is over a cycle time that is equal; got {name('timing')} at most, whose standstill would "
+            "count; ask for the equal cycle time"
+        )
+    cycle_time = TURN / speed if request.cycle_time is None else request.cycle_time
+    mean = TURN / cycle_time
+    greatest = RANGE * max(mean, request.least_speed or 0.0)
+    greatest = greatest if request.greatest_speed is None else request.greatest_speed
+    least = min(mean, greatest) / RANGE if request.least_speed is None else request.least_speed
+    if least > greatest:
+        raise InputError(
+            f"{name('least_speed')} must not exceed {name('greatest_speed')}; got {rpm(least)} and {rpm(greatest)}; "
+            "change one"
+        )
+    if request.objective != "cycle time":
+        if mean > greatest * (1.0 + 1e-12):
+            raise InputError(
+                f"a cycle of {cycle_time:.6g} s needs a mean crank speed of {rpm(mean)}; {name('greatest_speed')} is "
+                f"{rpm(greatest)}; raise it, or allow {TURN / greatest:.6g} s"
+            )
+        if request.timing == "equal" and mean < least * (1.0 - 1e-12):
+            raise InputError(
+                f"a cycle of {cycle_time:.6g} s needs a mean crank speed of {rpm(mean)}; {name('least_speed')} is "
+                f"{rpm(least)}; reduce it, or ask for {TURN / least:.6g} s"
+            )
+    window = _window(mechanism, linkage, request, name("window"), name("window_speed"))
+    return LawLimits(request, cycle_time, least, greatest, window, mechanism.direction, labels)
+
+
+def _window(
+    mechanism: Mechanism, linkage: Linkage, request: LawRequest, distance_name: str, speed_name: str
+) -> tuple[float, float] | None:
+    if request.window is None and request.window_speed is None:
+        return None
+    if request.window is None or request.window_speed is None:
+        missing = distance_name if request.window is None else speed_name
+        raise InputError(f"a working window needs its distance and its slider speed; got only one; give {missing}")
+    stroke = float(linkage.stroke)
+    if not request.window < stroke:
+        raise InputError(
+            f"{distance_name} must be less than the stroke, {1e3 * stroke:.6g} mm; got {1e3 * request.window:.6g} mm; "
+            "reduce it"
+        )
+    design = np.array([float(linkage.crank), float(linkage.rod), float(linkage.offset)])
+    angles, _ = before_dead_centre(mechanism, design, np.array([request.window]))
+    dead = float(linkage.dead_centre_angles[("inner", "outer").index(mechanism.slider.dead_centre)])
+    return dead - mechanism.direction * float(angles[0]), float(angles[0])
+
+
+def rpm(speed: float) -> str:
+    """Return a speed, rad/s, as text in rpm."""
+    return f"{30.0 / math.pi * speed:.6g} rpm"

@@ -1,0 +1,116 @@
+"""The best motion law of a machine with given lengths, and its proof.
+
+The law is found on coarse cells first (`stage`). These are halved until the law,
+exact on the continuous turn, is within a thousandth of a bound on all laws (`bound`, `reachable`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
+from ...model.motion_law.law_turn import LawTurn
+from ...model.motion_law.motion_law import MotionLaw
+from ...model.transient.equation import TURN
+from .bound import lower_bound
+from .contradictions import require_room, unreachable
+from .law_limits import LawLimits, LawRequest, resolve_limits
+from .reachable import Reachable
+from .stage import Stage, solve_stage
+
+GAP = 1e-3
+"""Greatest gap between a law and the bound, as a share, at which the law counts as proven."""
+_ROUNDS = 16
+KEPT = 1e-6
+"""Greatest share by which a limit may be exceeded."""
+_STUCK = 0.9  # of the gap: finer cells that leave more of it show that it is the relaxation's
+_ROUNDING = 1e-9
+_LEAST_CELLS, _MOST_CELLS = 150, 600
+
+
+@dataclass(frozen=True)
+class OptimalLaw:
+    """A law, and a lower bound on the objective of every law within the limits.
+
+    value, bound: peak torque, N m, RMS torque over time, N m, or cycle time, s. relaxed: whether the bound is that of a
+    relaxation, which may be below the best law. rounds: refinements. exceeded: greatest share by which a limit is
+    exceeded at a node of a cell.
+    """
+
+    law: MotionLaw
+    limits: LawLimits
+    value: float
+    bound: float
+    relaxed: bool
+    rounds: int
+    exceeded: float
+
+    @property
+    def gap(self) -> float:
+        """Greatest share by which the law can be worse than the best one."""
+        if self.bound > 0.0:
+            return max(0.0, self.value / self.bound - 1.0)
+        return math.inf if self.value > 0.0 else 0.0
+
+    @property
+    def proven(self) -> bool:
+        """Whether the law is within a thousandth of the bound."""
+        return self.gap <= GAP
+
+
+def optimal_law(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    request: LawRequest,
+    *,
+    names: Mapping[str, str] | None = None,
+    cancelled: Callable[[], bool] = lambda: False,
+) -> OptimalLaw:
+    """Return the best law for one fully turning linkage.
+
+    names: the interface's names for the fields of the request. cancelled: polled between refinements; once true, the
+    latest law is returned. Raises `InputError` for machines that `LawTurn` refuses, and for limits that exclude each
+    other or the cycle time.
+    """
+    limits = resolve_limits(mechanism, linkage, request, names)
+    at_speed = replace(mechanism, speed=mechanism.direction * TURN / limits.cycle_time)
+    turn = LawTurn(at_speed, linkage, limits.marks)
+    require_room(turn, limits)
+    best, bound = None, 0.0
+    for count in range(_ROUNDS):
+        stage = solve_stage(turn, limits, None if best is None else best.law)
+        if stage is not None:
+            dual = max(lower_bound(turn, limits, *proof) for proof in stage.proofs)
+            bound = max(bound, _bound(dual, stage, limits))
+            if stage.exceeded <= KEPT and not stage.coarse.any():
+                last = math.inf if best is None else best.gap
+                best = OptimalLaw(stage.law, limits, stage.value, bound, stage.relaxed, count, stage.exceeded)
+                enough = best.proven or (best.relaxed and best.gap > _STUCK * last)
+                if (enough and len(turn.width) >= _LEAST_CELLS) or cancelled():
+                    break
+        if len(turn.width) > _MOST_CELLS:
+            break
+        coarse = np.zeros(len(turn.width), np.bool_) if stage is None else stage.coarse
+        turn = turn.finer(coarse if coarse.any() else np.ones_like(coarse))
+    if best is None:
+        raise unreachable(turn, limits)
+    return best
+
+
+def _bound(dual: float, stage: Stage, limits: LawLimits) -> float:
+    """Return a bound in the unit of the objective: by multipliers, or by what a torque reaches."""
+    request = limits.request
+    if request.objective == "rms torque":
+        return math.sqrt(max(0.0, dual))
+    reachable = Reachable(stage.law.turn, limits)
+    if request.objective == "cycle time":
+        return max(dual, reachable.within(request.torque_limit or math.inf).shortest)
+    least = limits.cycle_time * (1.0 - _ROUNDING) if request.timing == "equal" else 0.0
+    guess = float(np.abs(stage.law.torque).max())
+    by_reach = reachable.least_torque(guess, limits.cycle_time * (1.0 + _ROUNDING), least) if guess > 0.0 else 0.0
+    return max(dual, by_reach)

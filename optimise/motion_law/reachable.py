@@ -1,0 +1,100 @@
+"""Least and greatest kinetic energy that any law within a torque can have: bounds of the continuous problem.
+
+With |T| <= tau the energy changes by at most tau -+ Q per angle. Of all laws within the limits of speed K_low and
+K_high one is therefore the slowest at every angle at once, and one the fastest:
+
+    K_slowest(phi) = greatest over psi of K_low(psi) less what tau can take or give between psi and phi,
+
+and likewise from K_high. The smaller of two such laws is one again, which proves it. So no law within tau has a turn
+shorter than the fastest one, nor longer than the slowest one. Limits of acceleration are ignored: the bounds hold, but
+may be loose.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...model.arrays import Array
+from ...model.motion_law.law_turn import LawTurn
+from ...model.transient.equation import TURN
+from .law_limits import LawLimits
+
+_DOUBLINGS, _BISECTIONS = 40, 40
+_ROUNDING = 1e-12
+
+
+@dataclass(frozen=True)
+class Reach:
+    """Laws within a torque: K of the slowest and the fastest at the nodes, J, (n, 16), and their times of a turn, s.
+
+    exists: whether there is any law.
+    """
+
+    slowest: Array
+    fastest: Array
+    longest: float
+    shortest: float
+    exists: bool
+
+
+class Reachable:
+    """Reach of the laws of a turn within limits of speed."""
+
+    def __init__(self, turn: LawTurn, limits: LawLimits) -> None:
+        self.turn = turn
+        self.low, self.high = limits.energies(turn.angle, turn.terms.inertia, turn.terms.travel)
+        cell, node = np.divmod(np.arange(turn.angle.size), turn.angle.shape[1])
+        place = 0.5 * (1.0 + turn.nodes)[node]
+        before = np.concatenate([[0.0], np.cumsum(np.sum(turn.weights * turn.terms.load, axis=1))[:-1]])
+        self.taken = before[cell] + turn.integral_of(turn.terms.load, cell, place)
+        self.passed = turn.passed[cell] + place * turn.width[cell]
+
+    def within(self, torque: float) -> Reach:
+        """Return the laws within a torque, N m."""
+        loss = self._three_turns(torque * self.passed + self.taken, torque * TURN + self.turn.work)
+        gain = self._three_turns(torque * self.passed - self.taken, torque * TURN - self.turn.work)
+        slowest, fastest = self._least(self.low, loss, gain), -self._least(-self.high, gain, loss)
+        within = bool(np.all(slowest <= self.high * (1.0 + _ROUNDING)))
+        fastest = np.maximum(fastest, slowest)  # where no law exists, it may be below
+        closes = abs(self.turn.work) <= torque * TURN * (1.0 + _ROUNDING)
+        return Reach(slowest, fastest, self._time(slowest), self._time(fastest), within and closes)
+
+    def least_torque(self, torque: float, longest: float, least: float) -> float:
+        """Return the torque, N m, below which no law has a turn of at most `longest` and at least `least`, s.
+
+        torque: a first guess above zero. Infinite if no torque within reason is enough.
+        """
+
+        def suffices(torque: float) -> bool:
+            reach = self.within(torque)
+            return reach.exists and reach.shortest <= longest and reach.longest >= least
+
+        low, high = 0.0, torque
+        for _ in range(_DOUBLINGS):
+            if suffices(high):
+                break
+            low, high = high, 2.0 * high
+        else:
+            return math.inf
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if suffices(middle) else (middle, high)
+        return low
+
+    def _time(self, energy: Array) -> float:
+        return float(np.sum(self.turn.weights * np.sqrt(0.5 * self.turn.terms.inertia / energy)))
+
+    def _least(self, limit: Array, loss: Array, gain: Array) -> Array:
+        """Return the least K over a limit: it loses at most `loss` after an angle, and gains at most `gain` before."""
+        three = np.tile(limit.ravel(), 3)
+        after = np.maximum.accumulate(three + loss) - loss
+        before = np.maximum.accumulate((three - gain)[::-1])[::-1] + gain
+        middle = slice(len(self.passed), 2 * len(self.passed))
+        return np.asarray(np.maximum(after, before)[middle].reshape(limit.shape))
+
+    @staticmethod
+    def _three_turns(integral: Array, turn: float) -> Array:
+        return np.concatenate([integral, integral + turn, integral + 2.0 * turn])

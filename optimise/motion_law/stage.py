@@ -1,0 +1,221 @@
+"""The best law on the cells of a turn.
+
+A cycle time that must be equal makes the problem non-convex only if the best law would be faster. Then the tangent of
+the time is renewed until it changes nothing (`programme`), and the law is the convex combination of the slow and the
+fast one with exactly the cycle time: limits, peak and RMS torque are convex, so that it is no worse.
+
+Of the laws of least peak torque, that of least RMS torque is taken, for a ten-thousandth of the peak.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...model.arrays import Array, Mask
+from ...model.motion_law.law_turn import LawTurn
+from ...model.motion_law.motion_law import MotionLaw
+from ...model.transient.equation import TURN
+from .law_limits import LawLimits
+from .programme import Aim, Margins, Multipliers, Programme, Requirement, Solution
+
+_RENEWALS = 20
+_SETTLED = 1e-6
+_TIE = 1e-4  # of the peak torque
+_EQUAL = 1e-7  # of the cycle time
+_KEPT = 2e-7  # of a limit
+_ROUNDS = 8
+_COARSE = 0.01  # of a limit, by which it is exceeded within a cell: then the cell is too coarse for margins ...
+_UNTIMED = 1e-5  # ... or if its time is wrong by more of the cycle time
+
+Proof = tuple[Aim, Requirement, Multipliers]
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A law on the cells of a turn. value: of the objective. proofs: programmes whose multipliers bound it from below.
+
+    relaxed: whether a least time binds, so that these bounds are those of a relaxation. exceeded: greatest share by
+    which a limit is exceeded at a node. coarse: cells (n,) that do not resolve the law.
+    """
+
+    law: MotionLaw
+    value: float
+    proofs: list[Proof]
+    relaxed: bool
+    exceeded: float
+    coarse: Mask
+
+
+def solve_stage(turn: LawTurn, limits: LawLimits, guess: MotionLaw | None) -> Stage | None:
+    """Return the best law on the cells, or None. guess: a law on other cells.
+
+    Between the angles of the programme a law may exceed limits, and its time is not that of Simpson's rule. Both are
+    measured, and the programme is solved again with margins.
+    """
+    margins, target = Margins(*np.full((3, len(turn.width)), _KEPT)), limits.cycle_time
+    for _ in range(_ROUNDS):
+        search = _Search(Programme(turn, limits, margins), guess, target)
+        answer = search.best()
+        if answer is None:
+            return None
+        law, missing, fast = _timed(turn, limits, *answer)
+        found = _excess(law, limits)
+        excess = np.max([found.least, found.greatest, found.acceleration], axis=0)
+        coarse = (excess > _COARSE) | (np.abs(search.time_errors(law)) > _UNTIMED * limits.cycle_time)
+        if coarse.any() or (excess.max() <= _KEPT and abs(missing) <= _EQUAL * limits.cycle_time):
+            break
+        guess, target = law, target + missing
+        parts = ((getattr(margins, name), getattr(found, name)) for name in ("least", "greatest", "acceleration"))
+        margins = Margins(*(margin + 1.5 * np.maximum(part, 0.0) for margin, part in parts))
+    value = value_of(law, limits) if law.node_energies.min() > 0.0 else math.inf
+    return Stage(law, value, search.proofs, fast, float(excess.max()), coarse)
+
+
+def value_of(law: MotionLaw, limits: LawLimits) -> float:
+    """Return peak torque, N m, RMS torque over time, N m, or cycle time, s, whichever is the objective."""
+    objective = limits.request.objective
+    if objective == "peak torque":
+        return float(np.abs(law.torque).max())
+    if objective == "cycle time":
+        return law.period
+    return law.rms_torque
+
+
+class _Search:
+    """The search for the best law of a programme. proofs: what it solved, with multipliers of the objective."""
+
+    def __init__(self, programme: Programme, guess: MotionLaw | None, cycle_time: float) -> None:
+        self.programme, self.limits, self.guess, self.cycle_time = programme, programme.limits, guess, cycle_time
+        self.proofs: list[Proof] = []
+
+    def best(self) -> tuple[Solution, Solution | None] | None:
+        """Return the best law, and a faster one to combine with where a least time binds; None if there is none."""
+        request = self.limits.request
+        if request.objective == "cycle time":
+            only = self._prove("cycle time", Requirement(torque_limit=request.torque_limit))
+            return None if only is None else (only, None)
+        needs = Requirement(torque_limit=request.torque_limit, longest=self.cycle_time)
+        fast = self._prove(request.objective, needs)
+        if fast is None:
+            return None
+        if request.objective == "rms torque":
+            if not self._too_fast(fast):
+                return fast, None
+            self._prove("rms torque", replace(needs, longest=None, least=self.cycle_time))
+            slow = self._renewed("rms torque", needs, self._reference(None), prove=True)
+            return None if slow is None else (slow, fast)
+        peak, reference = fast.value, fast.energies
+        if self._too_fast(fast):
+            slow = self.programme.solve("long cycle", Requirement(torque_limit=peak * (1.0 + _TIE)))
+            if slow is not None and self.programme.time(slow.energies) >= self.cycle_time:
+                reference = self._combined(fast.energies, slow.energies)
+            else:
+                slow = self._renewed("peak torque", needs, self._reference(slow), prove=True)
+                if slow is None:
+                    return None
+                peak, reference = max(peak, slow.value), slow.energies
+        needs = replace(needs, torque_limit=peak * (1.0 + _TIE))
+        calm = self.programme.solve("rms torque", needs) or fast
+        if not self._too_fast(calm):
+            return calm, None
+        slow = self._renewed("rms torque", needs, reference)
+        return None if slow is None else (slow, calm)
+
+    def time_errors(self, law: MotionLaw) -> Array:
+        """Return the errors of the programme's time of a law in each cell, (n,), s."""
+        turn = self.programme.turn
+        if not law.node_energies.min() > 0.0:
+            return np.full(len(turn.width), math.inf)
+        inertia, energies = self.programme.inertia, np.stack([law.energy(angles) for angles in self.programme.angles])
+        starts, middles = np.sqrt(0.5 * inertia / np.maximum(energies, 1e-300))
+        simpson = turn.width * (starts + 4.0 * middles + np.roll(starts, -1)) / 6.0
+        return np.asarray(simpson - np.sum(turn.weights * law.node_slowness, axis=1))
+
+    def _too_fast(self, solution: Solution) -> bool:
+        if self.limits.request.timing != "equal":
+            return False
+        return self.programme.time(solution.energies) < self.cycle_time * (1.0 - _EQUAL)
+
+    def _prove(self, aim: Aim, needs: Requirement) -> Solution | None:
+        solution = self.programme.solve(aim, needs)
+        if solution is not None:
+            self.proofs.append((aim, needs, solution.multipliers))
+        return solution
+
+    def _combined(self, fast: Array, slow: Array) -> Array:
+        """Return the convex combination of K with the cycle time, from one that takes less and one that takes more."""
+        from scipy.optimize import brentq
+
+        def late(share: float) -> float:
+            return self.programme.time(fast + share * (slow - fast)) - self.cycle_time
+
+        return np.asarray(fast + float(brentq(late, 0.0, 1.0, xtol=1e-15)) * (slow - fast))
+
+    def _reference(self, slow: Solution | None) -> Array:
+        """Return K of a law near the best one: the guess, else a slow one, else that of constant speed."""
+        if self.guess is not None:
+            return np.stack([self.guess.energy(angles) for angles in self.programme.angles])
+        if slow is not None:
+            return slow.energies
+        return np.asarray(0.5 * self.programme.inertia * (TURN / self.cycle_time) ** 2)
+
+    def _renewed(self, aim: Aim, needs: Requirement, reference: Array, *, prove: bool = False) -> Solution | None:
+        """Return the best law of at least the cycle time near a reference, by tangents of the time."""
+        least = replace(needs, longest=None, least=self.cycle_time)
+        last = None
+        for _ in range(_RENEWALS):
+            least = replace(least, energies=reference)
+            solution = self.programme.solve(aim, least)
+            if solution is None:
+                break
+            settled = last is not None and abs(last.value - solution.value) <= _SETTLED * abs(solution.value)
+            last, reference = solution, solution.energies
+            if settled:
+                break
+        if last is not None and prove:
+            self.proofs.append((aim, least, last.multipliers))
+        return last
+
+
+def _timed(turn: LawTurn, limits: LawLimits, slow: Solution, fast: Solution | None) -> tuple[MotionLaw, float, bool]:
+    """Return the law with exactly the cycle time, or at most that; the time missing before; whether it is combined."""
+    law = MotionLaw.closed(turn, slow.torque, float(slow.energy[0]))
+    request, cycle_time = limits.request, limits.cycle_time
+    if not law.node_energies.min() > 0.0 or request.objective == "cycle time":
+        return law, 0.0, fast is not None
+    missing = cycle_time - law.period
+    if request.timing == "at most" and missing >= 0.0:
+        return law, 0.0, False
+    if fast is not None:
+        other = MotionLaw.closed(turn, fast.torque, float(fast.energy[0]))
+        if missing <= 0.0 and other.node_energies.min() > 0.0:
+            return _with_period(lambda share: law.combined(other, share), 0.0, 1.0, cycle_time), 0.0, True
+    # A constant added to K changes no torque.
+    room = 1e-2 * float(law.node_energies.min())
+    near = _with_period(lambda added: replace(law, start_energy=law.start_energy + added), -room, room, cycle_time)
+    return near, missing, fast is not None
+
+
+def _with_period(law_of: Callable[[float], MotionLaw], first: float, last: float, period: float) -> MotionLaw:
+    """Return the law of a family with a period, s, if the ends are on either side; else that of the nearer end."""
+    from scipy.optimize import brentq
+
+    errors = [law_of(number).period - period for number in (first, last)]
+    if errors[0] * errors[1] >= 0.0:
+        return law_of((first, last)[int(np.argmin(np.abs(errors)))])
+    return law_of(float(brentq(lambda number: law_of(number).period - period, first, last, xtol=1e-15, rtol=1e-14)))
+
+
+def _excess(law: MotionLaw, limits: LawLimits) -> Margins:
+    """Return the greatest shares by which a law exceeds limits at the nodes of each cell."""
+    turn, energy = law.turn, law.node_energies
+    low, high = limits.energies(turn.angle, turn.terms.inertia, turn.terms.travel)
+    limit = limits.acceleration(turn.terms)
+    by_node = [1.0 - energy / low, energy / high - 1.0, np.full(energy.shape, -1.0)]
+    if limit is not None:
+        by_node[2] = np.abs(law.node_torques - turn.terms.load + limit.by_energy * energy) / limit.greatest - 1.0
+    return Margins(*(part.max(axis=1) for part in by_node))
