@@ -22,7 +22,19 @@ from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
 from ..machine.two_turns import TURN, cycle_turns, half_at, halves
 from .cycle_segments import Segments
-from .shaft_curves import TOUCH, VECTORS, WORK, Axes, Blocks, CurveArrays, Evaluations, cut_rates, fill_curves
+from .shaft_curves import (
+    TOUCH,
+    VECTORS,
+    WORK,
+    Axes,
+    Blocks,
+    Crankshaft,
+    CurveArrays,
+    Evaluations,
+    ShaftCurve,
+    cut_rates,
+    fill_curves,
+)
 from .shaft_segments import CONTACT, FIXED, Breaks, joined, segments_of
 from .signal_inputs import cycle_window, signal_inputs
 from .signals import Signal
@@ -89,7 +101,8 @@ class Shaft:
         self._stepped = [np.ascontiguousarray(cylinder.reshape(-1, cylinder.shape[2], 1)) for cylinder in stepped]
         both_halves = np.stack(plain, axis=1).reshape(-1, plain[0].shape[1], 1)
         all_steps = np.stack(stepped, axis=1).reshape(-1, plain[0].shape[1], 1)
-        self._blocks = Blocks(np.ascontiguousarray(both_halves), np.ascontiguousarray(all_steps))
+        blocks = Blocks(np.ascontiguousarray(both_halves), np.ascontiguousarray(all_steps))
+        self._crankshaft = Crankshaft(self._axes, self._pace, blocks, self._loads[0], self._loads[-1], len(self._parts))
 
     def with_curve(self, kind: int) -> Shaft:
         """Return the same shaft for another curve, with the same breakpoints."""
@@ -186,21 +199,8 @@ class Shaft:
         out = CurveArrays(
             np.empty((*angle.shape, width)), np.empty(angle.shape), np.empty((len(row), len(members)), np.int64)
         )
-        fill_curves(
-            kind,
-            members,
-            items,
-            self._axes,
-            self._pace,
-            self._blocks,
-            self._loads[0],
-            self._loads[-1],
-            len(self._parts),
-            self.vector and kind == self.kind,
-            self.rubbing,
-            gradients,
-            out,
-        )
+        is_vector = self.vector and kind == self.kind
+        fill_curves(ShaftCurve(kind, members, is_vector, self.rubbing), self._crankshaft, items, out)
         return out.curve, out.size, out.outward
 
     @cached_property

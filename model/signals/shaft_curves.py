@@ -20,7 +20,7 @@ from ..dynamics.rubbing import Sides, joint_forces, touch
 from ..dynamics.segments import Cuts, CycleWindow, Segment, cut_shift, enter, load_on_slider
 from ..dynamics.speed_ratio import SpeedRatio, speed_ratio_at
 from ..kernel.arithmetic import STEP, analytic, magnitude, root
-from ..kernel.kernel import ComplexCube, Cube, Integers, IntegerTable, Row, Table, seldom_kernel
+from ..kernel.kernel import ComplexCube, ComplexTable, Cube, Integers, IntegerTable, Row, Table, seldom_kernel
 from ..kinematics.position import third_derivative
 from ..machine.design import Design, design_at
 from ..machine.raw import Loads
@@ -87,15 +87,19 @@ class Blocks(NamedTuple):
 
 
 @analytic
-def _components(kind: Any, s: Any, c: Any, m: Any, d: Any, load: Any, sides: Any, place: Any, rate: Any) -> Any:
-    """Return one cylinder's components of a curve; rate: acceleration's slope over the crank angle, rad/s^2."""
+def _components(kind: Any, s: Any, c: Any, m: Any, d: Any, sides: Any, place: Any, rate: Any) -> Any:
+    """Return one cylinder's components of a curve.
+
+    place: its crank angle, and the segment there. rate: acceleration's slope over the crank angle, rad/s^2.
+    """
     zero = 0.0 * d.r
+    theta, segment = place
+    load = load_on_slider(m, d, theta, segment)
     if kind == TOUCH:
         return touch(s, c, m, d, load, sides.turn, sides.swing), zero
     if kind <= _LINE or kind >= WORK:
         f = joint_forces(s, c, m, d, load, sides)
         if kind in (_TORQUE, _POWER):
-            theta, segment = place
             torque = torque_without_crank_loads(f.torque, theta, sense_of(d), segment)
             return (torque * d.speed, zero) if kind == _POWER else (torque, zero)
         if kind in (_PIVOT, WORK + 2):
@@ -131,103 +135,123 @@ def _components(kind: Any, s: Any, c: Any, m: Any, d: Any, load: Any, sides: Any
     return (moment, zero) if kind == _SHAKING_MOMENT else (x, y)
 
 
-@seldom_kernel
-def fill_curves(
-    kind: int,
-    members: Integers,
-    items: Evaluations,
-    axes: Axes,
-    pace: SpeedRatio,
-    blocks: Blocks,
-    first: Loads,
-    second: Loads,
-    turns: int,
-    vector: bool,
-    rubbing: bool,
-    gradients: bool,
-    out: CurveArrays,
-) -> None:
-    """Fill `out` with a curve of designs, added up over the cylinders `members`.
+class ShaftCurve(NamedTuple):
+    """One curve. kind: signal, or `TOUCH` or `WORK` and those after it. members: cylinders that are summed.
 
-    turns: halves of a cycle of two turns, with loads `first` and `second`. vector: whether both components count.
+    vector: whether both components count. rubbing: whether friction counts.
     """
-    rows, count = blocks.plain.shape[1], members.shape[0]
-    numbers = blocks.stepped.shape[0] // max(1, blocks.plain.shape[0])
+
+    kind: int
+    members: Integers
+    vector: bool
+    rubbing: bool
+
+
+class Crankshaft(NamedTuple):
+    """Cylinders and speed of a shaft. turns: halves of its cycle, with loads `first` and `second`."""
+
+    axes: Axes
+    pace: SpeedRatio
+    blocks: Blocks
+    first: Loads
+    second: Loads
+    turns: int
+
+
+class _Room(NamedTuple):
+    """Work space. real, stepped: one cylinder's numbers. piece, shift, sides: of the members, in a segment."""
+
+    real: Table
+    stepped: ComplexTable
+    piece: IntegerTable
+    shift: Table
+    sides: Table
+
+
+@analytic
+def _fill_numbers(source: Any, ratio: Any, slope: Any, axes: Axes, k: int, out: Any) -> None:
+    """Fill `out` with numbers of cylinder k: speed and acceleration at p = ratio, p' = slope, gravity in its axes."""
+    for row in range(out.shape[0]):
+        out[row, 0] = source[row, 0]
+    speed, x, y = source[_ROW_SPEED, 0], source[_ROW_X, 0], source[_ROW_Y, 0]
+    out[_ROW_SPEED, 0] = speed * ratio
+    out[_ROW_ACCELERATION, 0] = source[_ROW_ACCELERATION, 0] + speed * speed * ratio * slope
+    out[_ROW_X, 0] = axes.cosine[k] * x + axes.sine[k] * y
+    out[_ROW_Y, 0] = axes.cosine[k] * y - axes.sine[k] * x
+
+
+@analytic
+def _enter_segment(curve: ShaftCurve, shaft: Crankshaft, items: Evaluations, p: int, room: _Room, out: Any) -> None:
+    """Fix strokes, pieces of loads and signs of the members in the segment of evaluation p."""
     watch = CycleWindow(0, 0.0, 1.0, False)
-    stepped, real = np.empty((rows, 1), np.complex128), np.empty((rows, 1))
-    piece = np.zeros((count, first.kind.shape[0]), np.int64)
-    shift = np.zeros((count, first.kind.shape[0]))
-    sides = np.zeros((count, 5))
+    ratio, slope, _, _ = speed_ratio_at(items.probe[p], shaft.pace)
+    for i in range(curve.members.shape[0]):
+        k = curve.members[i]
+        half = items.half[p, k]
+        loads = shaft.first if half == 0 else shaft.second
+        _fill_numbers(shaft.blocks.plain[items.row[p] * shaft.turns + half], ratio, slope, shaft.axes, k, room.real)
+        d, local = design_at(room.real, 0), items.probe[p] + shaft.axes.lead[k]
+        _, outward = enter(d, room.real, 0, local, loads, watch, room.piece[i], room.shift[i])
+        segment = Segment(room.real, loads, outward, room.piece[i], room.shift[i])
+        signs = sides_of(local, d, segment, curve.rubbing)
+        room.sides[i, 0], room.sides[i, 1], room.sides[i, 2] = signs.turn, signs.slide, signs.swing
+        room.sides[i, 3], room.sides[i, 4] = signs.press, signs.grip
+        out.outward[p, i] = 1 if outward else 0
+
+
+@analytic
+def _sum_members(
+    curve: ShaftCurve, shaft: Crankshaft, items: Evaluations, p: int, place: Any, room: _Room, out: Any
+) -> Any:
+    """Return the curve and its size at one angle of evaluation p.
+
+    place: shaft angle, its imaginary step, p with three derivatives there, and the number of the stepped design.
+    """
+    theta, step, (p_0, p_1, p_2, p_3), v = place
+    axes, sides, numbers = shaft.axes, room.sides, shaft.blocks.stepped.shape[0] // max(1, shaft.blocks.plain.shape[0])
+    ratio, slope, bend = complex(p_0, step * p_1), complex(p_1, step * p_2), complex(p_2, step * p_3)
+    sum_x, sum_y = 0j, 0j
+    size = 0.0
+    for i in range(curve.members.shape[0]):
+        k = curve.members[i]
+        half = items.half[p, k]
+        loads = shaft.first if half == 0 else shaft.second
+        source = shaft.blocks.stepped[(items.row[p] * shaft.turns + half) * numbers + v]
+        _fill_numbers(source, ratio, slope, axes, k, room.stepped)
+        speed = source[_ROW_SPEED, 0]
+        rate = speed * speed * (slope * slope + ratio * bend)
+        z, local = design_at(room.stepped, 0), theta + axes.lead[k]
+        sine, cosine = math.sin(local), math.cos(local)
+        s, c = complex(sine, cosine * step), complex(cosine, -sine * step)
+        segment = Segment(room.stepped, loads, out.outward[p, i] == 1, room.piece[i], room.shift[i])
+        signs = Sides(sides[i, 0], sides[i, 1], sides[i, 2], sides[i, 3], sides[i, 4])
+        x, y = _components(curve.kind, s, c, design_motion(s, c, z), z, signs, (complex(local, step), segment), rate)
+        if curve.kind in (_SHAKING_FORCE, _ROCKING_COUPLE):
+            x, y = axes.cosine[k] * x - axes.sine[k] * y, axes.sine[k] * x + axes.cosine[k] * y
+        if curve.kind == _ROCKING_COUPLE:
+            x, y = -axes.place[k] * y, axes.place[k] * x
+        sum_x, sum_y = sum_x + x, sum_y + y
+        size += abs(x.real) + abs(y.real)
+    return (root(sum_x * sum_x + sum_y * sum_y) if curve.vector else sum_x), size
+
+
+@seldom_kernel
+def fill_curves(curve: ShaftCurve, shaft: Crankshaft, items: Evaluations, out: CurveArrays) -> None:
+    """Fill `out` with a curve of designs, added up over its members."""
+    rows, count, loads = shaft.blocks.plain.shape[1], curve.members.shape[0], shaft.first.kind.shape[0]
+    real, stepped = np.empty((rows, 1)), np.empty((rows, 1), np.complex128)
+    room = _Room(real, stepped, np.zeros((count, loads), np.int64), np.zeros((count, loads)), np.zeros((count, 5)))
     for p in range(items.row.shape[0]):
-        ratio, slope, _, _ = speed_ratio_at(items.probe[p], pace)
-        for i in range(count):
-            k = members[i]
-            loads = first if items.half[p, k] == 0 else second
-            block = blocks.plain[items.row[p] * turns + items.half[p, k]]
-            for row in range(rows):
-                real[row, 0] = block[row, 0]
-            real[_ROW_SPEED, 0] = block[_ROW_SPEED, 0] * ratio
-            real[_ROW_ACCELERATION, 0] = (
-                block[_ROW_ACCELERATION, 0] + block[_ROW_SPEED, 0] * block[_ROW_SPEED, 0] * ratio * slope
-            )
-            x, y = block[_ROW_X, 0], block[_ROW_Y, 0]
-            real[_ROW_X, 0] = axes.cosine[k] * x + axes.sine[k] * y
-            real[_ROW_Y, 0] = axes.cosine[k] * y - axes.sine[k] * x
-            d = design_at(real, 0)
-            local = items.probe[p] + axes.lead[k]
-            _, outward = enter(d, real, 0, local, loads, watch, piece[i], shift[i])
-            signs = sides_of(local, d, Segment(real, loads, outward, piece[i], shift[i]), rubbing)
-            sides[i, 0], sides[i, 1], sides[i, 2] = signs.turn, signs.slide, signs.swing
-            sides[i, 3], sides[i, 4] = signs.press, signs.grip
-            out.outward[p, i] = 1 if outward else 0
+        _enter_segment(curve, shaft, items, p, room, out)
         for a in range(items.angle.shape[1]):
             theta = items.angle[p, a]
-            p_0, p_1, p_2, p_3 = speed_ratio_at(theta, pace)
-            for v in range(numbers if gradients else 1):
+            ratios = speed_ratio_at(theta, shaft.pace)
+            for v in range(out.curve.shape[2] - 1):
                 step = STEP if v == 0 else STEP * items.rate[p, v - 1]
-                ratio_now, slope_now = complex(p_0, step * p_1), complex(p_1, step * p_2)
-                bend = complex(p_2, step * p_3)
-                sum_x, sum_y = 0j, 0j
-                size = 0.0
-                for i in range(count):
-                    k = members[i]
-                    half = items.half[p, k]
-                    loads = first if half == 0 else second
-                    source = blocks.stepped[(items.row[p] * turns + half) * numbers + v]
-                    for row in range(rows):
-                        stepped[row, 0] = source[row, 0]
-                    speed = source[_ROW_SPEED, 0]
-                    stepped[_ROW_SPEED, 0] = speed * ratio_now
-                    square = speed * speed
-                    stepped[_ROW_ACCELERATION, 0] = source[_ROW_ACCELERATION, 0] + square * ratio_now * slope_now
-                    rate = square * (slope_now * slope_now + ratio_now * bend)
-                    x, y = source[_ROW_X, 0], source[_ROW_Y, 0]
-                    stepped[_ROW_X, 0] = axes.cosine[k] * x + axes.sine[k] * y
-                    stepped[_ROW_Y, 0] = axes.cosine[k] * y - axes.sine[k] * x
-                    z = design_at(stepped, 0)
-                    local = theta + axes.lead[k]
-                    sine, cosine = math.sin(local), math.cos(local)
-                    s, c = complex(sine, cosine * step), complex(cosine, -sine * step)
-                    at = complex(local, step)
-                    m = design_motion(s, c, z)
-                    segment = Segment(stepped, loads, out.outward[p, i] == 1, piece[i], shift[i])
-                    load = load_on_slider(m, z, at, segment)
-                    signs = Sides(sides[i, 0], sides[i, 1], sides[i, 2], sides[i, 3], sides[i, 4])
-                    x, y = _components(kind, s, c, m, z, load, signs, (at, segment), rate)
-                    if kind in (_SHAKING_FORCE, _ROCKING_COUPLE):
-                        x, y = axes.cosine[k] * x - axes.sine[k] * y, axes.sine[k] * x + axes.cosine[k] * y
-                    if kind == _ROCKING_COUPLE:
-                        x, y = -axes.place[k] * y, axes.place[k] * x
-                    sum_x, sum_y = sum_x + x, sum_y + y
-                    size += abs(x.real) + abs(y.real)
-                if vector:
-                    sum_x = root(sum_x * sum_x + sum_y * sum_y)
+                value, size = _sum_members(curve, shaft, items, p, (theta, step, ratios, v), room, out)
+                out.curve[p, a, 1 + v] = value.imag / STEP
                 if v == 0:
-                    out.curve[p, a, 0] = sum_x.real
-                    out.curve[p, a, 1] = sum_x.imag / STEP
-                    out.size[p, a] = size
-                else:
-                    out.curve[p, a, 1 + v] = sum_x.imag / STEP
+                    out.curve[p, a, 0], out.size[p, a] = value.real, size
 
 
 @seldom_kernel

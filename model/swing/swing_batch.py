@@ -28,7 +28,7 @@ from .ends import Ends, ends_of, greatest_pin_distance, start_column, with_start
 from .forces import locking_angle
 from .law import corners, mirrored, shares_of
 from .swing import Swing, slowly
-from .swing_states import ANGLE, GUIDE, PACE, PLACE, Complexes, Path, path_of, states
+from .swing_states import ANGLE, GUIDE, PACE, PLACE, Complexes, Path, Points, path_of, states
 
 _SHORTEST = 1e-12
 _SCAN = 33
@@ -105,7 +105,7 @@ class SwingBatch:
         rows = np.ascontiguousarray(np.broadcast_to(designs, shape), dtype=np.int64).ravel()
         stepped = rows if step is None else rows * self.columns + step
         blocks, ends = (self.complex_blocks, self.plain_ends) if step is None else (self.steps, self.stepped_ends)
-        flat = states(self.blocks, blocks, self.loads, self.path, (rows, stepped, share, slip, probe, back), ends)
+        flat = states(self.blocks, blocks, self.loads, self.path, Points(rows, stepped, share, slip, probe, back), ends)
         return flat.reshape(*shape, flat.shape[1])
 
     def locked(self) -> Mask:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array, IntArray
+from ..arrays import Array
 from ..dynamics.contact import sides_of
 from ..dynamics.crank_loads import torque_without_crank_loads
 from ..dynamics.rubbing import joint_forces
@@ -114,132 +114,161 @@ def _pushed(sine: Any, cosine: Any, m: Any, d: Any, load: Any, on_crank: Any, ro
     return b.pull + mu * magnitude(guide) - bx, guide
 
 
+class Points(NamedTuple):
+    """Points (p,) of swings: index of the block and of the stepped one, fraction of the time, its imaginary part.
+
+    probe: a fraction of the time within the same piece. back: 0 forward, 1 back. Fractions count from the start of each
+    way.
+    """
+
+    design: Integers
+    stepped: Integers
+    share: Row
+    slip: Row
+    probe: Row
+    back: Row
+
+
+class _Room(NamedTuple):
+    """Work space: a design's numbers and stepped ones, pieces and shifts of its loads."""
+
+    block: Table
+    stepped: ComplexTable
+    piece: Integers
+    shift: Row
+
+
+@analytic
+def _way_of(path: Path, share: Any, probe: Any, back: Any) -> Any:
+    """Return the fraction of the travel and its three derivatives by the fraction of the time, counted forward."""
+    w, w_1, w_2, w_3 = way_at(path.law, path.table, share, probe)
+    if back > 0.5:
+        w, w_1, w_2, w_3 = 1.0 - w, -w_1, -w_2, -w_3
+    return w, w_1, w_2, w_3
+
+
+@analytic
+def _stepped_motion(theta: Any, step: Any, z: Any) -> Any:
+    """Return sine, cosine and motion at a crank angle with an imaginary part."""
+    sine, cosine = math.sin(theta), math.cos(theta)
+    zs, zc = complex(sine, cosine * step), complex(cosine, -sine * step)
+    return zs, zc, motion(zs, zc, z.r, z.l, z.e, z.branch)
+
+
+@analytic
+def _probe_angle(path: Path, d: Any, s: float, start: float, end: float) -> float:
+    """Return the crank angle at a fraction s of the travel."""
+    if path.slider:
+        first, final = slider_at(start, d), slider_at(end, d)
+        return _crank_angle(first + (final - first) * s, d.r, d.l, d.e, d.branch, start, end)
+    return start + (end - start) * s
+
+
+@analytic
+def _drive(
+    path: Path, z: Any, place: Any, probe_angle: float, turning: float, loads: Loads, room: _Room
+) -> tuple[Any, Any, Any, Any]:
+    """Return drive, power, error of the driven side and guide force.
+
+    place: crank angle and its imaginary part, sine, cosine, motion and speed there. probe_angle: within the same piece.
+    """
+    theta, moved, zs, zc, m, speed = place
+    drive, guide, power = 0j, 0j, 0j
+    d, angle, outward = design_at(room.block, 0), complex(theta, moved), False
+    if path.forces:
+        watch = CycleWindow(0, 0.0, 1.0, False, False)
+        _, outward = enter(d, room.block, 0, probe_angle, loads, watch, room.piece, room.shift)
+    segment = Segment(room.stepped, loads, outward, room.piece, room.shift)
+    load = load_on_slider(m, z, angle, segment) if path.forces else 0j
+    j = influences(zs, zc, m, z.l)
+    if path.slider:
+        if path.forces:
+            on_crank = torque_without_crank_loads(0j, angle, turning, segment)
+            rod_1 = motion(math.sin(probe_angle), math.cos(probe_angle), d.r, d.l, d.e, d.branch).rod_1
+            drive, guide = _pushed(zs, zc, m, z, load, on_crank, rod_1, path.rubbing)
+            power = drive * m.x_1 * speed
+        off = magnitude(j.crank) * z.crank_error + magnitude(j.rod) * z.rod_error
+        off = off + magnitude(j.offset) * z.offset_error + path.tolerance
+        error = off * inverse(magnitude(m.x_1))
+    else:
+        if path.forces:
+            sides = sides_of(probe_angle, d, Segment(room.block, loads, outward, room.piece, room.shift), path.rubbing)
+            f = joint_forces(zs, zc, m, z, load, sides)
+            drive = torque_without_crank_loads(f.torque, angle, turning, segment)
+            guide, power = f.guide, drive * speed
+        error = worst_case(j, z)
+    return drive, power, error, guide
+
+
+@analytic
+def _fill_state(path: Path, points: Points, p: int, ends: Any, loads: Loads, room: _Room, out: Any) -> None:
+    """Fill row p of `out` with the state at point p."""
+    begin, ending = ends[points.stepped[p], 0], ends[points.stepped[p], 1]
+    start, end = begin.real, ending.real
+    turning = (1.0 if end > start else -1.0) * (1.0 - 2.0 * points.back[p])
+    d, z = design_at(room.block, 0), design_at(room.stepped, 0)
+    s, s_1, s_2, _ = _way_of(path, points.probe[p], points.probe[p], points.back[p])
+    probe_angle = _probe_angle(path, d, s, start, end)
+    w, w_1, w_2, w_3 = _way_of(path, points.share[p], points.probe[p], points.back[p])
+    a, a_1, a_2 = (
+        complex(w, w_1 * points.slip[p]),
+        complex(w_1, w_2 * points.slip[p]),
+        complex(w_2, w_3 * points.slip[p]),
+    )
+    if path.slider:
+        begin, ending = _stepped_motion(start, begin.imag, z)[2].x, _stepped_motion(end, ending.imag, z)[2].x
+    place = begin + (ending - begin) * a
+    rate = (ending - begin) * a_1
+    speed = rate * path.per_time
+    rise = (ending - begin) * a_2 * (path.per_time * path.per_time)
+    theta, moved = place.real, place.imag
+    if path.slider:
+        theta = _crank_angle(place.real, d.r, d.l, d.e, d.branch, start, end)
+        at = _stepped_motion(theta, 0.0, z)[2]
+        moved = (place.imag - at.x.imag) / at.x_1.real
+    zs, zc, m = _stepped_motion(theta, moved, z)
+    if path.slider:
+        speed = speed * inverse(m.x_1)
+        rise = (rise - m.x_2 * speed * speed) * inverse(m.x_1)
+    if speed.real == 0.0:
+        speed = speed + turning * _STILL
+    # Signs are taken within the piece: at its place, speed and acceleration.
+    fast, faster = speed.real, rise.real
+    if not path.slider:
+        fast = (end - start) * s_1 * path.per_time
+        faster = (end - start) * s_2 * (path.per_time * path.per_time)
+    room.block[_SPEED, 0], room.block[_ACCELERATION, 0] = turning * max(abs(fast), _STILL), faster
+    room.stepped[_SPEED, 0], room.stepped[_ACCELERATION, 0] = speed, rise
+    z = design_at(room.stepped, 0)
+    drive, power, error, guide = _drive(path, z, (theta, moved, zs, zc, m, speed), probe_angle, turning, loads, room)
+    out[p, DRIVE], out[p, POWER], out[p, ERROR], out[p, GUIDE] = drive, power, error, guide
+    out[p, PLACE], out[p, PACE], out[p, ANGLE], out[p, RATE] = m.x, m.x_1, complex(theta, moved), rate
+
+
 @seldom_kernel
 def _states(
-    blocks: Cube,
-    steps: ComplexCube,
-    designs: Integers,
-    stepped: Integers,
-    share: Row,
-    slip: Row,
-    probe: Row,
-    back: Row,
-    ends: ComplexTable,
-    loads: Loads,
-    path: Path,
-    out: ComplexTable,
+    blocks: Cube, steps: ComplexCube, points: Points, ends: ComplexTable, loads: Loads, path: Path, out: ComplexTable
 ) -> None:
-    rows = blocks.shape[1]
-    piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
-    block, stepped_block = np.empty((rows, 1)), np.empty((rows, 1), np.complex128)
-    watch = CycleWindow(0, 0.0, 1.0, False, False)
+    rows, count = blocks.shape[1], loads.kind.shape[0]
+    block, stepped = np.empty((rows, 1)), np.empty((rows, 1), np.complex128)
+    room = _Room(block, stepped, np.zeros(count, np.int64), np.zeros(count))
     last, last_step = -1, -1
-    for p in range(share.shape[0]):
-        if designs[p] != last:
-            last = designs[p]
+    for p in range(points.share.shape[0]):
+        if points.design[p] != last:
+            last = points.design[p]
             block[:, :] = blocks[last]
-        if stepped[p] != last_step:
-            last_step = stepped[p]
-            stepped_block[:, :] = steps[last_step]
-        begin, ending = ends[stepped[p], 0], ends[stepped[p], 1]
-        start, end = begin.real, ending.real
-        turning = (1.0 if end > start else -1.0) * (1.0 - 2.0 * back[p])
-        # Location of the piece: stroke, pieces of tables, side of the guide.
-        d = design_at(block, 0)
-        s, s_1, s_2, _ = way_at(path.law, path.table, probe[p], probe[p])
-        if back[p] > 0.5:
-            s, s_1, s_2 = 1.0 - s, -s_1, -s_2
-        if path.slider:
-            first, final = slider_at(start, d), slider_at(end, d)
-            probe_angle = _crank_angle(first + (final - first) * s, d.r, d.l, d.e, d.branch, start, end)
-        else:
-            probe_angle = start + (end - start) * s
-        # The state itself.
-        z = design_at(stepped_block, 0)
-        w, w_1, w_2, w_3 = way_at(path.law, path.table, share[p], probe[p])
-        if back[p] > 0.5:
-            w, w_1, w_2, w_3 = 1.0 - w, -w_1, -w_2, -w_3
-        a, a_1 = complex(w, w_1 * slip[p]), complex(w_1, w_2 * slip[p])
-        a_2 = complex(w_2, w_3 * slip[p])
-        if path.slider:
-            sine, cosine = math.sin(start), math.cos(start)
-            zs, zc = complex(sine, cosine * begin.imag), complex(cosine, -sine * begin.imag)
-            begin = motion(zs, zc, z.r, z.l, z.e, z.branch).x
-            sine, cosine = math.sin(end), math.cos(end)
-            zs, zc = complex(sine, cosine * ending.imag), complex(cosine, -sine * ending.imag)
-            ending = motion(zs, zc, z.r, z.l, z.e, z.branch).x
-        place = begin + (ending - begin) * a
-        rate = (ending - begin) * a_1
-        velocity = rate * path.per_time
-        acceleration = (ending - begin) * a_2 * (path.per_time * path.per_time)
-        theta, moved = place.real, place.imag
-        if path.slider:
-            theta = _crank_angle(place.real, d.r, d.l, d.e, d.branch, start, end)
-            sine, cosine = math.sin(theta), math.cos(theta)
-            at = motion(complex(sine, 0.0), complex(cosine, 0.0), z.r, z.l, z.e, z.branch)
-            moved = (place.imag - at.x.imag) / at.x_1.real
-        sine, cosine = math.sin(theta), math.cos(theta)
-        zs, zc = complex(sine, cosine * moved), complex(cosine, -sine * moved)
-        m = motion(zs, zc, z.r, z.l, z.e, z.branch)
-        speed, rise = velocity, acceleration
-        if path.slider:
-            speed = velocity * inverse(m.x_1)
-            rise = (acceleration - m.x_2 * speed * speed) * inverse(m.x_1)
-        if speed.real == 0.0:
-            speed = speed + turning * _STILL
-        # Signs are taken within the piece: at its place, speed and acceleration.
-        fast, faster = speed.real, rise.real
-        if not path.slider:
-            fast = (end - start) * s_1 * path.per_time
-            faster = (end - start) * s_2 * (path.per_time * path.per_time)
-        block[_SPEED, 0], block[_ACCELERATION, 0] = turning * max(abs(fast), _STILL), faster
-        stepped_block[_SPEED, 0], stepped_block[_ACCELERATION, 0] = speed, rise
-        d, z = design_at(block, 0), design_at(stepped_block, 0)
-        load, outward = 0j, False
-        if path.forces:
-            _, outward = enter(d, block, 0, probe_angle, loads, watch, piece, shift)
-        segment = Segment(stepped_block, loads, outward, piece, shift)
-        if path.forces:
-            load = load_on_slider(m, z, complex(theta, moved), segment)
-        drive, guide, power = 0j, 0j, 0j
-        j = influences(zs, zc, m, z.l)
-        if path.slider:
-            if path.forces:
-                angle = complex(theta, moved)
-                on_crank = torque_without_crank_loads(0j, angle, turning, segment)
-                rod_1 = motion(math.sin(probe_angle), math.cos(probe_angle), d.r, d.l, d.e, d.branch).rod_1
-                drive, guide = _pushed(zs, zc, m, z, load, on_crank, rod_1, path.rubbing)
-                power = drive * m.x_1 * speed
-            off = magnitude(j.crank) * z.crank_error + magnitude(j.rod) * z.rod_error
-            off = off + magnitude(j.offset) * z.offset_error + path.tolerance
-            error = off * inverse(magnitude(m.x_1))
-        else:
-            if path.forces:
-                sides = sides_of(probe_angle, d, Segment(block, loads, outward, piece, shift), path.rubbing)
-                f = joint_forces(zs, zc, m, z, load, sides)
-                angle = complex(theta, moved)
-                drive = torque_without_crank_loads(f.torque, angle, turning, segment)
-                guide, power = f.guide, drive * speed
-            error = worst_case(j, z)
-        out[p, 0], out[p, 1], out[p, 2], out[p, 3] = drive, power, error, guide
-        out[p, 4], out[p, 5], out[p, 6], out[p, 7] = m.x, m.x_1, complex(theta, moved), rate
+        if points.stepped[p] != last_step:
+            last_step = points.stepped[p]
+            stepped[:, :] = steps[last_step]
+        _fill_state(path, points, p, ends, loads, room, out)
 
 
-def states(
-    blocks: Array,
-    steps: Complexes,
-    loads: Loads,
-    path: Path,
-    points: tuple[IntArray, IntArray, Array, Array, Array, Array],
-    ends: Complexes,
-) -> Complexes:
-    """Return states (p, 8) at points: indices of block and stepped block, time fraction, imaginary part, piece, way.
+def states(blocks: Array, steps: Complexes, loads: Loads, path: Path, points: Points, ends: Complexes) -> Complexes:
+    """Return states (p, 8) at points.
 
     blocks: (n, rows, 1), of designs that close over the swing. steps: (k, rows, 1), of the same ones with imaginary
-    steps. ends: crank angles (k, 2) of both ends of the swing, with them. A fraction of the time within the piece
-    identifies it; way: 0 forward, 1 back. Fractions count from the start of each way.
+    steps. ends: crank angles (k, 2) of both ends of the swing, with them.
     """
-    designs, stepped, share, slip, probe, back = points
-    out = np.empty((len(share), _STATES), np.complex128)
-    _states(blocks, steps, designs, stepped, share, slip, probe, back, ends, loads, path, out)
+    out = np.empty((len(points.share), _STATES), np.complex128)
+    _states(blocks, steps, points, ends, loads, path, out)
     return out
