@@ -51,8 +51,16 @@ def expect_designs(page: Page, numbers: list[int]) -> None:
 
 
 def field(page: Page, label: str) -> Locator:
-    """Return the field of a limit."""
+    """Return the field of a limit, in the menu of its axis, which is open then."""
+    opened(page, page.get_by_label(label))
     return page.get_by_role("textbox", name=label)
+
+
+def opened(page: Page, within: Locator) -> Locator:
+    """Open the menu of the axis that something is in."""
+    if not within.first.is_visible():
+        page.locator(".axis-head", has=within).locator("summary").click()
+    return within
 
 
 def axis(page: Page, index: int, axes: int) -> tuple[float, float, float]:
@@ -104,6 +112,9 @@ def test_dragging_along_an_axis_is_the_same_as_its_fields(open_page: Open, solve
     kept = [index + 1 for index, ratio in enumerate(ratios) if ratio >= least]
     expect(page.get_by_text(f"{len(kept)} of 8 designs chosen")).to_be_visible()
     expect_designs(page, kept)
+    page.locator(".axis-head .chooser-list:visible").click(position={"x": 90, "y": 5})  # between its parts
+    expect(page.get_by_role("textbox", name="At least time ratio")).to_be_visible()
+    page.keyboard.press("Escape")
     page.mouse.dblclick(x, (top + bottom) / 2)
     expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
     expect(field(page, "At least time ratio")).to_have_value("")
@@ -157,6 +168,7 @@ def test_what_is_no_number_is_marked_and_changes_nothing(open_page: Open, solved
 def test_words_are_ticked(open_page: Open, solved: Solved) -> None:
     words = cells(solved.result.designs, "slow_stroke")
     page = open_page(solved.store, view_of(solved, "?axes=slow_stroke,time_ratio&columns=slow_stroke"))
+    page.locator(".axis-head summary", has_text="slow stroke").click()
     group = page.get_by_role("group", name="Only slow stroke")
     first = sorted(set(words))[0]
     group.get_by_label(first).uncheck()
@@ -170,13 +182,23 @@ def test_axes_are_flipped_moved_left_out_and_chosen(open_page: Open, solved: Sol
     ratio = page.locator(".axis-head", has_text="time ratio")
     expect(ratio).to_contain_text("↑ better")
     expect(page.get_by_role("columnheader", name="time ratio")).to_contain_text("more is better")
-    page.get_by_role("button", name="Flip: time ratio").click()
+    page.locator(".axis-head summary", has_text="time ratio").press("Enter")
+    page.get_by_role("button", name="Flip: time ratio").press("Enter")
     page.wait_for_url(re.compile(r"-time_ratio"))
     expect(ratio).to_contain_text("↓ better")
     page.get_by_role("button", name="Move left: time ratio").click()
-    page.get_by_role("button", name="Leave out: crank").click()
+    expect(page.get_by_role("button", name="Move left: time ratio")).to_be_focused()  # its menu stays open
+    page.keyboard.press("Escape")
+    expect(ratio.locator("summary")).to_be_focused()
+    for _ in range(2):
+        page.keyboard.press("ArrowLeft")
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("Enter")
+    page.get_by_role("button", name="Leave out: crank").press("Enter")
     page.get_by_text("Axes", exact=True).click()
     page.get_by_role("group", name="Axes").get_by_label("stroke, mm", exact=True).check()
+    page.keyboard.press("Escape")
     expect(field(page, "At least stroke, mm")).to_be_visible()
     page.wait_for_url(re.compile(r"axes=rod_mm%2C-time_ratio%2Coffset_mm%2C\w+%2Cstroke_mm"))
 
@@ -227,7 +249,7 @@ def test_the_table_is_sorted_best_first_and_its_columns_are_chosen(open_page: Op
     for number in kept[1:]:
         page.get_by_label("Next design").click()
         page.wait_for_url(re.compile(rf"designs/{number}$"))
-    expect(page.get_by_role("heading", level=1)).to_contain_text(f"Design {kept[-1]} of 8, 5. of the 5 in the list")
+    expect(page.get_by_role("heading", level=1)).to_contain_text(f"{kept[-1]} of 8, 5. of the 5 in the list")
     expect(page.get_by_label("Next design")).to_have_count(0)
     page.locator(".back a").click()
     expect_designs(page, kept)
@@ -280,6 +302,7 @@ def test_everything_is_reached_by_keyboard(open_page: Open, solved: Solved) -> N
     for key in ("ArrowDown", "ArrowRight", "ArrowUp"):
         page.keyboard.press(key)
     expect(page.locator(".lines").get_by_role("status")).to_contain_text("along the axis of rod")
+    page.locator(".axis-head summary", has_text="rod").press("Enter")
     page.get_by_role("button", name="Logarithmic: rod").press("Enter")
     page.wait_for_url(re.compile("log=rod_mm"))
     page.keyboard.press("Space")

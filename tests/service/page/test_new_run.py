@@ -48,6 +48,25 @@ def start(page: Page) -> None:
     page.get_by_role("button", name="Start the search").click()
 
 
+def test_the_first_job_has_no_warning_and_what_was_understood_stays_beside_it(form: Open, store: Store) -> None:
+    page = form(store, "#/new", viewport={"width": 1280, "height": 560})
+    ready(page)
+    beside = page.get_by_role("complementary")
+    expect(beside.locator(".warning")).to_have_count(0)
+    beside.get_by_text("What was understood").press("Enter")
+    understood = beside.locator("details")
+    expect(understood).to_contain_text("stroke = 100 mm")
+    page.get_by_label("stroke, exactly").fill("90")
+    expect(understood).to_contain_text("stroke = 90 mm")
+    expect(understood.get_by_role("heading", name="Objectives")).to_be_visible()
+    start_button = page.get_by_role("button", name="Start the search")
+    for place in ("0", "document.body.scrollHeight"):
+        page.evaluate(f"window.scrollTo(0, {place})")
+        expect(start_button).to_be_in_viewport(ratio=1.0)
+        beside.evaluate("node => node.scrollTo(0, node.scrollHeight / 4)")
+        expect(start_button).to_be_in_viewport(ratio=1.0)
+
+
 def test_a_file_is_asked_for_only_where_the_job_names_one(form: Open, store: Store) -> None:
     page = form(store, "#/new?preset=sieve")
     ready(page)

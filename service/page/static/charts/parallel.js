@@ -55,7 +55,7 @@ const [BACK, FRONT, OVER] = [0, 1, 2];
 export function parallel(chart) {
   const stack = layers(
     3,
-    "Parallel coordinates: arrow keys go from design to design and from axis to axis, Enter opens one, the space bar selects it. The fields below set the same limits as dragging on an axis.",
+    "Parallel coordinates: arrow keys go from design to design and from axis to axis, Enter opens one, the space bar selects it. The menu of an axis sets the same limits as dragging on it.",
   );
   const { place, contexts } = stack;
   /** @type {View} */

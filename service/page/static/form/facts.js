@@ -7,6 +7,7 @@ import { inShownUnits, limitText, unitOf, withUnit } from "../lib/numbers.js";
 
 /** Fill a place with what a preview says. @param {HTMLElement} place @param {Api.Preview} preview */
 export function showFacts(place, { allowed, understood, swing }) {
+  const open = place.querySelector("details")?.open; // as the reader left it
   const warnings = (understood?.warnings ?? []).map((sentence) =>
     h("p", { class: "warning" }, `${capital(inWords(sentence))}.`),
   );
@@ -21,7 +22,7 @@ export function showFacts(place, { allowed, understood, swing }) {
         row("travel of the slider", between(swing.travel_mm, "mm")),
         row("meets everything", share(swing.feasible_share), `of ${swing.sampled} tried`),
       ),
-      notesOf(swing.unchecked, understood),
+      notesOf(swing.unchecked, understood, { open }),
     );
     return;
   }
@@ -45,7 +46,7 @@ export function showFacts(place, { allowed, understood, swing }) {
       row("meets everything", share(allowed.feasible_share), `of ${allowed.sampled} tried`),
       allowed.slow_strokes.length ? row("slow stroke", allowed.slow_strokes.join(" or ")) : null,
     ),
-    notesOf(allowed.unchecked, understood, allowed.said),
+    notesOf(allowed.unchecked, understood, { said: allowed.said, open }),
   );
 }
 
@@ -57,8 +58,8 @@ function row(title, value, note = null) {
   ];
 }
 
-/** @param {string[]} unchecked @param {Api.Understood | null} understood @param {string[]} said */
-function notesOf(unchecked, understood, said = []) {
+/** @param {string[]} unchecked @param {Api.Understood | null} understood @param {{ said?: string[], open?: boolean }} options */
+function notesOf(unchecked, understood, { said = [], open }) {
   return [
     unchecked.length
       ? h(
@@ -74,7 +75,7 @@ function notesOf(unchecked, understood, said = []) {
     understood
       ? h(
           "details",
-          { class: "more" },
+          { class: "more", open },
           h("summary", {}, "What was understood"),
           understanding(understood),
         )

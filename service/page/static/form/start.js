@@ -14,7 +14,7 @@ export function firstJob(system) {
       slider: { mass: inch ? "4 lb" : "2 kg" },
       gravity: "9.81 m/s^2",
     },
-    load: [{ force: inch ? "50 lbf" : "200 N", opposes: "outward stroke" }],
+    load: [{ force: inch ? "50 lbf" : "200 N", opposes: "inward stroke" }],
     tolerances: {
       crank: length(0.05, 0.002),
       rod: length(0.05, 0.002),

@@ -1,6 +1,7 @@
-/** Above and below every axis: its name, its place among the others, and its limits as fields. */
+/** Above every axis its name, with a menu: its limits as fields, and its place among the others. */
 
 import { fill, first, focused, h, markInvalid, numberField } from "../lib/dom.js";
+import { menu } from "../lib/menu.js";
 import { ends, text } from "../lib/numbers.js";
 import { parseQuantity } from "../lib/quantity_text.js";
 import { headed, helpLink } from "./columns.js";
@@ -12,57 +13,85 @@ import { logAxis, logged, mayBeLogged } from "./logarithmic.js";
 const MOST_WORDS = 8; // as ticks; the rest stays in the table
 
 /**
- * Return {above, below, draw(), limits()} for the axes of an explorer: draw after a change of axes, limits after one of limits.
+ * Return {node, draw(), limits()} for the axes of an explorer: draw after a change of axes, limits after one of limits.
  * @param {Explorer} explorer
  */
 export function axisFields(explorer) {
-  const above = h("div", { class: "axis-heads" });
-  const below = h("div", { class: "axis-limits" });
+  const node = h("div", {
+    class: "axis-heads",
+    role: "toolbar",
+    "aria-label": "Axes of the chart",
+    onkeydown: ({ key, target }) => {
+      const heads = [...node.querySelectorAll("summary")];
+      const index = heads.findIndex((one) => one === target);
+      if (index >= 0)
+        heads[index + Number(key === "ArrowRight") - Number(key === "ArrowLeft")]?.focus();
+    },
+  });
   /** @type {{ key: string, node: HTMLElement, show: (limit: Page.Limit | undefined) => void }[]} */
   let fields = [];
 
   function draw() {
     const { axes } = explorer.chosen;
-    for (const place of [above, below])
-      place.style.gridTemplateColumns = `repeat(${Math.max(1, axes.length)}, minmax(0, 1fr))`;
-    const focusedAct = focused(above)?.dataset.act;
-    fill(
-      above,
-      axes.map((axis, index) => head(axis, index, axes.length)),
-    );
-    if (focusedAct) first(above, `[data-act="${CSS.escape(focusedAct)}"]:not(:disabled)`)?.focus();
+    node.style.gridTemplateColumns = `repeat(${Math.max(1, axes.length)}, minmax(0, 1fr))`;
+    const focusedAct = focused(node)?.dataset.act;
+    const open = node.querySelector("details[open] > summary")?.getAttribute("data-act");
     fields = axes.map(({ key }) => field(key));
     fill(
-      below,
-      fields.map(({ node }) => node),
+      node,
+      axes.map((axis, index) => head(axis, index, axes.length)),
     );
+    first(node, `[data-act="${CSS.escape(open ?? "")}"]`)?.parentElement?.setAttribute("open", "");
+    if (focusedAct) first(node, `[data-act="${CSS.escape(focusedAct)}"]:not(:disabled)`)?.focus();
     limits();
   }
 
-  /** @param {Axis} options @param {number} index @param {number} count */
+  /** Return the head of an axis, a menu; the arrow keys lead from one to the next. @param {Axis} options @param {number} index @param {number} count */
   function head({ key, flipped }, index, count) {
     const column = explorer.data.column(key);
-    /** @param {string} sign @param {string} label @param {() => void} doing @param {boolean} disabled @param {boolean} [pressed] */
-    const act = (sign, label, doing, disabled = false, pressed = undefined) =>
+    /** @param {string} label @param {() => void} doing @param {boolean} disabled @param {boolean} [pressed] */
+    const act = (label, doing, disabled = false, pressed = undefined) =>
       h(
         "button",
         {
           type: "button",
-          class: "small",
+          class: "linked",
           "aria-pressed": pressed === undefined ? null : String(pressed),
-          title: label,
           "aria-label": `${label}: ${column.title}`,
           disabled,
           "data-act": `${label}-${key}`,
           onclick: doing,
         },
-        sign,
+        label,
       );
+    const more = menu(
+      headed(column),
+      h(
+        "div",
+        { class: "chooser-list panel" },
+        fields[index].node,
+        act("Move left", () => explorer.moveAxis(index, -1), index === 0),
+        act("Move right", () => explorer.moveAxis(index, 1), index === count - 1),
+        act("Flip", () => explorer.flipAxis(index)),
+        mayBeLogged(explorer, key) &&
+          act("Logarithmic", () => logAxis(explorer, key), false, logged(explorer, key)),
+        act(
+          "Leave out",
+          () => explorer.setAxes(explorer.chosen.axes.filter((_, other) => other !== index)),
+          count === 1,
+        ),
+        h("a", { href: helpLink(key) }, `What is ${column.title}?`),
+      ),
+      { act: `axis-${key}` },
+    );
+    const summary = /** @type {HTMLElement} */ (first(more, "summary"));
+    summary.tabIndex = index ? -1 : 0;
+    summary.draggable = true;
+    summary.title = headed(column);
     return h(
       "div",
       {
         class: "axis-head",
-        draggable: "true",
         "data-axis": key,
         ondragstart: ({ dataTransfer }) => dataTransfer?.setData("text/axis", String(index)),
         ondragover: (event) =>
@@ -73,23 +102,8 @@ export function axisFields(explorer) {
           if (from !== index) explorer.moveAxis(from, index - from);
         },
       },
-      h("a", { href: helpLink(key), title: `What is ${column.title}?` }, headed(column)),
+      more,
       h("span", { class: "way" }, wayOf(key, flipped)),
-      h(
-        "div",
-        { class: "axis-acts" },
-        act("◀", "Move left", () => explorer.moveAxis(index, -1), index === 0),
-        act("⇅", "Flip", () => explorer.flipAxis(index)),
-        act("▶", "Move right", () => explorer.moveAxis(index, 1), index === count - 1),
-        act(
-          "×",
-          "Leave out",
-          () => explorer.setAxes(explorer.chosen.axes.filter((_, other) => other !== index)),
-          count === 1,
-        ),
-        mayBeLogged(explorer, key) &&
-          act("log", "Logarithmic", () => logAxis(explorer, key), false, logged(explorer, key)),
-      ),
     );
   }
 
@@ -127,8 +141,9 @@ export function axisFields(explorer) {
       node: h(
         "div",
         { class: "axis-limit", role: "group", "aria-label": `Limits of ${column.title}` },
-        most,
         least,
+        "to",
+        most,
       ),
       /** @param {Page.Limit | undefined} limit */
       show(limit) {
@@ -181,7 +196,7 @@ export function axisFields(explorer) {
   function limits() {
     for (const { key, show } of fields) show(explorer.limits.of.get(key));
   }
-  return { above, below, draw, limits };
+  return { node, draw, limits };
 }
 
 /**

@@ -133,7 +133,6 @@ export class Explorer {
     const columns = data.columns;
     files.replaceChildren(h("li", {}, this.saving.node), this.kept.file);
     place.replaceChildren(
-      h("div", { class: "at-side" }, this.linkagePanel.place, this.marksPanel.place),
       h(
         "section",
         { class: "panel all-designs", "aria-labelledby": "lines-title" },
@@ -157,24 +156,15 @@ export class Explorer {
         h(
           "p",
           { class: "quiet hint" },
-          "Drag along an axis to set limits; double-click to clear them. The fields below do the same.",
+          "Drag along an axis to set limits; double-click to clear them. Its name opens a menu with the same as fields.",
         ),
         h(
           "div",
           { class: "scroll lines" },
-          h(
-            "div",
-            { class: "lines-inner" },
-            this.fields.above,
-            this.lines.place,
-            this.fields.below,
-          ),
+          h("div", { class: "lines-inner" }, this.fields.node, this.lines.place),
         ),
       ),
       this.scatterPanel.place,
-      bindingPanel(this),
-      this.wishing.place,
-      this.kept.place,
       h(
         "section",
         { class: "panel the-table", "aria-labelledby": "table-title" },
@@ -192,6 +182,10 @@ export class Explorer {
         ),
         this.table.place,
       ),
+      this.kept.place,
+      bindingPanel(this),
+      this.wishing.place,
+      h("div", { class: "at-side" }, this.linkagePanel.place, this.marksPanel.place),
     );
     const again = () => this.update("all");
     place.addEventListener(

@@ -85,15 +85,10 @@ export async function show(place, { parts, signal }) {
     fill(
       head,
       summary?.designs
-        ? [
-            ["the-table", "Skip to the table of designs"],
-            ["kept", "Skip to the kept designs"],
-          ].map(([part, words]) =>
-            h(
-              "button",
-              { type: "button", class: "skip", onclick: () => skipTo(`.${part}`) },
-              words,
-            ),
+        ? h(
+            "button",
+            { type: "button", class: "skip", onclick: skipToTable },
+            "Skip to the table of designs",
           )
         : null,
       h(
@@ -126,9 +121,9 @@ export async function show(place, { parts, signal }) {
     );
   }
 
-  /** Past all that can be done with charts, which takes some sixty steps of the Tab key. */
-  function skipTo(/** @type {string} */ selector) {
-    const part = first(body, selector);
+  /** Past all that can be done with charts. */
+  function skipToTable() {
+    const part = first(body, ".the-table");
     if (!part) return;
     part.tabIndex = -1;
     part.focus();
