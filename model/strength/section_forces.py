@@ -47,18 +47,13 @@ class Stress(NamedTuple):
 
 @analytic
 def stress_along(
-    part: Any,
-    sine: Any,
-    cosine: Any,
-    m: Motion,
-    d: Design,
-    f: Forces,
-    turn: Any,
-    width: Any,
-    depth: Any,
-    density: Any,
+    part: Any, sine: Any, cosine: Any, m: Motion, d: Design, f: Forces, turn: Any, bar: tuple[Any, Any, Any]
 ) -> Stress:
-    """Return the `Stress` of the rod (`ROD`) or the crank under joint forces. turn: `turn` of `rubbing.Sides`."""
+    """Return the `Stress` of the rod (`ROD`) or the crank under joint forces.
+
+    turn: `turn` of `rubbing.Sides`. bar: width, m, depth, m, density, kg/m^3.
+    """
+    width, depth, density = bar
     w2 = d.speed * d.speed
     pin_x = -d.r * (cosine * w2 + sine * d.acceleration) - d.gravity_x
     pin_y = -d.r * (sine * w2 - cosine * d.acceleration) - d.gravity_y

@@ -76,12 +76,18 @@ class Samples(NamedTuple):
     stress: Table
 
 
+class Bars(NamedTuple):
+    """Width, depth and density of rod and crank: sizes (n, 6), and derivatives (v, 6) by raw numbers; 0 for no bar."""
+
+    sizes: Table
+    rates: Table
+
+
 @seldom_kernel
 def _stress(
     blocks: Cube,
     steps: ComplexCube,
-    sizes: Table,
-    turned: Table,
+    bars: Bars,
     points: Points,
     cuts: Breakpoints,
     loads: Loads,
@@ -90,7 +96,7 @@ def _stress(
 ) -> None:
     watch = CycleWindow(0, 0.0, 1.0, False)
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
-    rows, nv = blocks.shape[1], turned.shape[0]
+    rows, nv, sizes = blocks.shape[1], bars.rates.shape[0], bars.sizes
     block, z_block = np.empty((rows, 1)), np.empty((rows, 1), np.complex128)
     last, last_column, last_probe, outward = -1, -2, 0.0, False
     d = design_at(block, 0)
@@ -126,18 +132,13 @@ def _stress(
                 continue
             zw, zt, z_rho = complex(w, 0.0), complex(t, 0.0), complex(rho, 0.0)
             if v >= 0:
-                zw = complex(w, STEP * turned[v, 3 * part])
-                zt = complex(t, STEP * turned[v, 3 * part + 1])
-                z_rho = complex(rho, STEP * turned[v, 3 * part + 2])
-            c = stress_along(part, zs, zc, m, z, f, sides.turn, zw, zt, z_rho)
+                zw = complex(w, STEP * bars.rates[v, 3 * part])
+                zt = complex(t, STEP * bars.rates[v, 3 * part + 1])
+                z_rho = complex(rho, STEP * bars.rates[v, 3 * part + 2])
+            c = stress_along(part, zs, zc, m, z, f, sides.turn, (zw, zt, z_rho))
             k = 2 * 7 * part
-            out[p, k], out[p, k + 7] = c.n0.real, c.n0.imag / STEP
-            out[p, k + 1], out[p, k + 8] = c.n1.real, c.n1.imag / STEP
-            out[p, k + 2], out[p, k + 9] = c.n2.real, c.n2.imag / STEP
-            out[p, k + 3], out[p, k + 10] = c.b0.real, c.b0.imag / STEP
-            out[p, k + 4], out[p, k + 11] = c.b1.real, c.b1.imag / STEP
-            out[p, k + 5], out[p, k + 12] = c.b2.real, c.b2.imag / STEP
-            out[p, k + 6], out[p, k + 13] = c.b3.real, c.b3.imag / STEP
+            for i in range(7):
+                out[p, k + i], out[p, k + 7 + i] = c[i].real, c[i].imag / STEP
 
 
 @seldom_kernel
@@ -253,7 +254,7 @@ def _stress_at(
     rubbing: bool,
 ) -> Array:
     out = np.zeros((len(points.design), 2 * WIDE))
-    _stress(blocks, steps, sizes, turned, points, cuts, loads, rubbing, out)
+    _stress(blocks, steps, Bars(sizes, turned), points, cuts, loads, rubbing, out)
     return out
 
 

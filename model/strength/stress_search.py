@@ -103,6 +103,23 @@ class SampledStress(NamedTuple):
     sides: Row
 
 
+@analytic
+def _fill_greatest(samples: SampledStress, begin: int, count: int, criteria: Any, best: Any) -> float:
+    """Fill `best` (sides, m, STATIONS) with each criterion's greatest value over samples; return the greatest."""
+    greatest = -math.inf
+    for f in range(samples.sides.shape[0]):
+        for j in range(STATIONS):
+            xi = j / (STATIONS - 1.0)
+            top, bottom = -math.inf, math.inf
+            for k in range(count):
+                value = _stress_at_share(samples.stress, begin + k, 0, samples.sides[f], xi)
+                top, bottom = max(top, value), min(bottom, value)
+            for g in range(criteria.shape[0]):
+                best[f, g, j] = criteria[g, 0] * top - criteria[g, 1] * bottom
+                greatest = max(greatest, best[f, g, j])
+    return float(greatest)
+
+
 @seldom_kernel
 def propose(
     start: Integers,
@@ -126,17 +143,7 @@ def propose(
         begin, count = start[n], start[n + 1] - start[n]
         if count == 0:
             continue
-        greatest = -math.inf
-        for f in range(sides.shape[0]):
-            for j in range(STATIONS):
-                xi = j / (STATIONS - 1.0)
-                top, bottom = -math.inf, math.inf
-                for k in range(count):
-                    value = _stress_at_share(stress, begin + k, 0, sides[f], xi)
-                    top, bottom = max(top, value), min(bottom, value)
-                for g in range(criteria.shape[0]):
-                    best[f, g, j] = criteria[g, 0] * top - criteria[g, 1] * bottom
-                    greatest = max(greatest, best[f, g, j])
+        greatest = _fill_greatest(samples, begin, count, criteria, best)
         floor = greatest - margin * abs(greatest)
         for f in range(sides.shape[0]):
             for g in range(criteria.shape[0]):

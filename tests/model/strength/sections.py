@@ -96,9 +96,7 @@ def stress_rows(mechanism: Mechanism, part: str, linkage: Linkage, theta: Array,
         design,
         forces(np.sin(theta), np.cos(theta), moved, design, load),
         0.0,
-        bar.width,
-        bar.depth,
-        bar.density,
+        (bar.width, bar.depth, bar.density),
     )
     column = Stress(*(np.broadcast_to(each, theta.shape)[:, None] for each in c))
     axial = at_share(column, 0.0, shares)
