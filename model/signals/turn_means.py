@@ -340,9 +340,13 @@ def turn_means(
     """
     numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=gradients)
     count, gaps, curves = len(designs), _gaps(*numbers.values.T[:3]), CURVES if task.kind == WORK else 1
-    shapes = [(count, curves), (count, curves if squares else 0)]
-    slopes = [(count if gradients else 0, columns, len(numbers.columns)) for _, columns in shapes]
-    means = CurveMeans(*map(np.zeros, shapes + slopes))
+    squared, rows, columns = curves if squares else 0, count if gradients else 0, len(numbers.columns)
+    means = CurveMeans(
+        np.zeros((count, curves)),
+        np.zeros((count, squared)),
+        np.zeros((rows, curves, columns)),
+        np.zeros((rows, squared, columns)),
+    )
 
     def work(begin: int, end: int) -> None:
         blocks, steps = derived(raw, task.loads, numbers.columns, numbers.values[begin:end], steps=gradients)

@@ -156,7 +156,7 @@ def _stepped_motion(theta: Any, step: Any, z: Any) -> Any:
 
 
 @analytic
-def _probe_angle(path: Path, d: Any, s: float, start: float, end: float) -> float:
+def _probe_angle(path: Path, d: Any, s: Any, start: Any, end: Any) -> Any:
     """Return the crank angle at a fraction s of the travel."""
     if path.slider:
         first, final = slider_at(start, d), slider_at(end, d)

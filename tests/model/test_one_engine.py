@@ -48,14 +48,17 @@ def names_in(node: ast.AST) -> set[str]:
 def flows(loop: ast.For | ast.While) -> list[tuple[set[str], set[str], ast.expr]]:
     """Return the assignments in a loop: names that change, names that they are made of, and the expression."""
     statements = [node for node in ast.walk(loop) if isinstance(node, ast.Assign)]
-    return [(set().union(*map(names_in, node.targets)), names_in(node.value), node.value) for node in statements]
+    return [
+        ({name for target in node.targets for name in names_in(target)}, names_in(node.value), node.value)
+        for node in statements
+    ]
 
 
 def reached(start: set[str], loop: ast.For | ast.While) -> set[str]:
     """Return the names in a loop that depend on others, directly or through further ones."""
     names = set(start)
     for _ in range(9):
-        names |= set().union(*(changed for changed, used, _ in flows(loop) if used & names), set())
+        names |= {name for changed, used, _ in flows(loop) if used & names for name in changed}
     return names
 
 
@@ -64,7 +67,7 @@ def newton_steps(tree: ast.AST) -> Iterator[ast.BinOp]:
     for loop in ast.walk(tree):
         if not isinstance(loop, ast.For | ast.While):
             continue
-        all_changed = set().union(*(changed for changed, _, _ in flows(loop)), set())
+        all_changed = {name for changed, _, _ in flows(loop) for name in changed}
         for changed, _, value in flows(loop):
             for node in ast.walk(value):
                 if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Add | ast.Sub):
