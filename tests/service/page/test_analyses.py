@@ -13,7 +13,7 @@ from tests.service.api.fixed_front import API, Solved
 from tests.service.page.accessibility import require_accessible
 from tests.service.page.conftest import Pages, watched
 
-OWN = ("extremes", "sensitivity", "tolerances", "inverse")
+OWN = ("extremes", "sensitivity", "tolerances", "inverse", "round", "wish")
 """Questions with a place of their own."""
 
 
@@ -31,9 +31,9 @@ def test_every_analysis_has_a_tab_with_what_the_api_tells(opened: tuple[Page, st
     panel = page.get_by_role("tabpanel")
     panel.scroll_into_view_if_needed(timeout=30_000)
     listed = httpx.get(f"{address}{API}/topics", timeout=60.0).json()
-    asked = [*listed["topics"], *listed["questions"]]
+    asked = [*listed["topics"], *listed["questions"], *listed["fronts"]]
     tabs = page.get_by_role("tab")
-    expect(tabs).to_have_text([*(one["title"] for one in asked if one["name"] not in OWN), "Certify"])
+    expect(tabs).to_have_text([*(one["title"] for one in asked if one["name"] not in OWN)])
     page.get_by_role("tab", name="Motor", exact=True).click()
     path = f"{address}{API}/jobs/{solved.number}/designs/2/topics"
     told = httpx.get(f"{path}/motor", timeout=60.0).json()["told"]
