@@ -154,11 +154,10 @@ def _peaks_of_passing(
     limit: int,
     gradients: bool,
     find: Callable[[SwingBatch], Maxima],
-    *,
-    slow: bool = False,
-    free: bool = False,
-    forces: bool = True,
+    **options: bool,
 ) -> SwingPeaks:
+    """Return the peaks that `find` has of designs that can swing. options: those of `SwingBatch` besides slopes."""
+    batch_of = partial(SwingBatch, mechanism, swing, slopes=gradients, **options)
     designs = np.ascontiguousarray(designs, dtype=np.float64)
     n = len(designs)
     values, places = np.full((n, limit), -np.inf), np.full((n, limit), np.nan)
@@ -168,16 +167,12 @@ def _peaks_of_passing(
 
     def work(begin: int, end: int) -> None:
         designs_here = rows[begin:end]
-        batch = SwingBatch(
-            mechanism, swing, designs[designs_here], slopes=gradients, slow=slow, free=free, forces=forces
-        )
+        batch = batch_of(designs[designs_here])
         stuck = batch.locked()
         if stuck.any():
             values[designs_here[stuck], 0] = np.inf
             designs_here = designs_here[~stuck]
-            batch = SwingBatch(
-                mechanism, swing, designs[designs_here], slopes=gradients, slow=slow, free=free, forces=forces
-            )
+            batch = batch_of(designs[designs_here])
         if len(designs_here):
             maxima = find(batch)
             values[designs_here], places[designs_here] = maxima.values, maxima.places
