@@ -84,6 +84,9 @@ def _coefficients(turn: LawTurn, limits: LawLimits, multipliers: Multipliers) ->
         by_torque, by_energy = upper - lower, (upper - lower) * limit.by_energy
         constant = (lower - upper) * turn.terms.load - (upper + lower) * limit.greatest
     starts = _at_starts(turn, p, gains)
+    for cell, outside in limits.window_cells(turn):
+        # K is limited from there on, or up to there: p may jump, but only within the window.
+        starts[cell] = p[outside] + (gains[1, outside] if outside != cell else -gains[0, outside])
     even = (np.roll(starts, -1) - starts - np.sum(turn.weights * by_energy, axis=1)) / width
     momentum = starts[:, None] + turn.integrals(by_energy) + (even * width)[:, None] * place
     return by_torque - momentum, np.repeat(-even[:, None], len(place), axis=1), constant + momentum * turn.terms.load

@@ -13,7 +13,7 @@ from ...model.arrays import Array, Mask
 from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ...model.motion_law.law_turn import LawTerms
+from ...model.motion_law.law_turn import LawTerms, LawTurn
 from ...model.transient.equation import TURN
 from ...objectives.dead_centre import before_dead_centre
 from .words import RANGE, LawObjective, Timing
@@ -79,6 +79,13 @@ class LawLimits:
     def name(self, field: str) -> str:
         """Return the interface's name of a field."""
         return self.names.get(field, field)
+
+    def window_cells(self, turn: LawTurn) -> list[tuple[int, int]]:
+        """Return the cells that start where the window begins and ends, each with the adjacent cell outside."""
+        if self.window is None:
+            return []
+        begin, end = (int(turn.locate(np.array([mark + self.way * 1e-7]))[0][0]) for mark in self.marks)
+        return [(begin, (begin - 1) % len(turn.width)), (end, end)]
 
     def slider_speed(self, crank_angle: Array) -> Array:
         """Return the greatest speed of the slider, m/s, at crank angles."""

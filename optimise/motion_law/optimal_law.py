@@ -30,6 +30,7 @@ KEPT = 1e-6
 """Greatest share by which a limit may be exceeded."""
 _STUCK = 0.9  # of the gap: finer cells that leave more of it show that it is the relaxation's
 _ROUNDING = 1e-9
+_NO_TORQUE = 1e-6  # of the peak at constant speed: rounding
 _LEAST_CELLS, _MOST_CELLS = 150, 600
 
 
@@ -53,9 +54,11 @@ class OptimalLaw:
     @property
     def gap(self) -> float:
         """Greatest share by which the law can be worse than the best one."""
-        if self.bound > 0.0:
-            return max(0.0, self.value / self.bound - 1.0)
-        return math.inf if self.value > 0.0 else 0.0
+        if self.limits.request.objective != "cycle time":
+            terms, speed = self.law.turn.terms, TURN / self.limits.cycle_time
+            if self.value <= _NO_TORQUE * float(np.abs(terms.load + 0.5 * terms.inertia_slope * speed**2).max()):
+                return 0.0
+        return max(0.0, self.value / self.bound - 1.0) if self.bound > 0.0 else math.inf
 
     @property
     def proven(self) -> bool:

@@ -103,6 +103,7 @@ def test_a_law_without_loads_needs_no_torque() -> None:
     found = optimal_law(free, LINKAGE, LawRequest())
     constant = speed_profile_cycle(found.law.turn.machine, LINKAGE).peaks["torque"].value
     assert found.value < 1e-6 * constant
+    assert found.gap == 0.0
     energy = found.law.node_energies
     assert np.ptp(energy) < 1e-6 * energy.mean()
 
@@ -122,6 +123,14 @@ def test_the_feeder_keeps_each_limit_and_its_law_is_proven(limits: dict[str, Any
     assert found.gap <= GAP
     free = optimal_law(FEEDER, LINKAGE, LawRequest(**NARROW)).value
     assert found.value >= free * (1.0 - 1e-3)
+
+
+def test_the_bound_of_least_rms_torque_is_near_within_a_working_window() -> None:
+    limits = {"window": 0.01, "window_speed": 6.5, **NARROW}
+    found = optimal_law(FEEDER, LINKAGE, LawRequest(objective="rms torque", **limits))
+    require_within_limits(found)
+    assert not found.relaxed
+    assert found.gap < 5e-3
 
 
 def test_the_shortest_cycle_and_the_least_peak_answer_each_other() -> None:
