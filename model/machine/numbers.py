@@ -60,7 +60,9 @@ for _index, _name in enumerate(("crank_pivot", "crank_pin", "slider_pin", "guide
 PINS = {"crank_pivot": 10**8, "crank_pin": 10**8 + 1, "slider_pin": 10**8 + 2}
 """Slots of the pins' diameters: after all slots that kernels use, so that no kernel differentiates by them."""
 _SLOTS |= {f"strength.{name}": (slot, "m") for name, slot in PINS.items()}
-_SLOTS |= {"start.angle": (10**8 + 3, "rad"), "start.place": (10**8 + 4, "m")}  # for a swing, which reads its own
+START = {"crank": 10**8 + 3, "slider": 10**8 + 4}
+"""Slots of the start of a swing, which reads its own, by the link for which its ends are stated."""
+_SLOTS |= {"start.angle": (START["crank"], "rad"), "start.place": (START["slider"], "m")}
 _POLAR = {"counterweight.radius": "m", "counterweight.angle": "rad"}
 
 
@@ -111,7 +113,7 @@ def numbers_of(mechanism: Mechanism, designs: Array, *, limit: int, gradients: b
     require_width(mechanism, designs)
     if not mechanism.varying:
         return Numbers(_THREE, designs, None)
-    by_slot = {slot: value for slot, value in _raw(mechanism, designs).items() if slot < limit}
+    by_slot = {slot: value for slot, value in raw_numbers(mechanism, designs).items() if slot < limit}
     columns = np.array(list(by_slot), dtype=np.int64)
     values = np.ascontiguousarray(np.stack(list(by_slot.values()), axis=1))
     shape = len(designs) if gradients else 0, len(columns), designs.shape[1]
@@ -123,7 +125,7 @@ def numbers_of(mechanism: Mechanism, designs: Array, *, limit: int, gradients: b
     for v in range(designs.shape[1] if gradients else 0):
         stepped = designs.astype(np.complex128)
         stepped[:, v] += 1j * STEP
-        moved = _raw(mechanism, stepped)
+        moved = raw_numbers(mechanism, stepped)
         slopes[:, :, v] = np.stack([moved[slot].imag for slot in by_slot], axis=1) / STEP
     return Numbers(columns, values, slopes)
 
@@ -149,16 +151,12 @@ def formula_of_numbers(
     slot (`Raw`, `PINS`), (n,) or one for all designs.
     """
     numbers = numbers_of(mechanism, designs, limit=10**9, gradients=gradients)
-    base = _nominal(mechanism)
-    pins = (
-        {} if mechanism.strength is None else {slot: getattr(mechanism.strength, name) for name, slot in PINS.items()}
-    )
     set_numbers: dict[int, Any] = dict(zip(numbers.columns.tolist(), numbers.values.T, strict=True))
     slots_used: dict[int, None] = {}
 
     def number(slot: int) -> Any:
         slots_used[slot] = None
-        return set_numbers[slot] if slot in set_numbers else pins[slot] if slot in pins else base[slot]
+        return set_numbers[slot] if slot in set_numbers else nominal_number(mechanism, slot)
 
     plain = formula(number) + np.zeros(len(designs))
     if not gradients:
@@ -170,6 +168,12 @@ def formula_of_numbers(
             by_number[:, place] = np.imag(formula(number)) / STEP
             set_numbers[slot] = set_numbers[slot].real
     return plain, numbers.chain(by_number)
+
+
+def nominal_number(mechanism: Mechanism, slot: int) -> float:
+    """Return the raw number of a slot (`Raw`, `PINS`) that designs do not set."""
+    names = {place: name for name, place in PINS.items()}
+    return float(getattr(mechanism.strength, names[slot]) if slot in names else _nominal(mechanism)[slot])
 
 
 @memoise_by_machine
@@ -200,7 +204,7 @@ def _rates(varying: tuple[Varying, ...]) -> dict[int, tuple[float, ...]] | None:
     return {slot: tuple(row.get(column, 0.0) for column in range(count)) for slot, row in rates.items()}
 
 
-def _raw(mechanism: Mechanism, designs: Any) -> dict[int, Any]:
+def raw_numbers(mechanism: Mechanism, designs: Any) -> dict[int, Any]:
     """Return the raw numbers that designs set, each (n,); complex designs give complex ones."""
     by_slot: dict[int, Any] = {column: designs[:, column] for column in range(3)}
     polar: dict[str, Any] = {}

@@ -87,41 +87,26 @@ class Blocks(NamedTuple):
 
 
 @analytic
-def _components(kind: Any, s: Any, c: Any, m: Any, d: Any, sides: Any, place: Any, rate: Any) -> Any:
-    """Return one cylinder's components of a curve.
-
-    place: its crank angle, and the segment there. rate: acceleration's slope over the crank angle, rad/s^2.
-    """
+def vector_of_force(kind: Any, f: Any, m: Any, d: Any) -> Any:
+    """Return the components of a signal that follows from the joint forces alone, or of a force of `turn_work`."""
     zero = 0.0 * d.r
-    theta, segment = place
-    load = load_on_slider(m, d, theta, segment)
-    if kind == TOUCH:
-        return touch(s, c, m, d, load, sides.turn, sides.swing), zero
-    if kind <= _LINE or kind >= WORK:
-        f = joint_forces(s, c, m, d, load, sides)
-        if kind in (_TORQUE, _POWER):
-            torque = torque_without_crank_loads(f.torque, theta, sense_of(d), segment)
-            return (torque * d.speed, zero) if kind == _POWER else (torque, zero)
-        if kind in (_PIVOT, WORK + 2):
-            x, y = f.pivot_x, f.pivot_y
-        elif kind in (_CRANK_PIN, WORK + 3):
-            x, y = f.crank_pin_x, f.crank_pin_y
-        elif kind in (_SLIDER_PIN, WORK + 4):
-            x, y = f.slider_pin_x, f.slider_pin_y
-        elif kind == _LINE:
-            x, y = f.slider_pin_x, zero
-        elif kind == _GUIDE_MOMENT:
-            x, y = f.guide * guide_lever(m, d), zero
-        else:
-            x, y = f.guide, zero
-        if kind < WORK:
-            return x, y
-        if kind == WORK:
-            return -sense_of(d) * d.branch * load * m.x_1, zero
-        if kind == WORK + 1:
-            return magnitude(x * m.x_1), zero
-        turned = 1.0 + zero if kind == WORK + 2 else 1.0 - m.rod_1 if kind == WORK + 3 else magnitude(m.rod_1)
-        return root(x * x + y * y) * turned, zero
+    if kind in (_PIVOT, WORK + 2):
+        return f.pivot_x, f.pivot_y
+    if kind in (_CRANK_PIN, WORK + 3):
+        return f.crank_pin_x, f.crank_pin_y
+    if kind in (_SLIDER_PIN, WORK + 4):
+        return f.slider_pin_x, f.slider_pin_y
+    if kind == _LINE:
+        return f.slider_pin_x, zero
+    if kind == _GUIDE_MOMENT:
+        return f.guide * guide_lever(m, d), zero
+    return f.guide, zero
+
+
+@analytic
+def vector_of_motion(kind: Any, s: Any, c: Any, m: Any, d: Any, rate: Any) -> Any:
+    """Return the components of a signal without joint forces. rate: acceleration's slope over the crank angle."""
+    zero = 0.0 * d.r
     if kind == _SPEED:
         return m.x_1 * d.speed, zero
     if kind == _ACCELERATION:
@@ -133,6 +118,34 @@ def _components(kind: Any, s: Any, c: Any, m: Any, d: Any, sides: Any, place: An
         return reflected_inertia(s, c, m, d), zero
     x, y, moment = shaking(s, c, m, d)
     return (moment, zero) if kind == _SHAKING_MOMENT else (x, y)
+
+
+@analytic
+def _components(kind: Any, s: Any, c: Any, m: Any, d: Any, sides: Any, place: Any, rate: Any) -> Any:
+    """Return one cylinder's components of a curve.
+
+    place: its crank angle, and the segment there. rate: acceleration's slope over the crank angle, rad/s^2.
+    """
+    zero = 0.0 * d.r
+    theta, segment = place
+    load = load_on_slider(m, d, theta, segment)
+    if kind == TOUCH:
+        return touch(s, c, m, d, load, sides.turn, sides.swing), zero
+    if kind > _LINE and kind < WORK:
+        return vector_of_motion(kind, s, c, m, d, rate)
+    f = joint_forces(s, c, m, d, load, sides)
+    if kind in (_TORQUE, _POWER):
+        torque = torque_without_crank_loads(f.torque, theta, sense_of(d), segment)
+        return (torque * d.speed, zero) if kind == _POWER else (torque, zero)
+    x, y = vector_of_force(kind, f, m, d)
+    if kind < WORK:
+        return x, y
+    if kind == WORK:
+        return -sense_of(d) * d.branch * load * m.x_1, zero
+    if kind == WORK + 1:
+        return magnitude(x * m.x_1), zero
+    turned = 1.0 + zero if kind == WORK + 2 else 1.0 - m.rod_1 if kind == WORK + 3 else magnitude(m.rod_1)
+    return root(x * x + y * y) * turned, zero
 
 
 class ShaftCurve(NamedTuple):

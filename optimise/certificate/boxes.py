@@ -9,74 +9,30 @@ from typing import Any
 
 import numpy as np
 
-from ...model.arrays import Array, IntArray, Mask
+from ...model.arrays import Array, Mask, IntArray
 from ...model.errors import InputError
 from ...model.kernel.arithmetic import magnitude
 from ...model.kinematics.closed_forms import closed_form
 from ...model.linkage.dimensions import DIMENSIONS
-from ...model.machine.mechanism import Mechanism
-from ...model.machine.members import is_shaft
-from ...model.machine.raw import Raw, raw_vector
-from ...model.machine.two_turns import cycle_turns, halves
-from ...model.signals.shaft_statistics import equivalent_single_cranks
-from ...model.signals.signals import Signal
+from ...model.machine.numbers import nominal_number
 from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.cycle_peak import CyclePeak
+from ...objectives.swing_quantity import SwingForm, SwingLeast, SwingPeak
+from ...objectives.tables.evaluate import moving
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
-from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Objective, Range
 from ..problem.violation import restated_constraints
 from ..search.candidates import Table
 from ..search.evaluation import Evaluator
-from .cycle import Curve, best_angles
+from .boundable import is_swing_form, is_usable, unbounded_reason
+from .cycle import CycleCurve, machines_of
 from .enclosure import Enclosure, coordinate, side_by_side
 from .limits import Limits
+from .machine import Numbers, numbers_over_boxes
+from .swing import SwingBoxes, SwingCurve, swing_form
 
 _ROUNDED = 1e-9  # relative: more than a closed form may be off where a linkage is close to locking
 _SLACK = 1e-6  # relative, by how much computed dimensions may miss their range here: more than requirements may
-
-
-def unbounded_reason(problem: Problem, objective: Objective) -> str:
-    """Return why an objective cannot be bounded over a box; empty if it can.
-
-    Bounded are quantities with `formulas`, and from below the peaks over the cycle of machines without friction; of
-    several cylinders those of one alone, and with a speed profile those that do not depend on the speed. A time ratio
-    along a speed profile has no formula.
-    """
-    quantity = problem.quantity(objective.quantity)
-    if quantity.formulas(problem.mechanism):
-        return ""
-    if not isinstance(quantity, CyclePeak):
-        profile = " along a speed profile" if isinstance(quantity, ClosedFormQuantity) else ""
-        return f"{quantity.title}{profile} has no bound over a range of designs"
-    if quantity.signal.needs_forces and problem.mechanism.friction.acts:
-        return f"{quantity.title} has no bound over a range of designs with friction"
-    if not cranks_of(problem.mechanism, quantity.signal):
-        shaft = "with a speed profile" if problem.mechanism.speed_profile is not None else "with several cylinders"
-        return f"{quantity.title} {shaft} has no bound over a range of designs"
-    if objective.sense != "minimise":
-        return f"{quantity.title} only has a lower bound, so it can only be certified if it is minimised"
-    return ""
-
-
-def cranks_of(mechanism: Mechanism, signal: Signal) -> tuple[Mechanism, ...]:
-    """Return single-crank machines at constant speed whose highest peak of a signal is that of the machine.
-
-    None if there are no such machines. Each turn of a two-turn cycle is a machine of its own.
-    """
-    single = equivalent_single_cranks(mechanism, signal) if is_shaft(mechanism) else (mechanism,)
-    if not signal.needs_forces:
-        return single
-    return tuple(half for machine in single for half in (halves(machine) if cycle_turns(machine) > 1 else (machine,)))
-
-
-def is_usable(problem: Problem, constraint: Constraint) -> bool:
-    """Whether a constraint helps to rule out boxes; one that does not still holds for every design that is counted."""
-    quantity = problem.quantity(constraint.quantity)
-    if quantity.formulas(problem.mechanism):
-        return True
-    objective = Objective(quantity=constraint.quantity, sense="minimise")
-    return constraint.upper is not None and not unbounded_reason(problem, objective)
 
 
 @dataclass
@@ -113,55 +69,59 @@ class Boxes:
                     "show how close its designs are to optimal"
                 )
         constraints = restated_constraints(problem)
-        least = max(c.lower or 0.0 for c in constraints if c.quantity == TRANSMISSION_ANGLE.name)
-        self.raw = raw_vector(problem.mechanism)
+        least = max((c.lower or 0.0 for c in constraints if c.quantity == TRANSMISSION_ANGLE.name), default=0.0)
+        self.mechanism = problem.mechanism
         self.lean = math.cos((1.0 - _SLACK) * least)
         usable = [c for c in constraints if is_usable(problem, c)]
-        self.cheap = [c for c in usable if problem.quantity(c.quantity).formulas(problem.mechanism)]
-        self.costly = [c for c in usable if c not in self.cheap]
+        self.costly = [c for c in usable if self._curves_of(c.quantity)]
+        self.cheap = [c for c in usable if c not in self.costly]
         names = [item.quantity for item in self.costly] + [item.quantity for item in self.objectives]
-        peaks = [problem.quantity(name) for name in names]
-        self.curves = {
-            peak.name: [Curve(machine, peak) for machine in cranks_of(problem.mechanism, peak.signal)]
-            for peak in peaks
-            if isinstance(peak, CyclePeak)
-        }
+        self.curves = {name: curves for name in names if (curves := self._curves_of(name))}
+        self.swing = None if problem.motion is None else SwingBoxes(self.mechanism, problem.motion, slow=True)
+
+    def _curves_of(self, name: str) -> list[CycleCurve | SwingCurve]:
+        """Return the curves of which a quantity is the greatest or the least value; none of a closed form."""
+        quantity = self.problem.quantity(name)
+        if isinstance(quantity, CyclePeak):
+            return [CycleCurve(machine, quantity) for machine in machines_of(self.mechanism, quantity.signal)]
+        if isinstance(quantity, SwingPeak | SwingLeast | SwingForm) and not is_swing_form(quantity):
+            return [SwingCurve(self.mechanism, quantity)]
+        return []
 
     def bound(self, lower: Array, upper: Array) -> Bounded:
         """Return the bounds that hold for boxes lower to upper (n, k)."""
         with np.errstate(all="ignore"):
             n, k = lower.shape
             limits = Limits(n, k)
-            r, l, e = self._dimensions(lower, upper, limits)
-            limits.add((r + e * self.branch.sign - l) / l)
+            numbers = self._numbers(lower, upper, limits)
+            r, l, e = (numbers[slot] for slot in range(3))
+            limits.add((r + e * self.branch.sign - l) / l if self.swing is None else self.swing.opening(numbers))
             for constraint in self.cheap:
-                limits.hold(constraint, *self._closed(constraint.quantity, r, l, e))
+                limits.hold(constraint, *self._closed(constraint.quantity, numbers))
             rows = np.flatnonzero(limits.alive)
-            middle, angles = self._angles(rows, lower, upper)
-            part = [_select_boxes(x, rows) for x in (r, l, e)]
+            middle, places = self._places(rows, lower, upper)
+            part = {slot: _select_boxes(value, rows) for slot, value in numbers.items()}
             curves = {
-                name: _scatter_boxes(_enclose_curves(curves_of_peak, part, angles[name], middle), rows, n)
-                for name, curves_of_peak in self.curves.items()
+                name: _scatter_boxes(_enclose_curves(curves_of_quantity, part, places[name], middle), rows, n)
+                for name, curves_of_quantity in self.curves.items()
             }
             for constraint in self.costly:
-                curve = curves[constraint.quantity]
-                limits.hold(Constraint(quantity=constraint.quantity, upper=constraint.upper), curve, None, None)
+                least = self.curves[constraint.quantity][0].least
+                side = {"lower": constraint.lower} if least else {"upper": constraint.upper}
+                limits.hold_curve(Constraint(quantity=constraint.quantity, **side), curves[constraint.quantity])
             low, high = limits.contracted()
             corner, smear = np.zeros((n, len(self.objectives))), 0.0 * lower
             for column, objective in enumerate(self.objectives):
-                if objective.quantity in curves:
-                    enclosed: tuple[Enclosure, Array | None, Array | None] = (
-                        curves[objective.quantity],
-                        np.zeros(n),
-                        None,
-                    )
+                name = objective.quantity
+                if name in curves:
+                    value = curves[name]
+                    corner[:, column] = _curve_bound(value, low, high, least=self.curves[name][0].least)
                 else:
-                    enclosed = self._closed(objective.quantity, r, l, e)
-                value, least, greatest = enclosed
-                lowest, highest = (end.max(axis=1) for end in value.ends(low, high))
-                lowest = lowest if least is None else np.maximum(lowest, least)
-                highest = highest if greatest is None else np.minimum(highest, greatest)
-                corner[:, column] = _minimised_bound(objective, lowest, highest)
+                    value, known_least, known_greatest = self._closed(name, numbers)
+                    lowest, highest = (end.max(axis=1) for end in value.ends(low, high))
+                    lowest = lowest if known_least is None else np.maximum(lowest, known_least)
+                    highest = highest if known_greatest is None else np.minimum(highest, known_greatest)
+                    corner[:, column] = _minimised_bound(objective, lowest, highest)
                 wide = np.abs(value.slopes).max(axis=2) * (high - low) / self.span[column]
                 smear = np.fmax(smear, wide.T)
             centre, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
@@ -176,8 +136,8 @@ class Boxes:
                 np.clip(centre + half * trial.T, lower, upper),
             )
 
-    def _dimensions(self, lower: Array, upper: Array, limits: Limits) -> tuple[Enclosure, Enclosure, Enclosure]:
-        """Return crank, rod and offset, (n, 1); those that are computed are held to their ranges."""
+    def _numbers(self, lower: Array, upper: Array, limits: Limits) -> Numbers:
+        """Return the raw numbers that designs set, (n, 1); dimensions that are computed are held to their ranges."""
         n, k = lower.shape
         branch = self.branch
 
@@ -198,20 +158,23 @@ class Boxes:
             scale = max(bounds.upper, 1e-300)
             limits.add((computed - bounds.upper) * (1.0 / scale))
             limits.add((bounds.lower - computed) * (1.0 / scale))
-            unknowns[step.target] = computed.confined(*_computed_ends(step.target, unknowns, bounds, self.lean, n))
-        return unknowns["crank"], unknowns["rod"], unknowns["offset"] * branch.sign
+            turning = self.swing is None
+            ends = _computed_ends(step.target, unknowns if turning else {}, bounds, self.lean, n)
+            unknowns[step.target] = computed.confined(*ends)
+        unknowns["offset"] = unknowns["offset"] * branch.sign
+        return numbers_over_boxes(self.mechanism, [unknowns[name] for name in branch.names])
 
-    def _closed(
-        self, name: str, r: Enclosure, l: Enclosure, e: Enclosure
-    ) -> tuple[Enclosure, Array | None, Array | None]:
+    def _closed(self, name: str, numbers: Numbers) -> tuple[Enclosure, Array | None, Array | None]:
         """Return the forms of a quantity (n, forms), and what is known of it beside them: from below and above."""
         quantity = self.problem.quantity(name)
-        slots: dict[int, Enclosure] = {Raw.CRANK: r, Raw.ROD: l, Raw.OFFSET: e}
+        if is_swing_form(quantity):
+            return swing_form(self.mechanism, quantity, numbers), None, None
+        r, l, e = (numbers[slot] for slot in range(3))
 
         def number(slot: int) -> Any:
-            return slots[slot] if slot in slots else float(self.raw[slot])
+            return numbers[slot] if slot in numbers else nominal_number(self.mechanism, slot)
 
-        forms = [formula(number) for formula in quantity.formulas(self.problem.mechanism)]
+        forms = [formula(number) for formula in quantity.formulas(self.mechanism)]
         value = reduce(side_by_side, [form if isinstance(form, Enclosure) else 0.0 * r + form for form in forms])
         greatest = value.ends()[1].max(axis=1)
         if not isinstance(quantity, ClosedFormQuantity) or quantity.rises is None:
@@ -230,25 +193,33 @@ class Boxes:
         least, highest = least - _ROUNDED * np.abs(least), highest + _ROUNDED * np.abs(highest)
         return value, np.where(np.isnan(least), -np.inf, least), np.fmin(greatest, highest)
 
-    def _angles(self, rows: IntArray, lower: Array, upper: Array) -> tuple[Array, dict[str, list[Array]]]:
-        """Return the middle designs of some boxes and the angles of their peaks; any where the middle does not turn.
+    def _places(self, rows: IntArray, lower: Array, upper: Array) -> tuple[Array, dict[str, list[Array]]]:
+        """Return the middle designs of some boxes and the places of their peaks; any where the middle does not move.
 
-        The angles are those of each curve of a quantity.
+        The places are those of each curve of a quantity.
         """
         middle = self.branch.dimensions(0.5 * (lower[rows] + upper[rows]))
-        turns = (middle[:, 0] > 0.0) & (middle[:, 1] > middle[:, 0] + np.abs(middle[:, 2]))
-        angles_by_name = {}
+        moves = moving(self.mechanism, self.problem.motion, middle)
+        places_by_name = {}
         for name, curves in self.curves.items():
-            angles_by_name[name] = [np.full(len(rows), 0.5 * np.pi) for _ in curves]
-            for angles, curve in zip(angles_by_name[name], curves, strict=True):
-                if turns.any():
-                    angles[turns] = best_angles(curve.peak, curve.mechanism, middle[turns])
-        return middle, angles_by_name
+            places_by_name[name] = [np.full(len(rows), curve.anywhere) for curve in curves]
+            for places, curve in zip(places_by_name[name], curves, strict=True):
+                if moves.any():
+                    places[moves] = curve.places(middle[moves])
+        return middle, places_by_name
 
 
-def _enclose_curves(curves: list[Curve], part: list[Enclosure], angles: list[Array], middle: Array) -> Enclosure:
-    """Return the curves of a quantity side by side, of which the greatest bounds its peak."""
-    enclosures = [curve.enclose(part, at, middle) for curve, at in zip(curves, angles, strict=True)]
+def _curve_bound(value: Enclosure, low: Array, high: Array, *, least: bool) -> Array:
+    """Return what no minimised peak, or with `least` no maximised least value, is below."""
+    lowest, highest = value.ends(low, high)
+    return -highest.min(axis=1) if least else lowest.max(axis=1)
+
+
+def _enclose_curves(
+    curves: list[CycleCurve | SwingCurve], part: Numbers, places: list[Array], middle: Array
+) -> Enclosure:
+    """Return the curves of a quantity side by side, of which the greatest or least bounds its own."""
+    enclosures = [curve.enclose(part, at, middle) for curve, at in zip(curves, places, strict=True)]
     return reduce(side_by_side, enclosures)
 
 

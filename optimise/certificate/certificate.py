@@ -29,14 +29,14 @@ class Certificate:
     """A proof of the greatest distance of a front from the true one.
 
     requested: epsilon to be proven. epsilon: proven for the front completed by the added designs. delivered: proven for
-    the front alone. gap: certain gap of the front alone, the excess of the design `hole` (crank, rod, offset, m; None
-    if no design lies beyond the front). All in units of the objectives' ranges `span` (m,), SI. hypervolume_gap:
-    greatest possible excess of the true front's hypervolume over the front's, in its units, including volume beyond the
-    front's ideal point. added: (n, 3), m, the designs that complete the front; added_values: (n, m), SI, minimised;
-    table: all their quantities. boxes: number of boxes bounded. open: number of open boxes. remaining: their fraction
-    of the design box. where: the range of crank, rod and offset, m, in the open box with the largest excess, (3, 2);
-    None if none is open. notes: requirements that the bounds did not use. The proof holds without them, but is harder
-    to obtain.
+    the front alone. gap: certain gap of the front alone, the excess of the design `hole` (3 + v,) (None if no design
+    lies beyond the front). All in units of the objectives' ranges `span` (m,), SI. hypervolume_gap: greatest possible
+    excess of the true front's hypervolume over the front's, in its units, including volume beyond the front's ideal
+    point. added: (n, 3 + v), SI, the designs that complete the front; added_values: (n, m), SI, minimised; table: all
+    their quantities. boxes: number of boxes bounded. open: number of open boxes. remaining: their fraction of the
+    design box. where: the ranges of a design's numbers, SI, in the open box with the largest excess, (3 + v, 2); None
+    if none is open. notes: requirements that the bounds did not use. The proof holds without them, but is harder to
+    obtain.
     """
 
     status: Status

@@ -17,7 +17,9 @@ model computes them. Requirements count as met to 1e-9 of their size, as everywh
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+
+import numpy as np
 
 from ...model.arrays import Array
 from ...model.errors import InputError
@@ -31,6 +33,7 @@ def certify_designs(
     problem: Problem,
     dimensions: Array,
     *,
+    variants: Sequence[int] = (),
     epsilon: float = EPSILON,
     seconds: float = SECONDS,
     progress: Callable[[Step], None] | None = None,
@@ -38,23 +41,17 @@ def certify_designs(
 ) -> Certificate:
     """Return a proof of the greatest distance of a set of designs from the true front.
 
-    dimensions: (n, 3), crank, rod, offset, m, of designs that meet the job's requirements. epsilon: requested epsilon,
-    a fraction of the objectives' ranges over these designs. seconds: time limit, s; returns what is proven so far.
-    progress: called between rounds. cancelled: called between rounds. Raises `InputError` without designs, for jobs
-    with extra variables, for objectives that cannot be bounded over a range of designs (`boxes.covered`), and for a
-    swing.
+    dimensions: (n, 3 + v), crank, rod, offset, m, and the extra variables, SI, of designs that meet the job's
+    requirements. variants: the variant of each in a problem with choices. epsilon: requested epsilon, a fraction of the
+    objectives' ranges over these designs. seconds: time limit, s; returns what is proven so far. progress: called
+    between rounds. cancelled: called between rounds. Raises `InputError` without designs, for variables with a list of
+    values, and for objectives that cannot be bounded over a range of designs (`boundable.unbounded_reason`).
     """
-    if problem.motion is not None:
+    if problem.discrete:
+        listed = ", ".join(f"the values of {item.name}" for item in problem.discrete)
         raise InputError(
-            "a certificate needs a rotating crank; this crank swings; the residuals of the front show how close its "
-            "designs are to optimal"
-        )
-    listed = (f"the values of {item.name}" for item in problem.discrete)
-    varying = [*(item.name for item in problem.mechanism.varying), *problem.choices, *listed]
-    if varying:
-        raise InputError(
-            f"only crank, rod and offset may vary in a certificate; got {', '.join(varying)} as well; fix their values "
-            "in the job and certify that"
+            f"a certificate is about ranges of variables; got {listed}, which are listed; give ranges in the job and "
+            "certify that"
         )
     if not len(dimensions):
         raise InputError("a certificate needs a front with designs; this one is empty; its message says why")
@@ -62,6 +59,7 @@ def certify_designs(
         raise InputError(f"epsilon must be a fraction of the objectives' ranges, above 0 and below 1; got {epsilon:g}")
     if not seconds > 0.0:
         raise InputError(f"the budget must be longer than zero; got {seconds:g} s")
-    search = Search(problem, dimensions, epsilon, seconds, cancelled)
+    chosen = np.array(variants if len(variants) else [0] * len(dimensions), dtype=np.int64)
+    search = Search(problem, dimensions, chosen, epsilon, seconds, cancelled)
     search.run(progress)
     return search.certificate()

@@ -5,220 +5,255 @@ bounds a peak from below, for every design of a box. At the angle where the peak
 bound is right to second order in the size of the box: there the curve is flat over crank angle. Where the curve counts
 only over a part of the stroke, and the peak sits on the end of that part, the angle follows the design: it is the one
 at which the slider has covered a fixed share of its stroke. From above a peak is not bounded here.
+
+Cylinders of a crankshaft add up at one angle of the shaft. Along a speed profile that angle gives the speed.
 """
 
 from __future__ import annotations
 
-from typing import Any, cast
+import math
+from dataclasses import replace
+from functools import reduce
+from typing import Any
 
 import numpy as np
 
 from ...model.arrays import Array, Mask
-from ...model.dynamics.torque import forces, smooth_load
+from ...model.dynamics.speed_ratio import speed_ratio_at, speed_ratio_of
+from ...model.dynamics.torque import forces
+from ...model.kernel.arithmetic import magnitude
 from ...model.kinematics.position import motion
-from ...model.machine.design import AREA, DESIGN, LOAD_ROWS, Design, derive, design_at
-from ...model.machine.loads.cylinder import Cylinder
-from ...model.machine.loads.load import Enters
-from ...model.machine.loads.registry import force_of
+from ...model.machine.arrangement import Arrangement
+from ...model.machine.design import Design
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.raw import Loads
+from ...model.machine.members import Member, cylinders_of, is_shaft, single_cylinder
+from ...model.machine.two_turns import TURN, cycle_turns, halves
 from ...model.signals.peaks import find_peaks
 from ...model.signals.screening import screen, screens
+from ...model.signals.shaft_curves import VECTORS, vector_of_force, vector_of_motion
+from ...model.signals.shaft_statistics import SUMS, equivalent_single_cranks
 from ...model.signals.signal_inputs import cycle_window, signal_inputs
-from ...model.signals.signals import Signal, design_motion, signal, size_of_force
+from ...model.signals.signals import Signal, design_motion, signal_of_motion
 from ...objectives.cycle_peak import CyclePeak
-from .enclosure import UNIT, Enclosure, interval, select, side_by_side
-from .gas import gas_force
+from .crank_angles import at_dead_centre, at_share, dead_centre_angle
+from .enclosure import Enclosure, interval, select, side_by_side
+from .machine import BoxMachine, Numbers
 
-_TURN = 2.0 * np.pi
-_ON_END = 1e-7  # share of the stroke: nearer to a dead centre than this is on it
 _SIDE_STEP, _FARTHEST = 1e-9, 0.5  # rad from a step
-_AT_REST = 1e-6  # of the crank: |x'| below it is a dead centre
-_derive = cast(Any, derive)
+_ERRORS = (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
 
 
-def best_angles(peak: CyclePeak, mechanism: Mechanism, designs: Array) -> Array:
-    """Return the crank angle, rad, of each design's peak (n,)."""
-    if screens(mechanism, peak.signal, during=peak.during):
-        return screen(mechanism, (peak.signal,), designs, places=True)[0].angles
-    angles = find_peaks(mechanism, peak.signal, designs, during=peak.during, limit=1).angles[:, 0]
-    return np.where(np.isfinite(angles), angles, 0.0)
+def machines_of(mechanism: Mechanism, kind: Signal) -> tuple[Mechanism, ...]:
+    """Return machines whose highest peak of a signal is that of the machine.
+
+    Each turn of a single crank's cycle of two turns is a machine of its own, and so is each cylinder of what does not
+    add up over them.
+    """
+    if not is_shaft(mechanism):
+        return halves(mechanism) if kind.needs_forces and cycle_turns(mechanism) > 1 else (mechanism,)
+    alike = equivalent_single_cranks(mechanism, kind)
+    every = mechanism.arrangement
+    if alike:
+        return tuple(part for single in alike for part in machines_of(single, kind))
+    if kind in SUMS or every is None or len(every.phases) == 1:
+        return (mechanism,)
+    apart = (
+        Arrangement(phases=(phase,), banks=(every.bank(k),), places=(every.place(k),))
+        for k, phase in enumerate(every.phases)
+    )
+    return tuple(part for one in apart for part in machines_of(replace(mechanism, arrangement=one), kind))
 
 
-class Curve:
+class CycleCurve:
     """One signal of a machine over boxes of designs. Without friction: its forces are no plain formula."""
 
-    def __init__(self, mechanism: Mechanism, peak: CyclePeak) -> None:
-        self.kind, self.peak = peak.signal, peak
-        self.mechanism = mechanism
-        self.raw, self.loads = signal_inputs(mechanism, peak.signal)
-        self.watch = cycle_window(mechanism, peak.signal, during=peak.during)
-        self.direction = 1.0 if mechanism.speed >= 0.0 else -1.0
-        self.partial = self.watch.strokes != 0 or self.watch.start > 0.0 or self.watch.end < 1.0
-        self.jumps = self.watch.split and peak.signal not in (Signal.TORQUE, Signal.POWER)
-        self.steps = peak.signal.needs_forces and any(load.steps for load in mechanism.fullest.loads)
-        self.shares = self.partial and peak.signal in (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
+    least = False
+    anywhere = 0.5 * math.pi
+    """A place for boxes whose middle design does not turn."""
 
-    def enclose(self, dimensions: list[Enclosure], angles: Array, middle: Array) -> Enclosure:
-        """Return the signal (n, p) at crank angles (n,) for dimensions (n, 1) and middle designs (n, 3).
+    def __init__(self, mechanism: Mechanism, peak: CyclePeak) -> None:
+        self.kind, self.peak, self.mechanism = peak.signal, peak, mechanism
+        single = single_cylinder(mechanism)
+        self.turns = cycle_turns(single) if self.kind.needs_forces else 1
+        self.machines = [
+            BoxMachine(half, *signal_inputs(half, self.kind))
+            for half in (halves(single) if self.turns > 1 else (single,))
+        ]
+        self.members = cylinders_of(mechanism) if is_shaft(mechanism) else (Member(single, 0.0, 0.0, 0.0),)
+        self.watch = cycle_window(self.machines[0].mechanism, self.kind, during=peak.during)
+        self.pace = speed_ratio_of(mechanism)
+        self.partial = self.watch.strokes != 0 or self.watch.start > 0.0 or self.watch.end < 1.0
+        self.jumps = self.watch.split and self.kind not in (Signal.TORQUE, Signal.POWER)
+        self.steps = self.kind.needs_forces and any(load.steps for load in mechanism.fullest.loads)
+        self.shares = self.partial and self.kind in _ERRORS
+
+    def places(self, designs: Array) -> Array:
+        """Return the crank angle, rad, of each design's peak (n,), that of the shaft for a shaft."""
+        if screens(self.mechanism, self.kind, during=self.peak.during):
+            return screen(self.mechanism, (self.kind,), designs, places=True)[0].angles
+        angles = find_peaks(self.mechanism, self.kind, designs, during=self.peak.during, limit=1).angles[:, 0]
+        return np.where(np.isfinite(angles), angles, 0.0)
+
+    def enclose(self, numbers: Numbers, places: Array, middle: Array) -> Enclosure:
+        """Return the signal (n, p) at crank angles (n,) for numbers (n, 1) and middle designs (n, 3 + k).
 
         It has two parts where it may jump at the angle, and three where a table steps. The rest is not a number where
         the angle does not count in all of the box.
         """
-        enclosure = self._enclose_at(dimensions, angles, middle)
+        angles = places[:, None]
+        enclosure = self._enclose_at(numbers, angles, middle)
         if self.steps:
             # A peak on a step moves with the design: beside it all designs of the box are on one side of the step.
-            r, l, e = middle.T
-            pace = np.abs(motion(np.sin(angles), np.cos(angles), r, l, e, self.mechanism.sign).x_1)
-            ends = [dimension.ends() for dimension in dimensions]
+            r, l, e = middle[:, :3].T
+            pace = np.abs(motion(np.sin(places), np.cos(places), r, l, e, self.mechanism.sign).x_1)
+            ends = [numbers[slot].ends() for slot in range(3)]
             width = np.sum([high[:, 0] - low[:, 0] for low, high in ends], axis=0)
-            away = np.minimum(width / np.maximum(pace, 1e-3 * r) + width / r + _SIDE_STEP, _FARTHEST)
+            away = np.minimum(width / np.maximum(pace, 1e-3 * r) + width / r + _SIDE_STEP, _FARTHEST)[:, None]
             for side in (-away, away):
-                enclosure = side_by_side(enclosure, self._enclose_at(dimensions, angles + side, middle))
+                enclosure = side_by_side(enclosure, self._enclose_at(numbers, angles + side, middle))
         return enclosure
 
-    def _enclose_at(self, dimensions: list[Enclosure], angles: Array, middle: Array) -> Enclosure:
-        """Return the signal as `enclose` does, at these angles alone."""
-        raw = self.raw.astype(object)[:, None]
-        raw[:3, 0] = dimensions
-        block = np.empty((DESIGN + LOAD_ROWS * len(self.loads.kind), 1), dtype=object)
-        _derive(raw, self.loads.kind, self.loads.datum, block)
-        d = design_at(block, 0)
-        theta = angles[:, None]
-        sine: Any = np.sin(theta)
-        cosine: Any = np.cos(theta)
+    def _enclose_at(self, numbers: Numbers, angles: Array, middle: Array) -> Enclosure:
+        """Return the signal as `enclose` does, at these angles (n, p) alone."""
+        designs = [machine.design(numbers) for machine in self.machines]
+        parts = [self._member_parts(member, designs, angles, middle) for member in self.members]
+        # Only a single cylinder has two: a jump at its dead centre.
+        return reduce(side_by_side, [self._size(sums) for sums in zip(*parts, strict=True)])
+
+    def _size(self, sums: tuple[tuple[Enclosure, Enclosure], ...]) -> Enclosure:
+        xs, ys = zip(*sums, strict=True)
+        x: Any = sum(xs[1:], xs[0])
+        y: Any = sum(ys[1:], ys[0])
+        size: Enclosure = np.sqrt(x * x + y * y) if self.kind in VECTORS else magnitude(x)
+        return size
+
+    def _member_parts(
+        self, member: Member, designs: list[tuple[Design, Any]], angles: Array, middle: Array
+    ) -> list[tuple[Enclosure, Enclosure]]:
+        """Return a cylinder's components at angles of the shaft: of both strokes where it jumps at the angle."""
+        d = self._moving(designs[0][0], member, angles)
+        local: Any = angles + member.lead
+        sine: Any = np.sin(local)
+        cosine: Any = np.cos(local)
         if self.shares:
-            sine, cosine = _at_share(d, sine, cosine, middle, self.watch.start, self.watch.end)
+            sine, cosine = at_share(d, sine, cosine, middle, self.watch.start, self.watch.end)
         jump = None
         if self.jumps:
-            jump, sine, cosine = _at_dead_centre(d, sine, cosine, middle)
+            jump, sine, cosine, local = at_dead_centre(d, sine, cosine, local, middle)
+            if jump.any() and self.mechanism.speed_profile is not None:
+                d = self._moving(designs[0][0], member, local - member.lead)
         m = design_motion(sine, cosine, d)
-        outward = m.x_1 * (d.branch * self.direction)
+        outward = m.x_1 * (d.branch * self.mechanism.direction)
+        place = (sine, cosine, local, m)
         if jump is not None and jump.any():
             # The peak is the greater of what the curve tends to from either side, which are the two strokes.
             sides = [
                 select(jump, interval(side, side, len(outward.slopes)), outward) for side in (jump + 0.0, -1.0 * jump)
             ]
-            return side_by_side(*(self._signal(sine, cosine, m, d, block, theta, side) for side in sides))
-        value = self._signal(sine, cosine, m, d, block, theta, outward)
+            return [self._components(member, designs, d, place, side) for side in sides]
+        x, y = self._components(member, designs, d, place, outward)
         if self.partial and not self.shares:
             low, high = outward.ends()
             counts = low > 0.0 if self.watch.strokes == 1 else high < 0.0
-            value = Enclosure(value.centre, value.slopes, np.where(counts, value.rest, np.nan), value.empty)
-        return value
+            x = Enclosure(x.centre, x.slopes, np.where(counts, x.rest, np.nan), x.empty)
+        return [(x, y)]
 
-    def _signal(
-        self, sine: Any, cosine: Any, m: Any, d: Design, block: Any, theta: Array, outward: Enclosure
-    ) -> Enclosure:
-        if self.kind.needs_forces:
-            load = smooth_load(m, d, _by_stroke(outward, d.outward_force, d.inward_force))
-            way = _by_stroke(outward, 1.0, -1.0)
-            for k, code in enumerate(self.loads.kind.tolist()):
-                if code >= Enters.FORMULA:
-                    first, second = block[DESIGN + LOAD_ROWS * k : DESIGN + LOAD_ROWS * k + 2, 0]
-                    velocity = m.x_1 * d.branch * d.speed
-                    load = load + force_of(code, m.x * d.branch, velocity, way, first, second)
-                elif code in (Enters.CYLINDER, Enters.BURNING_CYLINDER):
-                    stroke = d.outer - d.inner
-                    z = (m.x * d.branch - block[DESIGN + LOAD_ROWS * k + 1, 0]) * block[DESIGN + LOAD_ROWS * k, 0]
-                    cylinder = cast(Cylinder, self.mechanism.loads[k])
-                    load = load + gas_force(cylinder, z / stroke, stroke, outward)
-                if self.loads.start[k] < self.loads.start[k + 1] and not self.loads.factor[k, 2]:
-                    load = load + self._table(k, m, d, block, theta, outward)
-            f = forces(sine, cosine, m, d, load)
-            total = f._replace(torque=f.torque - self._on_crank(m, d, block, theta, outward))
-            return cast(Enclosure, size_of_force(int(self.kind), total, m, d))
-        return cast(Enclosure, signal(int(self.kind), sine, cosine, m, d, None))
+    def _moving(self, d: Design, member: Member, angles: Array | Enclosure) -> Design:
+        """Return a design with the speed and acceleration at angles of the shaft, and gravity as its bank feels it."""
+        if member.bank:
+            c, s = math.cos(member.bank), math.sin(member.bank)
+            x, y = d.gravity_x, d.gravity_y
+            d = d._replace(gravity_x=c * x + s * y, gravity_y=c * y - s * x)
+        if self.mechanism.speed_profile is None:
+            return d
+        ratio, slope, _ = _ratios(self.pace, angles)
+        square = d.speed * d.speed
+        return d._replace(speed=d.speed * ratio, acceleration=d.acceleration + square * (ratio * slope))
 
-    def _on_crank(self, m: Any, d: Design, block: Any, theta: Array, outward: Enclosure) -> Any:
-        """Return the torque of the loads on the crank, N m: as `torque_without_crank_loads` has it."""
-        torque: Any = 0.0
-        for k, load in enumerate(self.mechanism.loads):
-            if load.on_crank and self.loads.kind[k] == Enters.CRANK_TORQUE:
-                q = DESIGN + LOAD_ROWS * k + AREA
-                torque = torque + (block[q, 0] - self.direction * block[q + 1, 0])
-            elif load.on_crank:
-                torque = torque + self._table(k, m, d, block, theta, outward)
-        return torque
+    def _components(
+        self, member: Member, designs: list[tuple[Design, Any]], d: Design, place: Any, outward: Enclosure
+    ) -> tuple[Enclosure, Enclosure]:
+        """Return the components of one cylinder, in the axes of the shaft if it shakes."""
+        sine, cosine, local, m = place
+        kind, nothing = self.kind, 0.0 * outward
+        if kind in _ERRORS:
+            return signal_of_motion(int(kind), sine, cosine, m, d), nothing
+        if kind.needs_forces:
+            vectors = [
+                self._forces(machine, d, block, place, outward)
+                for machine, (_, block) in zip(self.machines, designs, strict=True)
+            ]
+            if self.turns == 1 or len(vectors) == 1:
+                return vectors[0]
+            first, known = self._first_half(d, local)
+            x, y = (select(first, *pair) for pair in zip(*vectors, strict=True))
+            return Enclosure(x.centre, x.slopes, np.where(known, x.rest, np.nan), x.empty), y
+        rate = 0.0
+        if kind is Signal.SLIDER_JERK and self.mechanism.speed_profile is not None:
+            ratio, slope, bend = _ratios(self.pace, local - member.lead)
+            plain = designs[0][0].speed
+            rate = plain * plain * (slope * slope + ratio * bend)
+        x, y = (nothing + part for part in vector_of_motion(int(kind), sine, cosine, m, d, rate))
+        if kind in (Signal.SHAKING_FORCE, Signal.ROCKING_COUPLE) and member.bank:
+            c, s = math.cos(member.bank), math.sin(member.bank)
+            x, y = c * x - s * y, s * x + c * y
+        return (-member.place * y, member.place * x) if kind is Signal.ROCKING_COUPLE else (x, y)
 
-    def _table(self, k: int, m: Any, d: Design, block: Any, theta: Array, outward: Enclosure) -> Enclosure:
-        loads: Loads = self.loads
-        part = slice(loads.start[k], loads.start[k + 1])
-        at, force = loads.at[part], loads.force[part]
-        factor = loads.factor[k, 2] or _by_stroke(outward, *loads.factor[k, :2].tolist())
-        if loads.kind[k] == Enters.ANGLE_TABLE:
-            if loads.datum[k] == 0:
-                turned = theta - _TURN * np.floor((theta - at[0]) / _TURN)
-                return cast(Enclosure, factor * np.interp(turned, at, force))
-            counted = theta - block[DESIGN + LOAD_ROWS * k + 1, 0]
-            turns = counted - _TURN * np.floor((counted.centre - at[0]) / _TURN)
-            # A turn before and one after: a box may reach beyond the ends of the table.
-            # Where the table steps at its seam, the end of one turn and the start of the next are both sides of that.
-            at = np.concatenate([at - _TURN, at, at + _TURN])
-            return factor * interpolated(turns, at, np.tile(force, 3))
-        at_x = (m.x * d.branch - block[DESIGN + LOAD_ROWS * k + 1, 0]) * block[DESIGN + LOAD_ROWS * k, 0]
-        return factor * interpolated(at_x, at, force)
+    def _forces(
+        self, machine: BoxMachine, d: Design, block: Any, place: Any, outward: Enclosure
+    ) -> tuple[Enclosure, Enclosure]:
+        sine, cosine, local, m = place
+        load = machine.load(m, d, block, local, outward)
+        f = forces(sine, cosine, m, d, load)
+        if self.kind not in (Signal.TORQUE, Signal.POWER):
+            x, y = vector_of_force(int(self.kind), f, m, d)
+            return x, 0.0 * outward + y
+        torque = f.torque - machine.on_crank(m, d, block, local, outward, self.mechanism.direction)
+        return (torque * d.speed if self.kind is Signal.POWER else torque), 0.0 * outward
+
+    def _first_half(self, d: Design, local: Any) -> tuple[Mask, Mask]:
+        """Return where angles are in the first turn of a cycle of two, and where the whole box is in one of them."""
+        (datum,) = {load.cycle_datum for load in self.mechanism.loads if load.cycle_turns > 1}
+        way = 1.0 if datum == "zero crank angle" else self.mechanism.direction
+        counted: Any = local
+        if datum != "zero crank angle":
+            start = dead_centre_angle(d, np.asarray(datum == "outer dead centre"))
+            low, high = start.ends()
+            counted = local - (start - TURN * np.floor(low / TURN))
+            counted = Enclosure(
+                counted.centre,
+                counted.slopes,
+                np.where(np.floor(low / TURN) == np.floor(high / TURN), counted.rest, np.nan),
+                counted.empty,
+            )
+        turned = (
+            counted * (way / TURN)
+            if isinstance(counted, Enclosure)
+            else interval(counted * (way / TURN), counted * (way / TURN), 0)
+        )
+        low, high = turned.ends()
+        with np.errstate(invalid="ignore"):
+            return np.mod(np.floor(low), 2.0) == 0.0, np.floor(low) == np.floor(high)
 
 
-def interpolated(x: Enclosure, at: Array, force: Array) -> Enclosure:
-    """Return the table's force over an enclosed position: the chord, and how far the knots lie off it."""
-    low, high = x.ends()
-    first, last = np.interp(low, at, force), np.interp(high, at, force)
-    wide = high > low
-    slope = np.where(wide, (last - first) / np.where(wide, high - low, 1.0), 0.0)
-    highest, lowest = np.zeros_like(low), np.zeros_like(low)
-    for knot, value in zip(at, force, strict=True):
-        off = np.where((low < knot) & (knot < high), value - (first + slope * (knot - low)), 0.0)
-        highest, lowest = np.maximum(highest, off), np.minimum(lowest, off)
-    chord = (x - low) * slope + (first + 0.5 * (highest + lowest))
-    rounding = UNIT * (np.abs(force).max() + np.abs(slope) * x.size)
-    return Enclosure(chord.centre, chord.slopes, chord.rest + 0.5 * (highest - lowest) + 4.0 * rounding, chord.empty)
+def _ratios(pace: Any, angles: Any) -> tuple[Any, Any, Any]:
+    """Return p of a speed profile and its first two derivatives at angles (n, p) of the shaft.
 
-
-def _by_stroke(outward: Enclosure, out: Any, back: Any) -> Enclosure:
-    """Return one number in the outward stroke and another in the inward one, both where the stroke is not certain."""
-    low, high = outward.ends()
-    k = len(outward.slopes)
-    least = np.where(low > 0.0, out, np.where(high < 0.0, back, min(out, back)))
-    greatest = np.where(low > 0.0, out, np.where(high < 0.0, back, max(out, back)))
-    return interval(least, greatest, k)
-
-
-def _at_share(
-    d: Design, sine: Array, cosine: Array, middle: Array, start: float, end: float
-) -> tuple[Enclosure, Enclosure]:
-    """Return sine and cosine of the crank angle at the share of the stroke that the middle design has covered.
-
-    With B the slider pin and q = (r^2 + B^2 - l^2) / (2 B^2), the crank pin is q B +- h B' where B' is B turned by 90
-    degrees and h^2 = r^2 / B^2 - q^2. On a dead centre it lies on the line of the rod: -r/(l - r) or r/(l + r) times B.
+    Over an enclosed angle: the tangent at its centre, and bounds of the second and third derivative for the rest.
     """
-    r, l, e = (column[:, None] for column in middle.T)
-    at = motion(sine, cosine, r, l, e, d.branch)
-    inner, outer = np.sqrt((l - r) ** 2 - e * e), np.sqrt((l + r) ** 2 - e * e)
-    share = np.clip((at.x * d.branch - inner) / (outer - inner), start, end)
-    side = np.where(at.x * r * sine >= e * r * cosine, 1.0, -1.0)
-    x = (d.inner + (d.outer - d.inner) * np.clip(share, _ON_END, 1.0 - _ON_END)) * d.branch
-    square = x * x + d.e * d.e
-    q = (d.r * d.r + square - d.l * d.l) / (square * 2.0)
-    h = np.sqrt(d.r * d.r / square - q * q) * side
-    on_inner, on_outer = share < _ON_END, share > 1.0 - _ON_END
-    q = select(on_inner, -d.r / (d.l - d.r), select(on_outer, d.r / (d.l + d.r), q))
-    h = select(on_inner | on_outer, 0.0 * d.r, h)
-    x = select(on_inner, d.inner * d.branch, select(on_outer, d.outer * d.branch, x))
-    return (q * d.e + h * x) / d.r, (q * x - h * d.e) / d.r
-
-
-def _at_dead_centre(d: Design, sine: Array, cosine: Array, middle: Array) -> tuple[Mask, Enclosure, Enclosure]:
-    """Return where the middle design is on a dead centre, and sine and cosine of an angle that stays there."""
-    r, l, e = (column[:, None] for column in middle.T)
-    at = motion(sine, cosine, r, l, e, d.branch)
-    on_dead_centre = np.abs(at.x_1) < _AT_REST * r
-    far = at.x * d.branch > np.sqrt(l * l - e * e)  # between the two dead centres
-    q = select(far, d.r / (d.l + d.r), -d.r / (d.l - d.r))
-    x = select(far, d.outer * d.branch, d.inner * d.branch)
-    k = len(q.slopes)
-    return (
-        on_dead_centre,
-        select(on_dead_centre, q * d.e / d.r, interval(sine, sine, k)),
-        select(on_dead_centre, q * x / d.r, interval(cosine, cosine, k)),
-    )
+    if not isinstance(angles, Enclosure):
+        found = [speed_ratio_at(float(angle), pace)[:3] for angle in angles.ravel()]
+        p, slope, bend = np.array(found).T.reshape(3, *angles.shape)
+        return p, slope, bend
+    p, slope, bend = _ratios(pace, angles.centre)
+    k = np.arange(1.0, len(pace.cosines) + 1.0)
+    size = np.abs(pace.cosines) + np.abs(pace.sines)
+    second, third = float((k**2 * size).sum()), float((k**3 * size).sum())
+    if pace.pieces.shape[1]:
+        x = np.diff(pace.knots)
+        second = float(np.abs([2.0 * pace.pieces[1], 6.0 * pace.pieces[0] * x + 2.0 * pace.pieces[1]]).max())
+        third = float(np.abs(6.0 * pace.pieces[0]).max())
+    away, zero = angles - angles.centre, np.zeros_like(p)
+    square = 0.5 * angles.radius**2 * (1.0 + 1e-9)
+    curved = [Enclosure(zero, 0.0 * angles.slopes, bound * square) for bound in (second, third)]
+    return p + away * slope + curved[0], slope + away * bend + curved[1], bend

@@ -149,6 +149,11 @@ class Enclosure:
     def __rtruediv__(self, other: Any) -> Enclosure:
         return self._inverted()._scaled(other)
 
+    def __pow__(self, exponent: int) -> Enclosure:
+        if exponent != 2:
+            raise TypeError(f"an enclosure is only squared; got the exponent {exponent}")
+        return self._squared()
+
     def _squared(self) -> Enclosure:
         """(c + t)^2 = c^2 + 2 c t + t^2 with t^2 in [0, radius^2]."""
         half = 0.5 * self.radius * self.radius
@@ -207,6 +212,18 @@ class Enclosure:
         arcsine.empty = _merge_empty(self.empty, outside)
         return arcsine
 
+    def sin(self) -> Enclosure:
+        """Return the sine: tangent at the centre, and a second derivative of at most 1; NumPy calls it in arrays."""
+        sine, cosine = np.sin(self.centre), np.cos(self.centre)
+        rest = self.rest * np.abs(cosine) + 0.5 * self.radius**2 * (1.0 + INFLATION)
+        rest = rest + 8.0 * UNIT * (1.0 + self.size)
+        one = np.ones_like(sine)
+        return Enclosure(sine, self.slopes * cosine, rest, self.empty).confined(-one, one)
+
+    def cos(self) -> Enclosure:
+        """Return the cosine, see `sin`."""
+        return (self + 0.5 * np.pi).sin()
+
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
         """Run NumPy's functions on enclosures: what formulas call, and arrays on the left of an operator."""
         if method != "__call__" or options or ufunc not in _FUNCTIONS:
@@ -217,6 +234,8 @@ class Enclosure:
 _FUNCTIONS: dict[Any, Callable[..., Any]] = {
     np.sqrt: Enclosure._root,
     np.arcsin: Enclosure._arcsine,
+    np.sin: Enclosure.sin,
+    np.cos: Enclosure.cos,
     np.negative: lambda a: -a,
     np.add: lambda a, b: a + b if isinstance(a, Enclosure) else b + a,
     np.subtract: lambda a, b: a - b if isinstance(a, Enclosure) else b.__rsub__(a),
@@ -230,6 +249,20 @@ def interval(low: Any, high: Any, k: int) -> Enclosure:
     low, high = np.broadcast_arrays(np.asarray(low, dtype=np.float64), np.asarray(high, dtype=np.float64))
     rest = 0.5 * (high - low) + UNIT * (np.abs(low) + np.abs(high))
     return Enclosure(0.5 * (low + high), np.zeros((k, *low.shape)), rest)
+
+
+def constant(value: Any, like: Enclosure) -> Enclosure:
+    """Return a number that all designs of a box share, as wide as another one."""
+    centre = np.broadcast_to(
+        np.asarray(value, dtype=np.float64), np.broadcast_shapes(np.shape(value), like.centre.shape)
+    )
+    return Enclosure(centre, np.zeros((len(like.slopes), *centre.shape)), np.zeros(centre.shape))
+
+
+def sign_of(value: Enclosure) -> Array:
+    """Return the sign that a number has all over a box; NaN where it is not one."""
+    low, high = value.ends()
+    return np.where(low > 0.0, 1.0, np.where(high < 0.0, -1.0, np.nan))
 
 
 def side_by_side(left: Enclosure, right: Enclosure) -> Enclosure:

@@ -11,7 +11,8 @@ from ..problem.problem import Problem
 from ..problem.violation import FEASIBLE
 from ..search.elimination import EliminationBranch, elimination_branches
 from ..search.evaluation import Evaluator
-from .boxes import Boxes, is_usable
+from .boundable import is_usable
+from .boxes import Boxes
 from .tree import Tree, pool
 
 SECONDS = 5.0
@@ -23,11 +24,9 @@ def prove_infeasible(problem: Problem, *, seconds: float = SECONDS, poll: Callab
     """Return whether it is proven that no design of the job's ranges meets all its requirements.
 
     Requirements that cannot be bounded over a range of designs are not used: the others must contradict each other.
-    False when a design meets all of these, or when the budget ends first: then nothing is known. False, too, where more
-    than the three dimensions varies, and for a swing. poll: called many times a second; what it raises ends the search.
+    False when a design meets all of these, or when the budget ends first: then nothing is known. poll: called many
+    times a second; what it raises ends the search.
     """
-    if problem.mechanism.varying or problem.choices or problem.motion is not None:
-        return False
     start = time.perf_counter()
     unit_span = np.ones(len(problem.objectives))
     tree = Tree.of_branches(

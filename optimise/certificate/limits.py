@@ -51,6 +51,13 @@ class Limits:
             if greatest is not None:
                 self.alive &= ~(lower - greatest > FEASIBLE * scale)
 
+    def hold_curve(self, constraint: Constraint, value: Enclosure) -> None:
+        """Require a bound of a quantity's greatest value on each part, or a lower bound of its least value."""
+        if constraint.lower is None:
+            self.hold(constraint, value, None, None)
+        else:
+            self.add((constraint.lower - value) * (1.0 / (abs(constraint.lower) or 1.0)))
+
     def contracted(self) -> tuple[Array, Array]:
         """Return low and high (k, n), the part of [-1, 1]^k that holds all feasible designs."""
         low, high = -np.ones((self.k, len(self.alive))), np.ones((self.k, len(self.alive)))

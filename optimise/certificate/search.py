@@ -9,16 +9,17 @@ from collections.abc import Callable
 import numpy as np
 import pandas as pd
 
-from ...model.arrays import Array, IntArray
+from ...model.arrays import Array, IntArray, distinct
 from ...objectives.cycle_peak import CyclePeak
 from ..problem.problem import Problem
 from ..problem.violation import FEASIBLE, minimised, restated_constraints
-from ..search.assemble import span_of
+from ..search.assemble import columns_of, span_of
 from ..search.candidates import Candidates
 from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
 from ..search.recorded import polish
-from .boxes import Boxes, is_usable
+from .boundable import is_usable
+from .boxes import Boxes
 from .certificate import Certificate, Status, Step, message_of
 from .cover import choose_covering, excess, greedy_cover, volume_gap
 from .tree import Tree, pool
@@ -32,7 +33,7 @@ _MOST_PAIRS = 50_000_000  # pairs of added designs and corners that are looked t
 
 
 def _objectives(problem: Problem, dimensions: Array) -> Array:
-    """Return the minimised objectives (n, m) of designs, exact over continuous crank angle."""
+    """Return the minimised objectives (n, m) of designs of one variant, exact over continuous crank angle."""
     columns = [
         minimised(wish, problem.quantity(wish.quantity).evaluate(problem.mechanism, dimensions).values)
         for wish in problem.objectives
@@ -47,6 +48,7 @@ class Search:
         self,
         problem: Problem,
         dimensions: Array,
+        variants: IntArray,
         epsilon: float,
         seconds: float,
         cancelled: Callable[[], bool] | None,
@@ -55,7 +57,10 @@ class Search:
         self.start = time.perf_counter()
         self.problem, self.epsilon, self.seconds = problem, epsilon, seconds
         self.cancelled = cancelled
-        values = _objectives(problem, dimensions)
+        values = np.empty((len(dimensions), len(problem.objectives)))
+        for variant in distinct(variants).tolist():
+            rows = variants == variant
+            values[rows] = _objectives(problem.part(variant), dimensions[rows])
         self.span, self.ideal = span_of(problem, values), values.min(axis=0)
         self.front = self._scaled(values)
         self.designs = self.front
@@ -66,7 +71,7 @@ class Search:
         self.needy = [np.zeros((0, m))]  # corners of closed boxes that the front alone does not cover
         self.closed = 0.0  # largest excess of closed boxes, of the set and of the front alone
         self.closed_by_front = 0.0
-        self.gap, self.hole = 0.0, np.full(3, np.nan)
+        self.gap, self.hole = 0.0, np.full(dimensions.shape[1], np.nan)
         self.stopped = False
 
     def _scaled(self, values: Array) -> Array:
@@ -136,22 +141,22 @@ class Search:
         lead = excess(scaled, self.front)
         farthest = int(np.argmax(lead))
         if lead[farthest] > self.gap:
-            self._note(dimensions[good[farthest]])
+            self._note(index, dimensions[good[farthest]])
         rows = good[choose_covering(corner[good], scaled, self.epsilon)]
         if not len(rows):
             return gaps
-        fresh = self._exact(dimensions[rows])
+        fresh = self._exact(index, dimensions[rows])
         additions = Candidates(np.full(len(rows), index), trial[rows], fresh, np.ones(len(rows), np.bool_))
         self.added = self.added.join(additions)
         self.designs = np.concatenate([self.designs, fresh])
         return excess(corner, fresh, earlier_excess=gaps, enough=self.epsilon)
 
-    def _exact(self, dimensions: Array) -> Array:
-        return self._scaled(_objectives(self.problem, dimensions))
+    def _exact(self, index: int, dimensions: Array) -> Array:
+        return self._scaled(_objectives(self.evaluators[index].problem, dimensions))
 
-    def _note(self, design: Array) -> None:
-        """Remember a design that lies farther beyond the front than any before."""
-        lead = float(excess(self._exact(design[None]), self.front)[0])
+    def _note(self, index: int, design: Array) -> None:
+        """Remember a design of a branch that lies farther beyond the front than any before."""
+        lead = float(excess(self._exact(index, design[None]), self.front)[0])
         if lead > self.gap:
             self.gap, self.hole = lead, design
 
@@ -175,8 +180,6 @@ class Search:
 
     def certificate(self) -> Certificate:
         """Return the certificate so far, its added designs polished and reduced to as few as it takes."""
-        from ...objectives.tables.analysis import analyse
-
         tree, proven = self.tree, self._proven()
         needy = np.concatenate(self.needy)
         self._drop_redundant(needy)
@@ -186,7 +189,8 @@ class Search:
         dimensions = self.added.dimensions(self.evaluators)
         leads = excess(self.added.values, self.front)
         if len(leads) and leads.max() > self.gap:
-            self._note(dimensions[int(np.argmax(leads))])
+            farthest = int(np.argmax(leads))
+            self._note(int(self.added.branch[farthest]), dimensions[farthest])
         # Whoever is covered by an added design is covered by the front to the sum of both excesses.
         least = max(self.closed_by_front, float(excess(tree.corner, self.front).max(initial=0.0)))
         delivered = max(min(least, proven + float(leads.max(initial=0.0))), self.gap)
@@ -205,7 +209,7 @@ class Search:
             span=self.span,
             added=dimensions,
             added_values=self.added.values * self.span + self.ideal,
-            table=analyse(self.problem.mechanism, dimensions) if len(dimensions) else pd.DataFrame(),
+            table=self._table(dimensions) if len(dimensions) else pd.DataFrame(),
             boxes=tree.bounded,
             open=len(tree),
             remaining=tree.volume(),
@@ -215,15 +219,20 @@ class Search:
             message=message_of(status, self.epsilon, proven, delivered, self.gap, len(self.front), len(dimensions)),
         )
 
+    def _table(self, dimensions: Array) -> pd.DataFrame:
+        variants = np.array([evaluator.branch.variant for evaluator in self.evaluators], dtype=np.int64)
+        return pd.DataFrame(columns_of(self.problem, variants[self.added.branch], dimensions))
+
     def _notes(self) -> tuple[str, ...]:
         notes = []
-        for constraint in restated_constraints(self.problem):
-            quantity = self.problem.quantity(constraint.quantity)
-            if not is_usable(self.problem, constraint):
+        constraints = ((part, item) for part in self.problem.parts() for item in restated_constraints(part))
+        for part, constraint in constraints:
+            quantity = part.quantity(constraint.quantity)
+            if not is_usable(part, constraint):
                 notes.append(f"the bounds ignore the requirement on {quantity.title}")
             elif isinstance(quantity, CyclePeak) and constraint.lower is not None:
                 notes.append(f"the bounds ignore the minimum of {quantity.title}")
-        return tuple(notes)
+        return tuple(dict.fromkeys(notes))
 
     def _drop_redundant(self, needy: Array) -> None:
         """Leave out added designs whose corners others cover."""
@@ -242,7 +251,7 @@ class Search:
                     return
                 k = evaluator.dimension
                 part = polish(evaluator, self.added.u[rows][:, :k], self.span, iterations=_STEPS)
-                fresh = self._exact(evaluator.branch.dimensions(part.u))
+                fresh = self._exact(index, evaluator.branch.dimensions(part.u))
                 better = (part.violation <= FEASIBLE) & (fresh <= self.added.values[rows]).all(axis=1)
                 self.added.u[rows[better], :k] = part.u[better]
                 self.added.values[rows[better]] = fresh[better]

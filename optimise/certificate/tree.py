@@ -13,7 +13,7 @@ from ...model.arrays import Array, IntArray, Mask
 from ..search.candidates import Table
 from .boxes import Bounded, Boxes
 
-_FIRST = {0: 1, 1: 64, 2: 24, 3: 12}  # boxes along each axis to begin with
+_FIRST = {0: 1, 1: 64, 2: 24, 3: 12, 4: 5, 5: 3}  # boxes along each axis to begin with; 2 of more axes
 _CHUNK = 2048  # boxes bounded at once: the working arrays stay in the cache
 _FINEST = 2.0**-40
 """Width of a box, in the unit box, below which it is not split further."""
@@ -41,7 +41,8 @@ class Tree(Table):
     @classmethod
     def of_branches(cls, branches: list[Boxes]) -> Tree:
         """Return a tree without boxes."""
-        empty_rows, wide = np.zeros(0, np.int64), np.zeros((0, 3))
+        width = max([3, *(len(boxes.branch.free) for boxes in branches)])
+        empty_rows, wide = np.zeros(0, np.int64), np.zeros((0, width))
         return cls(
             empty_rows,
             wide,
@@ -64,7 +65,7 @@ class Tree(Table):
     def initial_boxes(self, index: int) -> tuple[Array, Array]:
         """Return the initial boxes (n, k) of a branch."""
         k = len(self.branches[index].branch.free)
-        count = _FIRST[k]
+        count = _FIRST.get(k, 2)
         places = np.array(list(itertools.product(range(count), repeat=k)), dtype=np.float64).reshape(count**k, k)
         return places / count, (places + 1.0) / count
 

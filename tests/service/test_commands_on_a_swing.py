@@ -156,7 +156,6 @@ def test_inverse_gives_the_crank_angles_of_the_swing(command: Command, place: Pa
             ("--design", 1, "--measured", "curves.csv"),
             "with measured curves needs a rotating crank",
         ),
-        ("certify", (), "the residuals of the front show how close its designs are to optimal"),
         ("front", ("--where", "stroke >= 1 m"), "'stroke'"),
     ],
 )

@@ -108,14 +108,23 @@ def doors(solved: Solved) -> Iterator[Doors]:
         yield doors_of(solved, client)
 
 
+NARROW = {
+    "designs = ": "designs = 4\nsamples = 128 #",
+    '["1.2 m", "1.5 m"]': '["1.38 m", "1.4 m"]',
+    '["1.2 m", "3.0 m"]': '["2.0 m", "2.1 m"]',
+    '["-600 mm", "600 mm"]': '["-60 mm", "60 mm"]',
+}
+"""What makes the support's job short."""
+
+
 @pytest.fixture(scope="module", params=["nothing feasible", "a swing"])
 def other(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Doors]:
     """Yield a run without designs, and one of a crank that swings."""
     place = tmp_path_factory.mktemp("other")
     if request.param == "a swing":
-        text = (
-            Path("runs/support.toml").read_text(encoding="utf-8").replace("designs = ", "designs = 4\nsamples = 128 #")
-        )
+        text = Path("runs/support.toml").read_text(encoding="utf-8")
+        for before, after in NARROW.items():
+            text = text.replace(before, after)
     else:
         text = fronts.JOB.replace('"40 deg"', '"80 deg"')
     (place / "job.toml").write_text(text, encoding="utf-8")
@@ -240,10 +249,8 @@ def test_what_is_told_to_people_is_in_the_units_of_each_door(doors: Doors) -> No
 @pytest.mark.slow
 def test_a_front_without_designs_and_a_swing_answer_alike_at_every_door(other: Doors) -> None:
     if len(other.front):
-        (sentence,) = set(other.refusals("certify", None, {}))
-        assert sentence.startswith("a certificate needs a rotating crank; this crank swings; ")
-        done = other.command("certify", None, {})
-        assert (done.exit_code, done.stderr.strip()) == (2, f"slidercrank: {sentence}")
+        proof = assert_alike(other, "certify", None, {"epsilon": 0.5, **SECONDS})
+        assert proof["status"] == "proven"
         force = float(np.median(other.front.values[:, 0]))
         given = {"at": {"peak_actuator_force": f"{force!r} N"}}
         wished = other.front.ask("wish", **given)

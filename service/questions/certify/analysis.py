@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.kinds import LENGTH
+from ....objectives.tables.varying_column import columns_of_numbers
 from ....optimise.certificate.certify import certify_designs
 from ....optimise.certificate.defaults import EPSILON, SECONDS
 from ....optimise.certificate.infeasible import prove_infeasible
@@ -37,7 +38,12 @@ def answer(
 
     options = {"epsilon": epsilon, "seconds": seconds}
     certificate = certify_designs(
-        front.problem, front.dimensions[:, :3], **options, progress=report, cancelled=watch.cancelled
+        front.problem,
+        front.dimensions,
+        variants=front.variants,
+        **options,
+        progress=report,
+        cancelled=watch.cancelled,
     )
     record = _record(certificate, front.problem)
     return Answer(
@@ -69,7 +75,7 @@ def _record(certificate: Certificate, problem: Problem) -> dict[str, Any]:
         "epsilon": certificate.epsilon,
         "epsilon_of_delivered": certificate.delivered,
         "gap_of_delivered": certificate.gap,
-        "hole": _by_size(certificate.hole),
+        "hole": _by_number(certificate.hole, problem),
         "ranges": {
             quantity.field: float(span) * quantity.unit.factor
             for quantity, span in zip(quantities, certificate.span, strict=True)
@@ -78,16 +84,18 @@ def _record(certificate: Certificate, problem: Problem) -> dict[str, Any]:
         "boxes": certificate.boxes,
         "open_boxes": certificate.open,
         "remaining_share": certificate.remaining,
-        "remaining_where": _by_size(certificate.where),
+        "remaining_where": _by_number(certificate.where, problem),
         "notes": list(certificate.notes),
         "seconds": certificate.seconds,
         "added": rows_of(certificate.table.to_dict("list")) if len(certificate.table) else [],
     }
 
 
-def _by_size(values: Array | None) -> dict[str, Any] | None:
-    sizes = (f"{name}_mm" for name in DIMENSIONS)
-    return None if values is None else dict(zip(sizes, (1e3 * values).tolist(), strict=True))
+def _by_number(values: Array | None, problem: Problem) -> dict[str, Any] | None:
+    if values is None:
+        return None
+    columns = columns_of_numbers(problem.mechanism.varying).values()
+    return {key: (unit.factor * value).tolist() for (key, unit), value in zip(columns, values, strict=True)}
 
 
 def _blocks(certificate: Certificate, front: ParetoFront) -> list[Block]:
@@ -99,13 +107,13 @@ def _blocks(certificate: Certificate, front: ParetoFront) -> list[Block]:
     if certificate.where is not None:
         ranges = [
             words("{name} {low} to {high}", name=name, low=Value(low, LENGTH, bare=True), high=Value(high, LENGTH))
-            for name, (low, high) in zip(DIMENSIONS, certificate.where.tolist(), strict=True)
+            for name, (low, high) in zip(DIMENSIONS, certificate.where[:3].tolist(), strict=True)
         ]
         blocks.append(sentence("Largest gap in the proof: {ranges}", ranges=joined(ranges)))
     if certificate.hole is not None:
         sizes = [
             words("{name} {size}", name=name, size=Value(size, LENGTH))
-            for name, size in zip(DIMENSIONS, certificate.hole.tolist(), strict=True)
+            for name, size in zip(DIMENSIONS, certificate.hole[:3].tolist(), strict=True)
         ]
         blocks.append(sentence("Largest gap in the front of the search: {sizes}", sizes=joined(sizes)))
     if math.isfinite(gap := certificate.hypervolume_gap):

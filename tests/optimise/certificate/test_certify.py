@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,11 +14,14 @@ import pytest
 from slidercrank.model.arrays import Array
 from slidercrank.model.errors import InputError
 from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.machine.speed_profile import Harmonics
+from slidercrank.model.machine.varying import Varying
 from slidercrank.optimise.certificate.certificate import Certificate, Step
 from slidercrank.optimise.certificate.certify import certify_designs
 from slidercrank.optimise.certificate.cover import choose_covering, excess, greedy_cover, volume_gap
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.hypervolume import hypervolume
+from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.violation import FEASIBLE
 from slidercrank.optimise.search.elimination import elimination_branches
@@ -92,6 +98,62 @@ def test_two_turns_and_several_cylinders_are_proven_too(machine: Mechanism, forc
     assert found.proven
     values = feasible(given, 2000)
     assert beats(values, np.concatenate([front.values, found.added_values]), found.span) <= found.epsilon + ROUNDED
+
+
+UNEVEN = Harmonics(cosines=(0.0, 0.1))
+WIDTH = Varying(name="mechanism.rod.width", sets=(("rod.width", 1.0),), lower=0.02, upper=0.04)
+SHAFTS: dict[str, Mechanism] = {
+    "profile": replace(MACHINES["bars"], speed_profile=UNEVEN),
+    "three cylinders": replace(MACHINES["bars"], arrangement=V),
+    "both": replace(MACHINES["bars"], arrangement=V, speed_profile=UNEVEN),
+    "a width": replace(MACHINES["bars"], varying=(WIDTH,)),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("shaft", SHAFTS)
+def test_profiles_sums_over_cylinders_and_widths_are_proven(shaft: str) -> None:
+    wishes: Any = {"peak_torque": "minimise", "footprint": "minimise"}
+    front = solve(problem(wishes, HELD, mechanism=SHAFTS[shaft], designs=12, samples=512))
+    found = certify_designs(front.problem, front.dimensions, epsilon=0.2, seconds=120.0)
+    assert found.proven, found.message
+    values = feasible(front.problem, 2000)
+    assert beats(values, np.concatenate([front.values, found.added_values]), found.span) <= found.epsilon + ROUNDED
+
+
+@pytest.mark.slow
+def test_a_swing_is_proven() -> None:
+    job = tomllib.loads(Path("runs/support.toml").read_text(encoding="utf-8"))
+    job["optimiser"] = {"designs": 20, "samples": 256, "seed": 1}
+    job["variables"] = {"crank": ["1.35 m", "1.4 m"], "rod": ["2.0 m", "2.2 m"], "offset": ["-100 mm", "100 mm"]}
+    front = solve(parse_job(job))
+    found = certify_designs(front.problem, front.dimensions, epsilon=0.1, seconds=120.0)
+    assert found.proven, found.message
+    values = feasible(front.problem, 2000)
+    assert beats(values, np.concatenate([front.values, found.added_values]), found.span) <= found.epsilon + ROUNDED
+
+
+@pytest.mark.slow
+def test_a_choice_is_proven_over_all_of_its_options() -> None:
+    """Each of two masses of the slider is the better one in one objective."""
+    job = tomllib.loads(Path("runs/sieve.toml").read_text(encoding="utf-8"))
+    job["variables"]["mechanism.slider.mass"] = {"choices": ["1.5 kg", "3 kg"]}
+    job["objectives"] = {"peak_torque": "minimise", "moving_mass": "maximise"}
+    job["optimiser"] = {"designs": 20, "samples": 256, "seed": 1}
+    front = solve(parse_job(job))
+    assert len(set(front.variants)) == 2
+    found = certify_designs(front.problem, front.dimensions, variants=front.variants, epsilon=0.1, seconds=120.0)
+    assert found.proven, found.message
+    values = feasible(front.problem, 2000)
+    assert beats(values, np.concatenate([front.values, found.added_values]), found.span) <= found.epsilon + ROUNDED
+
+
+def test_listed_values_are_refused() -> None:
+    job = tomllib.loads(Path("runs/sieve.toml").read_text(encoding="utf-8"))
+    job["variables"]["crank"] = {"values": ["100 mm", "120 mm"]}
+    given = parse_job(job, require_feasible=False)
+    with pytest.raises(InputError, match="got the values of crank, which are listed; give ranges"):
+        certify_designs(given, np.zeros((1, 3)))
 
 
 def test_added_designs_are_feasible_and_have_the_values_told() -> None:

@@ -19,8 +19,9 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.objectives.peak_torque import PEAK_TORQUE
-from slidercrank.optimise.certificate.cycle import Curve, interpolated
+from slidercrank.optimise.certificate.cycle import CycleCurve
 from slidercrank.optimise.certificate.enclosure import Enclosure, coordinate
+from slidercrank.optimise.certificate.machine import interpolated
 
 FORMULAS: dict[str, Callable[[Any, Any, Any], Any]] = {
     "sum": lambda x, y, z: 3.0 - (x + y) * 2.0 + z / 7.0 - x,
@@ -117,12 +118,12 @@ def test_the_torque_of_a_table_that_steps_at_its_seam_is_enclosed_for_every_desi
     """Just before, at and after the seam, where the force jumps from -200 N to 500 N."""
     table = AngleTable(angles=(0.4, 2.0, 0.4 + 2.0 * np.pi), forces=(500.0, -300.0, -200.0), datum=datum)
     machine = Mechanism(speed=20.0, slider_mass=0.5, loads=(table,))
-    curve = Curve(machine, PEAK_TORQUE)
+    curve = CycleCurve(machine, PEAK_TORQUE)
     random = np.random.default_rng(5)
     low = np.array([0.04, 0.15, 0.01]) * random.uniform(0.9, 1.1, (40, 3))
     high = low * 1.02
     angles = 0.4 + random.uniform(-0.4, 0.4, 40)
-    sides = [coordinate(low[:, k], high[:, k], k, 3) for k in range(3)]
+    sides = {k: coordinate(low[:, k], high[:, k], k, 3) for k in range(3)}
     found = curve.enclose(sides, angles, 0.5 * (low + high))
     least, most = (end.reshape(40, -1) for end in found.ends())
     for design, angle, lower, upper in zip(low, angles, least, most, strict=True):
@@ -142,7 +143,7 @@ def test_a_peak_on_a_step_is_bounded_the_better_the_smaller_the_box() -> None:
     peak = find_peaks(machine, Signal.TORQUE, middle, limit=1)
     for width in (1e-3, 1e-4, 1e-5):
         low, high = middle * (1.0 - width), middle * (1.0 + width)
-        sides = [coordinate(low[:, k], high[:, k], k, 3) for k in range(3)]
-        least = Curve(machine, PEAK_TORQUE).enclose(sides, peak.angles[:, 0], middle).ends()[0]
+        sides = {k: coordinate(low[:, k], high[:, k], k, 3) for k in range(3)}
+        least = CycleCurve(machine, PEAK_TORQUE).enclose(sides, peak.angles[:, 0], middle).ends()[0]
         assert least.max() <= peak.values[0, 0]
         assert least.max() >= peak.values[0, 0] * (1.0 - 100.0 * width)

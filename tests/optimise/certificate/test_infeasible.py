@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.varying import Varying
-from slidercrank.optimise.certificate.certify import certify_designs
 from slidercrank.optimise.certificate.infeasible import prove_infeasible
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
@@ -94,12 +94,20 @@ def test_a_budget_that_ends_first_proves_nothing() -> None:
     assert not prove_infeasible(problem({"peak_torque": "minimise"}, held), seconds=1e-3)
 
 
-def test_nothing_is_claimed_where_more_than_the_dimensions_varies() -> None:
-    given = problem({"peak_torque": "minimise"}, {"stroke": (10.0, None)})
-    assert prove_infeasible(given)
+def test_a_contradiction_is_proven_where_more_than_the_dimensions_varies() -> None:
     varying = Varying(name="mechanism.slider.mass", sets=(("slider_mass", 1.0),), lower=0.5, upper=2.0)
-    assert not prove_infeasible(replace(given, mechanism=replace(given.mechanism, varying=(varying,))))
-    with pytest.raises(
-        InputError, match=r"only crank, rod and offset may vary in a certificate; got mechanism\.slider\.mass as well"
-    ):
-        certify_designs(replace(given, mechanism=replace(given.mechanism, varying=(varying,))), np.zeros((1, 4)))
+    for stroke, infeasible in ((10.0, True), (0.1, False)):
+        given = problem({"peak_torque": "minimise"}, {"stroke": (stroke, None)})
+        given = replace(given, mechanism=replace(given.mechanism, varying=(varying,)))
+        assert prove_infeasible(given) is infeasible
+
+
+@pytest.mark.parametrize(("travel", "infeasible"), [("4.0 m", True), ("1.9 m", False)])
+def test_a_contradiction_of_a_swing_is_proven(travel: str, infeasible: bool) -> None:
+    job = tomllib.loads(Path("runs/support.toml").read_text(encoding="utf-8"))
+    job["constraints"] = {"actuator_travel": {"min": travel}}
+    given = parse_job(job, require_feasible=False)
+    designs = np.random.default_rng(8).uniform((1.2, 1.2, -0.6), (1.5, 3.0, 0.6), (20_000, 3))
+    longest = float(np.nanmax(given.evaluate(designs, ["actuator_travel"])))
+    assert (longest < float(travel.removesuffix(" m"))) is infeasible
+    assert prove_infeasible(given, seconds=60.0) is infeasible

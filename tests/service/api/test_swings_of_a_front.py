@@ -181,7 +181,6 @@ def test_questions_of_a_full_turn_are_refused(served: Served) -> None:
     answers = [
         served.client.post(f"{one}/designs/1/measured", json=measured),
         served.client.post(f"{API}/analyse", json={"job": support(), **lengths}),
-        served.client.get(f"{one}/certificate"),
     ]
     for answer in answers:
         assert answer.status_code == 422

@@ -1,0 +1,65 @@
+"""Which quantities have bounds over boxes of designs, and why others have none."""
+
+from __future__ import annotations
+
+from typing import TypeGuard
+
+from ...model.swing.swing_states import ERROR
+from ...objectives.closed_form import ClosedFormQuantity
+from ...objectives.cycle_peak import CyclePeak
+from ...objectives.quantity import Quantity
+from ...objectives.swing_quantity import SwingForm, SwingLeast, SwingPeak
+from ..problem.problem import Problem
+from ..problem.requirements import Constraint, Objective, Sense
+from .machine import unbounded_load
+
+
+def unbounded_reason(problem: Problem, objective: Objective) -> str:
+    """Return why an objective cannot be bounded over a box; empty if it can.
+
+    Bounded are quantities with `formulas`, travel and angle of a swing; from below the peaks over the cycle or the
+    swing, and from above the least values of a swing, of machines without friction.
+    """
+    reasons = (_unbounded(part, objective) for part in problem.parts())
+    return next(filter(None, reasons), "")
+
+
+def _unbounded(problem: Problem, objective: Objective) -> str:
+    quantity, mechanism = problem.quantity(objective.quantity), problem.mechanism
+    if quantity.formulas(mechanism) or is_swing_form(quantity):
+        return ""
+    if not isinstance(quantity, CyclePeak | SwingPeak | SwingLeast | SwingForm):
+        profile = " along a speed profile" if isinstance(quantity, ClosedFormQuantity) else ""
+        return f"{quantity.title}{profile} has no bound over a range of designs"
+    has_forces = _has_forces(quantity)
+    if has_forces and mechanism.friction.acts and not (isinstance(quantity, SwingPeak) and quantity.free):
+        return f"{quantity.title} has no bound over a range of designs with friction"
+    if has_forces and (load := unbounded_load(mechanism)):
+        return f"{quantity.title} has no bound over a range of designs: {load}"
+    least = isinstance(quantity, SwingLeast | SwingForm)
+    if objective.sense != ("maximise" if least else "minimise"):
+        side, sense = ("an upper", "maximised") if least else ("a lower", "minimised")
+        return f"{quantity.title} only has {side} bound, so it can only be certified if it is {sense}"
+    return ""
+
+
+def is_swing_form(quantity: Quantity) -> TypeGuard[SwingForm]:
+    """Whether a quantity is a closed form of both ends of a swing."""
+    return isinstance(quantity, SwingForm) and quantity.measure != "angle"
+
+
+def _has_forces(quantity: Quantity) -> bool:
+    if isinstance(quantity, CyclePeak):
+        return quantity.signal.needs_forces
+    return isinstance(quantity, SwingLeast) or (isinstance(quantity, SwingPeak) and quantity.state != ERROR)
+
+
+def is_usable(problem: Problem, constraint: Constraint) -> bool:
+    """Whether a constraint helps to rule out boxes; one that does not still holds for every design that is counted."""
+    if problem.quantity(constraint.quantity).formulas(problem.mechanism):
+        return True
+    sides: tuple[tuple[float | None, Sense], ...] = ((constraint.upper, "minimise"), (constraint.lower, "maximise"))
+    return any(
+        bound is not None and not unbounded_reason(problem, Objective(quantity=constraint.quantity, sense=sense))
+        for bound, sense in sides
+    )

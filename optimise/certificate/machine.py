@@ -1,0 +1,139 @@
+"""A machine over boxes of designs: its numbers, the load on its slider and the torque of loads on its crank."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, cast
+
+import numpy as np
+
+from ...model.arrays import Array
+from ...model.dynamics.torque import smooth_load
+from ...model.machine.design import AREA, DESIGN, LOAD_ROWS, Design, derive, design_at
+from ...model.machine.loads.cylinder import Cylinder
+from ...model.machine.loads.load import Enters
+from ...model.machine.loads.registry import force_of
+from ...model.machine.mechanism import Mechanism
+from ...model.machine.numbers import raw_numbers
+from ...model.machine.raw import Loads
+from .enclosure import UNIT, Enclosure, interval, select
+from .gas import gas_force
+
+_TURN = 2.0 * np.pi
+_derive = cast(Any, derive)
+
+Numbers = Mapping[int, Enclosure]
+"""Raw numbers that designs set, enclosed over boxes, by slot (`Raw`, `PINS`)."""
+
+
+def numbers_over_boxes(mechanism: Mechanism, columns: list[Enclosure]) -> Numbers:
+    """Return the raw numbers that designs set, from the columns (n, 1) of a design's own numbers."""
+    design = np.empty((1, len(columns)), dtype=object)
+    design[0, :] = columns
+    return {slot: value[0] for slot, value in raw_numbers(mechanism, design).items()}
+
+
+def unbounded_load(mechanism: Mechanism) -> str:
+    """Return why the loads of a machine have no bound over a range of designs; empty if they have."""
+    for item in mechanism.varying:
+        for path in item.paths:
+            part, _, place = path.partition(".")
+            if part == "loads" and isinstance(mechanism.loads[int(place.split(".")[0])], Cylinder):
+                return f"the cycle of a cylinder has no bound over a range of {item.name}"
+    return ""
+
+
+class BoxMachine:
+    """Numbers and loads of a machine over boxes of designs, without friction. raw, loads: as for a signal."""
+
+    def __init__(self, mechanism: Mechanism, raw: Array, loads: Loads) -> None:
+        self.mechanism, self.raw, self.loads = mechanism, raw, loads
+
+    def design(self, numbers: Numbers) -> tuple[Design, Any]:
+        """Return the derived design, and its block for the loads."""
+        raw = self.raw.astype(object)[:, None]
+        for slot, value in numbers.items():
+            if slot < len(raw):
+                raw[slot, 0] = value
+        block = np.empty((DESIGN + LOAD_ROWS * len(self.loads.kind), 1), dtype=object)
+        _derive(raw, self.loads.kind, self.loads.datum, block)
+        return design_at(block, 0), block
+
+    def load(self, m: Any, d: Design, block: Any, theta: Array | Enclosure, outward: Enclosure) -> Any:
+        """Return the load on the slider, N outward. outward: has the sign of the slider's way outward."""
+        load: Any = smooth_load(m, d, by_stroke(outward, d.outward_force, d.inward_force))
+        way = by_stroke(outward, 1.0, -1.0)
+        for k, code in enumerate(self.loads.kind.tolist()):
+            row = DESIGN + LOAD_ROWS * k
+            if code >= Enters.FORMULA:
+                velocity = m.x_1 * d.branch * d.speed
+                load = load + force_of(code, m.x * d.branch, velocity, way, block[row, 0], block[row + 1, 0])
+            elif code in (Enters.CYLINDER, Enters.BURNING_CYLINDER):
+                stroke = d.outer - d.inner
+                z = (m.x * d.branch - block[row + 1, 0]) * block[row, 0]
+                load = load + gas_force(cast(Cylinder, self.mechanism.loads[k]), z / stroke, stroke, outward)
+            if self.loads.start[k] < self.loads.start[k + 1] and not self.loads.factor[k, 2]:
+                load = load + self._table(k, m, d, block, theta, outward)
+        return load
+
+    def on_crank(
+        self, m: Any, d: Design, block: Any, theta: Array | Enclosure, outward: Enclosure, way: float | Array
+    ) -> Any:
+        """Return the torque of the loads on the crank, N m. way: 1 where it turns counter-clockwise, -1 clockwise."""
+        torque: Any = 0.0
+        for k, load in enumerate(self.mechanism.loads):
+            if load.on_crank and self.loads.kind[k] == Enters.CRANK_TORQUE:
+                constant, resisting, stiffness, free = block[DESIGN + LOAD_ROWS * k + AREA :, 0][:4]
+                torque = torque + constant - way * resisting
+                if isinstance(stiffness, Enclosure) or stiffness:
+                    torque = torque - stiffness * (theta - free)
+            elif load.on_crank:
+                torque = torque + self._table(k, m, d, block, theta, outward)
+        return torque
+
+    def _table(
+        self, k: int, m: Any, d: Design, block: Any, theta: Array | Enclosure, outward: Enclosure
+    ) -> Enclosure | Any:
+        part = slice(self.loads.start[k], self.loads.start[k + 1])
+        at, force = self.loads.at[part], self.loads.force[part]
+        factor = self.loads.factor[k, 2] or by_stroke(outward, *self.loads.factor[k, :2].tolist())
+        if self.loads.kind[k] != Enters.ANGLE_TABLE:
+            row = DESIGN + LOAD_ROWS * k
+            return factor * interpolated((m.x * d.branch - block[row + 1, 0]) * block[row, 0], at, force)
+        if self.loads.datum[k] == 0 and not isinstance(theta, Enclosure):
+            return factor * np.interp(theta - _TURN * np.floor((theta - at[0]) / _TURN), at, force)
+        counted = theta - block[DESIGN + LOAD_ROWS * k + 1, 0] if self.loads.datum[k] else theta
+        turns = counted - _TURN * np.floor((counted.centre - at[0]) / _TURN)
+        # A turn before and one after: a box may reach beyond the ends of the table.
+        # Where the table steps at its seam, the end of one turn and the start of the next are both sides of that.
+        at = np.concatenate([at - _TURN, at, at + _TURN])
+        return factor * interpolated(turns, at, np.tile(force, 3))
+
+
+def interpolated(x: Enclosure, at: Array, force: Array) -> Enclosure:
+    """Return the table's force over an enclosed position: the chord, and how far the knots lie off it."""
+    low, high = x.ends()
+    first, last = np.interp(low, at, force), np.interp(high, at, force)
+    wide = high > low
+    slope = np.where(wide, (last - first) / np.where(wide, high - low, 1.0), 0.0)
+    highest, lowest = np.zeros_like(low), np.zeros_like(low)
+    for knot, value in zip(at, force, strict=True):
+        off = np.where((low < knot) & (knot < high), value - (first + slope * (knot - low)), 0.0)
+        highest, lowest = np.maximum(highest, off), np.minimum(lowest, off)
+    chord = (x - low) * slope + (first + 0.5 * (highest + lowest))
+    rounding = UNIT * (np.abs(force).max() + np.abs(slope) * x.size)
+    return Enclosure(chord.centre, chord.slopes, chord.rest + 0.5 * (highest - lowest) + 4.0 * rounding, chord.empty)
+
+
+def by_stroke(outward: Enclosure, out: Any, back: Any) -> Enclosure:
+    """Return one number in the outward stroke and another in the inward one, both where the stroke is not certain."""
+    low, high = outward.ends()
+    k = len(outward.slopes)
+    if not isinstance(out, Enclosure) and not isinstance(back, Enclosure):
+        least = np.where(low > 0.0, out, np.where(high < 0.0, back, min(out, back)))
+        greatest = np.where(low > 0.0, out, np.where(high < 0.0, back, max(out, back)))
+        return interval(least, greatest, k)
+    sides = [0.0 * outward + side for side in (out, back)]
+    (least, greatest), (back_least, back_greatest) = (side.ends() for side in sides)
+    either = interval(np.minimum(least, back_least), np.maximum(greatest, back_greatest), k)
+    return select(low > 0.0, sides[0], select(high < 0.0, sides[1], either))

@@ -1,0 +1,262 @@
+"""A quantity of a swing, enclosed over boxes of designs at chosen places of the swing.
+
+The greatest value of a curve over the swing is at least its value at any one place, and the least value is at most
+that. What is known in closed form, the travel of the slider and the angle of the crank, is bounded from both sides.
+"""
+
+from __future__ import annotations
+
+from functools import reduce
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...model.arrays import Array
+from ...model.dynamics.torque import balance, forces, with_couple
+from ...model.kernel.arithmetic import magnitude
+from ...model.kinematics.position import Motion, motion
+from ...model.machine.design import Design
+from ...model.machine.mechanism import Mechanism
+from ...model.machine.numbers import START
+from ...model.machine.raw import fullest_inputs
+from ...model.signals.position_error import influences, worst_case
+from ...model.signals.signals import design_motion
+from ...model.swing.ends import ends_of, start_column
+from ...model.swing.law import code_of, corners, way_at
+from ...model.swing.peaks import least_drives, swing_peaks
+from ...model.swing.push import bend, free_pin
+from ...model.swing.swing import Swing, slowly
+from ...model.swing.swing_states import DRIVE, ERROR, POWER
+from ...objectives.swing_quantity import SwingForm, SwingLeast, SwingPeak
+from .crank_angles import angle_near, crank_at
+from .enclosure import Enclosure, constant, side_by_side, sign_of
+from .machine import BoxMachine, Numbers
+
+_SIDE_STEP = 1e-9  # fraction of the time: on one side of a corner of the law, or of a step
+_FARTHEST = 0.25
+
+
+class _Ends(NamedTuple):
+    """Crank angles, rad, and slider positions, m, of both ends, and the side of the crank pin."""
+
+    angles: tuple[Enclosure, Enclosure]
+    positions: tuple[Enclosure, Enclosure]
+    side: Array
+
+
+class _State(NamedTuple):
+    """A state. along: the driver's way, 1 towards greater places. way: 1 where the crank turns counter-clockwise."""
+
+    sine: Enclosure
+    cosine: Enclosure
+    angle: Enclosure
+    m: Motion
+    d: Design
+    block: Any
+    outward: Enclosure
+    along: Array
+    way: Array
+
+
+class SwingBoxes:
+    """A swing over boxes of designs, without friction. slow: without inertia."""
+
+    def __init__(self, mechanism: Mechanism, swing: Swing, *, slow: bool = False) -> None:
+        self.mechanism, self.swing = mechanism, slowly(swing) if slow else swing
+        self.machine = BoxMachine(mechanism, *fullest_inputs(mechanism))
+        self.varies = start_column(mechanism) is not None
+        self.slider = swing.driver == "slider"
+        self.per_time = 0.0 if self.swing.duration is None else 1.0 / self.swing.duration
+        loads = mechanism.fullest.loads
+        self.needs_angle = any(load.on_crank or load.turns for load in loads)
+        self.steps = any(load.steps for load in loads)
+        self.corners = corners(self.swing.law, self.swing.table)
+
+    def ends(self, numbers: Numbers, d: Design) -> _Ends:
+        """Return both ends of the swing."""
+        swing = self.swing
+        first = numbers[START[swing.stated_for]] if self.varies else constant(swing.start, d.r)
+        last = first + (swing.end - swing.start) if swing.follows else constant(swing.end, d.r)
+        if swing.stated_for == "slider":
+            side = constant(1.0 if swing.side == "left" else -1.0, d.r).centre
+            first_angle, last_angle = (angle_near(d, x, *crank_at(d, x, side), side) for x in (first, last))
+            return _Ends((first_angle, last_angle), (first, last), side)
+        positions = [design_motion(angle.sin(), angle.cos(), d).x for angle in (first, last)]
+        middle = 0.5 * (first + last)
+        sine, cosine = middle.sin(), middle.cos()
+        return _Ends(
+            (first, last), (positions[0], positions[1]), sign_of(bend(sine, cosine, design_motion(sine, cosine, d)))
+        )
+
+    def at_time(self, numbers: Numbers, share: Array, probe: Array, back: Array) -> _State:
+        """Return the state at fractions of the time (n, p); not a number where it is not of all designs of a box.
+
+        probe: fractions on the same side of a corner of the law. back: 1 on the return stroke.
+        """
+        forth = 1.0 - 2.0 * back
+        way, way_1, way_2, _ = way_at(code_of(self.swing.law), self.swing.table, share, probe)
+        return self.at_way(numbers, np.where(back > 0.5, 1.0 - way, way), forth, forth * way_1, forth * way_2)
+
+    def at_way(self, numbers: Numbers, way: Array, forth: Any = 1.0, way_1: Any = 0.0, way_2: Any = 0.0) -> _State:
+        """Return the state at fractions of the travel (n, p), with their derivatives by the fraction of the time."""
+        d, block = self.machine.design(numbers)
+        ends = self.ends(numbers, d)
+        first, last = ends.positions if self.slider else ends.angles
+        travel = last - first
+        place = first + travel * way
+        if self.slider:
+            sine, cosine = crank_at(d, place, ends.side)
+            angle = angle_near(d, place, sine, cosine, ends.side, 0.5 * (ends.angles[0].centre + ends.angles[1].centre))
+        else:
+            sine, cosine, angle = place.sin(), place.cos(), place
+        m = design_motion(sine, cosine, d)
+        speed, rise = travel * (way_1 * self.per_time), travel * (way_2 * self.per_time**2)
+        if self.slider:
+            speed = speed / m.x_1
+            rise = (rise - m.x_2 * speed * speed) / m.x_1
+        d = d._replace(speed=speed, acceleration=rise) if self.per_time else d._replace(speed=0.0, acceleration=0.0)
+        along = sign_of(travel) * forth
+        outward = m.x_1 * (along * d.branch)
+        turning = along
+        if self.slider:
+            outward = constant(along * d.branch, place)
+            turning = along * sign_of(m.x_1) if self.needs_angle else along
+        return _State(sine, cosine, angle, m, d, block, outward, along, turning)
+
+    def drive(self, at: _State) -> Enclosure:
+        """Return the torque on the crank, N m, or the force on the slider, N, without friction."""
+        load = self.machine.load(at.m, at.d, at.block, at.angle, at.outward)
+        on_crank = self.machine.on_crank(at.m, at.d, at.block, at.angle, at.outward, at.way)
+        if not self.slider:
+            torque: Enclosure = forces(at.sine, at.cosine, at.m, at.d, load).torque - on_crank
+            return torque
+        b = with_couple(balance(at.sine, at.cosine, at.m, at.d, load), 0.0 - on_crank)
+        force: Enclosure = b.pull - free_pin(at.sine, at.cosine, at.m, at.d, b)[0]
+        return force
+
+    def error(self, at: _State) -> Enclosure:
+        """Return the error of the driven side, m at the slider or rad at the crank."""
+        i = influences(at.sine, at.cosine, at.m, at.d.l)
+        if not self.slider:
+            error: Enclosure = worst_case(i, at.d)
+            return error
+        off = magnitude(i.crank) * at.d.crank_error + magnitude(i.rod) * at.d.rod_error
+        off = off + magnitude(i.offset) * at.d.offset_error + self.swing.actuator_tolerance
+        return off / magnitude(at.m.x_1)
+
+    def angle(self, numbers: Numbers, way: Array) -> Enclosure:
+        """Return the transmission angle of the driven side at fractions of the travel (n, p), rad."""
+        at = self.at_way(numbers, way)
+        if self.slider:
+            return np.arcsin(magnitude(bend(at.sine, at.cosine, at.m)) / at.d.l)
+        return 0.5 * np.pi - np.arcsin(magnitude(at.m.l_sin) / at.d.l)
+
+    def opening(self, numbers: Numbers) -> Enclosure:
+        """Return |e - r sin(theta)| / l - 1 at both ends (n, 2): the linkage closes where it is below zero."""
+        d, _ = self.machine.design(numbers)
+        ends = self.ends(numbers, d)
+        return reduce(side_by_side, (magnitude(d.e - d.r * angle.sin()) / d.l - 1.0 for angle in ends.angles))
+
+
+class SwingCurve:
+    """A quantity of a swing over boxes of designs: the greatest value of a state, or with `least` the least."""
+
+    def __init__(self, mechanism: Mechanism, quantity: SwingPeak | SwingLeast | SwingForm) -> None:
+        assert quantity.swing is not None
+        self.least = not isinstance(quantity, SwingPeak)
+        self.quantity = quantity
+        self.at_ends = isinstance(quantity, SwingPeak) and quantity.state is None
+        self.boxes = SwingBoxes(mechanism, quantity.swing, slow=self.at_ends or isinstance(quantity, SwingLeast))
+
+    @property
+    def anywhere(self) -> float:
+        """A place for boxes whose middle design does not swing."""
+        return self._range[0]
+
+    @property
+    def _range(self) -> tuple[float, float]:
+        """First and last place; see `enclose`."""
+        if isinstance(self.quantity, SwingLeast):
+            return float(self.quantity.back), 1.0 + self.quantity.back
+        return 0.0, 2.0 if isinstance(self.quantity, SwingPeak) else 1.0
+
+    def places(self, designs: Array) -> Array:
+        """Return the place (n,) of each design's greatest value, or with `least` of its least, see `enclose`."""
+        mechanism, swing, quantity = self.boxes.mechanism, self.quantity.swing, self.quantity
+        assert swing is not None
+        if isinstance(quantity, SwingForm):
+            return _place_of_least_angle(mechanism, swing, designs)
+        if isinstance(quantity, SwingLeast):
+            found = least_drives(mechanism, swing, designs, back=quantity.back, limit=1).places[:, 0]
+        elif quantity.state is None:
+            return np.full(len(designs), self.anywhere)
+        else:
+            found = swing_peaks(mechanism, swing, quantity.state, designs, limit=1).places[:, 0]
+        return np.where(np.isfinite(found), np.clip(found, *self._range), self.anywhere)
+
+    def enclose(self, numbers: Numbers, places: Array, middle: Array) -> Enclosure:
+        """Return the quantity's curve (n, p) at places (n,), and at both ends.
+
+        A place is a fraction of the time, plus 1 on the return stroke; of an angle, a fraction of the travel.
+        """
+        at, (first, last) = places[:, None], self._range
+        columns = [at, np.full_like(at, first), np.full_like(at, last)]
+        if last - first > 1.0:
+            columns += [np.full_like(at, 1.0), np.full_like(at, 1.0 + _SIDE_STEP)]
+        if self.boxes.steps and not self.at_ends:
+            # A peak on a step moves with the design: beside it all designs of the box are on one side of the step.
+            width = sum(np.ptp(numbers[slot].ends(), axis=0) / numbers[slot].size for slot in (0, 1))
+            away = np.minimum(4.0 * width, _FARTHEST)
+            columns += [np.clip(at - away, first, last), np.clip(at + away, first, last)]
+        return self._enclose_at(numbers, np.concatenate(columns, axis=1))
+
+    def _enclose_at(self, numbers: Numbers, places: Array) -> Enclosure:
+        boxes, quantity = self.boxes, self.quantity
+        if isinstance(quantity, SwingForm):
+            return boxes.angle(numbers, places)
+        back = (
+            np.where(places > 1.0, 1.0, 0.0)
+            if isinstance(quantity, SwingPeak)
+            else np.full_like(places, float(quantity.back))
+        )
+        share = places - back
+        probes = [share - _SIDE_STEP, share + _SIDE_STEP] if boxes.corners else [share]
+        return reduce(
+            side_by_side,
+            (self._value(boxes.at_time(numbers, share, np.clip(probe, 0.0, 1.0), back)) for probe in probes),
+        )
+
+    def _value(self, at: _State) -> Enclosure:
+        state = self.quantity.state if isinstance(self.quantity, SwingPeak) else None
+        if state == ERROR:
+            return self.boxes.error(at)
+        drive = self.boxes.drive(at)
+        if isinstance(self.quantity, SwingLeast):
+            return drive * at.along
+        if state == POWER:
+            return magnitude(drive * at.m.x_1 * at.d.speed if self.boxes.slider else drive * at.d.speed)
+        assert state in (DRIVE, None)
+        return magnitude(drive)
+
+
+def _place_of_least_angle(mechanism: Mechanism, swing: Swing, designs: Array) -> Array:
+    """Return the fraction of the travel (n,) at which the transmission angle may be least between the ends, else 0."""
+    ends = ends_of(mechanism, swing, designs)
+    r, l, e = designs[:, :3].T
+    if swing.driver == "slider":  # where crank and rod turn at one pace
+        first, last = (motion(np.sin(at), np.cos(at), r, l, e, mechanism.sign).x for at in (ends.start, ends.end))
+        found = -first / (last - first)
+    else:  # where the crank is normal to the slider line, on the side away from it first
+        angles = [ends.turned_into(angle) for angle in (0.5 * np.pi, 1.5 * np.pi)]
+        far, near = np.where(e >= 0.0, angles[::-1], angles)
+        found = (np.where(np.isnan(far), near, far) - ends.start) / (ends.end - ends.start)
+    return np.where((found >= 0.0) & (found <= 1.0), found, 0.0)
+
+
+def swing_form(mechanism: Mechanism, quantity: SwingForm, numbers: Numbers) -> Enclosure:
+    """Return the travel of the slider, m, or the angle of the crank, rad, from both sides."""
+    assert quantity.swing is not None
+    boxes = SwingBoxes(mechanism, quantity.swing, slow=True)
+    ends = boxes.ends(numbers, boxes.machine.design(numbers)[0])
+    first, last = ends.positions if quantity.measure == "travel" else ends.angles
+    return magnitude(last - first)

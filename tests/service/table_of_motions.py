@@ -1,0 +1,242 @@
+"""Table of docs/motions.md: what is refused on which motion, and why, as the code says it.
+
+`python -m tests.service.table_of_motions` writes it anew.
+"""
+
+from __future__ import annotations
+
+import copy
+import re
+import warnings
+from collections.abc import Callable, Iterator
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
+
+import slidercrank as sc
+from slidercrank.model.errors import InputError, InputWarning
+from slidercrank.objectives.registry import FACTS
+from slidercrank.optimise.certificate.boundable import unbounded_reason
+from slidercrank.optimise.problem.requirements import Objective
+from slidercrank.service.questions.discovery import DESIGN_QUESTIONS
+from tests.service import sized
+
+Motion = str
+Refusals = dict[str, str]
+"""Why each of several names is refused; empty where it works."""
+
+FILE = Path(__file__).parents[2] / "docs" / "motions.md"
+MANY = 15
+"""More names than this are named together."""
+DESIGN = (0.04, 0.14, 0.02)
+
+BASE: dict[str, Any] = {
+    **sized.TABLES,
+    "name": "Motions",
+    "mechanism": {
+        **sized.TABLES["mechanism"],
+        "speed": "300 rpm",
+        "slider": {"mass": "2 kg", "touch_distance": "7 mm", "dwell_distance": "2 mm", "guide_distance": "90 mm"},
+        "counterweight": {"mass": "1 kg", "radius": "41 mm"},
+        "gravity": "9.81 m/s^2",
+    },
+    "sections": {**sized.TABLES["sections"], "wear_coefficient": "1e-9 mm^2/N"},
+    "load": [
+        {"force": "60 N", "opposes": "motion"},
+        {"bore": "30 mm", "suction": "1 bar", "discharge": "4 bar", "clearance": 0.1},
+    ],
+    "drive": {"motor": {"stall_torque": "60 N m", "no_load_speed": "330 rpm"}, "flywheel": "0.5 kg m^2"},
+    "target_motion": {
+        "crank_angles": ["0 deg", "90 deg", "180 deg", "270 deg"],
+        "positions": ["180 mm", "140 mm", "100 mm", "140 mm"],
+    },
+    "variables": {"crank": ["35 mm", "45 mm"], "rod": ["130 mm", "150 mm"], "offset": ["15 mm", "25 mm"]},
+    "constraints": {},
+    "objectives": {"peak_torque": "minimise", "footprint": "minimise"},
+    "optimiser": {"method": "sobol", "evaluations": 64, "designs": 3, "seed": 1},
+}
+_SECOND = {"crank_angles": ["0 deg", "360 deg", "700 deg"], "forces": ["0 N", "90 N", "20 N"], "cycle": "720 deg"}
+_SWING = {"kind": "swing", "from": "30 deg", "to": "110 deg", "law": "harmonic", "duration": "2 s"}
+
+
+def _swing(tables: dict[str, Any], driver: str) -> None:
+    tables["motion"] = {**_SWING, "driver": driver}
+    tables["load"] = tables["load"][:1]
+    for key in ("drive", "target_motion"):
+        tables.pop(key)
+    tables["mechanism"]["slider"] = {"mass": "2 kg"}
+    of_driver = {"crank": ("peak_actuator_torque", "swing_position_error")}
+    names = of_driver.get(driver, ("peak_actuator_force", "swing_angle_error"))
+    tables["objectives"] = dict.fromkeys(names, "minimise")
+
+
+MOTIONS: dict[str, Callable[[dict[str, Any]], object]] = {
+    "one turn": lambda tables: None,
+    "720 deg": lambda tables: tables["load"].append(_SECOND),
+    "several cylinders": lambda tables: tables["mechanism"].update(
+        cylinders={"phases": ["0 deg", "120 deg"], "places": ["-50 mm", "50 mm"]}
+    ),
+    "speed profile": lambda tables: tables["mechanism"].update(speed_profile={"cosines": [0.0, 0.05]}),
+    "crank acceleration": lambda tables: tables["mechanism"].update(acceleration="9 rad/s^2"),
+    "swing, driven crank": partial(_swing, driver="crank"),
+    "swing, driven slider": partial(_swing, driver="slider"),
+    "sections and pins": lambda tables: tables["variables"].update(
+        {"mechanism.rod.width": ["28 mm", "32 mm"], "sections.pins.crank_pin": ["10 mm", "13 mm"]}
+    ),
+    "a choice": lambda tables: tables["variables"].update({"mechanism.slider.mass": {"choices": ["2 kg", "3 kg"]}}),
+}
+
+
+INPUTS: dict[str, dict[str, Any]] = {
+    "inverse": {"slider_position": 0.15},
+    "allocate": {"limit": 0.5e-3},
+    "swing": {"start": 0.6, "end": 1.2},
+}
+"""Inputs of questions to a design that need some, SI."""
+
+
+@cache
+def _problem(motion: Motion, friction: float, robust: bool = False) -> sc.Problem:
+    """Return the problem of a motion."""
+    tables = copy.deepcopy(BASE)
+    if friction:
+        tables["friction"] = {"guide": friction}
+    MOTIONS[motion](tables)
+    if robust:
+        tables["robust"] = {"kind": "worst case", "order": 1}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", InputWarning)
+        return sc.problem(tables, require_feasible=False)
+
+
+def _chosen(motion: Motion, friction: float) -> sc.Problem:
+    return _problem(motion, friction).parts()[0]
+
+
+def _design(problem: sc.Problem) -> list[float]:
+    return [*DESIGN, *(0.5 * (item.lower + item.upper) for item in problem.mechanism.varying)]
+
+
+def _refusal(ask: Callable[[float], object]) -> str:
+    """Return why something is refused with and without friction; empty if it is answered with either."""
+    reason = ""
+    for friction in (0.05, 0.0):
+        try:
+            ask(friction)
+        except (InputError, sc.AssemblyError) as error:
+            reason = str(error)
+        else:
+            return ""
+    return reason
+
+
+def quantities(motion: Motion) -> Refusals:
+    """Return why each quantity is refused on a motion."""
+
+    def ask(name: str, friction: float) -> None:
+        problem = _chosen(motion, friction)
+        value = problem.evaluate([_design(problem)], [name])[0, 0]
+        reason = problem.quantity(name).undefined_because([problem.mechanism])
+        if reason is not None:
+            raise InputError(reason)
+        assert value == value, name
+
+    return {name: _refusal(partial(ask, name)) for name in FACTS}
+
+
+def _bound(motion: Motion, name: str, friction: float) -> None:
+    problem = _chosen(motion, friction)
+    reason = unbounded_reason(problem, Objective(quantity=name, sense="minimise"))
+    if reason:
+        raise InputError(reason)
+
+
+def certificates(motion: Motion) -> Refusals:
+    """Return why each quantity that works on a motion has no certificate."""
+    works = [name for name, reason in quantities(motion).items() if not reason]
+    return {name: _refusal(partial(_bound, motion, name)) for name in works}
+
+
+def _about_design(motion: Motion, friction: float, question: str) -> None:
+    problem = _chosen(motion, friction)
+    problem.ask(question, _design(problem), **INPUTS.get(question, {}))
+
+
+def _about_curves(motion: Motion, friction: float, name: str, given: tuple[Any, ...]) -> None:
+    problem = _chosen(motion, friction)
+    getattr(problem.analyse(_design(problem)), name)(*given)
+
+
+def _sweep(motion: Motion, friction: float) -> None:
+    problem = _chosen(motion, friction)
+    sizes = dict(zip(("crank", "rod"), DESIGN[:2], strict=True))
+    problem.ask("sweep", None, over="offset=18 mm..22 mm:3", of=problem.objectives[0].quantity, **sizes)
+
+
+def analyses(motion: Motion) -> Refusals:
+    """Return why each analysis is refused on a motion."""
+    measured = {"crank_angle_deg": [40.0, 50.0, 60.0, 70.0], "slider_position_mm": [160.0, 150.0, 142.0, 133.0]}
+    every: dict[str, Callable[[float], object]] = {
+        **{name: partial(_about_design, motion, question=name) for name in DESIGN_QUESTIONS},
+        "measured": partial(_about_curves, motion, name="deviations", given=(measured,)),
+        "curves in Python": partial(_about_curves, motion, name="cycle", given=(24,)),
+        "sweep": partial(_sweep, motion),
+        "robust": partial(_problem, motion, robust=True),
+    }
+    return {name: _refusal(ask) for name, ask in every.items()}
+
+
+def _grouped(refusals: Refusals) -> Iterator[tuple[str, list[str]]]:
+    """Yield each rule that refuses, without value and remedy, and the names that it refuses."""
+    by_rule: dict[str, list[str]] = {}
+    for name, reason in refusals.items():
+        title = FACTS[name].title if name in FACTS else f"the topic {name}"
+        rule = reason.removeprefix(f"{name}: ").partition(";")[0]
+        for words in (title, name):
+            rule = re.sub(rf"^{re.escape(words)}\\b", "it", rule)
+        by_rule.setdefault(rule, []).append(name)
+    yield from ((rule, names) for rule, names in by_rule.items() if rule)
+
+
+def _listed(names: list[str]) -> str:
+    """Return names in words; all of a kind of motion as such."""
+    every = {
+        "all quantities of a swing": [name for name, fact in FACTS.items() if not fact.turning],
+        "all quantities of a crank that rotates fully": [name for name, fact in FACTS.items() if fact.turning],
+    }
+    for words, of in every.items():
+        if len(names) > MANY and set(names) <= set(of):
+            return words
+    return ", ".join(f"`{name}`" for name in names)
+
+
+def table(of: Callable[[Motion], Refusals]) -> str:
+    """Return a table of the refusals on every motion, in Markdown."""
+    rows = ["| motion | refused | because |", "|---|---|---|"]
+    for motion in MOTIONS:
+        refusals = of(motion)
+        works = sum(not reason for reason in refusals.values())
+        rows.append(f"| **{motion}** | {works} of {len(refusals)} work | |")
+        rows += [f"| | {_listed(names)} | {rule} |" for rule, names in _grouped(refusals)]
+    return "\n".join(rows) + "\n"
+
+
+TABLES = {"quantities": quantities, "analyses": analyses, "certificates": certificates}
+
+
+def section(name: str, text: str) -> tuple[str, str, str]:
+    """Return what is before a table of the page, the table, and what is after it."""
+    before, begin, rest = text.partition(f"<!-- {name} -->\n\n")
+    inside, end, after = rest.partition(f"\n<!-- end of {name} -->\n")
+    return before + begin, inside, end + after
+
+
+def main() -> None:
+    """Write the tables anew."""
+    for name, of in TABLES.items():
+        before, _, after = section(name, FILE.read_text(encoding="utf-8"))
+        FILE.write_text(before + table(of) + after, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
