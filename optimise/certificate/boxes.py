@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...model.arrays import Array, Mask, IntArray
+from ...model.arrays import Array, IntArray, Mask
 from ...model.errors import InputError
 from ...model.kernel.arithmetic import magnitude
 from ...model.kinematics.closed_forms import closed_form

@@ -8,7 +8,7 @@ from __future__ import annotations
 import copy
 import re
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -17,8 +17,7 @@ import slidercrank as sc
 from slidercrank.model.errors import InputError, InputWarning
 from slidercrank.objectives.registry import FACTS
 from slidercrank.optimise.certificate.boundable import unbounded_reason
-from slidercrank.optimise.problem.requirements import Objective
-from slidercrank.service.questions.discovery import DESIGN_QUESTIONS
+from slidercrank.optimise.problem.requirements import Objective, Sense
 from tests.service import sized
 
 Motion = str
@@ -26,8 +25,6 @@ Refusals = dict[str, str]
 """Why each of several names is refused; empty where it works."""
 
 FILE = Path(__file__).parents[2] / "docs" / "motions.md"
-MANY = 15
-"""More names than this are named together."""
 DESIGN = (0.04, 0.14, 0.02)
 
 BASE: dict[str, Any] = {
@@ -87,23 +84,13 @@ MOTIONS: dict[str, Callable[[dict[str, Any]], object]] = {
 }
 
 
-INPUTS: dict[str, dict[str, Any]] = {
-    "inverse": {"slider_position": 0.15},
-    "allocate": {"limit": 0.5e-3},
-    "swing": {"start": 0.6, "end": 1.2},
-}
-"""Inputs of questions to a design that need some, SI."""
-
-
 @cache
-def _problem(motion: Motion, friction: float, robust: bool = False) -> sc.Problem:
+def _problem(motion: Motion, friction: float) -> sc.Problem:
     """Return the problem of a motion."""
     tables = copy.deepcopy(BASE)
     if friction:
         tables["friction"] = {"guide": friction}
     MOTIONS[motion](tables)
-    if robust:
-        tables["robust"] = {"kind": "worst case", "order": 1}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", InputWarning)
         return sc.problem(tables, require_feasible=False)
@@ -146,9 +133,10 @@ def quantities(motion: Motion) -> Refusals:
 
 def _bound(motion: Motion, name: str, friction: float) -> None:
     problem = _chosen(motion, friction)
-    reason = unbounded_reason(problem, Objective(quantity=name, sense="minimise"))
-    if reason:
-        raise InputError(reason)
+    senses: tuple[Sense, ...] = ("minimise", "maximise")
+    reasons = [unbounded_reason(problem, Objective(quantity=name, sense=sense)) for sense in senses]
+    if all(reasons):
+        raise InputError(reasons[0])
 
 
 def certificates(motion: Motion) -> Refusals:
@@ -157,71 +145,39 @@ def certificates(motion: Motion) -> Refusals:
     return {name: _refusal(partial(_bound, motion, name)) for name in works}
 
 
-def _about_design(motion: Motion, friction: float, question: str) -> None:
-    problem = _chosen(motion, friction)
-    problem.ask(question, _design(problem), **INPUTS.get(question, {}))
-
-
-def _about_curves(motion: Motion, friction: float, name: str, given: tuple[Any, ...]) -> None:
-    problem = _chosen(motion, friction)
-    getattr(problem.analyse(_design(problem)), name)(*given)
-
-
-def _sweep(motion: Motion, friction: float) -> None:
-    problem = _chosen(motion, friction)
-    sizes = dict(zip(("crank", "rod"), DESIGN[:2], strict=True))
-    problem.ask("sweep", None, over="offset=18 mm..22 mm:3", of=problem.objectives[0].quantity, **sizes)
-
-
-def analyses(motion: Motion) -> Refusals:
-    """Return why each analysis is refused on a motion."""
-    measured = {"crank_angle_deg": [40.0, 50.0, 60.0, 70.0], "slider_position_mm": [160.0, 150.0, 142.0, 133.0]}
-    every: dict[str, Callable[[float], object]] = {
-        **{name: partial(_about_design, motion, question=name) for name in DESIGN_QUESTIONS},
-        "measured": partial(_about_curves, motion, name="deviations", given=(measured,)),
-        "curves in Python": partial(_about_curves, motion, name="cycle", given=(24,)),
-        "sweep": partial(_sweep, motion),
-        "robust": partial(_problem, motion, robust=True),
-    }
-    return {name: _refusal(ask) for name, ask in every.items()}
-
-
-def _grouped(refusals: Refusals) -> Iterator[tuple[str, list[str]]]:
-    """Yield each rule that refuses, without value and remedy, and the names that it refuses."""
-    by_rule: dict[str, list[str]] = {}
-    for name, reason in refusals.items():
-        title = FACTS[name].title if name in FACTS else f"the topic {name}"
-        rule = reason.removeprefix(f"{name}: ").partition(";")[0]
-        for words in (title, name):
-            rule = re.sub(rf"^{re.escape(words)}\\b", "it", rule)
-        by_rule.setdefault(rule, []).append(name)
-    yield from ((rule, names) for rule, names in by_rule.items() if rule)
+def _rule(name: str, reason: str) -> str:
+    """Return the rule of a refusal without value, remedy and the name of what is refused."""
+    rule = reason.removeprefix(f"{name}: ").partition(";")[0].replace(f"'{name}'", "like this")
+    for words in (FACTS[name].title, name):
+        rule = re.sub(rf"^{re.escape(words)}\b", "it", rule)
+    return rule
 
 
 def _listed(names: list[str]) -> str:
     """Return names in words; all of a kind of motion as such."""
     every = {
-        "all quantities of a swing": [name for name, fact in FACTS.items() if not fact.turning],
-        "all quantities of a crank that rotates fully": [name for name, fact in FACTS.items() if fact.turning],
+        "all quantities of a swing": {name for name, fact in FACTS.items() if fact.table == "motion"},
+        "all quantities of a crank that rotates fully": {name for name, fact in FACTS.items() if fact.turning}
+        - {name for name, fact in FACTS.items() if fact.table},
     }
-    for words, of in every.items():
-        if len(names) > MANY and set(names) <= set(of):
-            return words
-    return ", ".join(f"`{name}`" for name in names)
+    return next((words for words, of in every.items() if set(names) == of), ", ".join(f"`{name}`" for name in names))
 
 
 def table(of: Callable[[Motion], Refusals]) -> str:
-    """Return a table of the refusals on every motion, in Markdown."""
-    rows = ["| motion | refused | because |", "|---|---|---|"]
+    """Return a table of the refusals and the motions on which they are, in Markdown."""
+    motions: dict[tuple[str, str], list[str]] = {}
     for motion in MOTIONS:
-        refusals = of(motion)
-        works = sum(not reason for reason in refusals.values())
-        rows.append(f"| **{motion}** | {works} of {len(refusals)} work | |")
-        rows += [f"| | {_listed(names)} | {rule} |" for rule, names in _grouped(refusals)]
-    return "\n".join(rows) + "\n"
+        for name, reason in of(motion).items():
+            if reason:
+                motions.setdefault((name, _rule(name, reason)), []).append(motion)
+    names: dict[tuple[str, str], list[str]] = {}
+    for (name, rule), on in motions.items():
+        names.setdefault((rule, "; ".join(on)), []).append(name)
+    rows = [f"| {_listed(refused)} | {rule} | {on} |" for (rule, on), refused in names.items()]
+    return "\n".join(["| refused | because | on |", "|---|---|---|", *rows]) + "\n"
 
 
-TABLES = {"quantities": quantities, "analyses": analyses, "certificates": certificates}
+TABLES = {"quantities": quantities, "certificates": certificates}
 
 
 def section(name: str, text: str) -> tuple[str, str, str]:
