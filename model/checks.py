@@ -9,7 +9,7 @@ from typing import get_args
 
 from .errors import InputError
 
-_REMEDY = "text with a unit belongs into the tables of a job"
+_REMEDY = "text with a unit belongs in the tables of a job"
 
 
 def require_numbers(

@@ -100,7 +100,7 @@ def _dwell_angle(machine: Mechanism, number: Number) -> Any:
 def _needs(name: str) -> Need:
     return Need(
         lambda machine: getattr(machine.slider, name) is not None,
-        f"it comes from a {name} distance of the slider; got none; add for example "
+        f"it needs a {name} distance of the slider; got none; add for example "
         f'[mechanism] slider = {{ mass = "0.8 kg", {name}_distance = "5 mm" }}',
         consequence="undefined",
     )
@@ -127,7 +127,7 @@ DWELL_ANGLE = NearDeadCentre(
     place=236,
     group=Group.MOTION,
     sentence="The crank angle over which the slider stays within a given distance of a dead centre.",
-    advice="At constant speed the dwell takes this share of the time of a turn.",
+    advice="At constant speed the dwell takes this fraction of the time of a turn.",
     formula=(
         "2 alpha with cos(alpha) = (r^2 + B^2 - l^2) / (2 r B), B^2 = x^2 + e^2 at x = x_out - d; 360 deg less that at "
         "x = x_in + d"

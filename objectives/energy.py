@@ -143,8 +143,8 @@ EFFICIENCY = Efficiency(
         "or the work at the crank if the loads drive it, as in an engine. The rest is friction heat in guide and pins."
     ),
     advice=(
-        "It is 0 if friction takes all the work that the loads supply. It is undefined for a design whose loads do no "
-        "net work, such as masses alone."
+        "It is 0 if friction takes all the work of the loads, and undefined for a design whose loads do no net work, "
+        "such as masses alone."
     ),
     formula=(
         "U / (U + H) for U > 0, max(0, 1 + H / U) for U < 0: U = -(integral of F dx + M d theta), M torques on the "

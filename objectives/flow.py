@@ -170,7 +170,7 @@ FLOW_RIPPLE = FlowRipple(
     needs=(
         Need(
             lambda machine: bool(pumps_of(machine.fullest)),
-            "it comes from pumps of a liquid; got none; add for example "
+            "it needs pumps of a liquid; got none; add for example "
             '[[load]] bore = "70 mm", suction = "1 bar", discharge = "8 bar", medium = "liquid"',
             consequence="undefined",
         ),

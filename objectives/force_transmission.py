@@ -72,7 +72,7 @@ FORCE_TRANSMISSION = ForceTransmission(
     needs=(
         Need(
             _pulled,
-            "it comes from forces along the slider line; got none; add for example "
+            "it needs forces along the slider line; got none; add for example "
             '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]',
             consequence="undefined",
         ),

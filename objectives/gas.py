@@ -35,7 +35,9 @@ DISPLACEMENT_VOLUME = _gas(
     closed_form=lambda gas: gas.swept,
     place=410,
     sentence="The volume that the piston sweeps in a stroke; several cylinders add up.",
-    advice="It sets how much a compressor or pump delivers. As a constraint it fixes the stroke for a given bore.",
+    advice=(
+        "It determines how much a compressor or pump delivers. As a constraint it fixes the stroke for a given bore."
+    ),
     formula="sum of A S: piston area A, stroke S",
     better="high",
     domain=Domain(lower=0.0, rule="the displacement volume is positive", remedy="5 cm^3 to 5000 cm^3 are usual"),

@@ -25,7 +25,7 @@ GUIDE_MOMENT = CyclePeak(
         LOADED,
         Need(
             lambda machine: machine.slider.guide is not None,
-            "it comes from the place of the guide; got none; add for example "
+            "it needs the position of the guide; got none; add for example "
             '[mechanism] slider = { mass = "0.8 kg", guide_distance = "150 mm" }',
             consequence="undefined",
         ),

@@ -81,12 +81,13 @@ FATIGUE_SAFETY = FatigueSafety(
     least=True,
     place=446,
     sentence=(
-        "By how much all stresses could grow until the worst point of crank and rod tires: amplitude and mean are of "
-        "the same point's stress over a turn, with the stress concentration in the eyes."
+        "The factor by which all stresses could grow before the worst point of crank and rod fails by fatigue. "
+        "Amplitude and mean are those of the stress at this point over a turn, with the stress concentration in the "
+        "eyes."
     ),
     advice=(
-        "1.3 to 2 are usual. The endurance strength is that of the finished bar: what eye_concentration counts must "
-        "not be in it a second time."
+        "1.3 to 2 are usual. The endurance strength is that of the finished bar, but without the stress "
+        "concentration, which eye_concentration already includes."
     ),
     formula="1 / max(sigma_a / S_e + max(sigma_m, 0) / S_u) over place; S_y in place of S_u with Soderberg's criterion",
     source="Shigley, Mechanical Engineering Design, 9th ed., eq. 6-46 (Goodman) and 6-45 (Soderberg)",

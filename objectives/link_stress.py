@@ -142,7 +142,7 @@ CRANK_STRESS = replace(
         "force at every place, and the net section of both eyes, that of the pivot with the torque, which a key or a "
         "tight fit brings in there."
     ),
-    advice="It is that of the pivot's eye where the torque is large: widen the crank, or take a thinner shaft.",
+    advice="With a large torque, the eye at the pivot decides: widen the crank, or use a thinner shaft.",
     formula=(
         "max of |N / (w d) +- 6 M / (d w^2)|, K F / ((w - D) d), and at the pivot |N / ((w - D) d) +- 6 w M / "
         "(d (w^3 - D^3))| and |K N / ((w - D) d) +- min(K, 2) 6 D M / (d (w^3 - D^3))| over place and crank angle"

@@ -70,14 +70,14 @@ _deviation = partial(
     group=Group.ACCURACY,
     section="12. Position error",
     source="derived there",
-    picture="wanted motion",
+    picture="desired motion",
 )
 MOTION_DEVIATION = _deviation(
     name="motion_deviation",
     title="motion deviation, greatest",
     measure="greatest",
     place=280,
-    sentence="The greatest distance between the slider and the points of the wanted motion.",
+    sentence="The greatest distance between the slider and the points of the desired motion.",
     formula="max over the points of |x(theta_i + psi) + s - t_i|; psi and s zero, or the best where free",
     example="0.3 mm",
 )
@@ -86,7 +86,7 @@ MOTION_DEVIATION_RMS = _deviation(
     title="motion deviation, root mean square over the points",
     measure="rms",
     place=290,
-    sentence="The distance between the slider and the points of the wanted motion, as a root mean square.",
+    sentence="The distance between the slider and the points of the desired motion, as a root mean square.",
     advice="One point that is far off counts less than in the greatest deviation.",
     formula="sqrt(mean of (x(theta_i + psi) + s - t_i)^2)",
     example="0.2 mm",

@@ -44,7 +44,9 @@ PEAK_REFLECTED_INERTIA = _peak(
     kind=INERTIA,
     signal=Signal.REFLECTED_INERTIA,
     place=230,
-    sentence="The greatest moment of inertia that the drive feels at the crank, with rod and slider counted in.",
+    sentence=(
+        "The greatest moment of inertia of the linkage as seen by the drive at the crank, including rod and slider."
+    ),
     advice="To compare it with the inertia of a motor, divide it by the square of the gear ratio.",
     formula="max J, where J omega^2 / 2 is the kinetic energy of all links",
     picture="inertia",

@@ -51,12 +51,12 @@ def _friction(machine: Mechanism) -> bool:
 
 
 _defining = partial(Need, consequence="undefined")
-_MASSES = 'it comes from masses; got none; add for example [mechanism] slider = { mass = "0.8 kg" }'
+_MASSES = 'it needs masses; got none; add for example [mechanism] slider = { mass = "0.8 kg" }'
 _LOADS = (
-    "it comes from masses that move or weigh, and from loads; got none that is not zero; add for example "
+    "it needs masses that move or weigh, or loads; got none that is not zero; add for example "
     '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]'
 )
-_SLIDER_LOADS = _LOADS.replace("from loads;", "from loads on the slider;") + " on the slider"
+_SLIDER_LOADS = _LOADS.replace("or loads;", "or loads on the slider;") + " on the slider"
 _SPEED = 'it needs a crank speed; got none; add for example [mechanism] speed = "300 rpm"'
 
 TOLERANCES = _defining(
@@ -65,7 +65,7 @@ TOLERANCES = _defining(
 )
 FRICTION = Need(
     _friction,
-    "a self-locking margin comes from friction; got none; add for example [friction] guide = 0.1, or use {instead}",
+    "a self-locking margin needs friction; got none; add for example [friction] guide = 0.1, or use {instead}",
     consequence="equal",
 )
 SPEED = _defining(lambda machine: machine.fullest.speed != 0.0, _SPEED)
@@ -90,7 +90,7 @@ LOADED = Need(lambda machine: linkage_loaded(machine.fullest), _SLIDER_LOADS)
 PIVOT_LOADED = Need(lambda machine: pivot_loaded(machine.fullest), _SLIDER_LOADS)
 WORK = Need(
     works_over_a_turn,
-    "a machine that takes no work over a turn has none, whatever its dimensions; got no friction in joints that carry "
+    "a machine that takes no work over a turn has none with any dimensions; got no friction in joints that carry "
     "a force, no load that always resists (viscous, drag) and none that differs between the strokes; use {instead}, or "
     "add what the machine works against",
 )
@@ -104,7 +104,7 @@ _UNLOADED = (
     "got no inertia force or weight of rod or slider, nor a load on the slider; add for example "
     '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]] on the slider'
 )
-_HEAT = "it comes from friction in loaded joints"
+_HEAT = "it needs friction in loaded joints"
 HEAT = (_defining(_friction, f"{_HEAT}; {_RUBS}"), _defining(rubs_under_load, f"{_HEAT}; {_UNLOADED}"))
 """Friction, and joints that carry a force."""
 LOSSES = (
@@ -122,12 +122,12 @@ LOSSES = (
 """Friction, and joints that carry a force: else an efficiency is 1."""
 CYLINDER = _defining(
     lambda machine: bool(cylinders(machine)),
-    "it comes from a cylinder; got none; add for example "
+    "it needs a cylinder; got none; add for example "
     '[[load]] bore = "70 mm", suction = "1 bar", discharge = "8 bar", clearance = 0.05',
 )
 COMPRESSOR = _defining(
     lambda machine: bool(compressors(machine)),
-    "it comes from a compressor or pump; got none; add for example "
+    "it needs a compressor or pump; got none; add for example "
     '[[load]] bore = "70 mm", suction = "1 bar", discharge = "8 bar", clearance = 0.05',
 )
 
@@ -145,7 +145,7 @@ COUPLES = _defining(
 )
 ONE_CYLINDER = _defining(
     lambda machine: cylinder_count(machine) == 1,
-    "a stroke is of one cylinder; got several on one crankshaft, whose torques add up; use {instead}",
+    "a stroke belongs to one cylinder; got several on one crankshaft, whose torques add up; use {instead}",
 )
 ONE_TIMING = _defining(
     lambda machine: machine.speed_profile is None or cylinder_count(machine) == 1,
@@ -155,7 +155,7 @@ ONE_TIMING = _defining(
 )
 EVEN_SPEED = _defining(
     lambda machine: machine.speed_profile is None,
-    "it is that at a constant speed; got a speed profile; leave it out for this",
+    "it is defined at constant speed; got a speed profile; leave the profile out",
 )
 ONE_TURN = _defining(
     lambda machine: cycle_turns(machine) == 1,
@@ -163,26 +163,26 @@ ONE_TURN = _defining(
 )
 STRENGTH = _defining(
     lambda machine: machine.strength is not None,
-    "it comes from a material and pins; got none; add for example [sections] with pins and [sections.material], as in "
+    "it needs a material and pins; got none; add for example [sections] with pins and [sections.material], as in "
     "docs/sizing.md",
 )
 WEARS = _defining(
     lambda machine: machine.strength is not None and machine.strength.wear_coefficient is not None,
-    "it comes from pins and a wear coefficient; got none; add for example "
+    "it needs pins and a wear coefficient; got none; add for example "
     '[sections] wear_coefficient = "1e-9 mm^2/N", with pins and [sections.material] as in docs/sizing.md',
 )
 _BAR = '{}; got none; add for example [mechanism] {} = { width = "30 mm", depth = "20 mm", density = "7850 kg/m^3" }'
 ROD_BAR = _defining(
     lambda machine: isinstance(machine.rod, Bar),
-    _BAR.replace("{}", "it is of a rod given by its section", 1).replace("{}", "rod", 1),
+    _BAR.replace("{}", "it needs a rod given by its section", 1).replace("{}", "rod", 1),
 )
 CRANK_BAR = _defining(
     lambda machine: isinstance(machine.crank, Bar),
-    _BAR.replace("{}", "it is of a crank given by its section", 1).replace("{}", "crank", 1),
+    _BAR.replace("{}", "it needs a crank given by its section", 1).replace("{}", "crank", 1),
 )
 A_BAR = _defining(
     lambda machine: isinstance(machine.rod, Bar) or isinstance(machine.crank, Bar),
-    _BAR.replace("{}", "it is of links given by their sections", 1).replace("{}", "rod", 1),
+    _BAR.replace("{}", "it needs links given by their sections", 1).replace("{}", "rod", 1),
 )
 
 
@@ -193,7 +193,7 @@ def _weight(part: str) -> Need:
 
     return Need(
         weighs,
-        f'it comes from the mass of the {part}; got none; add for example [mechanism] {part} = {{ mass = "0.5 kg" }}',
+        f'it needs the mass of the {part}; got none; add for example [mechanism] {part} = {{ mass = "0.5 kg" }}',
     )
 
 

@@ -21,8 +21,8 @@ PEAK_TORQUE = _peak(
     name="peak_torque",
     place=20,
     sentence=(
-        "The greatest torque that the drive must give within a turn, whichever way it acts, with all masses, "
-        "loads, gravity and friction of the job; of several cylinders on one crankshaft that of all together."
+        "The greatest torque of the drive within a turn, in either direction, with all masses, loads, gravity and "
+        "friction of the job. The torques of several cylinders on one crankshaft add up."
     ),
     advice="It sizes motor and gear; at high speed inertia dominates it, at low speed the load.",
     formula=f"max |T|, {_TORQUE}: reflected inertia J, potential energy V, load F",

@@ -125,20 +125,20 @@ PIN_SHEAR_CRANK_PIVOT = _shear(
     name="pin_shear_crank_pivot",
     title="shear of the crank pivot",
     place=464,
-    sentence="The greatest mean shear stress of the crank's pivot, cut once; half of it where it is held twice.",
+    sentence="The greatest mean shear stress of the crank's pivot, in single shear; half as much in double shear.",
     **of_pin("crank_pivot", (STRENGTH,), bears=False),
 )
 PIN_SHEAR_CRANK_PIN = _shear(
     name="pin_shear_crank_pin",
     title="shear of the crank pin",
     place=465,
-    sentence="The greatest mean shear stress of the crank pin, cut once; half of it where it is held twice.",
+    sentence="The greatest mean shear stress of the crank pin, in single shear; half as much in double shear.",
     **of_pin("crank_pin", (STRENGTH,), bears=False),
 )
 PIN_SHEAR_SLIDER_PIN = _shear(
     name="pin_shear_slider_pin",
     title="shear of the slider pin",
     place=466,
-    sentence="The greatest mean shear stress of the slider pin, cut once; half of it where it is held twice.",
+    sentence="The greatest mean shear stress of the slider pin, in single shear; half as much in double shear.",
     **of_pin("slider_pin", (STRENGTH,), bears=False),
 )

@@ -72,7 +72,7 @@ _pv = partial(
     kind=PRESSURE_SPEED,
     factor=_speed,
     source="Shigley, Mechanical Engineering Design, 9th ed., sec. 12-15 (boundary-lubricated bearings)",
-    advice="What a dry bearing warms up and wears by; makers of bushings give a limit, of 0.05 to 2 MPa m/s.",
+    advice="It decides how a dry bearing heats and wears; makers of bushings state a limit of 0.05 to 2 MPa m/s.",
     example="0.5 MPa m/s",
 )
 _wear = partial(

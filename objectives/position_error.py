@@ -27,10 +27,10 @@ POSITION_ERROR = _error(
     signal=Signal.POSITION_ERROR,
     place=40,
     sentence=(
-        "How far the slider may be from where it should be when crank, rod, offset and crank angle are all off by "
-        "their tolerances in the worst combination: the greatest value over the cycle."
+        "The greatest error of the slider position over the cycle, with crank, rod, offset and crank angle at their "
+        "tolerances in the worst combination."
     ),
-    advice="It comes from the tolerances alone: without tolerances there is none.",
+    advice="It depends on the tolerances alone; without tolerances it is undefined.",
     formula="max over theta of the sum of |dx/di| T_i, for i = crank, rod, offset, crank angle",
     example="0.3 mm",
     offered=("objective",),
@@ -41,10 +41,7 @@ POSITION_ERROR_RSS = _error(
     title="position error, root sum square",
     signal=Signal.POSITION_ERROR_RSS,
     place=90,
-    sentence=(
-        "The position error to be expected where deviations are independent of each other, so that they seldom "
-        "add up: the root of the sum of their squares."
-    ),
+    sentence=("The position error to expect if the deviations are independent: the root of the sum of their squares."),
     advice="With the four tolerances alone it is at least half of the worst case, and never more than it.",
     formula="max over theta of sqrt(sum of (dx/di T_i)^2)",
     example="0.2 mm",

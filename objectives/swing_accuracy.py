@@ -26,8 +26,8 @@ SWING_ANGLE_ERROR = _error(
     instead="swing_position_error",
     place=320,
     sentence=(
-        "How far the crank may stand off where the slider drives and the links and the actuator are off by their "
-        "tolerances in the worst combination: the greatest value over the swing."
+        "The greatest error of the crank angle over the swing if the slider drives, with links and actuator at their "
+        "tolerances in the worst combination."
     ),
     formula="max over the swing of (sum of |dx/di| T_i + T_actuator) / |x'|, for i = crank, rod, offset",
     example="0.4 deg",
@@ -40,8 +40,8 @@ SWING_POSITION_ERROR = _error(
     instead="swing_angle_error",
     place=321,
     sentence=(
-        "How far the slider may be off where the crank drives and crank, rod, offset and crank angle are off by their "
-        "tolerances in the worst combination: the greatest value over the swing."
+        "The greatest error of the slider position over the swing if the crank drives, with crank, rod, offset and "
+        "crank angle at their tolerances in the worst combination."
     ),
     formula="max over the swing of the sum of |dx/di| T_i, for i = crank, rod, offset, crank angle",
     example="0.3 mm",

@@ -40,7 +40,7 @@ HOLDING_FORCE = _peak(
     instead="holding_torque",
     place=312,
     sentence="The greater force on the slider at the two ends of the swing, without inertia.",
-    advice="With friction it is what moves the linkage there; less holds it.",
+    advice="With friction, this moves the linkage; a smaller one holds it.",
     formula="max of |P| at both ends, x' w and alpha towards 0",
     example="20 kN",
 )
@@ -52,7 +52,7 @@ HOLDING_TORQUE = _peak(
     instead="holding_force",
     place=313,
     sentence="The greater torque on the crank at the two ends of the swing, without inertia.",
-    advice="With friction it is what moves the linkage there; less holds it.",
+    advice="With friction, this moves the linkage; a smaller one holds it.",
     formula="max of |T| at both ends, w and alpha towards 0",
 )
 HOLDING_FORCE_WITHOUT_FRICTION = _peak(
@@ -88,20 +88,20 @@ PEAK_ACTUATOR_POWER = _peak(
     state=POWER,
     timed=True,
     place=314,
-    sentence="The greatest power of what drives the swing, given or taken.",
+    sentence="The greatest power of the drive over the swing, driving or braking.",
     formula="max over the swing of |P dx/dt|, or |T w|",
 )
 SWING_ENERGY = SwingIntegral(
     name="swing_energy",
-    title="energy of the way forth",
+    title="energy of the forward stroke",
     kind=ENERGY,
     integral="work",
     signed=True,
     group=Group.DRIVE,
     picture="power",
     place=315,
-    sentence="The work of the drive on the forward stroke: below zero where it has to brake.",
-    formula="integral of P dx, or T dtheta, over the way forth",
+    sentence="The work of the drive on the forward stroke; negative if it has to brake.",
+    formula="integral of P dx, or T dtheta, over the forward stroke",
 )
 SWING_EFFICIENCY = SwingIntegral(
     name="swing_efficiency",
@@ -113,8 +113,8 @@ SWING_EFFICIENCY = SwingIntegral(
     picture="power",
     place=316,
     sentence=(
-        "What the swing takes without friction over what it takes: of the way forth, or of the way back where only "
-        "that is driven; without inertia."
+        "The work that the swing takes without friction, divided by the work that it takes: on the forward stroke, or "
+        "on the return stroke if only that is driven. Inertia does not count."
     ),
     formula="integral of P dx without friction / integral of P dx",
     example=0.8,

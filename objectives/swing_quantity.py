@@ -52,9 +52,7 @@ class SwingQuantity(Quantity):
                 f'or set [motion] driver = "{self.driver}"'
             )
         if self.timed and swing.duration is None:
-            return (
-                "a slow swing takes as little power as one likes; got no duration; give [motion] a law and a duration"
-            )
+            return "a slow swing needs arbitrarily little power; got no duration; give [motion] a law and a duration"
         return None
 
     def lacks(self, mechanism: Mechanism, consequence: Consequence) -> str | None:
@@ -158,7 +156,7 @@ class SwingForm(SwingQuantity):
             keys = "from and to" if swing.stated_for == "crank" else "slider_from and slider_to"
             return (
                 f"[motion] fixes it by {keys} for all designs; got {stated_value:.6g} {self.unit.symbol} there; leave "
-                f"it out, or state {'the two places of the slider' if swing.stated_for == 'crank' else 'crank angles'} "
+                f"it out, or state {'the two slider positions' if swing.stated_for == 'crank' else 'crank angles'} "
                 "instead and let it follow"
             )
         return super().unfit(swing)

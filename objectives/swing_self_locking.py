@@ -7,11 +7,13 @@ from .quantity import Group
 from .swing_quantity import SwingLeast
 
 _least = partial(SwingLeast, signed=True, better="high", group=Group.DRIVE, picture="torque")
-_ADVICE = "Below zero the loads push it on, and the drive holds it back; with both ways above zero it locks itself."
+_ADVICE = (
+    "Below zero, the loads push and the drive holds back. Above zero on both strokes, the linkage is self-locking."
+)
 
 LEAST_FORCE_FORWARD = _least(
     name="least_force_forth",
-    title="least actuator force forth",
+    title="least actuator force, forward stroke",
     kind=FORCE,
     back=False,
     driver="slider",
@@ -19,12 +21,12 @@ LEAST_FORCE_FORWARD = _least(
     place=322,
     sentence="The least force along its motion that the actuator needs on the forward stroke, slowly.",
     advice=_ADVICE,
-    formula="min over the way forth of P sgn(x' w)",
+    formula="min over the forward stroke of P sgn(x' w)",
     example="0 N",
 )
 LEAST_FORCE_BACK = _least(
     name="least_force_back",
-    title="least actuator force back",
+    title="least actuator force, return stroke",
     kind=FORCE,
     back=True,
     driver="slider",
@@ -32,12 +34,12 @@ LEAST_FORCE_BACK = _least(
     place=323,
     sentence="The least force along its motion that the actuator needs on the return stroke, slowly.",
     advice=_ADVICE,
-    formula="min over the way back of P sgn(x' w)",
+    formula="min over the return stroke of P sgn(x' w)",
     example="0 N",
 )
 LEAST_TORQUE_FORWARD = _least(
     name="least_torque_forth",
-    title="least torque forth",
+    title="least torque, forward stroke",
     kind=TORQUE,
     back=False,
     driver="crank",
@@ -45,12 +47,12 @@ LEAST_TORQUE_FORWARD = _least(
     place=324,
     sentence="The least torque along its motion that the crank needs on the forward stroke, slowly.",
     advice=_ADVICE,
-    formula="min over the way forth of T sgn(w)",
+    formula="min over the forward stroke of T sgn(w)",
     example="0 N m",
 )
 LEAST_TORQUE_BACK = _least(
     name="least_torque_back",
-    title="least torque back",
+    title="least torque, return stroke",
     kind=TORQUE,
     back=True,
     driver="crank",
@@ -58,6 +60,6 @@ LEAST_TORQUE_BACK = _least(
     place=325,
     sentence="The least torque along its motion that the crank needs on the return stroke, slowly.",
     advice=_ADVICE,
-    formula="min over the way back of T sgn(w)",
+    formula="min over the return stroke of T sgn(w)",
     example="0 N m",
 )

@@ -1,4 +1,4 @@
-"""Test files that belong to what differs from a branch, one a line: `python -m tests.changed main`.
+"""Test files that belong to what differs from a branch, one per line: `python -m tests.changed main`.
 
 They are the test files that differ and, for every other file, those named after it or after its folder, anywhere in the
 mirror of its top-level folder (`service/questions/clearance/analysis.py` has all `test_analysis*.py` and

@@ -138,7 +138,8 @@ def keep(file: Path, code: MachineCode) -> bool:
 @cache
 def _warn_not_stored(folder: Path, reason: str) -> None:
     _log.warning(
-        f"slidercrank cannot keep what it compiles in {folder} ({reason}) and will do it again; make room there"
+        f"slidercrank cannot store its compiled formulas in {folder} ({reason}) and will compile them again; free "
+        "some space there"
     )
 
 

@@ -69,12 +69,12 @@ class TargetMotion:
             if after <= before:
                 raise InputError(
                     f"crank angles of a target motion must increase; got {after:g} after {before:g} rad; sort the "
-                    "table and drop what repeats"
+                    "table and remove repeated points"
                 )
         if angles[-1] - angles[0] >= _TURN:
             raise InputError(
                 "crank angles of a target motion must span less than one turn, 360 deg; "
-                f"got {math.degrees(angles[-1] - angles[0]):g} deg; leave out the points that come again"
+                f"got {math.degrees(angles[-1] - angles[0]):g} deg; leave out the repeated points"
             )
 
 

@@ -172,8 +172,8 @@ def _unreachable_position(linkage: Dimensions, position: float) -> AssemblyError
     ranges = " or ".join(f"{float(low):.{_DIGITS}g} mm to {float(high):.{_DIGITS}g} mm" for low, high in ends)
     sizes = f"crank {1e3 * crank:g} mm, rod {1e3 * rod:g} mm, offset {1e3 * offset:g} mm"
     return AssemblyError(
-        f"the slider position must be in reach of the {linkage.branch} branch, {ranges}; "
-        f"got {1e3 * position:.12g} mm with {sizes}; move the position into the reach, or change a length"
+        f"the slider position must be within reach of the {linkage.branch} branch, {ranges}; "
+        f"got {1e3 * position:.12g} mm with {sizes}; move the position within reach, or change a length"
     )
 
 
@@ -182,9 +182,11 @@ def _real_lengths(linkage: Dimensions) -> tuple[float, float, float]:
     sizes = (linkage.crank, linkage.rod, linkage.offset)
     shape = np.broadcast_shapes(*(np.shape(size) for size in sizes))
     if shape:
-        raise InputError(f"the way back is of one linkage; got an array of shape {shape}; take one linkage at a time")
+        raise InputError(
+            f"the inverse problem takes one linkage; got an array of shape {shape}; take one linkage at a time"
+        )
     if any(np.iscomplexobj(size) for size in sizes):
-        raise InputError("the way back is of real dimensions; got complex ones; leave out the imaginary part")
+        raise InputError("the inverse problem needs real dimensions; got complex ones; leave out the imaginary part")
     return float(linkage.crank), float(linkage.rod), float(linkage.offset)
 
 

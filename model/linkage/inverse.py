@@ -127,7 +127,7 @@ def crank_motion(
         x,
         dimensions,
         "slider positions must lie off the dead centres, where the crank motion is undetermined",
-        "ask for the crank angle alone, or for a position further away",
+        "request the crank angle alone, or a position further away",
         kind=InputError,
     )
     theta = crank_angle_at(linkage, x, solution=solution)
@@ -150,7 +150,7 @@ def _triangle(linkage: Dimensions, slider_position: ArrayLike) -> tuple[Array, t
         (excess > ROUNDING * (r + l)) | (d == 0.0),
         x,
         (r, l, e),
-        "slider positions must be in reach, |rod - crank| <= sqrt(position^2 + offset^2) <= rod + crank",
+        "slider positions must be within reach, |rod - crank| <= sqrt(position^2 + offset^2) <= rod + crank",
         "move the position into the stroke",
     )
     return x, (r, l, e), d

@@ -11,7 +11,7 @@ def require_no_winding(mechanism: Mechanism) -> None:
     for load in mechanism.fullest.loads:
         if load.winds:
             raise InputError(
-                f"a spring on the crank winds up with every turn; got a crank that turns through, with a {load.size}; "
+                f"a spring on the crank winds up with every turn; got a crank that rotates fully with a {load.size}; "
                 'let the crank swing, [motion] kind = "swing", or give its torque over the crank angle'
             )
 

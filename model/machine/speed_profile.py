@@ -122,14 +122,14 @@ class SpeedTable:
             if after <= before:
                 raise InputError(
                     f"crank angles of a table of speeds must increase; got {math.degrees(after):.6g} deg after "
-                    f"{math.degrees(before):.6g} deg; sort the table and drop what repeats"
+                    f"{math.degrees(before):.6g} deg; sort the table and remove repeated points"
                 )
         self._require_open()
         for angle, speed in zip(self.angles, self.speeds, strict=True):
             if not speed * self.speeds[0] > 0.0:
                 raise InputError(
-                    "a speed over the crank angle must not be zero or change its sign, for the crank would never get "
-                    f"past; got {_RPM * speed:.6g} rpm at {math.degrees(angle):.6g} deg; correct it"
+                    "a speed over the crank angle must not be zero or change its sign, because the crank could not "
+                    f"pass; got {_RPM * speed:.6g} rpm at {math.degrees(angle):.6g} deg; correct it"
                 )
         turns = self._spline.derivative().roots()  # gives NaN for a stretch of constant speed
         ends = np.concatenate([turns[np.isfinite(turns)], self.angles])

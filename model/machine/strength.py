@@ -39,7 +39,7 @@ class Material:
             raise InputError(
                 "a material needs endurance <= yield strength <= ultimate strength; got "
                 f"{1e-6 * self.endurance:g}, {1e-6 * self.yield_strength:g} and {1e-6 * self.ultimate_strength:g} MPa; "
-                "exchange those that stand in each other's place, or take the lower one for both"
+                "swap those that were exchanged, or take the lower one for both"
             )
 
 

@@ -76,7 +76,7 @@ def require_possible(mechanism: Any) -> None:
     for path in paths:
         number_at(mechanism, path)
         if paths.count(path) > 1:
-            raise InputError(f"a number may vary once; got {path} twice; leave out one of the two")
+            raise InputError(f"a number may only vary once; got {path} twice; leave out one of the two")
     names = [item.name for item in varying]
     for name in names:
         if names.count(name) > 1:

@@ -100,7 +100,7 @@ def spline(points: tuple[tuple[float, float], ...]) -> Array:
         slow = m[i] + u * (2.0 * second[i] + 3.0 * u * third[i])
         if slow.min() < -_ROUNDING:
             raise InputError(
-                "a table of a swing's motion must go on all the way; got one that turns back near the share "
+                "a table of a swing's motion must not turn back; got one that does near the fraction "
                 f"{t[i] + u[int(np.argmin(slow))]:.4g} of the time; give more points there, or a gentler course"
             )
     return pieces
@@ -116,8 +116,9 @@ def _require_points(t: Array, s: Array) -> None:
     if wrong or (np.diff(t) <= 0.0).any() or (np.diff(s) < 0.0).any():
         listed = ", ".join(f"({a:.6g}, {b:.6g})" for a, b in zip(t[:6].tolist(), s[:6].tolist(), strict=True))
         raise InputError(
-            "a table of a swing's motion has three points or more, shares of time and way, each from 0 to 1, the times "
-            f"rising and the ways not falling; got {listed or 'none'}{' ...' if len(t) > 6 else ''}; "
+            "a table of a swing's motion must have at least three points, fractions of time and travel from 0 to 1, "
+            "with increasing times and travel that never decreases; got "
+            f"{listed or 'none'}{' ...' if len(t) > 6 else ''}; "
             "begin with 0, 0 and end with 1, 1"
         )
 

@@ -71,27 +71,29 @@ class Swing:
             raise InputError(
                 "a swing needs two different crank angles, less than a turn apart; "
                 f"got {math.degrees(self.start):.6g} and {math.degrees(self.end):.6g} deg; "
-                "a crank that turns through is what all other analyses are of"
+                "a swing is less than one turn"
             )
         if (self.law == "slow") != (self.duration is None):
             raise InputError(
-                "a swing that is not slow needs its duration, and a slow one has none; "
+                "a slow swing must have no duration, and any other must have one; "
                 f"got the law {self.law} and {'no duration' if self.duration is None else f'{self.duration:g} s'}; "
+                ""
                 "give both a law and a duration, or neither"
             )
         if self.duration is not None and not _LEAST <= self.duration <= _MOST:
             raise InputError(
-                f"one way of a swing takes from {_LEAST:g} to {_MOST:g} s; got {self.duration:g} s; check the unit"
+                f"one stroke of a swing must take from {_LEAST:g} to {_MOST:g} s; got {self.duration:g} s; check the "
+                "unit"
             )
         if (self.law == "table") != bool(self.points):
             raise InputError(
-                "a law of motion by a table has its points, and any other has none; got the law "
+                "a motion law has points only if it is a table; got the law "
                 f"{self.law} and {len(self.points)} points; give both, or neither"
             )
         _ = self.table
         if self.actuator_tolerance and self.driver == "crank":
             raise InputError(
-                "the tolerance of the actuator is of a slider that drives; got "
+                "a tolerance of the actuator needs a slider that drives; got "
                 f"{1e3 * self.actuator_tolerance:g} mm with the crank driven; drive the slider, or leave it out"
             )
 

@@ -56,7 +56,7 @@ def resolve_swing(
     }
     if request.law == "table" and (motion is None or not motion.points):
         raise InputError(
-            f"a motion by a table is that of a job; got {names['law']} table; give its points in [motion] of "
+            f"a motion law by a table must be in a job; got {names['law']} table; give its points in [motion] of "
             f"the job, law_times and law_shares, and leave {names['law']} out"
         )
     if request.law == "slow":
@@ -84,7 +84,7 @@ def _requested_ends(request: SwingRequest, motion: Swing | None, names: Mapping[
     fields = _ANGLES if stated_for == "crank" else _POSITIONS
     if any(name not in fields for name in stated):
         raise InputError(
-            "a swing runs between two crank angles, or between two places of the slider; got "
+            "a swing must run between two crank angles or between two slider positions; got "
             f"{', '.join(names[name] for name in stated)}; give the two of one"
         )
     ends = {end: stated[name] for end, name in zip(_ANGLES, fields, strict=True) if name in stated}

@@ -115,8 +115,8 @@ def over_angle(
     all_speeds = np.concatenate([speed, inner_speeds])
     if not np.all(all_speeds * way > 0.0):
         raise InputError(
-            "a speed over crank angle must not be zero or change its sign, because the crank would never get past; "
-            f"got {all_speeds[np.argmin(all_speeds * way)]:.6g} rad/s; give the motion over time"
+            "a speed over crank angle must not be zero or change its sign, because the crank could not pass; got "
+            f"{all_speeds[np.argmin(all_speeds * way)]:.6g} rad/s; give the motion over time"
         )
     _require_slope(motion.speed, motion.slope, angle)
     time = np.concatenate([[0.0], np.cumsum(step[:, 0] * ((1.0 / inner_speeds).reshape(-1, 4) @ weights))])
@@ -132,7 +132,7 @@ def over_time(mechanism: Mechanism, linkage: Linkage, motion: SpeedOverTime, tim
     """
     time = np.atleast_1d(np.asarray(times, dtype=np.float64))
     if time.ndim != 1 or not np.all(np.isfinite(time)) or np.any(np.diff(time) <= 0.0):
-        raise InputError("times must be a list of finite, increasing values, s; sort them and drop what repeats")
+        raise InputError("times must be a list of finite, increasing values, s; sort them and remove repeated points")
     speed = _values("speed", motion.speed, time)
     acceleration = _values("acceleration", motion.acceleration, time)
     _require_slope(motion.speed, motion.acceleration, time)
@@ -184,7 +184,7 @@ def _table(quantity: str, at: Sequence[float], speeds: Sequence[float]) -> tuple
     if not (np.all(np.isfinite(points)) and np.all(np.isfinite(values))):
         raise InputError(f"a table of {quantity} and speeds must be finite throughout")
     if np.any(np.diff(points) <= 0.0):
-        raise InputError(f"{quantity} of a table must increase; sort the table and drop what repeats")
+        raise InputError(f"{quantity} of a table must increase; sort the table and remove repeated points")
     return points, values
 
 

@@ -74,7 +74,7 @@ class Runner:
         solved = self.turn.resolved(motor, drive.inertia, lambda turn: turn.even(guess))
         if solved is None or not solved[1].memory < 1.0:
             raise InputError(
-                "steady running needs a crank that comes through every turn; got none that does near the "
+                "steady running needs a crank that completes every turn; got none near the "
                 f"{guess:.6g} rad/s where motor and loads balance; add a flywheel or a stronger motor"
             )
         running = _result(*solved, motor, drive.inertia)
@@ -93,7 +93,7 @@ class Runner:
         Raises `InputError` if the mechanism has no speed, or the crank nearly stops (see `speeds`).
         """
         if not self.speed:
-            raise InputError("a constant torque needs the mean speed that it shall keep; got none; give the speed")
+            raise InputError("a constant torque needs the mean speed to keep; got none; give the speed")
         self.equation.require_inertia(inertia)
 
         def guess(turn: PeriodicTurn) -> Guess | None:

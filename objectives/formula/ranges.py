@@ -79,7 +79,7 @@ class FormulaBounds:
             remedy = "change the ranges, or bring the formula into a form without that division"
         always = found.lower == found.upper == 0.0
         raise InputError(
-            f"a formula divides by nothing that may be zero; got {text_of(node)} as a divisor, which "
+            f"a formula must not divide by a value that may be zero; got {text_of(node)} as a divisor, which "
             f"{'is zero for every design' if always else 'may be zero within the ranges'}; {remedy}"
         )
 

@@ -65,7 +65,7 @@ def apply(
         with np.errstate(all="ignore"):
             returned = np.asanyarray(function(make(mechanism, designs)))
     except InputError as error:  # of what the designs of this machine do not have
-        raise Refused(f"cannot be had of this machine: {error}{place(error, function)}") from None
+        raise Refused(f"is not available for this machine: {error}{place(error, function)}") from None
     except BaseException as error:  # noqa: BLE001 - whatever it raises is what it did wrong
         kind = f"in complex numbers, for the gradient, {type(error).__name__}" if column is not None else ""
         remedy = _NOT_COMPLEX if column is not None and isinstance(error, TypeError) else "correct the function"

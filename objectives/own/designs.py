@@ -155,8 +155,8 @@ class Designs:
         """
         if self.mechanism.speed_profile is not None:
             raise InputError(
-                "forces of a function of your own are at a constant speed; got a speed profile; leave it out, or use "
-                "quantities that come with the software, also in a formula"
+                "forces in a custom function are those at constant speed; got a speed profile; leave it out, or use "
+                "the included quantities, also in a formula"
             )
         shape = np.broadcast_shapes(np.shape(angle), (len(self), 1))
         reactions, load = complex_joint_forces(self.mechanism, self._dimensions, np.broadcast_to(angle, shape))

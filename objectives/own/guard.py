@@ -22,7 +22,7 @@ from .printable import printable
 
 PRINTED = 1_000_000
 """Bytes that a function and all that it starts may print."""
-_LEFT_OUT = f"\nA function of your own printed more than {PRINTED // 10**6} MB; the rest is left out; print less.\n"
+_LEFT_OUT = f"\nA custom function printed more than {PRINTED // 10**6} MB; the rest is left out; print less.\n"
 _DEATH_SIGNAL, _SUBREAPER = 1, 36  # PR_SET_PDEATHSIG and PR_SET_CHILD_SUBREAPER of <linux/prctl.h>
 _PAUSE, _LONGEST_PAUSE = 0.001, 0.1  # s between two searches for processes that are left: first, and at most
 _LOOK = 0.1  # s between two looks at the process that asks; the end of a pipe would wait for its forks, too

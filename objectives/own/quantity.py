@@ -103,7 +103,7 @@ class OwnQuantity(Quantity):
         if not varying:
             return None
         return (
-            "a function of your own is one of crank, rod and offset alone; got other variables, "
+            "a custom function may only depend on crank, rod and offset; got other variables, "
             f"{', '.join(item.name for item in varying)}; fix them, or use other quantities"
         )
 
@@ -192,7 +192,7 @@ class OwnQuantity(Quantity):
     def _turning(self, dimensions: Array) -> Array:
         if dimensions.shape[1] != 3:
             self._refuse(
-                "is a function of crank, rod and offset alone; got more variables; fix them, or use other quantities"
+                "may only depend on crank, rod and offset; got more variables; fix them, or use other quantities"
             )
         return turning(dimensions)
 

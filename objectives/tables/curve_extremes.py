@@ -138,7 +138,7 @@ def every_curve(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> l
 def undefined_because(name: str, mechanism: Mechanism) -> str:
     """Return the reason why a machine does not define a curve; empty if it does."""
     if name == "load" and not mechanism.loads:
-        return 'it comes from loads; got none; add a [[load]], for example force = "200 N"'
+        return 'it needs loads; got none; add a [[load]], for example force = "200 N"'
     return next((need.missing for need in _NEEDS.get(name, ()) if not need.is_met(mechanism)), "")
 
 

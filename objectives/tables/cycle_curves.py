@@ -128,7 +128,8 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, angles: int | ArrayLike 
         theta = numbers(angles, "a crank angle")
     if theta.ndim != 1 or np.iscomplexobj(theta):
         raise InputError(
-            f"crank angles are a list of real numbers, rad, or how many; got {angles!r:.60}; write for example [1.0]"
+            f"crank angles must be a list of real numbers, rad, or their number; got {angles!r:.60}; write for "
+            "example [1.0]"
         )
     import pandas as pd
 
@@ -140,7 +141,7 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, angles: int | ArrayLike 
 def even_angles(count: int, limit: int = MOST) -> Array:
     """Return crank angles (n,), rad, evenly spaced over a turn from 0. Raises `InputError` for too few or too many."""
     if not LEAST <= count <= limit:
-        raise InputError(f"curves have {LEAST} to {limit} crank angles; got {count}; ask for as many")
+        raise InputError(f"curves must have {LEAST} to {limit} crank angles; got {count}; choose a number within these")
     angles: Array = np.arange(count, dtype=np.float64) * (2.0 * np.pi / count)
     return angles
 

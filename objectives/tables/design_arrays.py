@@ -54,7 +54,8 @@ def given_designs(designs: object, names: Sequence[str]) -> Array:
         array = np.asarray(array, dtype=np.float64)
     except (TypeError, ValueError):
         raise InputError(
-            f"designs are arrays of real numbers, SI; got {shortly(designs)}; give {needed} of each, in m, not as text "
+            f"designs must be arrays of real numbers, SI; got {shortly(designs)}; give {needed} of each, in m, not as "
+            "text "
             "and not complex"
         ) from None
     if array.ndim == 0 or array.shape[-1] != len(names):

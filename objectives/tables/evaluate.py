@@ -93,7 +93,7 @@ def evaluated(
 ) -> Array | tuple[Array, Array]:
     """Return the values of `evaluate` for designs (..., 3 + k) as an array."""
     if isinstance(quantities, str):
-        raise InputError(f"quantities are a list of names; got {quantities!r}; write [{quantities!r}]")
+        raise InputError(f"quantities must be a list of names; got {quantities!r}; write [{quantities!r}]")
     quantities = list(quantities)
     require_in_motion(quantities, own, swing)
     chosen = resolve_quantities(quantities, mechanism, own, turning=swing is None)

@@ -80,7 +80,7 @@ def columns_of(
             continue
         first = next((earlier for earlier, column_names in columns.items() if column_names.name == column.name), None)
         if first is not None:
-            raise InputError(f"a curve is measured once; got the columns {first!r} and {name!r}; drop one")
+            raise InputError(f"a curve may only be measured once; got the columns {first!r} and {name!r}; drop one")
         columns[name] = column
     column_names = {column.name: name for name, column in columns.items()}
     if CRANK_ANGLE in column_names:
@@ -106,7 +106,7 @@ def columns_of(
         near = next((close for name in names if name not in columns and (close := _curve_near(name, spoken))), None)
         hint = f"did you mean {near}?" if near else f"curves are {', '.join(curves)}"
         raise InputError(
-            f"no column is a curve with its unit, such as slider_position_mm; got {_listed(names)}; {hint}"
+            f"a column must be a curve with its unit, such as slider_position_mm; got {_listed(names)}; {hint}"
         )
     return columns
 
@@ -151,7 +151,9 @@ def measured_from(
         del curves[name]
     if not curves:
         empty_columns = ", ".join(repr(column_names[name]) for name in empty)
-        raise InputError(f"a curve has a number in a row with a crank angle; got none in {empty_columns}; fill them in")
+        raise InputError(
+            f"a curve must have a number in a row with a crank angle; got none in {empty_columns}; fill them in"
+        )
     for name in curves:
         reason = undefined_because(name, mechanism)
         if reason:
@@ -185,7 +187,7 @@ def _meaning(text: str, spoken: Mapping[str, str], kinds: Mapping[str, Kind], un
     kind = kinds[spoken[curve_name]]
     example = curve_name + kind.metric.suffix
     if not unit:
-        raise InputError(f"a column has its unit in its name; got {text!r}; write it like {example}")
+        raise InputError(f"a column must have its unit in its name; got {text!r}; write it like {example}")
     factor = _factor(unit, kind)
     if factor is None:
         unit = without_in(unit)

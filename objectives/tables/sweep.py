@@ -61,7 +61,7 @@ def sweep(
         raise InputError(f"a sweep must be over different parameters; got {', '.join(names)}; leave out the second")
     count = math.prod(len(axis.values) for axis in axes)
     if count > MOST:
-        raise InputError(f"a sweep has at most {MOST:,} combinations; got {count:,}; take fewer values")
+        raise InputError(f"a sweep may have at most {MOST:,} combinations; got {count:,}; take fewer values")
     grid = np.array(list(product(*(axis.values for axis in axes))))
     designs = np.tile(np.asarray(dimensions, dtype=np.float64).reshape(1, 3), (count, 1))
     speeds = np.full(count, mechanism.speed)

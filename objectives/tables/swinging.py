@@ -62,7 +62,7 @@ def require_loads(mechanism: Mechanism) -> None:
     }
     for key, value in of_turns.items():
         if value is not None:
-            raise InputError(f"mechanism.{key}: it is of a crank that turns through; got it with a swing; leave it out")
+            raise InputError(f"mechanism.{key}: it is of a crank that rotates fully; got it with a swing; leave it out")
     for load in mechanism.loads:
         if load.enters in (Enters.CYLINDER, Enters.BURNING_CYLINDER):
             raise InputError(
@@ -78,7 +78,7 @@ def require_loads(mechanism: Mechanism) -> None:
             )
         if load.cycle_turns > 1:
             raise InputError(
-                "a cycle of 720 deg is of a crank that turns through; got a load with one, and a swing; state the load "
+                "a cycle of 720 deg is of a crank that rotates fully; got a load with one, and a swing; state the load "
                 "over 360 deg, or leave it out"
             )
 
@@ -89,7 +89,7 @@ def require_of_swing(key: str, quantity: Quantity) -> None:
         if leaf.turning:
             swing_names = ", ".join(fact.name for fact in swing_facts())
             raise InputError(
-                f'{key}: {leaf.name} is of a crank that turns through; got [motion] kind = "swing"; '
+                f'{key}: {leaf.name} is of a crank that rotates fully; got [motion] kind = "swing"; '
                 f"use a quantity of a swing ({swing_names}), or leave it out"
             )
 

@@ -1,4 +1,4 @@
-"""Motion of the crank in a job file, [motion]: it turns through, or swings between two angles."""
+"""Motion of the crank in a job file, [motion]: it rotates fully, or swings between two angles."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def _swing(
     crank_side: Side = "left",
     **ends: float,
 ) -> Swing | None:
-    """Return the swing that a table states; None for a crank that turns through."""
+    """Return the swing that a table states; None for a crank that rotates fully."""
     if kind == _TURN:
         swing_keys = [
             *ends,
@@ -130,7 +130,7 @@ _EXAMPLES: dict[Stated, str] = {
 
 
 class _Motion(Checked[Swing | None]):
-    """How the crank moves: it turns through, or it swings between two angles, forth and back."""
+    """How the crank moves: it rotates fully, or it swings back and forth between two angles."""
 
     makes: ClassVar = _swing
 

@@ -70,7 +70,7 @@ Topics = Annotated[
 TopicInputs = Annotated[
     dict[str, Any],
     Field(
-        description="What the topics are asked with: a value is a text with its unit.",
+        description="Inputs of the topics, each a text with its unit.",
         json_schema_extra={"properties": dict(_INPUTS), "additionalProperties": False},
     ),
 ]
@@ -119,7 +119,7 @@ class Design:
     crank: Dimension = None
     rod: Dimension = None
     offset: Dimension = None
-    runs: Annotated[list[str], Field(description="Names of the runs that `compare` is about.", max_length=50)] = field(
+    runs: Annotated[list[str], Field(description="Names of the runs to compare.", max_length=50)] = field(
         default_factory=list
     )
 

@@ -86,7 +86,7 @@ def show_motion(request: RequestedDesignDep) -> Response:
 
 @router.get("/motion.gif", dependencies=[Depends(require_figures)], **file_responses("image/gif"))
 def animate_linkage(request: RequestedDesignDep) -> Response:
-    """Give the moving linkage as an animated GIF: a turn of the crank, or a swing forth and back."""
+    """Give the moving linkage as an animated GIF: a turn of the crank, or a swing back and forth."""
     from ..motion.animated_gif import animated_gif
 
     design, named = request.design, {"name": request.stored_front.result.name, "design": request.words}

@@ -66,14 +66,14 @@ class ColumnModel(BaseModel):
     key: str = Field(examples=["peak_torque_Nm"])
     title: str = Field(examples=["peak drive torque"])
     unit: str = Field(examples=["N m"])
-    group: str = Field("", description="that it is shown in; none for a curve", examples=["Drive"])
+    group: str = Field("", description="in which it is shown; none for a curve", examples=["Drive"])
     group_place: int = Field(0, description="of the group among the others", examples=[3])
 
 
 ViolatedOfAll = Annotated[
     dict[str, list[float | str]],
     Field(
-        description="allowable values that designs go beyond, by column: by how much each design does, 0 where not",
+        description="excess of each design over an allowable value, by column; 0 within it",
         examples=[{"pin_shear_crank_pin_MPa": [440.2, 0.0]}],
     ),
 ]
@@ -96,7 +96,7 @@ class FrontModel(BaseModel):
     name: str = Field(examples=["Feeder"])
     status: str = Field(description="done, cancelled or infeasible", examples=["done"])
     message: str = Field(examples=["100 designs, 52428 evaluated"])
-    count: int = Field(description="how many designs there are", examples=[100])
+    count: int = Field(description="number of designs", examples=[100])
     columns: list[ColumnModel]
     objectives: list[ObjectiveModel]
     hypervolume: float | None = Field(examples=[0.731])
@@ -111,7 +111,7 @@ class FrontModel(BaseModel):
         description="at the knee", examples=[["1 deg more least transmission angle costs 0.8 N m more peak torque"]]
     )
     strokes_differ: bool = Field(False, description="whether a stroke of a design is loaded more than the other")
-    warnings: list[str] = Field([], description="of what may not have been meant, in words", examples=[[]])
+    warnings: list[str] = Field([], description="about possible mistakes, in words", examples=[[]])
     violated: ViolatedOfAll = {}
     violations: Violations
     discrete: dict[str, Any] | None = Field(
@@ -139,9 +139,9 @@ class DesignsModel(BaseModel):
     """A page of designs. numbers: of each in its front, counted from 1, as on the command line."""
 
     job: int = Field(examples=[7])
-    count: int = Field(description="how many designs the front has", examples=[100])
-    chosen: int = Field(description="how many of them meet the conditions", examples=[12])
-    offset: int = Field(description="how many of those were passed over", examples=[0])
+    count: int = Field(description="number of designs on the front", examples=[100])
+    chosen: int = Field(description="number of designs that meet the conditions", examples=[12])
+    offset: int = Field(description="number of these designs that were skipped", examples=[0])
     columns: list[ColumnModel]
     numbers: list[int] = Field(examples=[[3]])
     designs: list[Cells] = Field(examples=[[_EXAMPLE]])
@@ -151,7 +151,7 @@ class DesignsModel(BaseModel):
 Violated = Annotated[
     dict[str, float | str],
     Field(
-        description="allowable values that the design goes beyond, by column: by how much",
+        description="excess of the design over each allowable value that it violates, by column",
         examples=[{"pin_shear_crank_pin_MPa": 440.2}],
     ),
 ]
@@ -170,7 +170,7 @@ class ColumnsModel(BaseModel):
     """All values of some columns, in the order of the front; null: not defined, "inf" and "-inf": infinite."""
 
     job: int = Field(examples=[7])
-    count: int = Field(description="how many designs the front has", examples=[100])
+    count: int = Field(description="number of designs on the front", examples=[100])
     columns: list[ColumnModel]
     values: dict[str, list[float | str | None]] = Field(
         description="by the key of the column, one of every design",
@@ -230,7 +230,7 @@ def list_designs(
         str | None,
         Query(max_length=200, description="a quantity or column: best first for an objective, else smallest first"),
     ] = None,
-    reverse: Annotated[bool, Query(description="turn the order round")] = False,
+    reverse: Annotated[bool, Query(description="reverse the order")] = False,
     columns: Columns = None,
     offset: Annotated[int, Query(ge=0, le=2**31, description="skip this many designs"), PLAIN_DIGITS] = 0,
     limit: Annotated[int, Query(ge=1, le=MOST_ROWS, description="at most this many designs"), PLAIN_DIGITS] = 100,

@@ -81,8 +81,8 @@ class Metrics(Collector):
             jobs.add_metric([state], counts.get(state, 0))
         yield jobs
         wait = self._store.longest_wait()
-        yield GaugeMetricFamily("slidercrank_queue_seconds", "How long the oldest job in the queue waits, s", wait)
-        yield GaugeMetricFamily("slidercrank_workers", "Workers heard of lately", self._store.workers_at_work())
+        yield GaugeMetricFamily("slidercrank_queue_seconds", "Waiting time of the oldest job in the queue, s", wait)
+        yield GaugeMetricFamily("slidercrank_workers", "Workers heard from recently", self._store.workers_at_work())
 
     def text(self) -> bytes:
         """Return all metrics in the text format. Raises `StoreError`."""

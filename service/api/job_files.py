@@ -107,8 +107,8 @@ class Understood(BaseModel):
     unknowns: int = Field(examples=[3])
     degrees_of_freedom: int = Field(examples=[2])
     eliminated: list[str] = Field(examples=[["rod_to_offset"]])
-    warnings: list[str] = Field(description="of what may not have been meant", examples=[[]])
-    notes: list[str] = Field(description="of what is often forgotten", examples=[[]])
+    warnings: list[str] = Field(description="about possible mistakes", examples=[[]])
+    notes: list[str] = Field(description="on what is often forgotten", examples=[[]])
     search: str = Field(examples=["auto, at most 100 designs, seed 1"])
 
 

@@ -103,7 +103,7 @@ class JobRow(ResponseModel):
     id: int = Field(ge=1, description="its number", examples=[1])
     name: str = Field(examples=["Feeder"])
     state: State
-    reason: str = Field(description="why it is in this state, in a sentence, or empty")
+    reason: str = Field(description="reason for this state, a sentence; may be empty")
     priority: int = Field(description="higher ones are solved first")
     cancel_asked: bool
     submitted: float

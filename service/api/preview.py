@@ -75,7 +75,7 @@ class AllowedModel(BaseModel):
     hardest: str | None = Field(examples=["transmission_angle"])
     hardest_share: float | None = Field(examples=[0.6])
     unchecked: list[str] = Field(examples=[["position_error"]])
-    said: list[str] = Field(description="what is asked and cannot be had, in words", examples=[[]])
+    said: list[str] = Field(description="requirements that cannot be met, in words", examples=[[]])
 
 
 class MotionModel(BaseModel):

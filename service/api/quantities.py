@@ -31,7 +31,7 @@ class QuantityModel(BaseModel):
     unit: str = Field(examples=["mm"])
     kind: str = Field(description="of value", examples=["length"])
     group: str = Field(description="that it is shown in", examples=["Motion"])
-    sentence: str = Field(examples=["The stroke is the way of the slider from one dead centre to the other."])
+    sentence: str = Field(examples=["The stroke is the distance of the slider between its two dead centres."])
     advice: str = Field(description='what is usual; "" if there is nothing to say')
     formula: str = Field(examples=["S = sqrt((l+r)^2 - e^2) - sqrt((l-r)^2 - e^2)"])
     section: str = Field(examples=["2. Closed forms"])
@@ -41,9 +41,11 @@ class QuantityModel(BaseModel):
         description='its good side, on which requirements usually ask for it, low or high; "" where it has none',
         examples=["low"],
     )
-    allowed_by: str = Field(description='what sets its allowable value; "" for one without', examples=[""])
-    offered: list[str] = Field(description="parts of a form that ask for it", examples=[["motion"]])
-    motion: str = Field(description="of the crank that it is of, turn or swing; empty for either", examples=["turn"])
+    allowed_by: str = Field(description='origin of its allowable value; "" without one', examples=[""])
+    offered: list[str] = Field(description="parts of a form that offer it", examples=[["motion"]])
+    motion: str = Field(
+        description="of the crank to which it applies, turn or swing; empty for either", examples=["turn"]
+    )
 
 
 class FunctionModel(BaseModel):
@@ -55,7 +57,7 @@ class FunctionModel(BaseModel):
 
 
 class QuantityList(BaseModel):
-    """All quantities: dimensions, those of designs, those of wanted motions. functions: of formulas of these."""
+    """All quantities: dimensions, those of designs, those of desired motions. functions: of formulas of these."""
 
     quantities: list[QuantityModel]
     functions: list[FunctionModel]

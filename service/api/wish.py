@@ -23,7 +23,7 @@ from .stored_fronts import FrontDep
 router = APIRouter(route_class=LongRoute, tags=["fronts"], responses=problem_responses(409))
 
 QUESTION = FRONT_OR_JOB_QUESTIONS["wish"]
-_DESIGN = Field(None, ge=1, le=2**31, description="that improve, keep and worsen speak of, by its number")
+_DESIGN = Field(None, ge=1, le=2**31, description="reference for improve, keep and worsen, by its number")
 WishesGiven = body_of(QUESTION, "WishesGiven", design=(int | None, _DESIGN))
 
 

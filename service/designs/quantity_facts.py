@@ -57,13 +57,13 @@ _DIMENSIONS = {
         "2. Closed forms",
         "The connecting rod joins crank pin and slider pin; its length l runs between the two pin centres.",
         "A long rod transmits force well and moves smoothly; a short one is lighter and more compact.",
-        "l; the crank turns fully if l > r + |e|",
+        "l; the crank rotates fully if l > r + |e|",
     ),
     "offset": (
         "offset",
         "1. Notation and signs",
         "The offset e is the distance of the slider line from the crank pivot, positive to the left of the outward "
-        "direction, on the crossed branch to its right; with it, the crank turns through a larger angle in one stroke "
+        "direction, on the crossed branch to its right; with it, the crank covers a larger angle in one stroke "
         "than in the other.",
         "The greater the offset, the higher the time ratio at constant speed and the smaller the transmission angle.",
         "e; the slider line is y = e",

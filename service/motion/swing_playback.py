@@ -17,9 +17,9 @@ from ..drawings.swing_parts import body_shapes, cylinder_parts, swing_look, swin
 from .playback import ANGLES, EXACT_PARTS, Playback, PlayerText, moving_link_shapes, place_record
 
 _WORDS = PlayerText(
-    control="Forth and back",
+    control="Back and forth",
     times="swings a minute",
-    span_name="the swing, forth and back",
+    span_name="the swing, back and forth",
     note="Both ends of the swing are dashed in the drawing; a dotted line in the curves is where it turns back. "
     + EXACT_PARTS.format("slider, pins, the cylinder and the body on the crank are for show"),
 )

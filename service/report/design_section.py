@@ -71,7 +71,7 @@ def numbers_section(subject: Subject) -> Section:
                 "with every digit, the fifth its name.",
                 "note",
             ),
-            *([Paragraph(f"Not of this machine: {', '.join(absent)}.", "note")] if absent else []),
+            *([Paragraph(f"Not defined for this machine: {', '.join(absent)}.", "note")] if absent else []),
             Table(
                 "",
                 ("quantity", "value", "unit", "every digit", "column"),
@@ -171,10 +171,10 @@ def _optimality(subject: Subject) -> list[Block]:
     residual, status = subject.row.get("residual"), subject.row.get("status")
     blocks: list[Block] = []
     if subject.changed is not None:
-        blocks.append(Paragraph("Not a design of the front: whether it could be better was not searched for.", "note"))
+        blocks.append(Paragraph("This design is not on the front; no better one was searched for.", "note"))
     if status == "stationary":
         condition = "while the requirements hold"
-        text = f"Stationary: no small change betters every objective {condition} (residual {rounded(residual)})."
+        text = f"Stationary: no small change improves every objective {condition} (residual {rounded(residual)})."
         blocks.append(Paragraph(text, "good"))
     elif status is not None:
         text = f"Best found, but not shown to be stationary (residual {rounded(residual)})."

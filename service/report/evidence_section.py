@@ -63,7 +63,7 @@ def _facts(record: Mapping[str, Any], system: System) -> dict[str, list[str]]:
         "Worst case, first order": [size_and_angle("worst_case")],
         "Worst case, exact": [size_and_angle("exact_worst_case")],
         "Root-sum-square": [size_and_angle("root_sum_square")],
-        "Random machines": percents or ["none that turns fully"],
+        "Random machines": percents or ["none that rotates fully"],
         "Yield": [
             f"{rounded(item['yield_percent'])} % within {length(item['limit_mm'], system, 6)} ({item['limit']})"
             for item in record["yields"]

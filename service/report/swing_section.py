@@ -41,7 +41,7 @@ class SwingOfSubject:
             Table(swing_title(record), named, numbers, wide, frozenset({1})),
             *(Paragraph(f"{note[0].upper()}{note[1:]}.", "note") for note in record["notes"]),
         ]
-        title, widths = "Extremes of the curves over both ways", (0.25, 0.11, 0.1, 0.12, 0.12, 0.1, 0.12, 0.08)
+        title, widths = "Extremes of the curves over both strokes", (0.25, 0.11, 0.1, 0.12, 0.12, 0.1, 0.12, 0.08)
         blocks.append(Table(title, heads(tables[1], system), extremes, widths, frozenset(range(1, 7))))
         return Section("The swing", tuple(blocks))
 

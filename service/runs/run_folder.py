@@ -99,7 +99,7 @@ class RunFolder:
         """Mark a run that was interrupted or cancelled as unfinished again."""
         self._is_as_before = False
         with disk(self.path):
-            _write(self.path / MARK, f"Taken up {self.started}. The run continues, or was interrupted.\n")
+            _write(self.path / MARK, f"Resumed {self.started}. The run continues, or was interrupted.\n")
         self.log(f"run {self.path.name} continues")
 
     @property

@@ -66,7 +66,7 @@ def url_of(address: str | PathLike[str]) -> URL:
     if scheme == "sqlite" and url.database not in (None, "", ":memory:"):
         return url.set(drivername="sqlite", database=str(path_from_text(url.database)))
     raise InputError(
-        "a store is at postgresql://user@host/database, sqlite:///file, or the path of a file; got "
+        "a store must be postgresql://user@host/database, sqlite:///file, or the path of a file; got "
         f'{without_secrets(text)}; give one of these, with %40 for each "@" within a password'
     )
 
@@ -89,16 +89,17 @@ def is_there(file: Path) -> bool:
         size = 0
     except OSError as error:
         raise StoreError(
-            f"a store is a file in a folder that may be looked into; {path_text(file)} gave: {error.strerror}; name "
+            f"a store must be in a folder that can be read; {path_text(file)} gave: {error.strerror}; name "
             "another file, or permit it"
         ) from None
     if file.exists() and not file.is_file():
         kind = "a folder" if file.is_dir() else "no regular file"
-        raise StoreError(f"a store is a file; {path_text(file)} is {kind}; name a file")
+        raise StoreError(f"a store must be a file; {path_text(file)} is {kind}; name a file")
     log = Path(f"{file}-wal")
     if log.exists() and not size:
         raise StoreError(
-            f"a store is a file and its write-ahead log; {path_text(log)} is left of one that was deleted or cut off; "
+            f"a write-ahead log must have its store beside it;  {path_text(log)} belongs to one that was deleted or "
+            "truncated; "
             f"put {path_text(file)} back, restore a backup, see docs/service.md, or move the log away"
         )
     return file.is_file()
@@ -109,7 +110,8 @@ def has_content(file: Path) -> bool:
     exists = is_there(file)
     if exists and not file.stat().st_size:
         raise StoreError(
-            f"a store to look into has tables; {path_text(file)} is an empty file; submit a job to it, or restore a "
+            f"a store to inspect must have tables; {path_text(file)} is an empty file; submit a job to it, or restore "
+            "a "
             "backup if it had jobs, see docs/service.md"
         )
     return exists

@@ -23,11 +23,11 @@ def back_up(database: Database, target: Path) -> None:
     source = database.engine.url.database
     if not database.sqlite or source is None:
         raise InputError(
-            f"only a store in a file is copied this way; got {database.name}; back it up with pg_dump, see "
+            f"only a store in a file can be copied this way; got {database.name}; back it up with pg_dump, see "
             "docs/service.md"
         )
     if target.exists():
-        raise InputError(f"a backup is a new file; {target} is there already; name another one, or move it away")
+        raise InputError(f"a backup must be a new file; {target} already exists; name another one, or move it away")
     draft = target.with_name(f".{target.name}.{os.getpid()}")
     try:
         os.close(os.open(draft, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o600))  # it has all data of the store
@@ -46,7 +46,7 @@ def back_up(database: Database, target: Path) -> None:
     except (sqlite3.Error, OSError) as error:
         reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
         raise StoreError(
-            f"a backup needs a place that can be written; {target} gave: {reason}; see that the folder is there and "
+            f"a backup must go to a writable place; {target} gave: {reason}; see that the folder is there and "
             "the disk has room"
         ) from error
     finally:

@@ -93,7 +93,7 @@ def keep_design(
         if known is None:
             if len(stored) >= MOST_BOOKMARKS:
                 raise InputError(
-                    f"at most {MOST_BOOKMARKS} designs are kept of a job; job {job} has as many; delete some"
+                    f"at most {MOST_BOOKMARKS} designs can be kept for a job; job {job} has as many; delete some"
                 )
             fixed = {"design": design, "variant": variant, "dimensions": json.dumps(dimensions), "at": now()}
             empty = {"name": f"Kept {number}", "note": "", "star": False, "decided": False, "reason": ""}

@@ -113,7 +113,7 @@ class Database:
     def _full(self, reason: str) -> Full:
         self.last_full = time.monotonic()
         free_space = "" if self._folder is None else f"; {free_space_text(self._folder)}"
-        return Full(f"the store needs room on its disk; {self.name} gave: {reason}{free_space}; free some space")
+        return Full(f"the store needs free space on its disk; {self.name} gave: {reason}{free_space}; free some space")
 
     def _is_full(self, error: Exception) -> bool:
         cause = error.orig if isinstance(error, DBAPIError) else error
@@ -146,7 +146,7 @@ class Database:
         self._require_file()
         if self._file is not None and not self._open:
             raise StoreError(
-                f"the store must be a database that can be written; {self.name} is read-only; only look into it, or "
+                f"the store must be a database that can be written; {self.name} is read-only; only read from it, or "
                 f"{remedy_of_rights(self._file)}"
             )
         with self._translated_errors(), self.engine.begin() as connection:
@@ -156,14 +156,14 @@ class Database:
         """Raise `StoreError` if the file was deleted or replaced: further writes would be lost."""
         if self._file is not None and _identity(self._file) != self._known:
             raise StoreError(
-                f"the file of a store stays where it is while it is used; {self.name} was deleted, moved or replaced; "
+                f"the file of a store must stay in place while it is used; {self.name} was deleted, moved or replaced; "
                 "put it back, or stop what uses it and start again"
             )
         if (
             self._file is not None and self._open and not may_use(self._file)
         ):  # open transactions continue, no other could begin
             raise StoreError(
-                f"the file of a store stays readable and writable while it is used; {self.name} is not any more; "
+                f"the file of a store must stay readable and writable while it is used; {self.name} is no longer; "
                 f"{remedy_of_rights(self._file)}"
             )
 

@@ -54,7 +54,7 @@ def _of_sqlite(connection: Connection) -> list[str]:
     if damage != ["ok"]:
         return damage
     rows = connection.execute(text("PRAGMA foreign_key_check")).all()
-    return [f"{row[0]} has a row of a job that is not there" for row in rows[:_MOST]]
+    return [f"{row[0]} has a row for a job that does not exist" for row in rows[:_MOST]]
 
 
 def _of_postgresql(connection: Connection) -> list[str]:

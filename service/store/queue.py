@@ -41,11 +41,12 @@ def require_bounds(priority: int, key: str | None, most_attempts: int) -> None:
     """Raise `InputError` for values that no job can have."""
     if not (abs(priority) <= 1000 and 1 <= most_attempts <= 1000):
         raise InputError(
-            f"a job has a priority from -1000 to 1000 and 1 to 1000 attempts; got {priority} and {most_attempts}; "
+            f"a job must have a priority from -1000 to 1000 and 1 to 1000 attempts; got {priority} and "
+            f"{most_attempts}; "
             "choose within these"
         )
     if key is not None and not (0 < len(key) <= 255 and key.isprintable()):
-        raise InputError(f"a key has 1 to 255 printable characters; got {key[:300]!r}; choose another one")
+        raise InputError(f"a key must have 1 to 255 printable characters; got {key[:300]!r}; choose another one")
 
 
 def take_turns(connection: Connection) -> None:
@@ -60,7 +61,9 @@ def submitted_before(connection: Connection, key: str, tables: Mapping[str, Any]
     if row is None:
         return None
     if json.loads(row.tables) != json.loads(text_of(tables)):
-        raise InputError(f"a key stands for one job; {key!r} is that of job {row.id}, which differs; use another key")
+        raise InputError(
+            f"a key may only be used for one job; {key!r} is that of job {row.id}, which differs; use another key"
+        )
     return Job.from_row(row, left_out=("tables",))
 
 
@@ -141,7 +144,7 @@ def claim_next(connection: Connection, worker: str, lease: float) -> Job | None:
             continue
         new_events = [state_event("running", f"claimed by {worker}")]
         if foremost.state == "running":
-            new_events.insert(0, ("message", {"text": f"the lease of {foremost.worker} ended without a word"}))
+            new_events.insert(0, ("message", {"text": f"the lease of {foremost.worker} ended without a report"}))
         row = connection.execute(
             update(jobs)
             .where(jobs.c.id == foremost.id)
@@ -156,7 +159,7 @@ def claim_next(connection: Connection, worker: str, lease: float) -> Job | None:
 
 def _set_aside(connection: Connection, job: Job) -> None:
     times = "once" if job.attempts == 1 else f"{job.attempts} times in a row"
-    end = f"its worker stopped without a word {times}, the last one was {job.worker}"
+    end = f"its worker stopped without a report {times}, the last one was {job.worker}"
     left = {"worker": None, "lease_until": None, "finished": now()}
     become(connection, job, "failed", f"set aside: {end}; resume it to try again", **left)
 

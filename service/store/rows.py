@@ -42,7 +42,7 @@ def become(connection: Connection, job: Job, state: State, reason: str, **change
 def require_resumable(job: Job) -> None:
     """Raise `InputError` for a job that cannot continue."""
     if job.state not in RESUMABLE:
-        raise InputError(f"only a cancelled or failed job can go on; job {job.id} is {job.state}; submit it anew")
+        raise InputError(f"only a cancelled or failed job can continue; job {job.id} is {job.state}; submit it anew")
 
 
 def the_record(connection: Connection, job: Job) -> tuple[dict[str, Any], str]:
@@ -67,7 +67,7 @@ def the_record(connection: Connection, job: Job) -> tuple[dict[str, Any], str]:
 def require_sum(expected: str, *parts: str | bytes | None) -> None:
     """Raise ValueError if parts of a result do not match their checksum; an empty checksum is unknown."""
     if expected and checksum(*parts) != expected:
-        raise ValueError("it differs from its checksum, so that its numbers may be wrong")
+        raise ValueError("it differs from its checksum, so its numbers may be wrong")
 
 
 def records_of(connection: Connection, number: int) -> list[Record]:

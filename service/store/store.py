@@ -290,7 +290,7 @@ class Store(Workers):
         and the disk is full: its claim may fit into the files, its records do not.
         """
         if not 0.0 < lease <= 3600.0:
-            raise InputError(f"a lease lasts more than 0 s and at most an hour; got {lease} s")
+            raise InputError(f"a lease must last more than 0 s and at most an hour; got {lease} s")
         with self.reading() as connection:
             if not queue.any_claimable(connection, self._jumps, self.last_full):
                 return None

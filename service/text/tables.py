@@ -230,7 +230,7 @@ def show_rules(screen: Console, judgement: Judgement) -> None:
     screen.print()
     if not broken and choices and not fitting:
         nearest = min(choices, key=lambda choice: len(choice.missed))
-        screen.print(f"No choice of the job fits; with {' and '.join(nearest.labels)}:", style="bold")
+        screen.print(f"No choice in the job meets the requirements; with {' and '.join(nearest.labels)}:", style="bold")
         broken = list(nearest.missed)
     elif not broken:
         judged = ""

@@ -57,7 +57,7 @@ def read_allowances(file: Path) -> list[Allowance]:
 
 
 def data_of(lines: list[str]) -> list[str]:
-    """Return what programs read of a record, one a line: codes, files, keys, values of one word, options, numbers.
+    """Return what programs read of a record, one per line: codes, files, keys, values of one word, options, numbers.
 
     The words of sentences are left out, their numbers are not: what was only worded otherwise is the same. Drawings
     within HTML are left out too.

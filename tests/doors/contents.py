@@ -44,7 +44,7 @@ def text_of(content: bytes, kind: str) -> str:
 
 
 def json_lines(value: Any) -> str:
-    """Return JSON with sorted keys, one a line; a list without tables in it is one line."""
+    """Return JSON with sorted keys, one per line; a list without tables in it is one line."""
     return "\n".join(_lines(value, "")) + "\n"
 
 

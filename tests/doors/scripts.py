@@ -1,4 +1,4 @@
-"""Scripts of commands and requests: one a line, each after the exit code or status that it ends with.
+"""Scripts of commands and requests: one per line, each after the exit code or status that it ends with.
 
     0 slidercrank front latest --units inch
     200 GET /jobs/1/front

@@ -167,7 +167,7 @@ def _time_resumptions(
     verdict: Verdict, number: int, events: Sequence[Event], deaths: Mapping[str, float], within: float
 ) -> None:
     for event in events:
-        worker = event.data.get("text", "").removeprefix("the lease of ").removesuffix(" ended without a word")
+        worker = event.data.get("text", "").removeprefix("the lease of ").removesuffix(" ended without a report")
         if event.kind == "message" and worker in deaths:
             taken = event.at - deaths[worker]
             verdict.resumed(taken)

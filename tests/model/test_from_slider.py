@@ -156,7 +156,7 @@ def test_a_crank_longer_than_the_rod_has_its_folded_dead_centre_on_the_far_side(
     ("motion", "error", "words"),
     [
         ({"position": 0.3}, AssemblyError, "open branch, 154.919334 mm to 281.424945 mm; got 300 mm with crank 60 mm"),
-        ({"position": -0.24}, AssemblyError, "move the position into the reach, or change a length"),
+        ({"position": -0.24}, AssemblyError, "move the position within reach, or change a length"),
         ({"position": math.nan}, InputError, "slider position must be finite; got nan"),
         ({"position": 0.24, "velocity": math.inf}, InputError, "slider velocity must be finite; got inf"),
         ({"position": [0.24, 0.25]}, InputError, "slider position must be one number"),

@@ -77,5 +77,5 @@ def test_cylinders_count_one_by_one_and_the_distance_may_vary() -> None:
 
 
 def test_a_guide_without_a_place_has_none() -> None:
-    assert "the place of the guide" in str(GUIDE_MOMENT.undefined_because([SMOOTH]))
+    assert "the position of the guide" in str(GUIDE_MOMENT.undefined_because([SMOOTH]))
     assert QUANTITIES["guide_moment"] is GUIDE_MOMENT

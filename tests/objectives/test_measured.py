@@ -44,18 +44,24 @@ def test_other_columns_are_left_out(name: str) -> None:
 @pytest.mark.parametrize(
     ("names", "words"),
     [
-        (["crank_angle_deg", "torque"], "a column has its unit in its name; got 'torque'; write it like torque_Nm"),
+        (
+            ["crank_angle_deg", "torque"],
+            "a column must have its unit in its name; got 'torque'; write it like torque_Nm",
+        ),
         (["crank_angle_deg", "torque_mm"], "torque is a torque; got 'torque_mm', a length; write it like torque_Nm"),
         (
             ["crank_angle_deg", "torque_N_mm"],
             "torque is read in N m or lbf in; got 'torque_N_mm'; write it like torque_Nm",
         ),
         (["crank_angle_deg", "torque in N"], "torque is a torque; got 'torque in N', a force; write it like torque_Nm"),
-        (["crank_angle_deg", "torque_Nm", "torque_N_m"], "a curve is measured once; got the columns 'torque_Nm' and"),
+        (
+            ["crank_angle_deg", "torque_Nm", "torque_N_m"],
+            "a curve may only be measured once; got the columns 'torque_Nm' and",
+        ),
         (["torque_Nm"], "has the column crank_angle_deg, or time_s at constant speed; got neither; add one to 'torque"),
         (["crank_angel_deg", "torque_Nm"], "is 'crank_angel_deg' one of them?"),
         ([], "got neither; add one to no columns"),
-        (["crank_angle_deg"], "no column is a curve with its unit, such as slider_position_mm"),
+        (["crank_angle_deg"], "a column must be a curve with its unit, such as slider_position_mm"),
         (["crank_angle_deg", "slider_positon_mm"], "did you mean slider_position?"),
         (["crank_angle_deg", "Velocity [m/s]"], "did you mean slider_velocity?"),
         (["crank_angle_deg", "u"], "curves are slider_position, slider_velocity,"),
@@ -75,8 +81,11 @@ def test_columns_that_cannot_be_are_refused(names: list[str], words: str) -> Non
         ({"crank_angle_deg": [math.inf], "torque_Nm": [1.0]}, "at most 1e+09 rad in size; got inf in row 1"),
         ({"crank_angle_deg": [0.0, 1.0], "slider_position_mm": [1.0, 1e99]}, "at most 10000 m in size; got 1e+99 in"),
         ({"crank_angle_deg": [0.0, math.nan], "torque_Nm": [math.nan, 1.0]}, "got none in 'torque_Nm'; fill them in"),
-        ({"crank_angle_deg": [], "torque_Nm": []}, "a curve has a number in a row with a crank angle; got none in"),
-        ({"crank_angle_deg": [0.0], "load_N": [1.0]}, "'load_N' is not defined for this machine: it comes from loads"),
+        (
+            {"crank_angle_deg": [], "torque_Nm": []},
+            "a curve must have a number in a row with a crank angle; got none in",
+        ),
+        ({"crank_angle_deg": [0.0], "load_N": [1.0]}, "'load_N' is not defined for this machine: it needs loads"),
         (
             {"crank_angle_deg": [0.0], "position_error_mm": [1.0]},
             "a position error needs tolerances; got none",

@@ -282,7 +282,7 @@ def test_what_a_function_prints_is_passed_on_up_to_a_bound(
     asked.close()
     printed, note = capfd.readouterr().err.split("\n", 1)
     assert printed == "x" * guard.PRINTED
-    assert note == "A function of your own printed more than 1 MB; the rest is left out; print less.\n"
+    assert note == "A custom function printed more than 1 MB; the rest is left out; print less.\n"
 
 
 def test_what_a_function_prints_or_raises_has_no_control_characters(

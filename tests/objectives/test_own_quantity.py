@@ -242,7 +242,7 @@ def test_wrong_declarations_are_refused() -> None:
         given: dict[str, Any] = {"name": "mine", "function": "a:b", "title": "mine", "kind": RATIO}
         with pytest.raises(InputError, match=said):
             OwnQuantity(**(given | change))
-    with pytest.raises(InputError, match="crank, rod and offset alone"):
+    with pytest.raises(InputError, match="may only depend on crank, rod and offset"):
         own(lambda d: d.crank).evaluate(SMOOTH, np.ones((2, 4)))
 
 
@@ -316,7 +316,7 @@ def test_forces_that_a_function_cannot_have_are_refused_without_blame(machine: s
         }
     )
     with pytest.raises(
-        InputError, match=r"cannot be had of this machine: .*; got a (speed profile|load with one of 720)"
+        InputError, match=r"is not available for this machine: .*; got a (speed profile|load with one of 720)"
     ):
         problem.evaluate([0.03, 0.1, 0.01])
 
@@ -338,7 +338,7 @@ def test_with_other_variables_a_function_is_refused_before_anything_runs(asked: 
     }
     one: Any = "minimise" if table == "objectives" else {"max": 9.0}
     with pytest.raises(
-        sc.JobError, match=r"alone; got other variables, mechanism\.slider\.mass; fix them, or use other"
+        sc.JobError, match=r"offset; got other variables, mechanism\.slider\.mass; fix them, or use other"
     ):
         sc.problem({**tables, table: {**tables.get(table, {}), asked: one}})
     problem = sc.problem(tables)

@@ -123,7 +123,7 @@ def test_what_cannot_vary_is_refused_for_what_it_is(path: str, said: str) -> Non
 )
 def test_a_load_of_zero_throughout_loads_nothing(load: dict[str, Any], name: str) -> None:
     said = refusal(job([load], name))
-    assert said.startswith(f"objectives.{name}: it comes from masses that move or weigh, and from loads; got none")
+    assert said.startswith(f"objectives.{name}: it needs masses that move or weigh, or loads; got none")
     assert "got none that is not zero; add for example [mechanism] slider = " in said
     parse_job(job([load, {"viscous": "15 N s/m"}], name))
 

@@ -31,7 +31,7 @@ def test_analysis_has_the_numbers_of_the_table_of_designs(problem: sc.Problem) -
     table = analysis.table()
     assert table.loc["stroke", "value"] == pytest.approx(1e3 * analysis["stroke"], rel=1e-14)
     assert table.loc["peak_torque", "unit"] == "N m"
-    assert "comes from friction" in str(table.loc["self_locking_margin", "undefined_because"])
+    assert "needs friction" in str(table.loc["self_locking_margin", "undefined_because"])
     assert bool(table["value"].isna()["self_locking_margin"])
 
 

@@ -70,7 +70,7 @@ def test_bad_friction_is_refused_with_the_reason(friction: Any, words: list[str]
 @pytest.mark.parametrize(
     ("part", "friction", "words"),
     [
-        ({"objectives": {"self_locking_margin": "maximise"}}, None, ["comes from friction", "guide = 0.1"]),
+        ({"objectives": {"self_locking_margin": "maximise"}}, None, ["needs friction", "guide = 0.1"]),
         ({"constraints": {"self_locking_margin": {"min": "-5 deg"}}}, TABLE, ["between 0", "where friction locks"]),
         ({"constraints": {"self_locking_margin": {"min": "90 deg"}}}, TABLE, ["between 0", "90 deg"]),
     ],
@@ -83,7 +83,7 @@ def test_impossible_margins_are_refused(part: dict[str, Any], friction: Any, wor
 
 
 def test_shaking_without_masses_is_refused() -> None:
-    with pytest.raises(JobError, match="it comes from masses; got none"):
+    with pytest.raises(JobError, match="it needs masses; got none"):
         job(mechanism={"speed": "60 rpm"}, objectives={"peak_shaking_force": "minimise"})
 
 

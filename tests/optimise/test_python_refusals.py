@@ -127,7 +127,7 @@ def test_fronts_are_compared_without_a_question_of_truth() -> None:
 def test_a_torque_without_speed_says_what_is_missing() -> None:
     reason = sc.analyse(sc.Mechanism(slider_mass=1.0), [0.04, 0.1, 0.02]).undefined["peak_torque"]
     assert reason == (
-        "it comes from masses that move or weigh, and from loads; got none that is not zero; add for example "
+        "it needs masses that move or weigh, or loads; got none that is not zero; add for example "
         '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]'
     )
     assert "peak_torque" in sc.analyse(sc.Mechanism(slider_mass=1.0, speed=3.0), [0.04, 0.1, 0.02])

@@ -155,7 +155,7 @@ def test_what_a_topic_shows_is_left_out_of_the_table_but_not_of_json(command: Co
         assert (value is None) == (key in row["undefined"])
     assert "efficiency, friction loss per cycle: " not in shown  # of one rule each
     assert "efficiency: without friction nothing is lost, and the efficiency of every design is 1\n" in shown
-    assert "friction loss per cycle: it comes from friction in loaded joints\n" in shown
+    assert "friction loss per cycle: it needs friction in loaded joints\n" in shown
     assert titles["peak_torque_Nm"] in shown
     assert "--show: static_forces, friction, motor" in shown
 
@@ -212,4 +212,4 @@ def test_a_design_of_a_job_with_choices_is_judged_with_each_of_them(
         fit = ", ".join(f"GM {limit:g}" for limit in limits if torque <= limit)
         assert f"meets every range and requirement of the job with {fitting} of 3 choices: {fit}." in printed
     else:
-        assert "No choice of the job fits; with GM 4: Not met: peak torque (at most 4 N m)" in printed
+        assert "No choice in the job meets the requirements; with GM 4: Not met: peak torque (at most 4 N m)" in printed

@@ -92,7 +92,7 @@ def test_every_export_is_of_the_swing(command: Command, place: Path, tmp_path: P
     assert [float(cycle[at]["crank_angle_deg"]) for at in (0, 180, -1)] == pytest.approx([11.16, 101.16, 11.16])
     assert "BODY" in (tmp_path / "dxf").read_text(encoding="ascii")
     assert 'id="BODY"' in (tmp_path / "svg").read_text(encoding="utf-8")
-    assert "Forth and back" in (tmp_path / "motion").read_text(encoding="utf-8")
+    assert "Back and forth" in (tmp_path / "motion").read_text(encoding="utf-8")
     assert (tmp_path / "gif").read_bytes().startswith(b"GIF89a")
 
 

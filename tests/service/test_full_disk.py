@@ -55,7 +55,7 @@ def test_optimise_says_within_seconds_that_the_disk_of_the_store_is_full_and_goe
     stopped = command("optimise", job, "--no-figures")
     assert time.monotonic() - begin < 30.0
     assert stopped.exit_code == 2
-    assert "the store needs room on its disk" in stopped.stderr
+    assert "the store needs free space on its disk" in stopped.stderr
     assert f"{runs} has " in stopped.stderr
     assert " free; free some space; the designs found so far are kept" in stopped.stderr
     full_after(0, lifted=True)
@@ -137,7 +137,7 @@ def solve_meanwhile(
     worker = threading.Thread(target=work, args=(store,), kwargs={"name": "first", "lease": 0.6, "stop": stop.is_set})
     worker.start()
     try:
-        until(lambda: "waits: the store needs room on its disk" in store.job(job.id).reason)
+        until(lambda: "waits: the store needs free space on its disk" in store.job(job.id).reason)
         then(stop)
     finally:
         stop.set()
@@ -185,7 +185,7 @@ def test_a_job_that_waits_for_room_ends_when_it_or_its_worker_is_to_end(
         if ends == "cancel":
             store.resume(job.id)
         else:
-            assert ended.reason.startswith("waits: the store needs room on its disk")
+            assert ended.reason.startswith("waits: the store needs free space on its disk")
             assert ended.attempts == 0
         disk.empty()
         monkeypatch.setattr("slidercrank.optimise.solve.solve", search)

@@ -166,7 +166,7 @@ def test_gas_has_no_ripple_and_a_machine_without_cylinders_no_flow() -> None:
     found: Any = pump.numbers(Mechanism(speed=20.0, loads=(AIR,)), linkage)
     assert found["flow_ripple"] is None
     assert len(pump.figure(Mechanism(speed=20.0, loads=(AIR,)), linkage).panels) == 1
-    with pytest.raises(InputError, match="it comes from a compressor or pump; got none"):
+    with pytest.raises(InputError, match="it needs a compressor or pump; got none"):
         pump.numbers(Mechanism(speed=20.0), linkage)
 
 

@@ -76,10 +76,10 @@ def test_a_job_that_needs_a_file_beside_it_is_kept_whole(
     ("arguments", "message"),
     [
         (("none.toml",), "none.toml: no such file"),
-        (("JOB", "--priority", "5000"), "a job has a priority from -1000 to 1000"),
+        (("JOB", "--priority", "5000"), "a job must have a priority from -1000 to 1000"),
         (("JOB", "--seconds", "0"), "a limit on seconds must be a positive number of s; got 0.0"),
         (("JOB", "--memory", "much"), "--memory must be an amount of memory with its unit; got 'much'"),
-        (("JOB", "--store", "mysql://here/jobs"), "a store is at postgresql://user@host/database"),
+        (("JOB", "--store", "mysql://here/jobs"), "a store must be postgresql://user@host/database"),
         pytest.param(
             ("JOB", "--store", "/proc/none/store.db"),
             "/proc/none must be a writable folder",

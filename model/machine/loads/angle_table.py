@@ -75,7 +75,7 @@ class AngleTable(Load):
             )
         if self._closed and (self.angles[1] == self.angles[0] or self.angles[-2] == self.angles[-1]):
             raise InputError(
-                f"the first angle of a periodic table comes again {self.cycle} later; got three points there, from "
+                f"the first angle of a periodic table recurs {self.cycle} later; got three points there, from "
                 f"{math.degrees(self.angles[0]):.6g} deg to {math.degrees(self.angles[-1]):.6g} deg; keep the forces "
                 "before and after the step"
             )

@@ -85,8 +85,8 @@ Compressor.tables = (
         "The closed cycle of a single-stage compressor or pump with ideal valves; pressures are absolute.",
         (
             BORE,
-            Entry("suction", "AbsolutePressure", "absolute pressure that it takes in at", "1 bar"),
-            Entry("discharge", "AbsolutePressure", "absolute pressure that it delivers at", "8 bar"),
+            Entry("suction", "AbsolutePressure", "absolute pressure of the intake", "1 bar"),
+            Entry("discharge", "AbsolutePressure", "absolute pressure of the delivery", "8 bar"),
             Entry("medium", ("gas", "liquid"), "what it delivers", "gas", default="gas"),
             *CLEARANCES,
             *EXPONENTS,

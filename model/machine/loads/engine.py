@@ -38,7 +38,7 @@ class Engine(Cylinder):
         super().__post_init__()
         if not (self.clearance > 0.0 and self.clearance_volume == 0.0):
             raise InputError(
-                "an engine has its clearance as a share of the swept volume; got "
+                "the clearance of an engine must be a fraction of the swept volume; got "
                 f"{self.clearance:g} and {1e6 * self.clearance_volume:g} cm^3; give its compression ratio"
             )
         self._require_burning()
@@ -259,7 +259,7 @@ def _built(
         return (FourStrokeLimitedPressure if limited else FourStroke)(exhaust=exhaust or back_pressure, **size)
     if exhaust:
         raise InputError(
-            "an exhaust pressure is of a cycle of four strokes; got one with a cycle of 360 deg; add "
+            "an exhaust pressure needs a cycle of four strokes; got one with a cycle of 360 deg; add "
             'cycle = "720 deg", or leave the exhaust pressure out'
         )
     return (LimitedPressure if limited else Engine)(**size)

@@ -338,7 +338,7 @@ DURING = Entry("during", get_args(During), "when the load acts", "outward stroke
 DATUM = Entry(
     "measured_from",
     get_args(Datum),
-    "what the positions are counted from: the crank pivot or the inner dead centre (both outward), or the outer dead "
+    "origin of the positions: the crank pivot or the inner dead centre (both outward), or the outer dead "
     "centre (inward)",
     "outer dead centre",
     default="crank pivot",
@@ -346,14 +346,14 @@ DATUM = Entry(
 ANGLE_DATUM = Entry(
     "measured_from",
     get_args(AngleDatum),
-    "what the crank angles are counted from: zero, counter-clockwise, or a dead centre, in the sense of rotation",
+    "origin of the crank angles: zero, counter-clockwise, or a dead centre, in the sense of rotation",
     "outer dead centre",
     default="zero crank angle",
 )
 CYCLE = Entry(
     "cycle",
     get_args(CycleAngle),
-    "after which the table repeats; 720 deg for four strokes",
+    "period of the table; 720 deg for four strokes",
     "720 deg",
     default="360 deg",
 )

@@ -140,7 +140,7 @@ StrokeForce.tables = (
             Entry(
                 "direction",
                 ("outward", "inward"),
-                "where it pushes the slider: outward is away from the crank pivot",
+                "direction in which it pushes the slider; outward is away from the crank pivot",
                 "inward",
             ),
             DURING,

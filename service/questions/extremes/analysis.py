@@ -60,7 +60,7 @@ _OF_STROKES = {
     "greatest_speed_ratio": NotRequired[float],
     "greatest_speed_difference_m_s": NotRequired[float],
 }
-_Curve = Annotated[dict[str, Any], Keys("CurveExtremes", "Least and greatest value of a curve.", _CURVE, 7)]
+_Curve = Annotated[dict[str, Any], Keys("CurveExtremes", "Minimum and maximum of a curve.", _CURVE, 7)]
 
 
 class Extremes(Record):

@@ -21,7 +21,7 @@ from ...render.blocks import Block, NamedNumber, number_list, recorded
 from ..answer_types import Note, Record
 
 _GAS_PRESSURE = replace(PRESSURE, metric=display_unit("bar", 1e-5))
-Event = Annotated[float | None, Note("null where no such event comes")]
+Event = Annotated[float | None, Note("null without such an event")]
 _BAR, _CM3 = _GAS_PRESSURE.metric.factor, VOLUME.metric.factor
 
 

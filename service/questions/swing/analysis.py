@@ -82,7 +82,9 @@ _CURVE = {
     **_places("least"),
     **_places("greatest"),
 }
-_Curve = Annotated[dict[str, Any], Keys("SwingExtremes", "Least and greatest value of a curve, both ways.", _CURVE, 9)]
+_Curve = Annotated[
+    dict[str, Any], Keys("SwingExtremes", "Minimum and maximum of a curve over both strokes.", _CURVE, 9)
+]
 SwingNumbers = Annotated[
     dict[str, Any],
     Keys(

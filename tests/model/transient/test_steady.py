@@ -164,7 +164,7 @@ def test_no_flywheel_is_designed_where_none_is_needed() -> None:
         (
             STROKES,
             Drive(motor=TorqueTable(speeds=(0.0, 8.0, 9.0), torques=(8.0, 7.0, 3.0)), flywheel=0.01),
-            "comes through every turn|beyond the torque table",
+            "completes every turn|beyond the torque table",
         ),
         (STROKES, None, "needs a motor"),
     ],

@@ -74,7 +74,7 @@ def test_the_dxf_is_the_design_of_the_table(solved: Solved, client: httpx.Client
 
 def kept(page: str, design: Mapping[str, Any]) -> list[str]:
     """Return the columns of a design but for those that its report says its machine does not have."""
-    (told,) = re.findall(r"Not of this machine: ([^<]*)\.</p>", page)
+    (told,) = re.findall(r"Not defined for this machine: ([^<]*)\.</p>", page)
     found = [key for key in design if f", {find_column(key, list(design)).title}, " not in f", {told}, "]
     assert {"crank_mm", "crank_in"} & set(found)
     assert "efficiency" not in found  # nothing rubs

@@ -61,7 +61,7 @@ def test_a_disk_without_room_keeps_the_service_from_being_ready_and_is_the_reaso
     assert refused.status_code == 503
     reason = client.get("/jobs/1").json()["reason"]
     for said in (refused.json()["detail"], reason, client.get("/jobs").json()["jobs"][0]["reason"]):
-        assert "the store needs room on its disk" in said
+        assert "the store needs free space on its disk" in said
         assert "has 4.1 kB free; free some space" in said
     assert client.get("/health/live").is_success
     monkeypatch.undo()

@@ -73,7 +73,7 @@ def test_every_solution_gives_the_slider_motion_back(client: httpx.Client, solve
 @pytest.mark.parametrize(
     ("query", "words"),
     [
-        ({"slider_position_mm": 5000.0}, "the slider position must be in reach of the open branch"),
+        ({"slider_position_mm": 5000.0}, "the slider position must be within reach of the open branch"),
         ({"slider_position_mm": 100.0, "slider_acceleration_m_s2": 1.0}, "got acceleration 1 m/s^2 alone"),
         ({}, "slider_position_mm"),
         ({"slider_position_mm": "nan"}, "slider_position_mm"),

@@ -171,7 +171,7 @@ def test_submissions_at_once_with_one_key_make_one_job(serve: Serve, store: Stor
     assert sorted(number for _, _, number in made) == list(range(1, 11))
     assert store.counts() == {"queued": 10}
     other = client.post("/jobs", json={"job": {**EXAMPLE, "name": "Other"}}, headers=headers)
-    assert "a key stands for one job" in refused(other, 422)
+    assert "a key may only be used for one job" in refused(other, 422)
 
 
 @pytest.mark.parametrize("key", ["", "x" * 256, "a b", "\x80"])

@@ -179,8 +179,8 @@ def test_a_store_that_may_no_longer_be_written_is_noticed_and_used_again_once_it
         for _ in range(3):
             sentence = refused(client.get("/health/ready"), 503)
             refused(client.post("/jobs", json={"job": EXAMPLE}), 503)
-        assert f"is not any more; chmod u+rw {file}" in sentence
-        assert caplog.text.count("stays readable and writable") == 1
+        assert f"is no longer; chmod u+rw {file}" in sentence
+        assert caplog.text.count("must stay readable and writable") == 1
         file.chmod(0o600)
         assert client.get("/health/ready").status_code == 200
 

@@ -69,7 +69,7 @@ def test_two_places_of_the_slider_are_the_swing_between_their_angles(client: htt
     [
         ({"start_deg": 40.0, "end_deg": 40.0}, 422, "less than a turn apart"),
         ({"start_deg": -40.0, "end_deg": 100.0, "driver": "slider"}, 422, "dead point"),
-        ({"start_deg": 40.0, "end_deg": 100.0, "law": "harmonic"}, 422, "needs its duration"),
+        ({"start_deg": 40.0, "end_deg": 100.0, "law": "harmonic"}, 422, "any other must have one"),
         ({"start_deg": "nan", "end_deg": 100.0}, 422, "start_deg"),
         ({"start_deg": 40.0, "end_deg": 100.0, "driver": "rod"}, 422, "driver"),
         ({"start_deg": 40.0}, 422, "got no end_deg"),

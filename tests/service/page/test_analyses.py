@@ -114,7 +114,7 @@ def test_analyses_are_told_in_inches_and_the_flywheel_for_the_fluctuation_that_i
     expect(panel).to_contain_text("Fluctuation must be below 1; got 2; correct it", timeout=30_000)
     field.fill("2 kg")
     field.press("Enter")
-    expect(panel.get_by_role("alert")).to_have_text("“2 kg” is no number; write a number.")
+    expect(panel.get_by_role("alert")).to_have_text("“2 kg” is not a valid number; write a number.")
     refused = httpx.get(path.replace("flywheel", "motor"), params={"fluctuation": 0.05}, timeout=60.0)
     assert (
         refused.status_code,

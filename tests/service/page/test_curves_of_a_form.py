@@ -1,4 +1,4 @@
-"""Loads over position or angle, and wanted motions, in the form: curves that are drawn, dragged and moved by keys."""
+"""Loads over position or angle, and desired motions, in the form: curves that are drawn, dragged and moved by keys."""
 
 from __future__ import annotations
 
@@ -59,17 +59,17 @@ def test_two_points_at_one_position_are_a_step_and_neither_key_nor_mouse_puts_a_
 ) -> None:
     page = form(store, "#/new")
     page.get_by_label("kind of load").select_option("positions")
-    page.get_by_label("points, one a line", exact=True).fill("0\t0\n20\t-600\n20\t0\n30\t0")
+    page.get_by_label("points, one per line", exact=True).fill("0\t0\n20\t-600\n20\t0\n30\t0")
     expect(page.get_by_text(READY)).to_be_visible(timeout=30_000)
     drawn = page.locator(".curve-drawn:visible")
     points = drawn.get_by_role("slider")
     expect(points).to_have_count(4)
-    expect(page.get_by_text("Two points at one place are a step.")).to_be_visible()
+    expect(page.get_by_text("Two points at one position make a step.")).to_be_visible()
     points.nth(2).press("ArrowLeft")  # past the point before it
     assert job_of(page)["load"][0]["positions"] == ["0 mm", "20 mm", "20 mm", "30 mm"]
     points.nth(2).press("ArrowUp")
     assert float(job_of(page)["load"][0]["forces"][2].split()[0]) > 0.0
-    page.get_by_label("points, one a line", exact=True).fill("0\t0\n20\t-600\n20\t0\n20\t5")
+    page.get_by_label("points, one per line", exact=True).fill("0\t0\n20\t-600\n20\t0\n20\t5")
     expect(page.get_by_text("Must increase, but for two at a step")).to_be_visible(timeout=30_000)
 
 

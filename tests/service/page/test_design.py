@@ -389,7 +389,7 @@ def test_a_link_that_gives_no_whole_design_is_answered_so(
     page = opened()
     page.evaluate("view => { location.hash = view; }", f"{view(solved)}?{lengths}")
     expect(page.locator(".what-if [role=alert]")).to_have_text(
-        f"The link gives crank, rod and offset, each as a number; got {got}. This is the design itself."
+        f"A link must give crank, rod and offset as numbers; got {got}. Shown is the design itself."
     )
 
 
@@ -452,7 +452,7 @@ def test_a_design_that_is_not_there_is_said(open_page: Open, solved: Solved) -> 
     page = open_page(solved.store, view(solved, 99), expected=("404",))
     expect(page.get_by_role("main")).to_contain_text("has designs 1 to")
     page.evaluate("location.hash = location.hash.replace('99', 'x')")
-    expect(page.get_by_role("main")).to_contain_text("A design is called by its number")
+    expect(page.get_by_role("main")).to_contain_text("A design must be given by its number")
 
 
 def test_units_are_the_readers(opened: Opened) -> None:

@@ -67,7 +67,7 @@ def test_a_swing_plays_with_its_cylinder_and_body(browser: Browser, tmp_path: Pa
     wrong: list[str] = []
     page.on("pageerror", lambda error: wrong.append(str(error)))
     page.goto(file.as_uri())
-    place = page.get_by_role("slider", name="Forth and back")
+    place = page.get_by_role("slider", name="Back and forth")
     ends = [1e3 * float(linkage.at(angle).slider_position) for angle in (0.2, 1.7)]
     for phase, x, degrees in (
         (0, ends[0], 11),

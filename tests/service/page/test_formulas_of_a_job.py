@@ -91,7 +91,7 @@ def test_a_formula_with_a_name_is_called_by_it_everywhere_and_renamed_everywhere
     assert job["constraints"]["stroke"] == {"equals": "2.4*crank + 0*room"}
     named.get_by_label("name", exact=True).fill("Room!")
     named.get_by_label("name", exact=True).blur()
-    expect(page.get_by_text("A name has small letters, digits and underscores")).to_be_visible()
+    expect(page.get_by_text("A name must have lower-case letters, digits and underscores")).to_be_visible()
     page.reload()
     ready(page)
     expect(page.get_by_label("formula 1, requirement", exact=True)).to_have_value("room")

@@ -116,7 +116,7 @@ def test_points_of_a_load_are_pasted_from_a_table_with_their_units_and_mistakes_
 ) -> None:
     page = form(store, "#/new?preset=sieve")
     page.get_by_label("kind of load").first.select_option("crank_angles")
-    table = page.get_by_label("points, one a line", exact=True)
+    table = page.get_by_label("points, one per line", exact=True)
     table.fill("angle (deg);force (kN)\n0;0\n90;-0,5\n270;0,25")
     expect(page.get_by_label("Unit of forces")).to_have_value("kN")
     status = page.get_by_role("complementary").get_by_role("status")

@@ -45,7 +45,11 @@ def test_a_limit_that_binds_is_widened_and_the_front_before_stays_behind(
     line = page.locator("[data-limit='constraints.transmission_angle.lower']")
     expect(line.get_by_role("textbox")).to_have_value("36")
     require_accessible(page)
-    refused = {"": "a number in ° is needed", "wide": "“wide” is no angle", "45": "must be below 40 deg; got 45"}
+    refused = {
+        "": "a number in ° is needed",
+        "wide": "“wide” is not a valid angle",
+        "45": "must be below 40 deg; got 45",
+    }
     for typed, said in refused.items():
         line.get_by_role("textbox").fill(typed)
         line.get_by_role("textbox").press("Enter")

@@ -417,7 +417,7 @@ def test_loads_requirements_and_objectives_are_added_and_taken_away(form: Open, 
     page.keyboard.type("800")
     page.get_by_label("peak torque", exact=True).and_(page.get_by_role("checkbox")).uncheck()
     page.get_by_label("time ratio: what is wanted").select_option("target")
-    page.get_by_label("time ratio: value to come near to").fill("1.2")
+    page.get_by_label("time ratio: target value").fill("1.2")
     page.get_by_label("crank", exact=True).and_(page.get_by_role("combobox")).first.select_option("fixed")
     page.get_by_label("crank, fixed at").fill("45")
     ready(page)

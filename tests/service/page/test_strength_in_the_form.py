@@ -17,7 +17,7 @@ def test_material_is_an_example_that_is_said_and_pins_are_asked_for(form: Open, 
     page = form(store, "#/new?preset=sieve")
     page.locator("summary", has_text="Material and pins").click()
     page.get_by_label("with material and pins", exact=True).select_option("yes")
-    expect(page.get_by_text("The material begins as a common steel")).to_be_visible()
+    expect(page.get_by_text("The values are those of a common steel")).to_be_visible()
     sections = text_of(page)["sections"]
     assert sections["material"]["yield_strength"] == "350 MPa"
     assert sections["pins"] == {}

@@ -40,9 +40,9 @@ def test_a_design_moves_between_the_ends_of_its_swing(service: tuple[Page, str])
     page.goto(f"{address}/#/jobs/1/designs/1")
     told = page.locator("output.angle")
     for place, angle in ((0, "11°"), (180, "101°"), (359, "11°")):
-        put(page, "Forth and back", place)
+        put(page, "Back and forth", place)
         expect(told).to_have_text(angle)
-    put(page, "Forth and back", 0)
+    put(page, "Back and forth", 0)
     turned = page.locator("svg.moving g:has(> path.crank)").get_attribute("transform") or ""
     assert float(turned.split("rotate(")[1].rstrip(")")) == pytest.approx(-11.16, abs=0.01)
     expect(page.locator("svg.still .ghost")).to_have_count(2)
@@ -51,7 +51,7 @@ def test_a_design_moves_between_the_ends_of_its_swing(service: tuple[Page, str])
     expect(titles.filter(has_text="Force on the slider")).to_have_count(1)
     expect(titles.filter(has_text="Power of the drive")).to_have_count(1)
     over = page.locator('select[name="over"]')
-    assert over.locator("option").all_text_contents() == ["both ways", "time", "crank angle", "slider position"]
+    assert over.locator("option").all_text_contents() == ["both strokes", "time", "crank angle", "slider position"]
     over.select_option("crank")
     expect(page.locator('figure[data-key="drive_N"] svg.chart')).to_have_attribute(
         "aria-label", re.compile("over the crank angle")
@@ -75,7 +75,7 @@ def test_the_stage_draws_the_body_and_the_actuator(service: tuple[Page, str]) ->
     along = float(crank["centre"].split()[0]) * {"m": 1e3, "mm": 1.0}[crank["centre"].split()[1]]
     long = float(page.locator('section.numbers [data-key="crank_mm"]').first.get_attribute("data-value") or "nan")
     for place in (0, 180):
-        put(page, "Forth and back", place)
+        put(page, "Back and forth", place)
         box = page.locator("section.stage g.body > rect").evaluate(
             "node => [node.x, node.width].map(of => of.baseVal.value)"
         )

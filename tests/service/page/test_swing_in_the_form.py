@@ -30,8 +30,8 @@ def test_the_shipped_support_is_shown_changed_and_started_with_the_two_ends_of_i
     page.get_by_label("margin from dead points", exact=True).blur()
     expect(beside).to_contain_text("to 95°")
     page.get_by_label("motion over time", exact=True).select_option("polynomial")
-    expect(page.get_by_text(re.compile("that is not slow needs its duration"))).to_be_visible()
-    page.get_by_label("duration of one way", exact=True).fill("30")
+    expect(page.get_by_text(re.compile("any other must have one"))).to_be_visible()
+    page.get_by_label("duration of one stroke", exact=True).fill("30")
     ready(page)
     motion = text_of(page)["motion"]
     assert motion == before["motion"] | {
@@ -69,7 +69,7 @@ def test_a_crank_that_is_let_swing_keeps_what_fits_and_says_what_was_taken_out(f
     page.get_by_label("to crank angle", exact=True).fill("355")
     expect(page.get_by_role("complementary")).to_contain_text("No linkage within these ranges makes the swing.")
     page.get_by_label("the crank", exact=True).select_option("")
-    expect(page.get_by_role("complementary")).to_contain_text("turns fully")
+    expect(page.get_by_role("complementary")).to_contain_text("rotates fully")
     assert "motion" not in text_of(page)
 
 
@@ -132,8 +132,8 @@ def test_what_a_choice_leaves_without_a_meaning_is_taken_out(form: Open, store: 
     ready(page)
     law = page.get_by_label("motion over time", exact=True)
     law.select_option("table")
-    page.get_by_label("duration of one way", exact=True).fill("20")
-    page.get_by_label("points of the motion, one a line", exact=True).fill("0\t0\n0.2\t0.1\n0.8\t0.9\n1\t1")
+    page.get_by_label("duration of one stroke", exact=True).fill("20")
+    page.get_by_label("points of the motion, one per line", exact=True).fill("0\t0\n0.2\t0.1\n0.8\t0.9\n1\t1")
     ready(page)
     motion = text_of(page)["motion"]
     assert (motion["law_times"], motion["law_shares"]) == ([0, 0.2, 0.8, 1], [0, 0.1, 0.9, 1])

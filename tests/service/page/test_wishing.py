@@ -109,7 +109,7 @@ def test_what_cannot_be_wished_is_said_at_its_field(page: Page) -> None:
     button = panel(page).get_by_role("button", name="Solve")
     alert = panel(page).get_by_role("alert")
     button.click()
-    expect(alert).to_contain_text("Nothing is wished yet")
+    expect(alert).to_contain_text("There is no wish yet")
     wish(page, "time ratio", "should reach", "fast")
     button.click()
     value = panel(page).get_by_label("Value for time ratio")

@@ -101,7 +101,7 @@ def test_every_number_of_the_design_is_in_it_with_all_its_digits() -> None:
     assert keys == [key for key in row if key not in left]
     note = named("Every number of the design").blocks[1]
     assert isinstance(note, Paragraph)
-    titles = note.text.removeprefix("Not of this machine: ").removesuffix(".").split(", ")
+    titles = note.text.removeprefix("Not defined for this machine: ").removesuffix(".").split(", ")
     assert sorted(", ".join(titles)) == sorted(", ".join(find_column(key, list(row)).title for key in left))
     blank = [key for key, cell in row.items() if cell is None or (isinstance(cell, float) and math.isnan(cell))]
     assert set(blank) == set(left)
@@ -145,7 +145,7 @@ def test_it_says_what_was_asked_how_it_was_found_and_how_good_it_is() -> None:
         "numpy 1.2.3",
         "1970-01-01 00:00 UTC",
         "All requirements are met.",
-        "Stationary: no small change betters every objective",
+        "Stationary: no small change improves every objective",
         "Worst case, exact",
         "random machines".capitalize(),
     ):

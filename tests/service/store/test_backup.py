@@ -77,14 +77,14 @@ def test_a_backup_is_of_one_moment_while_others_write(tmp_path: Path) -> None:
 def test_a_backup_never_takes_the_place_of_a_file(tmp_path: Path) -> None:
     file = tmp_path / "store.db"
     Store(file).close()
-    with pytest.raises(InputError, match=r"a backup is a new file; .*store\.db is there already"):
+    with pytest.raises(InputError, match=r"a backup must be a new file; .*store\.db already exists"):
         copy(file, file)
 
 
 def test_a_backup_that_cannot_be_written_leaves_nothing(tmp_path: Path) -> None:
     file = tmp_path / "store.db"
     Store(file).close()
-    with pytest.raises(StoreError, match="a backup needs a place that can be written"):
+    with pytest.raises(StoreError, match="a backup must go to a writable place"):
         copy(file, tmp_path / "none" / "backup.db")
     assert not (tmp_path / "none").exists()
 

@@ -187,7 +187,7 @@ def test_a_job_that_stops_its_workers_is_set_aside_and_the_next_one_claimed(stor
     assert taken(store, "third").job.id == good.id
     aside = store.job(poison.id)
     assert aside.state == "failed"
-    assert "its worker stopped without a word 2 times in a row, the last one was second" in aside.reason
+    assert "its worker stopped without a report 2 times in a row, the last one was second" in aside.reason
     assert store.resume(poison.id).attempts == 0
     assert taken(store).job.id == poison.id
 
@@ -250,7 +250,7 @@ def test_the_worker_of_a_cancelled_job_hears_of_it_and_the_job_can_go_on(hears: 
     assert same(again.records()[0], search_record(1))
     again.finish(result("done", ROWS[:1]))
     assert len(store.result(job.id).designs) == 1
-    with pytest.raises(InputError, match="only a cancelled or failed job can go on; job 1 is done"):
+    with pytest.raises(InputError, match="only a cancelled or failed job can continue; job 1 is done"):
         store.resume(job.id)
     assert store.cancel(job.id).state == "done"
 

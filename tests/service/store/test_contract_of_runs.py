@@ -65,7 +65,7 @@ def test_a_cancelled_job_can_be_taken_up_at_once(store: Store) -> None:
     again.finish(result())
     with pytest.raises(LeaseLost):
         first.say("stale")
-    with pytest.raises(InputError, match="only a cancelled or failed job can go on; job 1 is done"):
+    with pytest.raises(InputError, match="only a cancelled or failed job can continue; job 1 is done"):
         store.go_on(first.job.id, worker="desk", lease=60.0)
 
 

@@ -450,7 +450,7 @@ def test_an_emptied_store_keeps_the_log_that_is_left_of_it(tmp_path: Path, comma
     for words in ("jobs", f"submit {job_file(tmp_path)}"):
         done = command(*words.split(), "--store", file)
         assert (done.exit_code, done.stdout) == (2, "")
-        assert "is left of one that was deleted or cut off" in done.stderr
+        assert "belongs to one that was deleted or truncated" in done.stderr
     assert log.read_bytes() == b"the latest jobs"
 
 
@@ -491,7 +491,7 @@ def test_a_store_that_cannot_be_written_can_be_looked_at(used: bool) -> None:
                 assert [job.state for job in looked.jobs()] == ["done"]
                 assert len(looked.result(1).designs) == 2
                 assert damages(looked) == []
-                with pytest.raises(StoreError, match="is read-only; only look into it, or chmod u\\+rw"):
+                with pytest.raises(StoreError, match="is read-only; only read from it, or chmod u\\+rw"):
                     add(looked)
             assert sorted(folder.iterdir()) == before
 
@@ -542,7 +542,7 @@ def test_commands_that_write_refuse_a_store_that_cannot_be_written(
     for name in (("cancel", 1), ("worker", "--drain"), ("serve", "--port", 0, "--workers", 0)):
         done = command(*name, "--store", tmp_path / "store.db")
         assert (done.exit_code, done.stdout) == (2, "")
-        assert "is read-only; only look into it, or chmod u+rw" in done.stderr
+        assert "is read-only; only read from it, or chmod u+rw" in done.stderr
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="permissions as in POSIX")

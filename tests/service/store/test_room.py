@@ -39,7 +39,7 @@ def test_a_round_without_room_keeps_its_lease_for_as_long_as_it_waits(store: Sto
             assert not written.done()
             waiting = store.job(job.id)
             assert waiting.state == "running"
-            assert waiting.reason.startswith("waits: the store needs room on its disk")
+            assert waiting.reason.startswith("waits: the store needs free space on its disk")
             disk.empty()
             written.result(30.0)
             assert not heartbeat.lost
@@ -62,7 +62,7 @@ def test_a_job_stays_with_its_worker_while_not_even_its_lease_can_be_renewed(sto
             until(lambda: bool(claim.waits) or written.done())
             claim._renewed -= 2.0 * claim.lease
             with Heartbeat(claim) as heartbeat:
-                with pytest.raises(Full, match="the store needs room on its disk"):
+                with pytest.raises(Full, match="the store needs free space on its disk"):
                     other.claim("second")
                 disk.empty()
                 assert other.claim("second") is None, "its holder comes first"
@@ -139,7 +139,7 @@ def test_a_search_that_waits_for_room_does_not_count_as_deaf(store: Store, monke
     job = add(store)
     claim = taken(store)
     heartbeat = Heartbeat(claim, budget=Budget(Limits(seconds=1e-9)), grace=10.0)
-    claim.waits = "waits: the store needs room on its disk"
+    claim.waits = "waits: the store needs free space on its disk"
     heartbeat._look_at_deaf()
     assert (store.job(job.id).state, left) == ("running", [])
     claim.waits = ""

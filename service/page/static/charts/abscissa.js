@@ -22,11 +22,11 @@ export const OVER = [
   { name: "angle", title: "crank angle" },
   { name: "time", title: "time" },
   { name: "position", title: "slider position" },
-  { name: "way", title: "way from the inner dead centre" },
+  { name: "way", title: "distance from the inner dead centre" },
 ];
 /** The same of a swing. @type {{ name: string, title: string }[]} */
 export const OVER_SWING = [
-  { name: "angle", title: "both ways" },
+  { name: "angle", title: "both strokes" },
   { name: "time", title: "time" },
   { name: "crank", title: "crank angle" },
   { name: "position", title: "slider position" },
@@ -53,7 +53,7 @@ export function abscissaOf(name, rpm, turns = 1) {
   if (name === "position" || name === "way") return overWay(name);
   if (name === "crank") return overCrank();
   return {
-    title: turns ? "crank angle" : "way forth and back",
+    title: turns ? "crank angle" : "forward and return stroke",
     unit: "°",
     ticks: turns ? QUARTERS.map((at) => ({ at, text: `${turns * at}°` })) : ENDS,
     span: () => ({ low: 0, high: 360 }),
@@ -110,7 +110,7 @@ function overWay(name) {
     return way === null ? null : inShown(way, "mm");
   };
   return {
-    title: name === "way" ? "way from the inner dead centre" : "slider position",
+    title: name === "way" ? "distance from the inner dead centre" : "slider position",
     unit: unitOf("mm"),
     span: (series) =>
       range(

@@ -75,7 +75,7 @@ export function searchButton(job, lengths, { title, name, act }) {
     "button",
     {
       type: "button",
-      title: "A run of its own, whose lengths vary by a tenth around these",
+      title: "A separate run whose lengths vary by 10 % around these",
       "aria-label": name,
       "data-act": act,
       onclick: ({ currentTarget }) => attempt(search, sayProblem, currentTarget),

@@ -42,7 +42,7 @@ export function exportMenu(job, number) {
     "button",
     {
       type: "button",
-      title: "The whole view on paper or as PDF, all of its parts computed",
+      title: "The whole view on paper or as PDF, with all its parts",
       onclick: ({ currentTarget }) => attempt(printWhole, sayProblem, currentTarget),
     },
     "Print",
@@ -75,6 +75,6 @@ async function copyLink() {
     await navigator.clipboard.writeText(location.href);
     say("Link copied. It shows the same view to anyone with access to this service.");
   } catch {
-    say(`The browser did not let the link be copied; it is ${location.href}`, "error");
+    say(`The browser refused to copy the link: ${location.href}`, "error");
   }
 }

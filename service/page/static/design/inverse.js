@@ -46,7 +46,7 @@ export function inverseForm(place, of, { path, job, positions, turnTo, signal })
       h(
         "p",
         { class: "quiet hint" },
-        `The slider of this design is between ${text(low, "mm")} and ${withUnit(high, "mm")} from the crank pivot. Its velocity gives the crank speed; with its acceleration, too, the crank's acceleration. The slider's are positive along +x, as in the curves above, the crank's counter-clockwise.`,
+        `The slider of this design is between ${text(low, "mm")} and ${withUnit(high, "mm")} from the crank pivot. Its velocity gives the crank speed, and with its acceleration the crank's acceleration. Slider values are positive along +x, as in the curves above; crank values are positive counter-clockwise.`,
       ),
     ),
   );

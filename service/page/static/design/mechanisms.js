@@ -13,7 +13,7 @@ import { around, frameOf } from "../mechanism/frame.js";
 const EVERY = 100; // ms between two readouts while it moves
 /** What sets the place in the cycle, and how, by the turns in it. */
 const WORDS = [
-  ["Forth and back", "Drag the crank, or use the arrow and page keys on the way forth and back."],
+  ["Back and forth", "Drag the crank, or use the arrow and page keys to move it back and forth."],
   [
     "Crank angle",
     "Drag the crank, or use the arrow keys (1°) and the page keys (10°) on the crank angle.",

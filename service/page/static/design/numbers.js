@@ -44,7 +44,7 @@ export function showNumbers(place, { designs, columns, requirements, slow, names
       h(
         "details",
         {},
-        h("summary", {}, `${missing.length} quantities that this machine does not have`),
+        h("summary", {}, `${missing.length} quantities that are not defined for this machine`),
         table("Quantities without a value", designs, [{ title: "", columns: missing }], names),
       ),
     );

@@ -43,7 +43,7 @@ export function overCycle(place, { path, rpm, turns, over, turned, told: choose 
     {
       class: "button",
       download: "",
-      title: turns ? "A row for each degree, all curves" : "Both ways, all curves",
+      title: turns ? "A row for each degree, all curves" : "Both strokes, all curves",
     },
     "Curves as CSV",
   );

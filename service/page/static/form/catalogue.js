@@ -8,7 +8,7 @@ import { at, idOf, isTable } from "./path.js";
 const SHOWN = 6; // names of options
 const EXAMPLE = "name,peak_torque max (N m),price (EUR),maker\nGM 40,40,310,A\nGM 90,90,450,B";
 const WHY =
-  "One row an option, the first line its columns: name, then limits such as “peak_torque max (N m)”, numbers of the job such as “mechanism.slider.mass (kg)”, and what is to be kept with each design, such as “price (EUR)” or a maker; what is kept and a number may be an objective or a requirement. A blank limit is none. Columns that begin with # are passed over.";
+  "One row per option. The first line names the columns: name, then limits such as “peak_torque max (N m)”, numbers of the job such as “mechanism.slider.mass (kg)”, and values to store with each design, such as “price (EUR)” or a maker. Stored numbers may be objectives or requirements. An empty cell sets no limit. Columns that begin with # are skipped.";
 
 /** Return the fields of the choices, and a button for another one. @param {Form.Whole} form */
 export function choices(form) {
@@ -121,7 +121,7 @@ function row(form, one, place, all) {
       plain(form, [...path, "name"], {
         control: "text",
         label: "what is chosen",
-        why: "Letters, digits, spaces, - and _; the table of designs has it.",
+        why: "Letters, digits, spaces, - and _; the heading of its column in the table of designs.",
       }),
       has,
       tableField,

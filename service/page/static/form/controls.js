@@ -221,6 +221,6 @@ export function number(input) {
   const typed = taken(input);
   if (typed === undefined || !Number.isFinite(Number(typed))) return typed;
   if (!/^\d+$/.test(String(typed)) || Number.isSafeInteger(Number(typed))) return Number(typed);
-  input.dataset.wrong = `A whole number goes up to ${Number.MAX_SAFE_INTEGER}; got ${typed}; write a smaller one.`;
+  input.dataset.wrong = `A whole number must be at most ${Number.MAX_SAFE_INTEGER}; got ${typed}; write a smaller one.`;
   return typed;
 }

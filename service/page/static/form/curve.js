@@ -65,8 +65,8 @@ export function curve({ read, write, titles, centres, steps }) {
     h(
       "figcaption",
       { class: "quiet" },
-      "Drag a point, or move it by the arrow keys. A double click on the curve adds one, Delete takes one away." +
-        (steps ? " Two points at one place are a step." : ""),
+      "Drag a point, or move it with the arrow keys. Double-click the curve to add a point; press Delete to remove one." +
+        (steps ? " Two points at one position make a step." : ""),
     ),
   );
   /** @type {{ x: Page.Scale, y: Page.Scale } | null} */

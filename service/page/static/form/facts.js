@@ -39,7 +39,7 @@ export function showFacts(place, { allowed, understood, swing }) {
     h(
       "dl",
       { class: "terms" },
-      row("turns fully", share(allowed.turning_share), "of the ranges"),
+      row("rotates fully", share(allowed.turning_share), "of the ranges"),
       row("strokes", between(allowed.stroke_mm, "mm")),
       row("time ratios", between(allowed.time_ratio, "")),
       row("transmission angles", between(allowed.transmission_angle_deg, "deg")),
@@ -65,7 +65,7 @@ function notesOf(unchecked, understood, { said = [], open }) {
       ? h(
           "p",
           { class: "quiet" },
-          `Left to the search: ${unchecked.map((name) => name.replaceAll("_", " ")).join(", ")}.`,
+          `Checked only by the search: ${unchecked.map((name) => name.replaceAll("_", " ")).join(", ")}.`,
         )
       : null,
     (understood?.notes ?? []).map((sentence) =>

@@ -99,9 +99,9 @@ function row(form, table, key, place, asked, what) {
       const before = String(spot.path[1]);
       if (typed === before) return form.put(spot.path, form.at(spot.path));
       if (/^\d*$/.test(typed) && typed)
-        input.dataset.wrong = "A formula has a name in it, such as crank.";
+        input.dataset.wrong = "A formula must contain a name, such as crank.";
       else if (typed in /** @type {object} */ (form.at([table]) ?? {}))
-        input.dataset.wrong = `Something is asked of “${typed}” already; change that one.`;
+        input.dataset.wrong = `“${typed}” already is an objective or has a bound; change that one.`;
       else {
         form.rename([table], before, typed, node);
         spot.path = [table, typed];
@@ -247,7 +247,8 @@ function named(form, name, place) {
       const typed = called.value.trim();
       delete called.dataset.wrong;
       if (!NAME.test(typed))
-        called.dataset.wrong = "A name has small letters, digits and underscores, a letter first.";
+        called.dataset.wrong =
+          "A name must have lower-case letters, digits and underscores, and begin with a letter.";
       else if (typed !== name && typed in /** @type {object} */ (form.at(["quantity"]) ?? {}))
         called.dataset.wrong = `Another formula is called “${typed}” already.`;
       if (called.dataset.wrong) return form.put(path, form.at(path));
@@ -310,12 +311,12 @@ function named(form, name, place) {
         path,
         "name",
         [called],
-        "By which objectives, requirements and other formulas call it.",
+        "Its name in objectives, requirements and other formulas.",
       ),
       plain(form, [...path, "title"], {
         control: "text",
         label: "title",
-        why: "For people; the name if left out.",
+        why: "Title in tables and figures; the name if left out.",
       }),
       plain(form, [...path, "unit"], {
         control: "text",

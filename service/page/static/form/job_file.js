@@ -92,7 +92,7 @@ export function jobFile(form, taken) {
       h(
         "p",
         { class: "quiet" },
-        "In step with the form; parts that the form has no fields for are written here.",
+        "Always the same as the form. Write here what has no field in the form.",
       ),
       h("label", { class: "hidden", for: "job-text" }, "Job as JSON"),
       text,

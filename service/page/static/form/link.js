@@ -63,7 +63,7 @@ export function link(form, path, label) {
       path,
       `mass of the ${label}`,
       [select],
-      "Given by its mass, a link weighs the same at every length; a bar grows heavier with its length.",
+      "A link given by its mass weighs the same at every length; a bar is heavier the longer it is.",
     ),
     way === "section"
       ? keys.map((key) =>

@@ -1,4 +1,4 @@
-/** How the crank moves: it turns through, or swings between two angles; and what belongs to either. */
+/** How the crank moves: it rotates fully, or swings between two angles; and what belongs to either. */
 
 import { h } from "../lib/dom.js";
 import { say } from "../lib/notices.js";
@@ -27,8 +27,8 @@ const LABELS = {
 };
 /** @type {[Column, Column]} */
 const LAW = [
-  { key: "law_times", label: "share of the time", kind: null },
-  { key: "law_shares", label: "share of the way", kind: null },
+  { key: "law_times", label: "fraction of the time", kind: null },
+  { key: "law_shares", label: "fraction of the travel", kind: null },
 ];
 const FIRST = { kind: "swing", from: "0 deg", to: "60 deg", driver: "slider" };
 
@@ -68,7 +68,7 @@ function state(form, how) {
   form.redraw();
 }
 
-/** Return the fields of the motion; turning: those that only a crank that turns through has. @param {Form.Whole} form @param {Dom.Child} turning */
+/** Return the fields of the motion; turning: those that only a crank that rotates fully has. @param {Form.Whole} form @param {Dom.Child} turning */
 export function motion(form, turning) {
   const kind = choice({ ...form, put: (_, value) => change(form, value) }, [...PATH, "kind"], {
     options: ["swing"],
@@ -122,13 +122,19 @@ export function motion(form, turning) {
       ...(law === "" || law === "slow" ? ["duration"] : []),
       ...(law === "table" ? [] : ["law_times", "law_shares"]),
     ]),
-    slow ? null : motionField("duration", "duration of one way"),
+    slow ? null : motionField("duration", "duration of one stroke"),
     form.at([...PATH, "law"]) === "table"
-      ? points(form, PATH, LAW, "Share of the way at shares of the time, both from 0 to 1", {
-          optional: true,
-          title: "points of the motion, one a line",
-          files: false,
-        })
+      ? points(
+          form,
+          PATH,
+          LAW,
+          "Fraction of the travel at fractions of the time, both from 0 to 1",
+          {
+            optional: true,
+            title: "points of the motion, one per line",
+            files: false,
+          },
+        )
       : null,
     form.at([...PATH, "driver"]) === "slider"
       ? motionField("actuator_tolerance", "tolerance of the actuator")

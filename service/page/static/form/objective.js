@@ -81,7 +81,7 @@ export function wanted(form, spot, { title, kind, again }) {
       {
         id: idOf(spot.id, "t"),
         jobValue: target === "" ? undefined : target,
-        title: `${title}: value to come near to`,
+        title: `${title}: target value`,
       },
     ],
     { label: title, kind, unitId: idOf(spot.id, "u") },

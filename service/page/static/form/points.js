@@ -12,7 +12,7 @@ import { convert, join, measureOf, split } from "../lib/units.js";
 /** @typedef {{ key: string, label: string, kind: string | null }} Column */
 
 /**
- * Return the field of the points that two lists of a table say, one a line. optional: whether there may be none, without the lists.
+ * Return the field of the points that two lists of a table say, one per line. optional: whether there may be none, without the lists.
  * steps: whether two points may be at one place. files: whether a job may name a file of such points.
  * @param {Form.Whole} form @param {Form.Path} path @param {[Column, Column]} columns @param {string} why @param {{ optional?: boolean, title?: string, steps?: boolean, files?: boolean }} options
  */
@@ -21,7 +21,7 @@ export function points(
   path,
   columns,
   why,
-  { optional = false, title = "points, one a line", steps = false, files = true } = {},
+  { optional = false, title = "points, one per line", steps = false, files = true } = {},
 ) {
   const jobLists = columns.map(({ key }) => form.at([...path, key]));
   const lists = jobLists.map((one) => (Array.isArray(one) ? one : []));

@@ -115,7 +115,7 @@ export function sections(form) {
       ),
       turning(form, "drive", () =>
         more(
-          ["Motor and flywheel, for the start and the running", has(form, "drive")],
+          ["Motor and flywheel, for start-up and steady running", has(form, "drive")],
           byschema(form, ["drive"], { label: "drive" }),
         ),
       ),
@@ -132,14 +132,14 @@ export function sections(form) {
       h(
         "p",
         { class: "quiet" },
-        "The search finds the best compromises between all that are ticked.",
+        "The search finds the best compromises between the ticked objectives.",
       ),
       wishes(form),
       formulaObjectives(form),
     ),
     section(
       "Tolerances",
-      h("p", { class: "quiet" }, "The position error comes from these."),
+      h("p", { class: "quiet" }, "They determine the position error."),
       tolerances(form),
     ),
     section(
@@ -180,7 +180,7 @@ function more(title, ...content) {
 }
 
 /**
- * Return a part that is of a crank that turns through; of one that swings only where the job has it, so that it can be taken out.
+ * Return a part that is of a crank that rotates fully; of one that swings only where the job has it, so that it can be taken out.
  * @param {Form.Whole} form @param {string} place @param {() => Dom.Child} part
  */
 function turning(form, place, part) {
@@ -334,7 +334,7 @@ function tolerances(form) {
     ),
     turning(form, "costs", () =>
       more(
-        ["Costs of tolerances, for those of least cost", has(form, "costs")],
+        ["Costs of tolerances, to find the cheapest ones", has(form, "costs")],
         byschema(form, ["costs"], { label: "costs" }),
       ),
     ),

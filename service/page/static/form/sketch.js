@@ -76,8 +76,8 @@ export function sketch(signal) {
       node.classList.remove("swinging");
       way = example?.clockwise ? -1 : 1;
       const sentence = example?.feasible
-        ? "One that meets all that was checked"
-        : "One that rotates fully, but does not meet every requirement";
+        ? "A design that meets all checked requirements"
+        : "A design that rotates fully but does not meet every requirement";
       draw(example, example ? sentence : "No linkage within these ranges rotates fully.", {
         direction: way,
       });
@@ -92,7 +92,7 @@ export function sketch(signal) {
       const { feasible, travel_mm } = example;
       draw(
         example,
-        `${feasible ? "One that meets all that was checked" : "One that makes the swing, but does not meet every requirement"}: from ${withUnit(from_deg, "deg")} to ${withUnit(to_deg, "deg")}, the slider travels ${withUnit(travel_mm, "mm")}`,
+        `${feasible ? "A design that meets all checked requirements" : "A design that makes the swing but does not meet every requirement"}: from ${withUnit(from_deg, "deg")} to ${withUnit(to_deg, "deg")}, the slider travels ${withUnit(travel_mm, "mm")}`,
         { direction: 0, dead_centres_deg: ends },
       );
     },

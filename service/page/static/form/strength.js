@@ -34,7 +34,7 @@ export function strength(form) {
       options: ["yes"],
       label: "with material and pins",
       fallback: "no",
-      why: "Material and pins of crank and rod: stresses, safety factors and pressures of pins can then be asked for.",
+      why: "Material and pins of crank and rod, for objectives and requirements on stresses, safety factors and pin pressures.",
       changed: () => form.redraw(),
     },
   );
@@ -59,7 +59,7 @@ export function strength(form) {
     h(
       "p",
       { class: "quiet wide" },
-      "The material begins as a common steel; give the values of yours. Pins have no size until you give one.",
+      "The values are those of a common steel; enter those of your material, and a diameter for each pin.",
     ),
     missing.length
       ? null
@@ -71,7 +71,7 @@ export function strength(form) {
             { type: "button", onclick: () => propose(form) },
             "Make pins half as thick as their bars are wide",
           ),
-          h("span", { class: "quiet" }, "a usual start; of two bars the narrower counts"),
+          h("span", { class: "quiet" }, "a usual start; the narrower of two bars counts"),
         ),
     byschema(form, [...PATH, "material"]),
     h(
@@ -170,7 +170,7 @@ export function held(form, path, label) {
     range(form, varies, {
       label: `${label}, varying`,
       drop: "Hold",
-      why: "The search chooses it within these; the value beside it is that of single analyses.",
+      why: "The search chooses a value in this range; analyses of single designs use the value beside it.",
       fixed: false,
       removed: () => {
         form.put(varies, undefined);

@@ -8,7 +8,7 @@ import { points } from "./points.js";
 const PATH = ["target_motion"];
 const EVERY = 45; // deg between the points that are begun with
 
-/** Return the points of the wanted motion in a line; "" without one. @param {Form.Whole} form */
+/** Return the points of the desired motion in a line; "" without one. @param {Form.Whole} form */
 export function wantedGiven(form) {
   const angles = form.at([...PATH, "crank_angles"]);
   return Array.isArray(angles)
@@ -18,7 +18,7 @@ export function wantedGiven(form) {
       : String(form.at([...PATH, "file"]) ?? "");
 }
 
-/** Return the fields of the wanted motion, or what begins one. @param {Form.Whole} form */
+/** Return the fields of the desired motion, or what begins one. @param {Form.Whole} form */
 export function targetMotion(form) {
   if (form.at(PATH) === undefined) {
     return h(
@@ -39,7 +39,7 @@ export function targetMotion(form) {
       h(
         "span",
         { class: "quiet" },
-        "Then ask for a small motion deviation below, as an objective or a requirement.",
+        "Then add the motion deviation below, as an objective or a requirement.",
       ),
     );
   }

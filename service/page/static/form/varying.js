@@ -148,7 +148,7 @@ function looksOf(form, name) {
   return {
     label: titleOf(name),
     kind: described?.kind ?? null,
-    why: `${described?.description ?? ""}; ${jobValue === undefined ? "it needs a value in its own place too" : `${jobValue} where single designs are analysed`}`.replace(
+    why: `${described?.description ?? ""}; ${jobValue === undefined ? "it also needs a value in its own field" : `${jobValue} where single designs are analysed`}`.replace(
       /^; /,
       "",
     ),

@@ -53,7 +53,7 @@ export function rankCorrelation(a, b, mask) {
 /** Return a correlation in words. @param {string} x @param {string} y @param {number | null} value @param {number} count */
 export function inWords(x, y, value, count) {
   if (value === null || count < 3)
-    return `Of ${x} and ${y} nothing can be said: too few designs differ in both.`;
+    return `${x} and ${y} cannot be compared: too few designs differ in both.`;
   const [, often] = WORDS.find(([least]) => Math.abs(value) >= least) ?? [];
   const numbers = `(rank correlation ${value.toFixed(2).replace("-", "−")}, ${count} designs)`;
   return often

@@ -87,7 +87,7 @@ export function wrongIn(wishes, objectives, count) {
   if (!kinds.some((kind) => kind === "value" || kind === "improve"))
     problems.push({
       id: "",
-      text: "Nothing is wished yet; give one objective a value, or let it improve.",
+      text: "There is no wish yet; give one objective a value, or let it improve.",
     });
   else if (kinds.every((kind) => CLASSES.includes(kind)))
     problems.push({

@@ -47,7 +47,7 @@ const SYMBOLS = {
   phi: ["angle of the rod", null],
   omega: ["crank speed", null],
   alpha: ["crank acceleration", null],
-  "x'": ["slider position, derived by the crank angle", null],
+  "x'": ["derivative of the slider position with respect to the crank angle", null],
   x_out: ["slider position at the outer dead centre", null],
 };
 

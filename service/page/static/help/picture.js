@@ -90,7 +90,7 @@ const PICTURES = {
       label(206, 134, "± error"),
     ],
   },
-  "wanted motion": {
+  "desired motion": {
     marks: () => [
       ...[30, 58, 82, 104, 130, 160].map((x, place) =>
         dot([120 + x, 150 - [4, 12, 17, 16, 10, 3][place]]),

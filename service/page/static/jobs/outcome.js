@@ -34,7 +34,7 @@ export function outcome(job) {
   if (job.state === "cancelled") {
     return said(
       job.progress?.feasible
-        ? "Stopped before its designs were gathered"
+        ? "Stopped before its designs were collected"
         : "The run was cancelled before it found a design",
       job.reason,
       ["Resume it above to continue."],

@@ -148,7 +148,7 @@ async function jsonOf(response) {
   try {
     answer = text ? parsed(text) : null;
   } catch {
-    throw new Problem(response.status, `The answer was no JSON (status ${response.status}).`);
+    throw new Problem(response.status, `The answer was not JSON (status ${response.status}).`);
   }
   if (!response.ok)
     throw new Problem(

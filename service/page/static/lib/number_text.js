@@ -244,7 +244,7 @@ class Parser {
     else if (commas + points <= 1) plain = mantissa.replace(",", ".");
     else
       throw new Unreadable(
-        `${shown(mantissa)} is no number: it has points or commas in more than one place.`,
+        `${shown(mantissa)} is not a number: it has points or commas in more than one place.`,
       );
     return Number(`${plain}e${power}`);
   }

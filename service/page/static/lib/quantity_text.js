@@ -23,6 +23,6 @@ export function parseQuantity(typed, unit) {
   return {
     wrong:
       parsed.wrong ??
-      `“${typed.trim()}” is no ${kind ?? "number"}; write a number${shownUnit ? `, in ${unitOf(unit)} or with its unit` : ""}.`,
+      `“${typed.trim()}” is not a valid ${kind ?? "number"}; write a number${shownUnit ? `, in ${unitOf(unit)} or with its unit` : ""}.`,
   };
 }

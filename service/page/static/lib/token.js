@@ -35,7 +35,7 @@ function ask() {
       h(
         "p",
         {},
-        "It has started anew, or the browser has lost the token. The end of the address that the service printed has it; what you have typed here stays.",
+        "The service was restarted, or the browser has lost the token. It is at the end of the address that the service printed; what you have typed here is kept.",
       ),
       formOf(
         send,

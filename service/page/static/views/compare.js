@@ -22,7 +22,8 @@ export async function show(place, { query, signal }) {
   const numbers = [...new Set((query.get("jobs") ?? "").split(",").map(Number))].filter(
     (number) => Number.isInteger(number) && number > 0,
   );
-  if (numbers.length < 2) throw new Error("Two runs or more are compared; tick them in the list.");
+  if (numbers.length < 2)
+    throw new Error("A comparison needs two or more runs; tick them in the list.");
   /** @type {string[]} */
   const missing = [];
   const runs = (
@@ -45,7 +46,7 @@ export async function show(place, { query, signal }) {
       }),
     )
   ).flat();
-  if (numbers.length > MOST) missing.push(`At most ${MOST} runs are compared at once.`);
+  if (numbers.length > MOST) missing.push(`At most ${MOST} runs can be compared at once.`);
 
   const objectives = new Map(
     runs.flatMap(({ front }) => front.objectives.map((objective) => [objective.column, objective])),

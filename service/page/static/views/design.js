@@ -25,7 +25,7 @@ import { capital } from "../lib/words.js";
 export const title = "Design";
 
 const SOON = 150; // ms
-const CYCLES = ["forth and back", "one turn", "two turns"];
+const CYCLES = ["back and forth", "one turn", "two turns"];
 const LENGTHS = ["crank_mm", "rod_mm", "offset_mm"];
 
 /** Show the design that the address names. @param {HTMLElement} place @param {Page.Visit} options */
@@ -33,7 +33,7 @@ export async function show(place, { parts, query, signal }) {
   const [, job, , designText] = parts;
   const number = Number(designText);
   if (!Number.isInteger(number) || number < 1)
-    throw new Problem(404, `A design is called by its number, from 1; got ${designText}.`);
+    throw new Problem(404, `A design must be given by its number, from 1; got ${designText}.`);
   const path = /** @type {const} */ (`jobs/${job}/designs/${number}`);
   const [front, main, requirements, asked] = await Promise.all([
     get(`jobs/${job}/front`, {}, signal),
@@ -321,7 +321,7 @@ function startOf(query) {
     };
   const [name, text] = [bad[0].replace("_mm", ""), bad[1]];
   return {
-    wrong: `The link gives crank, rod and offset, each as a number; got ${text === null ? `no ${name}` : `“${text}” as the ${name}`}. This is the design itself.`,
+    wrong: `A link must give crank, rod and offset as numbers; got ${text === null ? `no ${name}` : `“${text}” as the ${name}`}. Shown is the design itself.`,
   };
 }
 

@@ -39,12 +39,12 @@ const STEPS = [
 const DOCUMENTS = [
   [
     "docs/jobs.md",
-    "job files beyond the basics: friction, motors, choices, wanted motions, robust designs",
+    "job files beyond the basics: friction, motors, choices, desired motions, robust designs",
   ],
   ["docs/glossary.md", "the terms of machine, problem, search and program, with a sketch"],
   ["docs/theory.md", "every equation, derived, with its source"],
   ["docs/optimisers.md", "how the search works, and when another method helps"],
-  ["docs/own-quantities.md", "quantities of your own as Python functions"],
+  ["docs/own-quantities.md", "custom quantities as Python functions"],
   ["docs/service.md", "running the service"],
   ["docs/api.md", "the API that this page uses"],
 ];
@@ -92,7 +92,7 @@ function overview(place, quantities, sought) {
     fill(list, matches.map(card));
     none.textContent = matches.length
       ? `${matches.length} of ${quantities.length} quantities`
-      : "No quantity has these words.";
+      : "No quantity contains these words.";
   };
   fill(
     place,

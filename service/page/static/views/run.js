@@ -16,7 +16,7 @@ const SIZES = ["crank_mm", "rod_mm", "offset_mm"];
 export async function show(place, { parts, signal }) {
   const number = Number(parts[1]);
   if (!Number.isInteger(number) || number < 1)
-    throw new Problem(404, "A run has a number; choose one of the list.");
+    throw new Problem(404, "A run must be given by its number; choose one from the list.");
   const head = h("header", { class: "run-head" });
   const body = h("div", { class: "run-body" });
   const files = h("ul"); // of the front, that its explorer makes

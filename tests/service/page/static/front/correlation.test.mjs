@@ -57,5 +57,5 @@ test("words follow the number", () => {
     /mostly less angle \(rank correlation −0.80, 50 designs\)/,
   );
   assert.match(inWords("torque", "angle", 0.1, 50), /^Torque and angle hardly go together/);
-  assert.match(inWords("torque", "angle", null, 50), /nothing can be said/);
+  assert.match(inWords("torque", "angle", null, 50), /cannot be compared/);
 });

@@ -61,7 +61,7 @@ test("what is no value of the kind has a sentence, and nothing is nothing", () =
   }
   assert.match(
     parseQuantity("abc", "mm").wrong,
-    /“abc” is no length; write a number, in mm or with its unit/,
+    /“abc” is not a valid length; write a number, in mm or with its unit/,
   );
   for (const text of ["", "  ", "="]) assert.deepEqual(parseQuantity(text, "mm"), { empty: true });
 });

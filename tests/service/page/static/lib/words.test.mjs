@@ -23,8 +23,8 @@ const SAID = [
     "a quantity with a fixed value cannot also be an objective; got “exactly” among the requirements; leave out one of the two",
   ],
   [
-    'it comes from masses that move or weigh, and from loads; got none that is not zero; add for example [mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]',
-    "it comes from masses that move or weigh, and from loads; got none that is not zero; give it under “Masses and loads”",
+    'it needs masses that move or weigh, or loads; got none that is not zero; add for example [mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]',
+    "it needs masses that move or weigh, or loads; got none that is not zero; give it under “Masses and loads”",
   ],
   [
     'it needs a crank speed; got none; add for example [mechanism] speed = "300 rpm"',
@@ -47,12 +47,12 @@ const SAID = [
     "must be a single entry; got a list of 2; keep one of them",
   ],
   [
-    "a self-locking margin comes from friction; got none; add for example [friction] guide = 0.1, or use transmission_angle",
-    "a self-locking margin comes from friction; got none; give it under “Friction”, or use transmission_angle",
+    "a self-locking margin needs friction; got none; add for example [friction] guide = 0.1, or use transmission_angle",
+    "a self-locking margin needs friction; got none; give it under “Friction”, or use transmission_angle",
   ],
   [
-    "it comes from a material and pins; got none; add for example [sections] with pins and [sections.material], as in docs/sizing.md",
-    "it comes from a material and pins; got none; give it under “Material and pins”",
+    "it needs a material and pins; got none; add for example [sections] with pins and [sections.material], as in docs/sizing.md",
+    "it needs a material and pins; got none; give it under “Material and pins”",
   ],
   [
     "forward dynamics needs a motor; got a mechanism without a drive; add a [drive]",
