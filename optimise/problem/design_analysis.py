@@ -144,7 +144,7 @@ class Analysis(Mapping[str, float]):
         design that swings.
         """
         self._require_turning("a cycle")
-        for angle in () if isinstance(angles, int) else numbers(angles, "a crank angle").real.flat:
+        for angle in () if np.ndim(angles) == 0 else numbers(angles, "a crank angle").real.flat:
             if math.isfinite(angle) and not ANGLE.is_plausible(angle):
                 usual = ANGLE.metric
                 doubt = both_readings("crank angle", angle, ANGLE.unit, usual.symbol, usual.factor)

@@ -135,7 +135,7 @@ def test_beside_a_dead_centre_there_are_two_solutions() -> None:
         one, other = linkage.from_slider(position)
         assert 1e-6 < turned(one.crank_angle, other.crank_angle) < 1e-4
     for position in (inner - 1e-12, outer + 1e-12):
-        with pytest.raises(AssemblyError, match="must be in reach"):
+        with pytest.raises(AssemblyError, match="must be within reach"):
             linkage.from_slider(position)
 
 
@@ -177,7 +177,7 @@ def test_a_slider_motion_that_no_crank_gives_is_refused(motion: Any, error: type
 def test_the_ends_of_the_reach_as_a_refusal_tells_them_are_in_reach(branch: Branch) -> None:
     for row in np.concatenate([short_rods(100, seed=43), random_designs(50, seed=44)]):
         linkage = linkage_of(row, branch)
-        with pytest.raises(AssemblyError, match="must be in reach") as refused:
+        with pytest.raises(AssemblyError, match="must be within reach") as refused:
             linkage.from_slider(2.0 * (row[0] + row[1]))
         told = re.findall(r"(-?[\d.e-]+) mm", str(refused.value).partition("; got")[0])
         assert len(told) == 2 * len(slider_ranges(linkage))

@@ -175,7 +175,7 @@ def test_commands_of_a_full_turn_say_so_of_a_job_that_swings(command: Command, g
         ((*OVER, "--duration", "3 s"), "a slow swing must have no duration"),
         ((*OVER, "--law", "harmonic", "--duration", "0 s"), "--duration must be"),
         ((*OVER, "--actuator-tolerance", "-1 mm"), "--actuator-tolerance must"),
-        ((*OVER, "--actuator-tolerance", "1 mm"), "of a slider that drives"),
+        ((*OVER, "--actuator-tolerance", "1 mm"), "needs a slider that drives"),
         ((*OVER, "--curves", "-"), "name one"),
         ((*OVER, "--figure", "swing.svg"), "must end with .png"),
         ((*OVER, "--curves", "."), "must end with .csv"),

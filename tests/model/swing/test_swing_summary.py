@@ -192,7 +192,7 @@ def test_dead_points_are_where_the_slider_turns() -> None:
         ({"start": None, "end": 1.0}, "must be of numbers"),
         ({"start": "1", "end": 1.0}, "must be of numbers"),
         ({"start": 0.0, "end": 1.0, "actuator_tolerance": -1.0}, "zero or more"),
-        ({"start": 0.0, "end": 1.0, "actuator_tolerance": 1e-3}, "of a slider that drives"),
+        ({"start": 0.0, "end": 1.0, "actuator_tolerance": 1e-3}, "needs a slider that drives"),
     ],
 )
 def test_swings_that_are_none_are_refused(given: dict[str, object], words: str) -> None:

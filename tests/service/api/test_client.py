@@ -89,7 +89,7 @@ def test_refusals_are_exceptions_with_the_sentence_of_the_service(client: Client
     number = client.submit(TABLES)["id"]
     with pytest.raises(RunError, match="has no result: it is queued"):
         client.front(number)
-    with pytest.raises(RunError, match="only a cancelled or failed job can go on"):
+    with pytest.raises(RunError, match="only a cancelled or failed job can continue"):
         client.resume(number)
     with pytest.raises(RunError, match="only a job that has ended can be deleted"):
         client.delete(number)

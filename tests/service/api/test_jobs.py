@@ -208,7 +208,7 @@ def test_jobs_are_listed_by_pages_states_and_names(client: httpx.Client, store: 
 def test_a_job_goes_through_its_states(client: httpx.Client, store: Store) -> None:
     submitted(client)
     assert "cancel it first" in refused(client.delete("/jobs/1"), 409)
-    assert "only a cancelled or failed job can go on" in refused(client.post("/jobs/1/resume"), 409)
+    assert "only a cancelled or failed job can continue" in refused(client.post("/jobs/1/resume"), 409)
     cancelled = client.post("/jobs/1/cancel")
     assert (cancelled.status_code, cancelled.json()["state"]) == (200, "cancelled")
     assert client.post("/jobs/1/cancel").json() == cancelled.json()
