@@ -339,8 +339,8 @@ def test_the_scatter_tells_opens_and_keeps_what_is_in_a_box(open_page: Open, lar
     page.mouse.move(middle[0] + 80, middle[1] + 60, steps=4)
     page.mouse.up()
     page.wait_for_url(re.compile("max.rod_mm"))
-    low, high = (float(field(page, f"At {side} crank, mm").input_value()) for side in ("least", "most"))
-    under, over = (float(field(page, f"At {side} rod, mm").input_value()) for side in ("least", "most"))
+    low, high = (float(page.get_by_label(f"At {side} crank, mm").input_value()) for side in ("least", "most"))
+    under, over = (float(page.get_by_label(f"At {side} rod, mm").input_value()) for side in ("least", "most"))
     kept = sum(low <= row["crank_mm"] <= high and under <= row["rod_mm"] <= over for row in rows)  # type: ignore[operator]
     assert 0 < kept < COUNT
     expect(page.get_by_text(f"{kept:,} of 10,000 designs chosen")).to_be_visible()
