@@ -17,7 +17,7 @@ export function sentenceOf(error) {
 }
 
 /** Return a refusal in words, each of its lines a sentence. @param {string} detail */
-function refusalInWords(detail) {
+export function refusalInWords(detail) {
   return detail
     .split("\n")
     .map((line) => capital(inWords(ofField(line.trim()))))
