@@ -15,7 +15,7 @@ from PIL.Image import Image as Picture
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.front.front import ParetoFront
-from slidercrank.service.drawings.parts import Look, fixed_shapes, look_of, moving_shapes, pin_positions
+from slidercrank.service.drawings.linkage_shapes import Look, fixed_shapes, look_of, moving_shapes, pin_positions
 from slidercrank.service.figures.painting import paint, show_rectangle
 from slidercrank.service.figures.style import (
     INK,

@@ -5,7 +5,7 @@ from functools import partial
 from ..model.signals.signals import Signal
 from .cycle_average import CycleAverage
 from .kinds import TORQUE
-from .needs import DRIVEN, WORK
+from .machine_needs import DRIVEN, WORK
 from .peak_torque import PEAK_TORQUE
 from .quantity import Group
 

@@ -9,7 +9,7 @@ from ..model.signals.signals import Signal
 from .cycle_average import CycleAverage
 from .cycle_peak import CyclePeak
 from .kinds import FORCE, TORQUE
-from .needs import COUPLES, MASSES, MOTION, SHAKES, SWINGING_MASSES
+from .machine_needs import COUPLES, MASSES, MOTION, SHAKES, SWINGING_MASSES
 from .quantity import Group
 
 _peak = partial(CyclePeak, group=Group.FORCES, section="10. Motor and balance")

@@ -17,9 +17,9 @@ from ..model.machine.raw import Raw
 from ..model.machine.strength import Strength
 from ..model.signals.peaks import STORED_PEAKS, find_peaks
 from ..model.signals.signals import Signal
-from ..model.strength.places import Eye, StressLocation
 from ..model.strength.section_forces import CRANK, ROD
 from ..model.strength.stress_cycle import CLASSES, LABEL_STEP, stress_peaks
+from ..model.strength.stress_locations import Eye, StressLocation
 from .quantity import Array, Group, Pieces, Quantity, Values, fact, undefined
 from .quantity import Formula as Formula
 

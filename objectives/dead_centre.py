@@ -13,10 +13,10 @@ from ..model.kernel.arithmetic import arcsine, magnitude, root
 from ..model.kinematics.geometry import inner_dead_centre, outer_dead_centre
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw import Raw
-from .greatest_formula import GreatestFormula
+from .greatest_of_formulas import GreatestFormula
 from .kinds import ANGLE, SPEED
-from .needs import EVEN_SPEED, Need
-from .needs import SPEED as TURNS
+from .machine_needs import EVEN_SPEED, Need
+from .machine_needs import SPEED as TURNS
 from .proportions import STROKE
 from .quantity import Array, Formula, Group, Number
 

@@ -15,7 +15,7 @@ from ..model.signals.averages import average_torque
 from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, GUIDE, LOAD, SLIDER_PIN, TurnWork, turn_work
 from .average_torque import MEAN_TORQUE
 from .kinds import ENERGY, RATIO
-from .needs import DRIVEN, HEAT, LOAD_WORK, LOSSES, WORK
+from .machine_needs import DRIVEN, HEAT, LOAD_WORK, LOSSES, WORK
 from .quantity import Array, Domain, Formula, Group, Quantity, Values, undefined
 
 _TURN = 2.0 * math.pi

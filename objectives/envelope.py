@@ -21,7 +21,7 @@ import numpy as np
 from ..model.kernel.arithmetic import magnitude
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw import Raw
-from .greatest_formula import GreatestFormula
+from .greatest_of_formulas import GreatestFormula
 from .kinds import LENGTH
 from .proportions import FOOTPRINT
 from .quantity import Formula, Group

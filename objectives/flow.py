@@ -28,7 +28,7 @@ from ..model.signals.peaks import find_peaks
 from ..model.signals.shaft_statistics import mean_speed_ratio
 from ..model.signals.signals import Signal
 from .kinds import RATIO, VOLUME_FLOW
-from .needs import COMPRESSOR, EVEN_SPEED, SPEED, Need
+from .machine_needs import COMPRESSOR, EVEN_SPEED, SPEED, Need
 from .quantity import Array, Group, Pieces, Quantity, Values, undefined
 
 _MOST_PIECES = 3

@@ -9,7 +9,7 @@ from ..model.machine.mechanism import Mechanism
 from ..model.signals.peaks import Peaks, find_peaks
 from ..model.signals.signals import Signal
 from .kinds import RATIO
-from .needs import Need
+from .machine_needs import Need
 from .quantity import Array, Domain, Group, Pieces, Quantity, Values
 
 

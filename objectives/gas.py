@@ -11,7 +11,7 @@ from ..model.cycle.gas_cycle import GasCycle, gas_cycle
 from ..model.machine.mechanism import Mechanism
 from .energy import EFFICIENCY
 from .kinds import ENERGY, PRESSURE, RATIO, VOLUME
-from .needs import COMPRESSOR, CYLINDER
+from .machine_needs import COMPRESSOR, CYLINDER
 from .quantity import Array, Domain, Group, Quantity, Values, undefined
 
 

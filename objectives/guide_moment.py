@@ -3,7 +3,7 @@
 from ..model.signals.signals import Signal
 from .cycle_peak import CyclePeak
 from .kinds import TORQUE
-from .needs import LOADED, Need
+from .machine_needs import LOADED, Need
 from .quantity import Group
 
 GUIDE_MOMENT = CyclePeak(

@@ -5,7 +5,7 @@ from functools import partial
 from ..model.signals.signals import Signal
 from .cycle_peak import CyclePeak
 from .kinds import FORCE
-from .needs import LOADED, PIVOT_LOADED
+from .machine_needs import LOADED, PIVOT_LOADED
 from .quantity import Group
 
 _force = partial(CyclePeak, kind=FORCE, group=Group.FORCES, section="8. Dynamics", on_datasheet=True)

@@ -10,11 +10,11 @@ from typing import Any
 from ..model.machine.design import link_properties
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw import Raw
-from .greatest_formula import GreatestFormula
+from .greatest_of_formulas import GreatestFormula
 from .kinds import MASS
-from .needs import CRANK_MASS as CRANK_WEIGHS
-from .needs import MASSES
-from .needs import ROD_MASS as ROD_WEIGHS
+from .machine_needs import CRANK_MASS as CRANK_WEIGHS
+from .machine_needs import MASSES
+from .machine_needs import ROD_MASS as ROD_WEIGHS
 from .quantity import Formula, Group, Number
 
 

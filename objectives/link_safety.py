@@ -10,10 +10,10 @@ import numpy as np
 
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import formula_of_numbers
-from ..model.strength.places import LinkBody, StressLocation
+from ..model.strength.stress_locations import LinkBody, StressLocation
 from .bars import LINKS, NEAR, Formula, OfBars, Part, eyes_of, strength_of, stress_divisor, stresses
 from .kinds import RATIO
-from .needs import A_BAR, EVEN_SPEED, LOADED, ONE_TURN, STRENGTH
+from .machine_needs import A_BAR, EVEN_SPEED, LOADED, ONE_TURN, STRENGTH
 from .quantity import Array
 
 _COMPRESSION = ((0.0, 1.0),)

@@ -11,8 +11,8 @@ import numpy as np
 
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import formula_of_numbers
-from ..model.strength.places import LinkBody, StressLocation
 from ..model.strength.stress_cycle import stress_peaks
+from ..model.strength.stress_locations import LinkBody, StressLocation
 from .bars import (
     LINKS,
     NEAR,
@@ -27,7 +27,7 @@ from .bars import (
     stresses,
 )
 from .kinds import PRESSURE, RATIO
-from .needs import A_BAR, CRANK_BAR, EVEN_SPEED, LOADED, ROD_BAR, STRENGTH
+from .machine_needs import A_BAR, CRANK_BAR, EVEN_SPEED, LOADED, ROD_BAR, STRENGTH
 from .quantity import Array
 
 STATIC = ((1.0, 0.0), (0.0, 1.0))

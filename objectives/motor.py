@@ -6,7 +6,7 @@ from ..model.signals.signals import Signal
 from .cycle_average import CycleAverage
 from .cycle_peak import CyclePeak
 from .kinds import INERTIA, POWER
-from .needs import DRIVEN, MASSES, SPEED, WORK
+from .machine_needs import DRIVEN, MASSES, SPEED, WORK
 from .quantity import Group
 
 _peak = partial(CyclePeak, group=Group.DRIVE, section="10. Motor and balance")

@@ -5,7 +5,7 @@ from functools import partial
 from ..model.signals.signals import Signal
 from .cycle_peak import CyclePeak
 from .kinds import TORQUE
-from .needs import DRIVEN, ONE_CYLINDER
+from .machine_needs import DRIVEN, ONE_CYLINDER
 from .quantity import Group
 
 _TORQUE = "T = J alpha + J' omega^2 / 2 + V' - F x'"

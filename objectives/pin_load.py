@@ -12,7 +12,7 @@ from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import PINS, formula_of_numbers
 from .bars import LINKS, NEAR, Formula, OfBars, Part, force_over_area, pin_force, strength_of
 from .kinds import PRESSURE
-from .needs import A_BAR, CRANK_BAR, LOADED, PIVOT_LOADED, ROD_BAR, STRENGTH, Need
+from .machine_needs import A_BAR, CRANK_BAR, LOADED, PIVOT_LOADED, ROD_BAR, STRENGTH, Need
 from .quantity import Array
 
 

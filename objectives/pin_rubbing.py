@@ -17,7 +17,7 @@ from ..model.machine.two_turns import cycle_turns
 from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, SLIDER_PIN, turn_work
 from .bars import LINKS, Formula, OfBars, Part
 from .kinds import LENGTH, PRESSURE_SPEED
-from .needs import EVEN_SPEED, SPEED, STRENGTH, WEARS
+from .machine_needs import EVEN_SPEED, SPEED, STRENGTH, WEARS
 from .pin_load import of_pin
 from .quantity import Array
 

@@ -5,7 +5,7 @@ from functools import partial
 from ..model.signals.signals import Signal
 from .cycle_peak import CyclePeak
 from .kinds import LENGTH
-from .needs import TOLERANCES
+from .machine_needs import TOLERANCES
 from .quantity import Group
 
 _SOURCE = "R. Chetana and T. V. Vineeth Kumar, Analysis of Position Error in Offset Slider Crank Mechanism, Eq. (3)"

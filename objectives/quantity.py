@@ -17,7 +17,7 @@ from ..model.arrays import IntArray
 from ..model.machine.mechanism import Mechanism
 from .bounds import QuantityBounds
 from .kinds import DisplayUnit, Kind
-from .needs import Consequence, Need
+from .machine_needs import Consequence, Need
 
 Better = Literal["low", "high", ""]
 Offer = Literal["motion", "proportions", "requirement", "objective"]

@@ -7,7 +7,7 @@ import numpy as np
 from ..model.cycle.self_locking import varied_margin
 from ..model.machine.mechanism import Mechanism
 from .kinds import ANGLE
-from .needs import FRICTION
+from .machine_needs import FRICTION
 from .quantity import Array, Domain, Group, Quantity, Values
 from .transmission_angle import TRANSMISSION_ANGLE
 

@@ -6,7 +6,7 @@ from ..model.signals.signals import Signal
 from .cycle_peak import CyclePeak
 from .kinds import ACCELERATION, JERK
 from .kinds import SPEED as VELOCITY
-from .needs import MOTION, SPEED
+from .machine_needs import MOTION, SPEED
 from .quantity import Group
 
 _peak = partial(CyclePeak, group=Group.MOTION, section="3. Kinematics")

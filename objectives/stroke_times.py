@@ -15,7 +15,7 @@ from ..model.machine.members import cylinder_count
 from ..model.machine.numbers import formula_of_numbers, require_width
 from ..model.machine.raw import Raw
 from .kinds import RATIO, TIME
-from .needs import ONE_TIMING, REPEATS, SPEED
+from .machine_needs import ONE_TIMING, REPEATS, SPEED
 from .quantity import Array, Group, Pieces, Quantity, Values, undefined
 
 _SECTION = "2. Closed forms"

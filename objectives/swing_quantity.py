@@ -16,7 +16,7 @@ from ..model.swing.peaks import SwingPeaks, holding_peaks, least_drives, swing_p
 from ..model.swing.swing import Swing
 from ..model.swing.swing_types import Driver, Stated
 from ..model.swing.work import swing_efficiency, swing_work
-from .needs import Consequence
+from .machine_needs import Consequence
 from .quantity import MECHANICS, Array, Pieces, Quantity, Values
 
 

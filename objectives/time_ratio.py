@@ -13,7 +13,7 @@ from ..model.machine.mechanism import Mechanism
 from .bounds import LengthRanges, QuantityBounds
 from .closed_form import ClosedFormQuantity
 from .kinds import RATIO
-from .needs import ONE_TIMING
+from .machine_needs import ONE_TIMING
 from .quantity import Array, Domain, Group, Pieces, Values
 from .stroke_times import evaluate_stroke_times
 

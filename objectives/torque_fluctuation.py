@@ -7,7 +7,7 @@ import numpy as np
 from ..model.machine.mechanism import Mechanism
 from ..model.signals.averages import average_torque
 from .kinds import TORQUE
-from .needs import DRIVEN
+from .machine_needs import DRIVEN
 from .quantity import Array, Group, Quantity, Values
 
 _ROUNDING = 4e-15

@@ -24,7 +24,7 @@ from fractions import Fraction
 from typing import Any, Literal
 
 from ..model.errors import InputError
-from .counted import counted
+from .count_text import counted
 from .kinds import KINDS, DisplayUnit, Kind, amount_in, kind_in
 
 Sign = Literal["any", "positive", "zero or more"]

@@ -85,7 +85,7 @@ class Commands(TyperGroup):
             raise
         except Exception as error:
             if os.environ.get(_DEBUG) or hasattr(error, "exit_code"):  # typer's own: usage errors, Exit
-                _say_in_own_words(error)
+                _reword_option_error(error)
                 raise
             if _short_of_memory(error):
                 print_message(_MORE_MEMORY)
@@ -119,7 +119,7 @@ def _input_warnings_said() -> Iterator[None]:
         yield
 
 
-def _say_in_own_words(error: Exception) -> None:
+def _reword_option_error(error: Exception) -> None:
     """Give an option value that its type rejects the same message as in a job."""
     refused: Any = error.__cause__
     if not (isinstance(error, typer.BadParameter) and hasattr(refused, "errors")):

@@ -13,7 +13,7 @@ from ..arrays import Array
 from ..cycle.cycle import cycle
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single import single
+from ..linkage.single_linkage import single
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
 from .lumped import lumped, rotating_and_reciprocating

@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import Array, Mask
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single import single
+from ..linkage.single_linkage import single
 from ..machine.clearance import Clearance
 from ..machine.friction import require_frictionless
 from ..machine.mechanism import Mechanism

@@ -17,7 +17,7 @@ from ..dynamics.segments import CycleWindow, Segment, enter, load_on_slider
 from ..errors import InputError
 from ..kernel.kernel import Row, Table, kernel
 from ..linkage.linkage import Linkage
-from ..linkage.single import single
+from ..linkage.single_linkage import single
 from ..machine.derived import derived
 from ..machine.design import Design, design_at
 from ..machine.mechanism import Mechanism

@@ -22,7 +22,7 @@ import numpy as np
 from ..arrays import Array
 from ..dynamics.segments import crowded, crowding, uncrowded
 from ..linkage.linkage import Linkage
-from ..linkage.single import single
+from ..linkage.single_linkage import single
 from ..machine.mechanism import Mechanism
 from ..machine.two_turns import TURN, cycle_turns
 from ..signals.averages import average

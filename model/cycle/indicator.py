@@ -13,7 +13,7 @@ from ..arrays import Array
 from ..dynamics.gas import compressed_at, expanded_at
 from ..dynamics.segments import crank_angle_at
 from ..linkage.linkage import Linkage
-from ..linkage.single import single
+from ..linkage.single_linkage import single
 from ..machine.loads.cylinder import Cylinder
 from ..machine.loads.engine import LimitedPressure
 from ..machine.mechanism import Mechanism

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..dynamics.torque import Balance, balance
 from ..kinematics.position import motion
 from ..linkage.linkage import Linkage
-from ..linkage.single import single
+from ..linkage.single_linkage import single
 from ..machine.design import DESIGN, LOAD_ROWS, Design, derive, design_at
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism

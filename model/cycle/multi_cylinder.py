@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..linkage.linkage import Linkage
-from ..linkage.single import single
+from ..linkage.single_linkage import single
 from ..machine.arrangement import Arrangement
 from ..machine.mechanism import Mechanism
 from ..machine.members import members

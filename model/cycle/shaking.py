@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..dynamics.inertia import reflected_inertia, shaking
 from ..linkage.linkage import Linkage
-from ..linkage.single import single
+from ..linkage.single_linkage import single
 from ..machine.design import DESIGN, LOAD_ROWS, derive, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw import inertial_inputs, raw_vector

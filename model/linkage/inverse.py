@@ -25,7 +25,7 @@ from ..kinematics import geometry
 from ..kinematics.position import motion
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Branch
-from .values import first_marked, numbers
+from .linkage_values import first_marked, numbers
 
 Solution = Literal["outward", "inward"]
 

@@ -19,8 +19,8 @@ from ..machine.mechanism import Branch
 from ..signals.position_error import Influences, influences
 from .dimensions import DIMENSIONS
 from .from_slider import CrankSolution, crank_solutions
-from .picture import Pose, figure, svg
-from .values import (
+from .linkage_picture import Pose, figure, svg
+from .linkage_values import (
     Kinematics,
     PointMotion,
     dimensions,

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..errors import InputError
 from .linkage import Linkage
-from .values import Kinematics
+from .linkage_values import Kinematics
 
 Dimension = Literal["crank", "rod", "offset"]
 

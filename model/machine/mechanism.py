@@ -18,8 +18,8 @@ from .loads.load import During, Load, require_word
 from .loads.load_text import range_text
 from .slider_distances import SliderDistances
 from .speed_profile import Profile
-from .start import Start
 from .strength import Strength
+from .swing_start import Start
 from .varying import Varying, require_possible, with_values
 
 Branch = Literal["open", "crossed"]

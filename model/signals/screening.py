@@ -30,8 +30,8 @@ from ..machine.memoise import memoise_by_machine
 from ..machine.numbers import numbers_of
 from ..machine.raw import fullest_inputs
 from ..machine.two_turns import one_turn
-from .locate import LANES as LANES
-from .locate import ROWS, prepare, row_of, sweep, two_highest
+from .coarse_peaks import LANES as LANES
+from .coarse_peaks import ROWS, prepare, row_of, sweep, two_highest
 from .signal_inputs import cycle_window
 from .signals import Signal, design_motion, signal
 

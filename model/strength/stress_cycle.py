@@ -33,8 +33,8 @@ from ..kernel.batches import in_chunks, turning
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
 from ..machine.two_turns import cycle_turns, halves
-from .places import StressLocation, StressLocations, stress_at_locations
 from .section_forces import Stress, at_share
+from .stress_locations import StressLocation, StressLocations, stress_at_locations
 from .stress_points import field_of
 from .stress_search import (
     LISTED,

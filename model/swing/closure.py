@@ -19,7 +19,7 @@ from ..kernel.arithmetic import STEP
 from ..kinematics.position import motion
 from ..machine.mechanism import Mechanism
 from .ends import Ends, ends_of
-from .push import bend
+from .slider_pin_force import bend
 from .swing import Swing
 
 _FLAT = 1e-12

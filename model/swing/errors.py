@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..linkage.linkage import Linkage
-from ..linkage.single import one_linkage
+from ..linkage.single_linkage import one_linkage
 from ..machine.mechanism import Mechanism
 from ..tolerance.sources import SOURCES, limits
 from .swing import Swing

@@ -35,7 +35,7 @@ from ..machine.design import Design
 from ..machine.mechanism import Mechanism
 from ..signals.position_error import influences
 from .law import way as way_of
-from .push import PinRows, PinSides, bend, free_pin, newton_step, pin_rows
+from .slider_pin_force import PinRows, PinSides, bend, free_pin, newton_step, pin_rows
 from .swing import Swing
 
 _STILL = 1e-200

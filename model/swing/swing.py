@@ -16,7 +16,7 @@ from ..arrays import Array
 from ..checks import keep_tuples, require_all_finite, require_numbers
 from ..errors import AssemblyError, InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single import one_linkage
+from ..linkage.single_linkage import one_linkage
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
 from .angles_from_position import crank_angles_at

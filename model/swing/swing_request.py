@@ -8,7 +8,7 @@ from typing import Any
 
 from ..errors import InputError
 from ..machine.mechanism import Mechanism
-from ..machine.start import Start
+from ..machine.swing_start import Start
 from .swing import Swing, started
 from .swing_types import Driver, Law, Side
 

@@ -21,7 +21,7 @@ from ..machine.design import Design, design_at
 from ..machine.raw import Loads
 from ..signals.position_error import influences, worst_case
 from .law import code_of, way_at
-from .push import PinSides, bend, free_pin, newton_step, pin_rows
+from .slider_pin_force import PinSides, bend, free_pin, newton_step, pin_rows
 from .swing import Swing
 
 Complexes = NDArray[np.complex128]

@@ -34,7 +34,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single import single
+from ..linkage.single_linkage import single
 from ..machine.mechanism import Mechanism
 from ..signals.first_greatest import angle_in_cycle
 from .sources import counted_angles, limit_box

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..cycle.cycle import cycle
 from ..linkage.linkage import Linkage
-from ..linkage.single import single
+from ..linkage.single_linkage import single
 from ..machine.mechanism import Mechanism
 from .sources import limit_box, limits, source_influences
 

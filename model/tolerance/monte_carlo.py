@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single import single
+from ..linkage.single_linkage import single
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
 from .sources import counted_angles, limits, source_influences

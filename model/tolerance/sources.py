@@ -11,7 +11,7 @@ from ..arrays import Array
 from ..dynamics.segments import crank_angle_at, crowded, crowding, uncrowded
 from ..errors import AssemblyError, InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single import one_linkage, single
+from ..linkage.single_linkage import one_linkage, single
 from ..machine.mechanism import Mechanism
 
 SOURCES = (

@@ -39,7 +39,7 @@ from ..dynamics.torque import forces, smooth_load
 from ..errors import InputError
 from ..kernel.kernel import Integers, Row, Table, kernel
 from ..linkage.linkage import Linkage
-from ..linkage.single import single
+from ..linkage.single_linkage import single
 from ..machine.arrangement import require_one_cylinder
 from ..machine.derived import derived
 from ..machine.design import design_at

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..linkage.linkage import Linkage
-from ..linkage.single import single
+from ..linkage.single_linkage import single
 from ..machine.drive import Drive, speed_range
 from ..machine.mechanism import Mechanism
 from .equation import TURN, Equation, Span

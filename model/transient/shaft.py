@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..linkage.linkage import Linkage
-from ..linkage.single import single
+from ..linkage.single_linkage import single
 from ..machine.mechanism import Mechanism
 from ..machine.members import Member, members
 from ..machine.two_turns import cycle_turns, half_at, halves

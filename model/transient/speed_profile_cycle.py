@@ -23,7 +23,7 @@ from ..cycle.cycle import Cycle, breakpoints, cycle
 from ..cycle.shaking import shaking_curves
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single import single
+from ..linkage.single_linkage import single
 from ..machine.mechanism import Mechanism
 from ..machine.two_turns import TURN, cycle_turns
 from ..signals.first_greatest import angle_in_cycle

@@ -14,7 +14,7 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import require_width
 from ...model.machine.varying import Varying, number_at
-from ..needs import Consequence
+from ..machine_needs import Consequence
 from ..quantity import Array, Pieces, Quantity, Values
 from .expression import Call, Name, Node, fold
 from .kinks import Kinks, TwoSided, pieces_of, smooth, two_sided

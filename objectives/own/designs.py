@@ -17,7 +17,7 @@ from ...model.kinematics import geometry
 from ...model.kinematics.position import Motion, motion, third_derivative
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.complex_forces import complex_joint_forces
-from ..needs import ONE_TIMING
+from ..machine_needs import ONE_TIMING
 
 Numbers = NDArray[Any]
 Curve = Callable[[Numbers], Numbers]

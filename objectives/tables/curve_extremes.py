@@ -21,13 +21,13 @@ from ...model.cycle.multi_cylinder import multi_cylinder_breakpoints
 from ...model.cycle.self_locking import locking_margin
 from ...model.dynamics.segments import crowded, crowding, uncrowded
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.single import single
+from ...model.linkage.single_linkage import single
 from ...model.machine.friction import Friction
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
 from ...model.signals.first_greatest import angle_in_cycle, first_greatest
 from ..kinds import Kind
-from ..needs import DRIVEN, LOADED, PIVOT_LOADED, SPEED, TOLERANCES, Need
+from ..machine_needs import DRIVEN, LOADED, PIVOT_LOADED, SPEED, TOLERANCES, Need
 from ..position_error import POSITION_ERROR, POSITION_ERROR_RSS
 from ..quantity import Array
 from .cycle_curves import Curve, cycle_curves

@@ -14,7 +14,7 @@ from ...model.cycle.multi_cylinder import multi_cylinder_curves
 from ...model.errors import InputError
 from ...model.kinematics.position import Motion, motion, third_derivative
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.values import direction, numbers
+from ...model.linkage.linkage_values import direction, numbers
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.members import cylinder_count
 from ...model.machine.two_turns import cycle_turns

@@ -12,7 +12,7 @@ from ...model.arrays import Mask
 from ...model.errors import InputError, InputWarning
 from ...model.input_warning import LONGEST
 from ...model.linkage.dimensions import DIMENSIONS
-from ...model.linkage.values import in_both_units
+from ...model.linkage.linkage_values import in_both_units
 from ...model.machine.mechanism import Mechanism
 from ..quantity import Array
 

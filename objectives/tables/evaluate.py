@@ -19,7 +19,7 @@ from ..cycle_peak import screened
 from ..formula.quantity import leaves_of, with_formulas
 from ..formula.resolve import resolve_quantities
 from ..quantity import Array, Quantity, Values
-from .design_arrays import countable, given_designs, numbers_of, require_machine, warn_of_lengths
+from .design_input import countable, given_designs, numbers_of, require_machine, warn_of_lengths
 from .swinging import require_in_motion, require_of_swing
 
 

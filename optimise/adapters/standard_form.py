@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from ...model.errors import InputError
 from ...objectives.quantity import Array
-from ...objectives.tables.design_arrays import given_designs
+from ...objectives.tables.design_input import given_designs
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem, require_problem
 from ..problem.requirements import Constraint, Objective

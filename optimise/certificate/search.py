@@ -17,7 +17,7 @@ from ..search.assemble import columns_of, span_of
 from ..search.candidates import Candidates
 from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
-from ..search.recorded import polish
+from ..search.recorded_polish import polish
 from .boundable import is_usable
 from .boxes import Boxes
 from .certificate import Certificate, Status, Step, message_of

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...model.arrays import Array, IntArray, Mask
 from ...model.errors import InputError
-from ..front.constant import spread
+from ..front.constant_numbers import spread
 from ..front.dominance import nondominated
 from ..front.hypervolume import hypervolume, scaling
 

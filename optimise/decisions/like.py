@@ -21,7 +21,7 @@ from ...model.arrays import Array, IntArray
 from ...model.errors import InputError
 from ...model.input_warning import warn_user
 from ...model.linkage.dimensions import DIMENSIONS
-from ...model.linkage.values import in_both_units
+from ...model.linkage.linkage_values import in_both_units
 from ..front.dominance import dominating
 from ..front.front import ParetoFront, pair, require_front
 from ..front.hypervolume import scaling
@@ -35,7 +35,7 @@ from ..search.assemble import assemble, empty_front
 from ..search.candidates import FrontCandidates
 from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
-from ..search.recorded import polish
+from ..search.recorded_polish import polish
 from ..search.sampling import generator
 from ..search.search import Archive, Run, enumerate_branches, explore, searched_evaluators
 from ..solve import solve

@@ -30,7 +30,7 @@ from ..front.front import ParetoFront, require_front
 from ..front.rounding import ranges_or_sizes
 from ..methods.achievement import Achievement
 from ..methods.registry import require_gradients
-from ..methods.scalar import SUM, Form
+from ..methods.scalar_objective import SUM, Form
 from ..problem.violation import FEASIBLE
 from ..search.assemble import assemble, empty_front
 from ..search.candidates import Candidates, FrontCandidates

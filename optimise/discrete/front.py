@@ -15,7 +15,7 @@ import numpy as np
 
 from ...model.arrays import Array, IntArray
 from ...objectives.tables.varying_column import columns_of_numbers
-from ..front.discrete_answer import DiscreteSearch
+from ..front.discrete_search import DiscreteSearch
 from ..front.dominance import nondominated
 from ..front.front import ParetoFront, Status
 from ..front.hypervolume import ReportProgress, choose
@@ -24,7 +24,7 @@ from ..problem.problem import Problem
 from ..problem.robust import asks_robust
 from ..problem.table_columns import STATUS
 from .combinations import Axes, Judged, has_judged_neighbours, judge_all, judge_near, neighbours, with_values
-from .words import failure_message, result_message
+from .discrete_messages import failure_message, result_message
 
 MOST, _MOST_ROBUST = 5_000_000, 1 << 13
 """Combinations that are designs, all judged; robust quantities take a hundred times as long."""

@@ -10,7 +10,7 @@ from ...model.errors import InfeasibleError
 from ...model.linkage.dimensions import DIMENSIONS
 from ..problem.problem import Problem
 from .combinations import Axes, Judged, judge_all
-from .words import failure_message
+from .discrete_messages import failure_message
 
 MOST = 200_000
 """Combinations that are looked at."""

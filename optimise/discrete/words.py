@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.counted import counted
+from ...objectives.count_text import counted
 from ...objectives.tables.varying_column import columns_of_numbers
 from ..front.front import ParetoFront
 from ..problem.problem import Problem

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.errors import InputError
-from ...objectives.counted import counted
+from ...objectives.count_text import counted
 from ...objectives.formula.quantity import FormulaQuantity
 from ..problem.problem import Problem
 from ..problem.violation import constraints_of

@@ -29,11 +29,11 @@ from ..problem.problem import Problem
 from ..problem.questions import question_to, subject_of
 from ..problem.requirements import Objective
 from ..problem.table_columns import least_field
-from .constant import spread
-from .discrete_answer import DiscreteSearch
+from .constant_numbers import spread
+from .discrete_search import DiscreteSearch
+from .front_picture import figure, svg
 from .nonnegative import nonnegative_least_squares
 from .picking import Normalisation, Priority, by_range, knee, lexicographic, topsis
-from .picture import figure, svg
 from .progress import Progress
 from .rounded import Rounded
 from .rounding import doubtful_misses, ranges_or_sizes, rounding

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...model.arrays import Array, IntArray
 from ...model.kernel.kernel import Row, Table, kernel
-from .constant import spread
+from .constant_numbers import spread
 
 REFERENCE = 1.1
 """Reference point in the scaled space, where ideal is 0 and nadir 1."""

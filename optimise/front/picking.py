@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from ...model.arrays import Array
 from ...model.errors import InputError
 from ...model.machine.loads.load import require_word
-from .constant import spread
+from .constant_numbers import spread
 
 Normalisation = Literal["range", "vector"]
 _TIE = 1e-9  # of a range, of a closeness: nearer together is rounding

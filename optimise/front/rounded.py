@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from ...model.arrays import Array
-from ...objectives.counted import counted
+from ...objectives.count_text import counted
 from ...objectives.kinds import System, metric_unit_in
 from ...objectives.tables.varying_column import columns_of_numbers
 from ..problem.problem import Problem

@@ -25,7 +25,7 @@ from ...objectives.units import quote, to_si
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
 from ..problem.violation import FEASIBLE, constraints_of
-from .constant import spread
+from .constant_numbers import spread
 from .rounded import Rounded
 from .rounding_search import RoundingSearch, Steps, number_text
 

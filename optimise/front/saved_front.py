@@ -15,7 +15,7 @@ from ...model.arrays import Array
 from ...model.errors import InputError
 from ..problem.problem import Problem
 from ..problem.violation import all_minimised
-from .discrete_answer import DiscreteSearch
+from .discrete_search import DiscreteSearch
 from .progress import Progress
 
 _FORM = 1

@@ -7,7 +7,7 @@ import numpy as np
 from ...model.arrays import Array
 from ..problem.requirements import Constraint
 from ..problem.violation import sides
-from .constant import is_constant
+from .constant_numbers import is_constant
 
 
 def slack_of(constraint: Constraint, values: Array) -> Array:

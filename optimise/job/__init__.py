@@ -29,9 +29,9 @@ from .messages import LONGEST, MOST, explain
 from .model import Job, job_with
 from .named_files import Files
 from .plain_numbers import PlainNumbers, plain_bounds, plain_values, read_noting
+from .problem_of_job import problem_of
 from .schema import schema_of
 from .speed_profile import speeds_file, with_speeds
-from .stated import problem_of
 from .target_motion import points_file, with_points
 from .toml_errors import with_lines
 from .varying import with_values

@@ -10,7 +10,7 @@ from pydantic_core import CoreSchema
 
 from ...model.errors import InputError, JobError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.amount import Amount, amount_of, kind_of_amount
+from ...objectives.catalogue_amount import Amount, amount_of, kind_of_amount
 from ...objectives.formula.expression import ARGUMENTS
 from ...objectives.kinds import RATIO, Kind
 from ...objectives.own.quantity import require_name

@@ -26,11 +26,11 @@ from ..problem.requirements import Range, merged
 from ..problem.restatement import restate
 from ..problem.zero_objectives import require_ranking
 from ..search.elimination import require_slow_side, signs
-from .box import Box, require_reachable
 from .linear_contradictions import require_compatible
 from .messages import key_of
 from .options import require_options
 from .pins import require_eyes_wider_than_pins
+from .possible_values import Box, require_reachable
 
 
 def require_consistent(problem: Problem) -> None:

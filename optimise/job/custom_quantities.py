@@ -28,7 +28,7 @@ from ...objectives.own.quantity import (
 from ...objectives.registry import FACTS
 from ...objectives.units import is_value, kind_for, per_si, quote
 from .amounts import amounts_in, kinds_of_amounts
-from .kinds import Kinds
+from .part_kinds import Kinds
 from .quantities import SLOW_STROKE, Stated
 from .values import Part, Physical, optional, required
 

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 from pydantic import BeforeValidator, Discriminator, Tag
 
 from ...model.machine import drive as model
-from .kinds import Kinds
+from .part_kinds import Kinds
 from .values import (
     AngularSpeed,
     Built,

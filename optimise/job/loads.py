@@ -22,9 +22,9 @@ from ...model.machine.loads import load as model
 from ...model.machine.loads.registry import kinds
 from ...objectives.units import quote
 from . import values
-from .kinds import Kinds
 from .load_file import tables_of_points
 from .named_files import MOST_POINTS, SOURCE, unread_file_error
+from .part_kinds import Kinds
 from .values import Checked, optional
 
 

@@ -10,12 +10,12 @@ from pydantic import Field, create_model
 
 from ...model.errors import InputError, JobError
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.start import Start
+from ...model.machine.swing_start import Start
 from ...model.machine.varying import Varying
 from ...model.swing.swing import Swing
 from ...model.swing.swing_types import Driver, Law, Side, Stated
 from ...objectives.kinds import ANGLE
-from ...objectives.needs import SPEED
+from ...objectives.machine_needs import SPEED
 from ...objectives.quantity import Quantity
 from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
 from ...objectives.tables.swinging import swing_facts

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from ...objectives.counted import counted
+from ...objectives.count_text import counted
 from ...objectives.registry import FACTS
 from ...objectives.units import quote
 from .catalogue import Catalogue, with_options

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from ...model.errors import InfeasibleError, InputError
 from ..problem.problem import Problem
-from .box import SLACK, Box
+from .possible_values import SLACK, Box
 
 _MOST = 5  # told one by one
 

@@ -21,7 +21,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.errors import InputError
-from ...objectives.counted import counted
+from ...objectives.count_text import counted
 from ...objectives.units import is_value, number_and_unit, quote
 from .table_layout import (
     EXPONENT,

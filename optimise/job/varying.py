@@ -20,9 +20,9 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import SlowStroke
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import unit_of
-from ...model.machine.start import Start
+from ...model.machine.swing_start import Start
 from ...model.machine.varying import Varying
-from ...objectives.amount import Amount
+from ...objectives.catalogue_amount import Amount
 from ...objectives.formula.formulas import Formulas
 from ...objectives.kinds import ANGULAR_SPEED
 from ...objectives.units import quote, spread

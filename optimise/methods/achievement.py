@@ -12,7 +12,7 @@ import numpy as np
 from ...model.arrays import Array, Mask
 from ..search.evaluation import Evaluator
 from ..search.pieces import Rows
-from .scalar import Form
+from .scalar_objective import Form
 
 _LABEL_STEP = 100.0  # between the labels of two objectives' pieces, so that no peak is taken for one of another curve
 

@@ -16,7 +16,7 @@ from ..search.sampling import generator
 from ..search.search import Archive, Run
 from .local import archive_optimum, by_slsqp
 from .registry import Method, budget
-from .scalar import Form, Programme
+from .scalar_objective import Form, Programme
 
 _POPULATION = 20  # of differential evolution, members an unknown
 _RECOMBINATION = 0.9  # high: such valleys are not along an axis

@@ -18,7 +18,7 @@ from ..search.evaluation import Evaluator
 from ..search.sampling import first_samples
 from ..search.search import BANDS, Archive, Run
 from .registry import Method, budget
-from .scalar import Form, Programme
+from .scalar_objective import Form, Programme
 
 SAMPLES = 16384
 """Samples over all branches."""

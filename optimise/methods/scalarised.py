@@ -25,7 +25,7 @@ from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
 from .local import archive_optimum, by_slsqp, is_budget_spent, samples
 from .registry import Method
-from .scalar import SUM, Form, Programme
+from .scalar_objective import SUM, Form, Programme
 
 _FIRST = 0.5  # problems of the first round a delivered design: many have the same optimum
 _MORE = 3.0  # optima wanted a delivered design: the best are chosen

@@ -15,8 +15,8 @@ from ...model.errors import InputError
 from ...model.input_warning import both_readings, warn_user
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.single import single
-from ...model.linkage.values import numbers
+from ...model.linkage.linkage_values import numbers
+from ...model.linkage.single_linkage import single
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
 from ...model.swing.swing import Swing, require_swing
@@ -26,7 +26,7 @@ from ...objectives.kinds import ANGLE, unit_text
 from ...objectives.quantity import Array, Quantity, Values
 from ...objectives.registry import QUANTITIES
 from ...objectives.tables.cycle_curves import cycle_curves, cycle_table, even_angles
-from ...objectives.tables.design_arrays import (
+from ...objectives.tables.design_input import (
     countable,
     given_designs,
     numbers_of,

@@ -18,12 +18,12 @@ from ...model.linkage.linkage import Linkage, SlowStroke
 from ...model.machine.crank_loads import require_no_winding
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
-from ...objectives.amount import Amount, with_amounts
 from ...objectives.bounds import QuantityBounds
+from ...objectives.catalogue_amount import Amount, with_amounts
 from ...objectives.formula.resolve import is_formula, resolve_quantities
 from ...objectives.quantity import Array, Quantity
 from ...objectives.registry import QUANTITIES, listed
-from ...objectives.tables.design_arrays import given_designs, numbers_of, warn_of_lengths
+from ...objectives.tables.design_input import given_designs, numbers_of, warn_of_lengths
 from ...objectives.tables.evaluate import evaluated
 from ...objectives.tables.swinging import (
     require_in_motion,

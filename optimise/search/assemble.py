@@ -9,8 +9,8 @@ import numpy as np
 
 from ...model.arrays import Array, IntArray, Mask, distinct
 from ...model.kinematics.in_line import without_rounding
-from ...objectives.amount import Amount
-from ...objectives.counted import counted
+from ...objectives.catalogue_amount import Amount
+from ...objectives.count_text import counted
 from ...objectives.formula.quantity import FormulaQuantity
 from ..front.front import Columns, ParetoFront, Status
 from ..front.hypervolume import ReportProgress, choose, hypervolume, ignore_progress, scaling
@@ -20,9 +20,9 @@ from ..problem.problem import Problem
 from ..problem.table_columns import RESIDUAL, STATUS, choice_field, note_field, slack_field
 from ..problem.violation import constraints_of
 from .candidates import FrontCandidates
+from .cheapest_sufficient import least_options
 from .evaluation import Evaluator
 from .fingerprint import versions
-from .least_options import least_options
 from .pieces import ACTIVE
 from .search import Run
 

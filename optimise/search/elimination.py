@@ -27,8 +27,8 @@ from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
 from ..problem.restatement import restate
+from .elimination_rule import Rule
 from .linear_rules import NOTHING, Block, blocks, linear_equations, solution, target_of
-from .rule import Rule
 from .swing_rules import swing_rules
 
 _LINEAR = "linear: "

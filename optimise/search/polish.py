@@ -24,7 +24,7 @@ from ...model.arrays import Array, IntArray, Mask, row_lengths
 from ..front.stationarity import multipliers, strict_multipliers
 from .candidates import Polished, ragged
 from .pieces import ACTIVE, Rows, active_pieces, alone, bent, box, difference, greatest
-from .programme import FIRM, LOSS, ROUNDING, VIOLATION, Aim, Step, roots, solve_step
+from .polish_programme import FIRM, LOSS, ROUNDING, VIOLATION, Aim, Step, roots, solve_step
 
 ITERATIONS = 100
 CONVERGED = 1e-9

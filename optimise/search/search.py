@@ -19,8 +19,8 @@ from ..problem.violation import FEASIBLE
 from .candidates import Candidates, FrontCandidates
 from .checkpoints import Checkpoints
 from .evaluation import Evaluator
-from .growth import Growth
-from .recorded import polished
+from .front_growth import Growth
+from .recorded_polish import polished
 from .sampling import first_samples, generator, sample_near
 from .violation import least_violation
 

@@ -17,7 +17,7 @@ import numpy as np
 from ...model.swing.ends import start_column
 from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE
 from ..problem.problem import Problem
-from .rule import Rule
+from .elimination_rule import Rule
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from ..problem.violation import FEASIBLE
 from .candidates import Polished
 from .evaluation import Evaluator
 from .pieces import Rows
-from .recorded import polished
+from .recorded_polish import polished
 from .sampling import distant_rows
 
 _BATCH = 256  # points examined between two checks whether the best are among them

@@ -33,7 +33,7 @@ from ...model.cycle.shaking import ShakingCurves, shaking_curves
 from ...model.errors import InputError
 from ...model.extras import required
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.single import single
+from ...model.linkage.single_linkage import single
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.members import require_plain
@@ -41,8 +41,8 @@ from ...model.signals.averages import average
 from ...model.signals.first_peak import first_peaks
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
+from .input_words import Measure
 from .shaking_rows import mean_rows, moving_moment, rows, with_masses
-from .words import Measure
 
 ROUNDS = 60
 _START = 24  # crank angles a turn that the first round has

@@ -14,7 +14,7 @@ from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
 from ...model.tolerance.sources import counted_angles, limits, source_influences
 from ..problem.costs import NAMES, Costs
-from .words import Kind
+from .input_words import Kind
 
 _START = 32  # crank angles a turn in `start`
 _TURN = 2.0 * np.pi

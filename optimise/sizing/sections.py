@@ -22,7 +22,7 @@ from ...model.arrays import Array
 from ...model.errors import InfeasibleError, InputError
 from ...model.extras import required
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.single import single
+from ...model.linkage.single_linkage import single
 from ...model.machine.friction import require_frictionless
 from ...model.machine.links import Bar
 from ...model.machine.mechanism import Mechanism

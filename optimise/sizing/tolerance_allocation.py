@@ -36,12 +36,12 @@ from ...model.arrays import Array
 from ...model.errors import InfeasibleError, InputError
 from ...model.extras import required
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.single import single
+from ...model.linkage.single_linkage import single
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism, Window
 from ..problem.costs import Costs
 from .error_rows import ErrorRows
-from .words import Kind
+from .input_words import Kind
 
 ROUNDS = 60
 _NEAR = 1e-3  # relative excess below which the optimality conditions are tried

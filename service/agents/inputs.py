@@ -39,9 +39,11 @@ if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
 
 _TABLES = ", ".join(f"{name} ({field.description})" for name, field in JobModel.model_fields.items())
-_SHOWN = [f"{name} ({topic.shows})" for name, topic in TOPICS.items()]
-_SHOWN += [f"{name} ({command.help.partition('.')[0]}; alone)" for name, command in QUESTION_COMMANDS.items()]
-_SHOWN += [f"{name} ({one.shows}; alone, of {SUBJECTS[one.subject]})" for name, one in FRONT_OR_JOB_QUESTIONS.items()]
+_TOPIC_WORDS = [f"{name} ({topic.shows})" for name, topic in TOPICS.items()]
+_TOPIC_WORDS += [f"{name} ({command.help.partition('.')[0]}; alone)" for name, command in QUESTION_COMMANDS.items()]
+_TOPIC_WORDS += [
+    f"{name} ({one.shows}; alone, of {SUBJECTS[one.subject]})" for name, one in FRONT_OR_JOB_QUESTIONS.items()
+]
 _INPUTS: dict[str, dict[str, Any]] = {}
 for _topic in QUESTIONS.values():
     for _input in _topic.inputs:
@@ -65,7 +67,9 @@ Files = Annotated[
 Number = Annotated[int | None, Field(description="Number of a design in the run.", ge=1)]
 Topics = Annotated[
     list[str],
-    Field(description=f"Analyses of the design, or {ALL} for every analysis of a rotating crank: {'; '.join(_SHOWN)}."),
+    Field(
+        description=f"Analyses of the design, or {ALL} for every analysis of a rotating crank: {'; '.join(_TOPIC_WORDS)}."
+    ),
 ]
 TopicInputs = Annotated[
     dict[str, Any],

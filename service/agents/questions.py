@@ -21,7 +21,7 @@ from ..designs.quantity_facts import facts_of_all
 from ..designs.rotating_crank import require_rotating_crank
 from ..jobs.find_run import run_folders
 from ..jobs.job_toml import job_toml
-from ..jobs.submission import ending_own
+from ..jobs.submission import ending_custom_functions
 from ..presets.jobs import shipped_jobs
 from ..questions.answer_types import schema_of as schema_of_answer
 from ..questions.design_question import DesignQuestion
@@ -124,7 +124,7 @@ def ask(call: Call, *, subject: Design, question: TopicRequest) -> ToolAnswer:
         return _ask_front_or_job(call, subject, question, FRONT_OR_JOB_QUESTIONS[question.alone])
     options = question.options()
     machine = subject.machine(call)
-    with ending_own(machine.problem):
+    with ending_custom_functions(machine.problem):
         alone = question.alone or ("swing" if machine.problem.motion is not None and not question.topics else None)
         if alone is not None:
             return _analyse_by_command(alone, machine, question)
@@ -211,7 +211,7 @@ def _ask_front_or_job(
     else:
         folder, target, row = subject.front(call)
         problem, place = target.problem, {"run": path_text(folder)}
-    with nullcontext() if problem is None else ending_own(problem):
+    with nullcontext() if problem is None else ending_custom_functions(problem):
         result = definition.ask(target, inputs, row=row, listener=SearchListener(cancelled=call.cancelled))
     text = _answer_text(result.blocks, result.notes, question.units)
     return ToolAnswer(place | result.record(question.units), text, is_error=not result.is_satisfied)

@@ -17,7 +17,7 @@ from ..designs.display_units import result_in
 from ..designs.picking_options import require_single_choice
 from ..designs.selection import no_match_message, numbered_rows, result_part
 from ..designs.stored_designs import front_of, stored_design
-from ..jobs.submission import LONGEST_CALL, ending_own, job_json
+from ..jobs.submission import LONGEST_CALL, ending_custom_functions, job_json
 from ..motion.design_file import ENDINGS, design_file
 from ..questions.discovery import ALL
 from ..runs.result import Result, csv_text, json_text, unsearched_result
@@ -31,7 +31,7 @@ from .inputs import Files, FrontPart, Number, OptionalJob
 if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
     from ..store import Store
-    from ..workers.own_search import Opened
+    from ..workers.direct_search import Opened
 
 Written = Literal["csv", "json", "figures", "report", "pdf", "dxf", "svg", "motion", "gif", "cycle"]
 _OF_RUN = {"csv", "json", "figures"}
@@ -63,7 +63,7 @@ class Search:
 
     def open_run(self, call: Call, store: Store, settings: SettingOptions) -> AbstractContextManager[Opened]:
         """Return the context of its run. Raises `InputError` if neither or both of job and run are given."""
-        from ..workers.own_search import new_run, resumed_run, with_settings
+        from ..workers.direct_search import new_run, resumed_run, with_settings
 
         if (self.job is None) == (self.resume is None):
             received = "both" if self.job else "neither"
@@ -85,10 +85,10 @@ def optimise(call: Call, *, search: Search, settings: SettingOptions, part: Fron
     those of the designs, knee and extremes their places in the answer.
     """
     from ..store import Limits
+    from ..workers.direct_search import keep_front, renewing_claim
+    from ..workers.direct_search import search as front_of_run
     from ..workers.engines import EngineOptions, engine_of
     from ..workers.heartbeat import Budget
-    from ..workers.own_search import keep_front, kept_alive
-    from ..workers.own_search import search as front_of_run
 
     with ExitStack() as entered:
         try:
@@ -96,16 +96,18 @@ def optimise(call: Call, *, search: Search, settings: SettingOptions, part: Fron
         except InfeasibleError as error:
             return ToolAnswer(unsearched_result(error).record(), str(error), is_error=True)
         run, problem, claim = opened
-        entered.enter_context(kept_alive(claim, again=f"optimise with resume = {claim.job.run}"))
+        entered.enter_context(renewing_claim(claim, again=f"optimise with resume = {claim.job.run}"))
         budget = Budget(Limits(seconds=search.seconds), waited=lambda: claim.waited)
         engine = entered.enter_context(engine_of(EngineOptions()))
-        entered.enter_context(ending_own(problem, engine))
+        entered.enter_context(ending_custom_functions(problem, engine))
         front = front_of_run(opened, engine, cancelled=lambda: call.cancelled() or budget.spent(), show=call.report)
         result = keep_front(opened, front, budget)
-    shown_result = result_in(result, part.units, problem)
+    result_in_units = result_in(result, part.units, problem)
     remedy = {"done": "", "infeasible": ""}.get(result.status, f"; continue it with optimise, resume = {run.path.name}")
-    text = text_of(lambda screen: show_result(screen, shown_result))
-    record = _record(shown_result, spread_rows(shown_result, range(len(shown_result.designs)), part.rows), part)
+    text = text_of(lambda screen: show_result(screen, result_in_units))
+    record = _record(
+        result_in_units, spread_rows(result_in_units, range(len(result_in_units.designs)), part.rows), part
+    )
     return ToolAnswer(record, f"{text}\nRun: {run.path.name}{remedy}", is_error=result.status != "done")
 
 
@@ -119,17 +121,18 @@ def front(call: Call, *, run: Run, selection: Selection, pick: Pick, part: Front
     picked = _chosen_number(result, chosen, pick)
     if not chosen:
         raise InfeasibleError(no_match_message(result, selection.where or []))
-    shown_result = result_in(
+    result_in_units = result_in(
         result, part.units, None if part.units == "metric" else call.problem_of_run(folder, result)
     )
     if picked is None:
-        rows = spread_rows(shown_result, chosen, part.rows)
+        rows = spread_rows(result_in_units, chosen, part.rows)
         return ToolAnswer(
-            _record(shown_result, rows, part), text_of(lambda screen: show_front(screen, shown_result, rows, limit=0))
+            _record(result_in_units, rows, part),
+            text_of(lambda screen: show_front(screen, result_in_units, rows, limit=0)),
         )
-    record = _record(shown_result, [picked], replace(part, columns=part.columns or [ALL]))
+    record = _record(result_in_units, [picked], replace(part, columns=part.columns or [ALL]))
     record["trade_offs"] = record["trade_offs"] or _trade_offs(call, folder, result, picked, part.units)
-    text = text_of(lambda screen: show_design(screen, shown_result.designs[picked]))
+    text = text_of(lambda screen: show_design(screen, result_in_units.designs[picked]))
     return ToolAnswer(record, "\n".join((f"design {picked + 1}", text, *record["trade_offs"])))
 
 
@@ -157,7 +160,7 @@ def files(
     picked = _chosen_number(result, [], Pick(design=design))
     number = 1 + ((result.knee or 0) if picked is None else picked)
     problem = call.problem_of_run(folder, result)
-    stored, shown_result = stored_design(problem, result, number), result_in(result, units, problem)
+    stored, result_in_units = stored_design(problem, result, number), result_in(result, units, problem)
     named = {"name": result.name, "design": f"design {number}"}
     written: dict[str, list[str]] = {}
     for kind in dict.fromkeys(write):
@@ -168,9 +171,9 @@ def files(
             continue
         content: str | bytes
         if kind == "csv":
-            content = csv_text(numbered_rows(shown_result.designs))
+            content = csv_text(numbered_rows(result_in_units.designs))
         elif kind == "json":
-            content = json_text(shown_result.record())
+            content = json_text(result_in_units.record())
         elif kind in ENDINGS:
             content = design_file(kind, stored, None, units, **named)
         else:

@@ -9,7 +9,7 @@ from pydantic import BaseModel, Field
 
 from ..designs.active_limits import active_limits
 from .computing import QuickRoute
-from .problems import problem_responses
+from .problem_documents import problem_responses
 from .settings import StoreDep
 from .stored_fronts import FrontDep
 

@@ -27,7 +27,7 @@ from .computing import LongRoute
 from .fronts import OfDesign
 from .job_requests import problem_of_tables
 from .models import UnitsParameter
-from .problems import problem_responses
+from .problem_documents import problem_responses
 from .settings import SettingsDep
 from .stored_fronts import DesignNumber, FrontDep
 

@@ -25,7 +25,7 @@ from .computing import Computing
 from .events import Feed
 from .health import Metrics, Timed
 from .job_requests import EXAMPLE, JSON, TOML, Submission
-from .problems import Problem, answer_problems, problem_responses
+from .problem_documents import Problem, answer_problems, problem_responses
 from .security import Guard
 from .settings import DEFAULT, Settings
 from .stored_fronts import StoredFronts
@@ -105,7 +105,7 @@ def create_app(store: Store, settings: Settings = DEFAULT, computing: Computing 
     )
     app.state.store = store
     app.state.settings = settings
-    app.state.told = {}  # logged faults with their times
+    app.state.fault_times = {}  # logged faults with their times
     app.state.reading = asyncio.Lock()
     app.state.computing = computing
     app.state.turn_here = asyncio.Lock()

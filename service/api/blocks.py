@@ -15,7 +15,7 @@ from ..runs.result import json_ready
 _SYSTEMS: tuple[System, ...] = ("metric", "inch")
 
 
-class ShownNumber(BaseModel):
+class NumberModel(BaseModel):
     """A number in a system of units. digits: significant ones. decimals: digits after the point instead."""
 
     number: float | Literal["inf", "-inf"] | None = Field(description="null where it is not defined", examples=[280.0])
@@ -30,8 +30,8 @@ class NumberPart(BaseModel):
     missing: what stands for one that is not defined.
     """
 
-    metric: ShownNumber
-    inch: ShownNumber
+    metric: NumberModel
+    inch: NumberModel
     sign: bool
     missing: str = Field(examples=["undefined"])
 

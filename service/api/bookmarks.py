@@ -11,18 +11,18 @@ from pydantic import BaseModel, Field
 from ...model.errors import InputError
 from ...objectives.tables.varying_column import varying_column
 from ...optimise.problem.table_columns import choice_field
+from ..designs.changed_design import Variation, variation_of, with_numbers
 from ..designs.columns import all_columns
 from ..designs.display_units import rows_in
-from ..designs.requirements import ranges_of
+from ..designs.judged_requirements import ranges_of
 from ..designs.stored_designs import StoredDesign, design_of, stored_design
-from ..designs.variation import Variation, variation_of, with_numbers
 from ..runs.result import csv_text, json_ready
-from ..store.bookmarks import Bookmark, bookmarks_of, change_kept, drop_kept, keep_design
+from ..store.bookmarks import Bookmark, bookmarks_of, keep_design, remove_bookmark, update_bookmark
 from .computing import QuickRoute
 from .exports import download, file_responses
 from .fronts import Cells, ColumnModel, column_models
 from .models import PLAIN_DIGITS, UnitsParameter
-from .problems import problem_responses
+from .problem_documents import problem_responses
 from .settings import StoreDep
 from .stored_fronts import LONGEST, SHORTEST, FrontDep, StoredFront
 
@@ -126,14 +126,15 @@ def change_bookmark(
 ) -> BookmarkedDesign:
     """Change a bookmark, or decide for its design."""
     return _bookmark_model(
-        stored_front, change_kept(store, stored_front.job.id, kept, **change.model_dump(exclude_unset=True))
+        stored_front,
+        update_bookmark(store, stored_front.job.id, kept, **change.model_dump(exclude_unset=True)),
     )
 
 
 @router.delete("/jobs/{number}/kept/{kept}", status_code=HTTPStatus.NO_CONTENT)
 def delete_bookmark(stored_front: FrontDep, kept: BookmarkNumber, store: StoreDep) -> None:
     """Delete a bookmark."""
-    drop_kept(store, stored_front.job.id, kept)
+    remove_bookmark(store, stored_front.job.id, kept)
 
 
 @router.get("/jobs/{number}/kept.csv", **file_responses("text/csv"))

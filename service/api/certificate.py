@@ -14,7 +14,7 @@ from ..runs.result import json_ready
 from .blocks import AnswerBlock, answer_blocks
 from .computing import LongRoute
 from .input_parameters import inputs_in_address, parameter_of
-from .problems import problem_responses
+from .problem_documents import problem_responses
 from .stored_fronts import FrontDep, StoredFront
 
 router = APIRouter(route_class=LongRoute, tags=["fronts"], responses=problem_responses(409))

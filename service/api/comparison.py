@@ -14,7 +14,7 @@ from .blocks import AnswerBlock, answer_blocks
 from .computing import LongRoute
 from .input_parameters import inputs_in_address, parameter_of
 from .models import LARGEST, PLAIN_DIGITS, UnitsParameter
-from .problems import problem_responses
+from .problem_documents import problem_responses
 from .settings import StoreDep
 from .stored_fronts import FrontsDep
 

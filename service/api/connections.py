@@ -16,12 +16,12 @@ from uvicorn.config import Config
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 from uvicorn.server import ServerState
 
-from .problems import problem, should_log
+from .problem_documents import problem, should_log
 from .security import KNOWN
 
 _log = logging.getLogger(__name__)
 MOST_CONNECTIONS = 2000
-"""Connections at a time; fewer where the system allows fewer open files, see `room_for_connections`."""
+"""Connections at a time; fewer where the system allows fewer open files, see `raise_connection_limit`."""
 MOST_HEAD = 65_536
 """Bytes of an address with the headers, and `_HEADER` more for each; of what comes with a body between its content."""
 _HEADER = 128
@@ -43,7 +43,7 @@ _SHARE = 20
 """One in so many connections is closed when there are too many."""
 
 
-def room_for_connections() -> int:
+def raise_connection_limit() -> int:
     """Return the maximum number of connections, after raising the limit of open files as far as possible.
 
     Half of the open files are reserved for the database, workers and files.
@@ -70,7 +70,7 @@ class Gate:
     def __init__(self, limit: int = MOST_CONNECTIONS) -> None:
         self.most = limit
         self._queue: deque[Connection] = deque()
-        self._told: dict[str, float] = {}
+        self._log_times: dict[str, float] = {}
 
     def queue(self, connection: Connection) -> None:
         """Queue a connection with unread requests; each pass of the event loop resumes one connection."""
@@ -85,7 +85,7 @@ class Gate:
         connection.flow.resume_reading()
         connection.read()
 
-    def make_room(self, new: Connection) -> bool:
+    def make_way_for(self, new: Connection) -> bool:
         """Close the least needed connection if there are too many; return whether the new one may stay."""
         if len(new.connections) <= self.most:
             return True
@@ -107,7 +107,7 @@ class Gate:
 
     def log(self, event: str) -> None:
         """Log an event on connections, unless it was logged within the last minute."""
-        if should_log(self._told, event):
+        if should_log(self._log_times, event):
             _log.warning("connections %s", event)
 
 
@@ -153,7 +153,7 @@ class Connection(HttpToolsProtocol):
         """Begin, unless there are too many."""
         super().connection_made(transport)
         transport.set_write_buffer_limits(_WRITE_BUFFER)
-        if self._gate.make_room(self):
+        if self._gate.make_way_for(self):
             self._wait(HEAD_SECONDS)
         else:
             text = (

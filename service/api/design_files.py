@@ -21,7 +21,7 @@ from .computing import LongRoute
 from .exports import SEALED, download, file_responses
 from .figures import require_figures
 from .models import UnitsParameter
-from .problems import problem_responses
+from .problem_documents import problem_responses
 from .settings import StoreDep
 from .stored_fronts import RequestedDesign, RequestedDesignDep
 

@@ -15,7 +15,7 @@ from ..runs.result import csv_text
 from ..runs.run_folder import slug
 from .computing import QuickRoute
 from .models import UnitsParameter
-from .problems import problem_responses
+from .problem_documents import problem_responses
 from .stored_fronts import FrontDep, StoredFront
 
 router = APIRouter(route_class=QuickRoute, tags=["fronts"], responses=problem_responses(409))

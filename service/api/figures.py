@@ -16,7 +16,7 @@ from ..store.bookmarks import Bookmark, bookmarks_of
 from .computing import LongRoute
 from .exports import SEALED, file_responses
 from .models import UnitsParameter
-from .problems import problem_responses
+from .problem_documents import problem_responses
 from .settings import SettingsDep, StoreDep
 from .stored_fronts import FrontDep, Numbers, NumbersDep, RequestedDesign, StoredFront, requested_design
 

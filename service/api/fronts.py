@@ -22,7 +22,7 @@ from ..designs.violations import front_violations_in_words, violations_in_words
 from ..page.router import response_with_etag
 from ..runs.result import json_ready
 from .models import PLAIN_DIGITS, JobNumber
-from .problems import problem_responses, tagged_json
+from .problem_documents import problem_responses, tagged_json
 from .settings import StoreDep
 from .stored_fronts import DesignNumber, FrontDep, FrontsDep, StoredFront
 

@@ -19,7 +19,7 @@ from ..presets.jobs import shipped_jobs
 from .computing import QuickRoute
 from .cycle import OutlinesModel, outlines_model
 from .job_requests import EXAMPLE, TOML, RequestedJob, problem_of_tables, requested_job
-from .problems import problem_responses
+from .problem_documents import problem_responses
 from .settings import SettingsDep
 
 router = APIRouter(route_class=QuickRoute, tags=["jobs"])

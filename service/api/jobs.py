@@ -19,8 +19,8 @@ from ..page.router import content_tag, response_with_etag
 from ..store import State
 from ..store.listing import Order
 from .exports import download, formats
-from .models import LARGEST, PLAIN_DIGITS, FrontPointsList, JobFiles, JobNumber, JobPage, JobShown
-from .problems import problem_responses, tagged_json
+from .models import LARGEST, PLAIN_DIGITS, FrontPointsList, JobFiles, JobNumber, JobPage, JobStateModel
+from .problem_documents import problem_responses, tagged_json
 from .settings import StoreDep
 
 router = APIRouter(tags=["jobs"])
@@ -70,7 +70,7 @@ def list_front_points(
     )
 
 
-@router.get("/jobs/{number}", response_model=JobShown)
+@router.get("/jobs/{number}", response_model=JobStateModel)
 def show_job(number: JobNumber, store: StoreDep) -> dict[str, Any]:
     """Return where a job stands."""
     return store.job(number).record()
@@ -79,20 +79,20 @@ def show_job(number: JobNumber, store: StoreDep) -> dict[str, Any]:
 @router.delete("/jobs/{number}", status_code=HTTPStatus.NO_CONTENT, responses=problem_responses(409))
 def delete_job(number: JobNumber, store: StoreDep) -> None:
     """Delete a job that has ended, and everything of it."""
-    with _as_it_stands():
+    with _conflict_on_refusal():
         store.delete(number)
 
 
-@router.post("/jobs/{number}/cancel", response_model=JobShown)
+@router.post("/jobs/{number}/cancel", response_model=JobStateModel)
 def cancel_job(number: JobNumber, store: StoreDep) -> dict[str, Any]:
     """Cancel a job; it keeps what it found, and can go on. One that has ended stays as it is."""
     return store.cancel(number).record()
 
 
-@router.post("/jobs/{number}/resume", response_model=JobShown, responses=problem_responses(409))
+@router.post("/jobs/{number}/resume", response_model=JobStateModel, responses=problem_responses(409))
 def resume_job(number: JobNumber, store: StoreDep) -> dict[str, Any]:
     """Queue a cancelled or failed job again, to go on from where it was."""
-    with _as_it_stands():
+    with _conflict_on_refusal():
         return store.resume(number).record()
 
 
@@ -117,7 +117,7 @@ def fetch_file(number: JobNumber, name: FileName, store: StoreDep) -> Response:
 
 
 @contextlib.contextmanager
-def _as_it_stands() -> Iterator[None]:
+def _conflict_on_refusal() -> Iterator[None]:
     """Report an operation that the state of a job does not allow as a conflict."""
     try:
         yield

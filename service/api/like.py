@@ -14,7 +14,7 @@ from .computing import LongRoute
 from .fronts import OfDesign
 from .input_parameters import body_of
 from .models import UnitsParameter
-from .problems import problem_responses
+from .problem_documents import problem_responses
 from .stored_fronts import DesignNumber, FrontDep
 
 router = APIRouter(route_class=LongRoute, tags=["designs"], responses=problem_responses(409))

@@ -48,7 +48,7 @@ class JobLimits(ResponseModel):
     memory_bytes: int | None = Field(description="of its worker")
 
 
-class FrontSoFar(ResponseModel):
+class FrontProgress(ResponseModel):
     """Some designs of the front that a search has by now, objectives only."""
 
     columns: list[str] = Field(description="of the objectives, as the designs will have them")
@@ -77,7 +77,7 @@ class JobProgress(RowProgress):
         "not comparable between jobs"
     )
     seconds: float | None
-    front: FrontSoFar | None = Field(default=None, description="after the latest round; null where none is known")
+    front: FrontProgress | None = Field(default=None, description="after the latest round; null where none is known")
 
 
 class RowSummary(ResponseModel):
@@ -116,7 +116,7 @@ class JobRow(ResponseModel):
     decision: str | None = Field(None, description="name of the design decided for", examples=["Round numbers"])
 
 
-class JobShown(JobRow, title="Job"):
+class JobStateModel(JobRow, title="Job"):
     """State of a job. Times are seconds since 1970, UTC."""
 
     key: str | None = Field(description="of its submission")
@@ -156,7 +156,7 @@ class FrontPointsList(ResponseModel):
     fronts: list[FrontPoints]
 
 
-class EventShown(ResponseModel, title="Event"):
+class EventModel(ResponseModel, title="Event"):
     """Something that happened to a job."""
 
     number: int = Field(ge=1, description="1, 2, 3, ... without gaps")
@@ -168,7 +168,7 @@ class EventShown(ResponseModel, title="Event"):
 class EventPage(ResponseModel):
     """Some events of a job, in order."""
 
-    events: list[EventShown]
+    events: list[EventModel]
     last: Count = Field(description="`after` of the next page")
 
 

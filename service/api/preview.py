@@ -12,11 +12,11 @@ from pydantic import BaseModel, Field, ValidationError
 from ...model.cycle.stroke_times import slow_stroke, time_ratio
 from ...model.linkage.linkage import Linkage
 from ...objectives.kinds import Kind
-from ...objectives.needs import ONE_TIMING
+from ...objectives.machine_needs import ONE_TIMING
 from .computing import QuickRoute
 from .job_files import Understood, understood
 from .job_requests import Submission, problem_of_tables
-from .problems import rule_and_value
+from .problem_documents import rule_and_value
 from .settings import SettingsDep
 
 if TYPE_CHECKING:
@@ -263,8 +263,8 @@ def _swing(possible: PossibleSwing | None) -> SwingPreview | None:
     if possible is None:
         return None
     return SwingPreview(
-        from_deg=None if possible.shown_swing is None else math.degrees(possible.shown_swing.start),
-        to_deg=None if possible.shown_swing is None else math.degrees(possible.shown_swing.end),
+        from_deg=None if possible.example_swing is None else math.degrees(possible.example_swing.start),
+        to_deg=None if possible.example_swing is None else math.degrees(possible.example_swing.end),
         closing_share=possible.closing,
         travel_mm=_scaled_ends(1e3, possible.travel),
         feasible_share=possible.feasible,
@@ -277,7 +277,7 @@ def _swing(possible: PossibleSwing | None) -> SwingPreview | None:
 def _swing_example(possible: PossibleSwing, lengths: tuple[float, float, float]) -> SwingExample:
     from ..preview.swinging import positions
 
-    swing, design = possible.shown_swing or possible.swing, np.array([lengths])
+    swing, design = possible.example_swing or possible.swing, np.array([lengths])
     low, high = sorted((math.degrees(swing.start), math.degrees(swing.end)))
     # One point per degree; from a full revolution those of the swing, and one beyond each end at the end's position.
     angles = range(math.floor(low), math.floor(high) + 2)

@@ -91,7 +91,7 @@ def answer_problems(app: FastAPI) -> None:
 async def _refused(request: Request, error: Exception) -> Response:
     assert isinstance(error, SlidercrankError)
     status = next((status for kind, status in _STATUS if isinstance(error, kind)), HTTPStatus.INTERNAL_SERVER_ERROR)
-    if status >= HTTPStatus.INTERNAL_SERVER_ERROR and should_log(request.app.state.told, str(error)):
+    if status >= HTTPStatus.INTERNAL_SERVER_ERROR and should_log(request.app.state.fault_times, str(error)):
         _log.warning("%s: %s", type(error).__name__, error)
     kind: Literal["about:blank", "infeasible"] = "infeasible" if isinstance(error, InfeasibleError) else "about:blank"
     return problem(status, str(error), _RETRY if status == HTTPStatus.SERVICE_UNAVAILABLE else None, kind)

@@ -63,7 +63,7 @@ class QuantityList(BaseModel):
     functions: list[FunctionModel]
 
 
-class ShownUnit(BaseModel):
+class UnitModel(BaseModel):
     """A unit that the API speaks in another system. factor: what one of the API's unit is in it."""
 
     unit: str = Field(examples=["in"])
@@ -98,7 +98,7 @@ class UnitTable(BaseModel):
     """
 
     kinds: list[KindModel]
-    inch: dict[str, ShownUnit] = Field(examples=[{"mm": {"unit": "in", "factor": 1 / 25.4}}])
+    inch: dict[str, UnitModel] = Field(examples=[{"mm": {"unit": "in", "factor": 1 / 25.4}}])
     suffixes: dict[str, str] = Field(examples=[{"mm": "_mm", "m/s^2": "_m_s2"}])
     titles: dict[str, str] = Field(examples=[{"rms_torque_Nm": "RMS torque over time"}])
 
@@ -152,7 +152,7 @@ class TopicList(BaseModel):
 @router.get("/units")
 def list_units() -> UnitTable:
     """List the units of every kind, and what the units of the API are in inches and pounds."""
-    from ...objectives.keys import split_unit
+    from ...objectives.column_keys import split_unit
     from ...objectives.registry import FACTS
     from ...objectives.units import per_si
 
@@ -172,7 +172,7 @@ def list_units() -> UnitTable:
     ]
     return UnitTable(
         kinds=kinds,
-        inch={symbol: ShownUnit(unit=unit, factor=factor) for symbol, (unit, factor) in inch_units},
+        inch={symbol: UnitModel(unit=unit, factor=factor) for symbol, (unit, factor) in inch_units},
         suffixes={kind.metric.symbol: kind.metric.suffix for kind in DISPLAYED_KINDS},
         titles={
             quantity.field: quantity.title

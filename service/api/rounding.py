@@ -22,7 +22,7 @@ from .events import STREAM, STREAM_HEADERS
 from .fronts import OfDesign
 from .input_parameters import body_of
 from .models import UnitsParameter
-from .problems import problem_responses
+from .problem_documents import problem_responses
 from .stored_fronts import DesignNumber, FrontDep
 
 router = APIRouter(route_class=LongRoute, tags=["designs"], responses=problem_responses(409))

@@ -14,7 +14,7 @@ from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from ..page.token_page import locked_page
-from .problems import FAULT, problem
+from .problem_documents import FAULT, problem
 from .settings import Settings
 
 _log = logging.getLogger(__name__)

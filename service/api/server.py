@@ -22,7 +22,7 @@ ANSWER_SECONDS = 60.0
 """Time that a client may take nothing of its answer; then the system breaks the connection off (Linux)."""
 _BUFFER = 16_384
 """Bytes that the system keeps for each direction of a connection, beside those on their way, instead of megabytes."""
-_KEPT = 75
+_KEEP_ALIVE = 75
 """Seconds that a connection at rest stays open: longer than clients keep theirs, so none is closed as it is used."""
 _FAREWELL = 2
 """Seconds that requests and streams of events have to end once the server stops; clients come back to the next."""
@@ -88,16 +88,16 @@ def config_of(app: FastAPI) -> Config:
     """Return the web server configuration for an application."""
     from uvicorn import Config
 
-    from .connections import Connection, Gate, room_for_connections
+    from .connections import Connection, Gate, raise_connection_limit
 
     return Config(
         app,
-        http=cast("Any", partial(Connection, Gate(room_for_connections()))),  # any factory of protocols works
+        http=cast("Any", partial(Connection, Gate(raise_connection_limit()))),  # any factory of protocols works
         log_config=None,
         access_log=False,  # the address that carries the token would be in it
         server_header=False,
         ws="none",
-        timeout_keep_alive=_KEPT,
+        timeout_keep_alive=_KEEP_ALIVE,
         timeout_graceful_shutdown=_FAREWELL,
     )
 

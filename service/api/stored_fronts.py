@@ -19,10 +19,10 @@ from pydantic import Field
 from ...model.arrays import Array
 from ...model.errors import InputError, NotFound
 from ...optimise.problem.problem import Problem
+from ..designs.changed_design import Variation, variation_of, with_numbers
 from ..designs.columns import Column, all_columns
 from ..designs.picking_options import minimised_values
 from ..designs.stored_designs import StoredDesign, front_of, stored_design
-from ..designs.variation import Variation, variation_of, with_numbers
 from ..jobs.submission import LONGEST_ANSWER, bounded, parse_allowed
 from ..runs.result import Result, Row
 from ..runs.run_folder import slug
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 MOST_DESIGNS = 40_000
 """Designs kept at hand, of all fronts together; 140 MB."""
-_MOST_KEPT = 10_000_000  # bytes of a front's figures, files and columns, and one if it is longer
+_MOST_CACHED = 10_000_000  # bytes of a front's figures, files and columns, and one if it is longer
 
 DesignNumber = Annotated[
     int, Path(ge=1, le=2**31, description="number of a design in its front, counted from 1", examples=[3]), PLAIN_DIGITS
@@ -50,7 +50,7 @@ class StoredFront:
     def __init__(self, job: Job, result: Result, problem: Callable[[], Problem]) -> None:
         self.job = job
         self.result = result
-        self._kept: OrderedDict[tuple[str, str], bytes] = OrderedDict()
+        self._cached: OrderedDict[tuple[str, str], bytes] = OrderedDict()
         self._keeping = threading.Lock()
         self._read = problem
 
@@ -87,13 +87,13 @@ class StoredFront:
 
         make: function that returns all names of the item, and its content.
         """
-        content = self._kept.get((name, kind))
+        content = self._cached.get((name, kind))
         if content is None:
             names, content = make()
             with self._keeping:
-                self._kept.update({(other_name, kind): content for other_name in names})
-                while len(self._kept) > 1 and sum(map(len, self._kept.values())) > _MOST_KEPT:
-                    self._kept.popitem(last=False)
+                self._cached.update({(other_name, kind): content for other_name in names})
+                while len(self._cached) > 1 and sum(map(len, self._cached.values())) > _MOST_CACHED:
+                    self._cached.popitem(last=False)
         return content
 
     def row(self, number: int) -> Row:
@@ -118,7 +118,7 @@ class StoredFronts:
         self._store = store
         self._allowed = allowed
         self._most = most_designs
-        self._kept: OrderedDict[tuple[int, float | None], StoredFront] = OrderedDict()
+        self._cached: OrderedDict[tuple[int, float | None], StoredFront] = OrderedDict()
         self._reading = threading.Lock()
 
     def get(self, number: int) -> StoredFront:
@@ -126,7 +126,7 @@ class StoredFronts:
         job = self._store.job(number)
         key = (job.id, job.finished)
         with self._reading:  # who asks for the same front at the same time waits for it, instead of reading it too
-            front = self._kept.get(key)
+            front = self._cached.get(key)
             if front is None:
                 front = StoredFront(
                     job,
@@ -136,16 +136,16 @@ class StoredFronts:
                 if job.finished is not None:
                     self._keep(key, front)
             else:
-                self._kept.move_to_end(key)
+                self._cached.move_to_end(key)
         return front
 
     def _keep(self, key: tuple[int, float | None], front: StoredFront) -> None:
-        self._kept[key] = front
+        self._cached[key] = front
         while (
-            len(self._kept) > 1
-            and sum(len(front_in_memory.result.designs) for front_in_memory in self._kept.values()) > self._most
+            len(self._cached) > 1
+            and sum(len(front_in_memory.result.designs) for front_in_memory in self._cached.values()) > self._most
         ):
-            self._kept.popitem(last=False)
+            self._cached.popitem(last=False)
 
 
 FrontsDep = Annotated[StoredFronts, part_of_app("fronts")]

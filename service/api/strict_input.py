@@ -17,7 +17,7 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from ...model.errors import InputError
-from .problems import problem
+from .problem_documents import problem
 from .security import KNOWN
 
 T = TypeVar("T")

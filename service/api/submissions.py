@@ -26,8 +26,8 @@ from .job_requests import (
     problem_of_tables,
     requested_job,
 )
-from .models import JobNumber, JobShown
-from .problems import problem_responses
+from .models import JobNumber, JobStateModel
+from .problem_documents import problem_responses
 from .settings import SettingsDep, StoreDep
 from .stored_fronts import LONGEST, FrontDep, Length
 from .throttle import limit_submissions
@@ -44,7 +44,7 @@ class SubmissionRoute(QuickRoute):
 
 
 router = APIRouter(route_class=SubmissionRoute)
-_SUBMITTED: dict[str, Any] = {"status_code": HTTPStatus.CREATED, "response_model": JobShown}
+_SUBMITTED: dict[str, Any] = {"status_code": HTTPStatus.CREATED, "response_model": JobStateModel}
 _SENT = {**_SUBMITTED, "tags": ["jobs"], "responses": problem_responses(415, 429)}
 _COPIED = {**_SUBMITTED, "tags": ["fronts"], "responses": problem_responses(409, 415, 429)}
 

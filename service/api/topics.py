@@ -22,7 +22,7 @@ from .figures import require_figures
 from .fronts import OfDesign
 from .input_parameters import inputs_in_address, parameter_of
 from .models import UnitsParameter
-from .problems import problem_responses
+from .problem_documents import problem_responses
 from .stored_fronts import RequestedDesign, RequestedDesignDep
 
 router = APIRouter(route_class=LongRoute, tags=["designs"], responses=problem_responses(409))

@@ -8,11 +8,11 @@ from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
 from ...model.errors import InputError
+from ..designs.changed_design import variation_of, with_numbers
 from ..designs.columns import all_columns
 from ..designs.cycle_table import LEAST, MOST
 from ..designs.hold_equalities import hold_equalities
-from ..designs.requirements import quantity_names, ranges_of, requirements_of, speed_rpm
-from ..designs.variation import variation_of, with_numbers
+from ..designs.judged_requirements import quantity_names, ranges_of, requirements_of, speed_rpm
 from ..designs.violations import violated_by, violations_in_words
 from ..questions.design_analysis import with_undefined_values
 from ..runs.result import json_ready
@@ -21,7 +21,7 @@ from .computing import QuickRoute
 from .cycle import CurvesModel, CycleModel, cycle_model
 from .fronts import Cells, ColumnModel, OfDesign, Violated, Violations, column_models
 from .models import PLAIN_DIGITS
-from .problems import problem_responses
+from .problem_documents import problem_responses
 from .settings import StoreDep
 from .stored_fronts import LONGEST, DesignNumber, FrontDep, Length, RequestedDesign, requested_design
 

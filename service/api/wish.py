@@ -8,7 +8,7 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from ..designs.columns import all_columns
-from ..jobs.wish_history import stated_wishes
+from ..jobs.front_wish_history import stated_wishes
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..questions.wish.analysis import answered
 from ..store.wishes import note_wish, wishes_of
@@ -16,7 +16,7 @@ from .computing import LongRoute
 from .fronts import Cells, ColumnModel, column_models
 from .input_parameters import body_of
 from .models import UnitsParameter
-from .problems import problem_responses
+from .problem_documents import problem_responses
 from .settings import StoreDep
 from .stored_fronts import FrontDep
 

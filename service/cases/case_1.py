@@ -8,7 +8,7 @@ from ...model.classical.polygons import Polygons, polygons
 from ...model.linkage.inverse import crank_motion
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Branch
-from .published import Numbers
+from .printed_values import Numbers
 
 ANGLE, SPEED, ACCELERATION = math.radians(-30.0), -15.0, -10.0
 BRANCHES: tuple[Branch, ...] = ("open", "crossed")

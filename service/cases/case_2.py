@@ -11,7 +11,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.clearance import Clearance
 from ...model.machine.links import Bar
 from ...model.machine.mechanism import Mechanism
-from .published import Numbers
+from .printed_values import Numbers
 
 STEEL = Bar(width=0.03, depth=0.02, density=7800.0)
 SLIDER = (0.100, 0.050, 0.050)

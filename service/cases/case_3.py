@@ -7,7 +7,7 @@ import math
 from ...model.classical.static_forces import static_forces
 from ...model.linkage.inverse import crank_angle_at
 from ...model.linkage.linkage import Linkage
-from .published import Numbers
+from .printed_values import Numbers
 
 LINKAGE = Linkage(0.050, 0.150)
 ANGLE, SPEED, LOAD = math.radians(60.0), 10.0, -100.0

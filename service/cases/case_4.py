@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...model.linkage.linkage import Linkage
-from .published import Numbers, read_table
+from .printed_values import Numbers, read_table
 
 LINKAGE = Linkage(1.400, 1.800, -0.050)
 SHARE, ANGLE_ERROR = 1e-3, math.radians(0.1)

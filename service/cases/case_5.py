@@ -16,7 +16,7 @@ from ...model.machine.links import RigidLink
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
-from .published import Numbers
+from .printed_values import Numbers
 
 CRANK, ROD, SPEED = 0.040, 0.064, 251.0
 OFFSETS = (0.0, 0.010, 0.020)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ..render.terminal import print_table, table
 from . import case_1, case_2, case_3, case_4, case_5
-from .published import CASES, Case, Row, read_case
+from .printed_values import CASES, Case, Row, read_case
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -22,7 +22,7 @@ from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..runs.result import Result, Row, read_row
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import result_from
-from .connection import Connection, Record, follow_events, without_none
+from .connection import Connection, Record, events_until_end, without_none
 from .designs import Designs
 
 if TYPE_CHECKING:
@@ -146,7 +146,7 @@ class Client(Designs):
 
         after: number of an event; only later events. After a broken connection it continues with the next event.
         """
-        return follow_events(self._connection, number, after)
+        return events_until_end(self._connection, number, after)
 
     def wait(self, number: int, *, seconds: float | None = None) -> Record:
         """Wait until a job has ended, and return it. Raises `ServiceError` after a time limit, s."""

@@ -161,7 +161,7 @@ def refusal(response: httpx.Response) -> SlidercrankError:
     return kinds.get(response.status_code, ServiceError)(detail)
 
 
-def follow_events(connection: Connection, number: int, after: int) -> Iterator[Event]:
+def events_until_end(connection: Connection, number: int, after: int) -> Iterator[Event]:
     """Yield the events of a job after a given one as they happen, until the service has no more.
 
     Every connection names the last event received, so none is missed or repeated.

@@ -62,13 +62,13 @@ class Designs:
         rates = {"slider_velocity_m_s": velocity_m_s, "slider_acceleration_m_s2": acceleration_m_s2}
         return self.ask(number, design, "inverse", slider_position_mm=position_mm, **rates)
 
-    def swing(self, number: int, design: int, **asked: float | str | None) -> Record:
+    def swing(self, number: int, design: int, **motion: float | str | None) -> Record:
         """Return the numbers of a swing of a design, as `slidercrank swing --json` prints them.
 
-        asked: inputs by their names in the API, start_deg=30, end_deg=90, driver="slider". Omitted ones come from the
+        motion: inputs by their names in the API, start_deg=30, end_deg=90, driver="slider". Omitted ones come from the
         job.
         """
-        return self.ask(number, design, "swing", **asked)
+        return self.ask(number, design, "swing", **motion)
 
     def wish(self, number: int, at: Mapping[str, str], *, design: int | None = None) -> Record:
         """Return the optimal design nearest to wishes, as `slidercrank wish --json` prints it.
@@ -83,10 +83,10 @@ class Designs:
         made: list[Record] = self._connection.ask(f"jobs/{number}/wishes")["made"]
         return made
 
-    def kept(self, number: int) -> list[Record]:
+    def bookmarks(self, number: int) -> list[Record]:
         """Return the bookmarks of a job: name, note, star, decision and all numbers of each."""
-        bookmarks: list[Record] = self._connection.ask(f"jobs/{number}/kept")["designs"]
-        return bookmarks
+        designs: list[Record] = self._connection.ask(f"jobs/{number}/kept")["designs"]
+        return designs
 
     def keep(
         self,
@@ -103,15 +103,15 @@ class Designs:
         body = {"design": design, "dimensions": dict(dimensions or {}), **remarks}
         return self._connection.post(f"jobs/{number}/kept", body, again=False)
 
-    def change_kept(self, number: int, kept: int, **changes: Any) -> Record:
+    def change_bookmark(self, number: int, bookmark: int, **changes: Any) -> Record:
         """Change name, note, star, decided or reason of a bookmark and return it."""
-        path = f"jobs/{number}/kept/{kept}"
-        bookmark: Record = self._connection.request("PATCH", path, again=True, json=changes).json()
-        return bookmark
+        path = f"jobs/{number}/kept/{bookmark}"
+        changed: Record = self._connection.request("PATCH", path, again=True, json=changes).json()
+        return changed
 
-    def drop_kept(self, number: int, kept: int) -> None:
+    def delete_bookmark(self, number: int, bookmark: int) -> None:
         """Delete a bookmark."""
-        self._connection.delete(f"jobs/{number}/kept/{kept}")
+        self._connection.delete(f"jobs/{number}/kept/{bookmark}")
 
     def measured(self, number: int, design: int, csv: str | PathLike[str]) -> Record:
         """Return the deviation of measured curves from those of a design, as `analyse --measured --json` prints it.

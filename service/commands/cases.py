@@ -26,8 +26,8 @@ def cases(
     """
     from dataclasses import asdict
 
-    from ..cases.published import CASES
-    from ..cases.table import collect, counted, show_case
+    from ..cases.case_table import collect, counted, show_case
+    from ..cases.printed_values import CASES
 
     chosen = CASES if case is None else (case,)
     tables = collect(chosen)

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 import typer
 
 from ...model.errors import NotFound, SlidercrankError
-from ...objectives.counted import counted
-from ..jobs.stores import Address, has_store, is_named, shown_store, store_address
+from ...objectives.count_text import counted
+from ..jobs.stores import Address, has_store, is_named, printable_store_address, store_address
 from ..resources.memory import size_text
 from ..runs.result import json_text
 from ..runs.run_folder import runs_place
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 UNHEALTHY = 1
 """Exit code where something is not in order; 2 is for wrong input."""
 Grade = Literal["ok", "note", "problem"]
-_LEAST_ROOM, _LITTLE_ROOM = 200e6, 2e9  # bytes
+_LEAST_SPACE, _LITTLE_SPACE = 200e6, 2e9  # bytes
 _CLOCKS = 2.0  # s between clocks that is worth a note
 _REMEDY = "; stop the service and restore a backup, see docs/service.md"
 _PACKAGES = ("slidercrank", "numpy", "numba", "scipy", "sqlalchemy", "alembic", "fastapi", "uvicorn")
@@ -68,7 +68,9 @@ def _back_up(store: str | None, runs: Path | None, target: Path) -> None:
     from ..store.database import Database
 
     if not has_store(store, runs):
-        raise NotFound(f"there is no store at {shown_store(store, runs)}; name the store to copy with --store")
+        raise NotFound(
+            f"there is no store at {printable_store_address(store, runs)}; name the store to copy with --store"
+        )
     with contextlib.closing(Database(store_address(store, runs))) as database:
         back_up(database, target)
     print_message(f"{target}: a copy of {database.name}")
@@ -208,7 +210,7 @@ def _writable(name: str, folder: Path) -> Check:
 
 def _free_space(name: str, folder: Path) -> Check:
     free = shutil.disk_usage(_existing(folder.absolute())).free
-    grade: Grade = "problem" if free < _LEAST_ROOM else "note" if free < _LITTLE_ROOM else "ok"
+    grade: Grade = "problem" if free < _LEAST_SPACE else "note" if free < _LITTLE_SPACE else "ok"
     remedy = "" if grade == "ok" else "; free some space: a full disk stops all writing"
     return Check(name, grade, f"{size_text(free)} free{remedy}")
 

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from ...model.errors import InputError
-from ...objectives.counted import counted
+from ...objectives.count_text import counted
 from ...objectives.kinds import ANGLE
 from ..designs.selection import no_match_message, numbered_rows, result_part
 from ..motion.design_file import ENDINGS, design_file
@@ -20,7 +20,7 @@ from ..text.design_options import Selection
 from ..text.options import Angle, File, Output, Run, Runs, Units, option_value, require_ending
 from ..text.screen import print_message, print_output, show_activity
 from .ending import end_without_design
-from .run_choice import Choice, Where, run_of, shown_result
+from .run_choice import Choice, Where, result_in_units, run_of
 
 _FILES = {f"--{name}": endings for name, endings in ENDINGS.items()}
 """Options that write one design, and how their files may end."""
@@ -109,12 +109,12 @@ def export(
     chosen = selection.rows(result) if result.designs else []
     if conditions and not chosen:
         end_without_design(no_match_message(result, conditions))
-    shown_run = shown_result(result, units, None if json is None else folder)
-    is_whole = chosen == list(range(len(result.designs)))
-    record = (shown_run if is_whole else result_part(shown_run, chosen)).record()
-    if not is_whole:
+    run_in_units = result_in_units(result, units, None if json is None else folder)
+    has_every_design = chosen == list(range(len(result.designs)))
+    record = (run_in_units if has_every_design else result_part(run_in_units, chosen)).record()
+    if not has_every_design:
         record["numbers"] = [row + 1 for row in chosen]
-    for target, text in ((csv, csv_text(numbered_rows(shown_run.designs, chosen))), (json, json_text(record))):
+    for target, text in ((csv, csv_text(numbered_rows(run_in_units.designs, chosen))), (json, json_text(record))):
         if target == "-":
             print_output(text)
         elif target is not None:

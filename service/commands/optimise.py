@@ -82,7 +82,7 @@ def optimise(
 
     compile_ahead(*SEARCH)
     from ..store.address import without_secrets
-    from ..workers.own_search import keep_front, kept_alive, new_run, resumed_run, search
+    from ..workers.direct_search import keep_front, new_run, renewing_claim, resumed_run, search
 
     if (job is None) == (resume is None):
         raise InputError(
@@ -97,7 +97,7 @@ def optimise(
         listed = True
         if job is not None:
             problem, tables, files = _problem(job, settings)
-            jobs, listed = opened.enter_context(_store_or_own(places))
+            jobs, listed = opened.enter_context(_store_or_temporary(places))
             begin = new_run(jobs, place, problem, tables, files)
         else:
             jobs = opened.enter_context(open_store(places.store, places.runs))
@@ -105,7 +105,7 @@ def optimise(
         interruption = opened.enter_context(Interruption())
         run, problem, claim = opened_run = opened.enter_context(begin)
         again = places.command_again(claim.job.run) if listed else ""
-        opened.enter_context(kept_alive(claim, again=again))
+        opened.enter_context(renewing_claim(claim, again=again))
         run.log(f"command: {' '.join(map(without_secrets, sys.argv[1:]))}")
         run.log(f"job {claim.job.id} in store {jobs.name}" if listed else "in a temporary store")
         with progress_bar() as show:
@@ -115,12 +115,12 @@ def optimise(
         with show_activity("writing the designs"):
             result = keep_front(opened_run, front)
         drawn = figures is not False and result.status == "done" and is_installed("matplotlib")
-        shown_result, lost = result_in(result, units, problem), None
+        result_in_units, lost = result_in(result, units, problem), None
         try:
             if json:
-                print_output(json_text(shown_result.record()))
+                print_output(json_text(result_in_units.record()))
             else:
-                show_result(console(), shown_result)
+                show_result(console(), result_in_units)
                 sys.stdout.flush()
         except OutputLost as error:
             lost = error
@@ -140,7 +140,7 @@ def optimise(
 
 
 @contextlib.contextmanager
-def _store_or_own(places: Places) -> Iterator[tuple[Store, bool]]:
+def _store_or_temporary(places: Places) -> Iterator[tuple[Store, bool]]:
     """Yield the store, or a temporary one for this run if it is unusable, and which of the two."""
     from ..store import Store
 
@@ -173,9 +173,9 @@ def show_files(run: Path) -> None:
 def _problem(job: Path, settings: SettingOptions) -> tuple[Problem, dict[str, Any], list[Artefact]]:
     """Return the problem of a job file and its tables, both with the given options, and its files."""
     from ...optimise.job import load_job, needed_files, read_job
-    from ...optimise.job.notes import notes_of
-    from ..jobs.own_run import files_of
-    from ..workers.own_search import with_settings
+    from ...optimise.job.job_notes import notes_of
+    from ..jobs.direct_run import files_of
+    from ..workers.direct_search import with_settings
 
     problem, tables = load_job(job), read_job(job)
     for note in notes_of(tables):

@@ -8,10 +8,18 @@ from typing import TYPE_CHECKING, Annotated, get_args
 import typer
 
 from ...model.errors import InputError
-from ...objectives.counted import counted
-from ...objectives.keys import split_unit
+from ...objectives.column_keys import split_unit
+from ...objectives.count_text import counted
 from ...optimise.front.progress import stage_text
-from ..jobs.stores import Address, Name, find_job, has_store, shown_store, store_that_is_there, tell_idle
+from ..jobs.stores import (
+    Address,
+    Name,
+    find_job,
+    has_store,
+    printable_store_address,
+    store_that_is_there,
+    warn_without_workers,
+)
 from ..render.terminal import table
 from ..runs.result import json_text
 from ..text.options import Json
@@ -48,16 +56,16 @@ def jobs(
             states: list[State] = state or []  # type: ignore[assignment] # looked at above
             matching = opened.jobs(states=states, name=name, limit=limit)
             if any(job.state == "queued" for job in matching):
-                tell_idle(opened)
+                warn_without_workers(opened)
     if json:
         print_output(json_text([job.record() for job in matching]))
     elif matching:
         _show(console(), matching)
     else:
         print_message(
-            f"slidercrank: no matching job in {shown_store(store)}"
+            f"slidercrank: no matching job in {printable_store_address(store)}"
             if state or name
-            else f"slidercrank: no job in {shown_store(store)} yet; add one with: slidercrank submit JOB"
+            else f"slidercrank: no job in {printable_store_address(store)} yet; add one with: slidercrank submit JOB"
         )
 
 

@@ -49,7 +49,7 @@ def front_of_run(
     return folder, front_of(problem_of(folder, result), result)
 
 
-def shown_result(result: Result, units: System, folder: Path | None) -> Result:
+def result_in_units(result: Result, units: System, folder: Path | None) -> Result:
     """Return the result of a run in the requested units.
 
     folder: folder of the run, if its trade-offs are shown; else None.

@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
-from ...objectives.counted import counted
-from ...objectives.keys import key_in
+from ...objectives.column_keys import key_in
+from ...objectives.count_text import counted
 from ..designs.columns import find_columns
 from ..designs.selection import no_match_message, result_part
 from ..runs.result import json_text
@@ -17,7 +17,7 @@ from ..text.screen import console, print_output
 from ..text.tables import ROWS, show_design, show_front, show_result, show_violated
 from .ending import NoDesigns, end_without_design
 from .optimise import show_files
-from .run_choice import Choice, run_of, shown_result
+from .run_choice import Choice, result_in_units, run_of
 
 
 def front(
@@ -48,13 +48,13 @@ def front(
     shows_trade_offs = not conditions and (
         json or not (selection.sorts or columns or picked is not None or rows != ROWS)
     )
-    result = shown_result(result, units, folder if shows_trade_offs else None)
-    shown_columns = names = None
+    result = result_in_units(result, units, folder if shows_trade_offs else None)
+    listed_columns = names = None
     if chosen_columns is not None:
-        shown_columns = find_columns(
+        listed_columns = find_columns(
             ",".join(key_in(column.key, units)[0] for column in chosen_columns), list(result.designs[0])
         )
-        names = [column.key for column in shown_columns]
+        names = [column.key for column in listed_columns]
     if json:
         record = result_part(result, chosen).record(names)
         print_output(json_text(record if picked is None else {**record, "number": picked + 1}))
@@ -71,6 +71,6 @@ def front(
         screen = console()
         count = "" if len(chosen) == len(result.designs) else f"{len(chosen)} of "
         screen.print(f"{result.name}: {count}{counted(len(result.designs), 'design')}", style="bold", soft_wrap=True)
-        show_front(screen, result, chosen, columns=shown_columns, limit=rows)
+        show_front(screen, result, chosen, columns=listed_columns, limit=rows)
     if not chosen:
         end_without_design(no_match_message(result, conditions or []))

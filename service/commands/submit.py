@@ -13,7 +13,7 @@ import typer
 
 from ...model.errors import StoreError
 from ...optimise.front.progress import Progress, stage_text
-from ..jobs.stores import Address, Name, find_job, open_store, store_that_is_there, tell_idle
+from ..jobs.stores import Address, Name, find_job, open_store, store_that_is_there, warn_without_workers
 from ..resources.memory import size_of
 from ..runs.result import json_text
 from ..text.options import JobFile, Json
@@ -84,8 +84,8 @@ def submit(
         if not (watch and json):
             print_output(json_text(queued.record()) if json else f"job {queued.id}: {queued.name}, {queued.state}\n")
         if queued.state == "queued":
-            _tell_of(functions, job)
-            tell_idle(opened)
+            _print_worker_requirements(functions, job)
+            warn_without_workers(opened)
         if watch:
             raise typer.Exit(_write_events(opened, queued, json=json))
 
@@ -98,11 +98,11 @@ def watch(job: Name, store: Address = None, json: Json = False) -> None:
     with store_that_is_there(store) as opened:
         watched = find_job(opened, job)
         if watched.state == "queued":
-            tell_idle(opened)
+            warn_without_workers(opened)
         raise typer.Exit(_write_events(opened, watched, json=json))
 
 
-def _tell_of(functions: Sequence[str], job: Path) -> None:
+def _print_worker_requirements(functions: Sequence[str], job: Path) -> None:
     """Print the requirements on workers for a job with custom functions."""
     if functions:
         options = " ".join(f"--allow-quantity {function}" for function in functions)

@@ -12,7 +12,7 @@ import typer
 from ...model.errors import InputError, StoreError
 from ...model.file_names import path_text
 from ...objectives.kinds import System
-from ..jobs.wish_history import keep_wish, stated_wishes, wishes_of_run, words_of
+from ..jobs.front_wish_history import keep_wish, stated_wishes, wishes_of_run, words_of
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..render.terminal import print_blocks
 from ..runs.result import json_text
@@ -77,7 +77,7 @@ def wish(
 def _list(folder: Path, front: ParetoFront, units: System, *, json: bool) -> None:
     """Write the wishes made on a run, the latest first, each solved again."""
     from ...optimise.decisions.wish import Wishes
-    from ..questions.wish.analysis import answered, told_wish
+    from ..questions.wish.analysis import answered, wish_in_words
 
     wishes = wishes_of_run(folder)
     with show_activity("wishing"):
@@ -97,7 +97,7 @@ def _list(folder: Path, front: ParetoFront, units: System, *, json: bool) -> Non
         screen.print(f"{front.problem.name}: no wishes yet; make one with {_EXAMPLE}", soft_wrap=True)
     for place, (at, words, solved) in enumerate(solved_wishes):
         when = time.strftime("%Y-%m-%d %H:%M", time.localtime(at))
-        screen.print(f"{when}  {told_wish(words, solved.search_result.row)}", style="bold", soft_wrap=True)
+        screen.print(f"{when}  {wish_in_words(words, solved.search_result.row)}", style="bold", soft_wrap=True)
         for sentence in solved.search_result.sentences(units):
             screen.print(f"  {sentence}", soft_wrap=True)
         if place < len(solved_wishes) - 1:

@@ -14,7 +14,7 @@ from ...objectives.tables.varying_column import varying_column
 from ...optimise.problem.problem import Problem
 from ..runs.result import Result
 from .columns import find_column
-from .requirements import requirements_of
+from .judged_requirements import requirements_of
 from .stored_designs import stored_design
 
 _REST = 1e-6

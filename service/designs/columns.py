@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.keys import key_in, metric_key, split_unit
+from ...objectives.column_keys import key_in, metric_key, split_unit
 from ...objectives.kinds import System
 
 if TYPE_CHECKING:

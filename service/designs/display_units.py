@@ -10,9 +10,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import SlidercrankError
-from ...objectives.keys import key_in, split_unit
+from ...objectives.column_keys import key_in, split_unit
 from ...objectives.kinds import System, metric_unit_in
-from ..runs.result import Result, Row, Wanted
+from ..runs.result import Result, Row, StoredObjective
 
 if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
@@ -62,7 +62,7 @@ def result_in(result: Result, system: System, problem: Problem | None = None) ->
     )
 
 
-def objective_in(objective: Wanted, system: System) -> Wanted:
+def objective_in(objective: StoredObjective, system: System) -> StoredObjective:
     """Return an objective in the units of a system."""
     column, factor = key_in(objective.column, system)
     target = None if objective.target is None else objective.target * factor

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ...objectives.counted import counted
+from ...objectives.count_text import counted
 from ...objectives.kinds import System, metric_unit_in
-from ..runs.result import Result, Wanted
+from ..runs.result import Result, StoredObjective
 from .picking_options import minimised_values
 
 if TYPE_CHECKING:
@@ -47,12 +47,12 @@ def comparison_sentences(names: Sequence[str], results: Sequence[Result], system
     return sentences
 
 
-def _shared(results: Sequence[Result]) -> list[Wanted]:
+def _shared(results: Sequence[Result]) -> list[StoredObjective]:
     kinds = [{(item.quantity, item.sense, item.target): item for item in result.objectives} for result in results]
     return [item for key, item in kinds[0].items() if all(key in objectives for objectives in kinds[1:])]
 
 
-def _values(result: Result, shared: Sequence[Wanted]) -> Array:
+def _values(result: Result, shared: Sequence[StoredObjective]) -> Array:
     """Return the shared objectives of a result (n, m), as they are minimised; infinite if undefined."""
     order = [item.quantity for item in result.objectives]
     values = minimised_values(result)[:, [order.index(item.quantity) for item in shared]]
@@ -62,7 +62,7 @@ def _values(result: Result, shared: Sequence[Wanted]) -> Array:
 def _best(
     names: Sequence[str],
     results: Sequence[Result],
-    objective: Wanted,
+    objective: StoredObjective,
     index: int,
     fronts: Sequence[Array],
     span: Array,
@@ -87,7 +87,7 @@ def _unmatched_sentence(
     name: str,
     other_name: str,
     result: Result,
-    shared: Sequence[Wanted],
+    shared: Sequence[StoredObjective],
     front: Array,
     other_front: Array,
     system: System,
@@ -113,7 +113,9 @@ def unmatched(front: Array, other_front: Array) -> NDArray[np.bool_]:
     return np.array([not bool((other_front <= point + NEAR).all(axis=1).any()) for point in front])
 
 
-def _range_in_words(result: Result, free: NDArray[np.bool_], objective: Wanted, values: Array, system: System) -> str:
+def _range_in_words(
+    result: Result, free: NDArray[np.bool_], objective: StoredObjective, values: Array, system: System
+) -> str:
     """Return the part of an objective's range where the chosen designs lie; empty if they cover most of it."""
     low, high = values[free].min(), values[free].max()
     is_between = (values >= low) & (values <= high)
@@ -125,6 +127,6 @@ def _range_in_words(result: Result, free: NDArray[np.bool_], objective: Wanted, 
     return f"{objective.title} is {ends[0]}" if ends[0] == ends[1] else f"{objective.title} is {ends[0]} to {ends[1]}"
 
 
-def _with_unit(value: object, objective: Wanted, system: System) -> str:
+def _with_unit(value: object, objective: StoredObjective, system: System) -> str:
     unit, factor = metric_unit_in(objective.unit, system)
     return f"{value * factor:.4g} {unit}".rstrip() if isinstance(value, float) else "not defined"

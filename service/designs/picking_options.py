@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...model.errors import InputError
 from ...objectives.kinds import RATIO
-from ..runs.result import Result, Wanted
+from ..runs.result import Result, StoredObjective
 from .selection import plain_number
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def target_sizes(result: Result) -> list[float]:
     return [abs(objective.target or 0.0) for objective in result.objectives]
 
 
-def _weights(text: str, objectives: Sequence[Wanted]) -> list[float]:
+def _weights(text: str, objectives: Sequence[StoredObjective]) -> list[float]:
     """Return a weight for each objective, zero for omitted ones."""
     weights = dict.fromkeys(range(len(objectives)), 0.0)
     named: set[int] = set()
@@ -86,7 +86,7 @@ def _weights(text: str, objectives: Sequence[Wanted]) -> list[float]:
     return list(weights.values())
 
 
-def _order(text: str, objectives: Sequence[Wanted]) -> list[tuple[int, float, float]]:
+def _order(text: str, objectives: Sequence[StoredObjective]) -> list[tuple[int, float, float]]:
     """Return objectives in order: column, absolute tolerance (display unit) and tolerance relative to the range."""
     order = []
     for part in _parts(text, _LEXICOGRAPHIC):
@@ -97,7 +97,7 @@ def _order(text: str, objectives: Sequence[Wanted]) -> list[tuple[int, float, fl
     return order
 
 
-def _tolerance(part: str, value: str, objective: Wanted) -> tuple[float, float]:
+def _tolerance(part: str, value: str, objective: StoredObjective) -> tuple[float, float]:
     from ...objectives.units import kind_for, per_si, to_si
 
     try:
@@ -118,7 +118,7 @@ def _parts(text: str, example: str) -> list[str]:
     return parts
 
 
-def _column(name: str, objectives: Sequence[Wanted]) -> int:
+def _column(name: str, objectives: Sequence[StoredObjective]) -> int:
     """Return the position of an objective by its name or its column."""
     name = name.strip()
     for column, objective in enumerate(objectives):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from ...objectives.keys import split_unit
+from ...objectives.column_keys import split_unit
 from ..runs.result import Cell, Row
 
 _NOISE = 1e-12

@@ -10,13 +10,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...model.errors import InputError
+from ...objectives.column_keys import split_unit
 from ...objectives.formula.dimensions import kind_of_formula
 from ...objectives.formula.expression import Name, Node, fold, names_in, text_of
 from ...objectives.formula.formulas import Units
 from ...objectives.formula.parser import parse
 from ...objectives.formula.quantity import key_of
 from ...objectives.formula.slopes import Slopes
-from ...objectives.keys import split_unit
 from ...objectives.kinds import Kind
 from ...objectives.quantity import Array, Values
 from ...objectives.units import kind_for

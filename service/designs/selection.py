@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
-from ...objectives.counted import counted
+from ...objectives.count_text import counted
 from ...objectives.kinds import Kind
 from ..runs.result import Cell, Result, Row
 from .columns import Column, find_column
@@ -143,7 +143,7 @@ def parse_value(key: str, value: object, kind: Kind, *, sign: Any = "any") -> fl
 
 def _number(match: re.Match[str], column: Column) -> float:
     """Return the value in the column's unit; a missing unit is allowed only if the column's name has it."""
-    from ...objectives.amount import kind_of_amount
+    from ...objectives.catalogue_amount import kind_of_amount
     from ...objectives.formula.formulas import is_formula
     from ...objectives.units import to_si
 

@@ -13,8 +13,8 @@ from ...model.errors import InputError
 from ...model.swing.swing import require_swing
 from ...objectives.tables.varying_column import varying_column
 from ..runs.result import Result, Row, rows_of
+from .judged_requirements import ranges_of, requirements_of, unmet_columns
 from .picking_options import minimised_values, target_sizes
-from .requirements import ranges_of, requirements_of, unmet_columns
 from .stored_designs import StoredDesign
 
 _SAME = 1e-9  # of an objective's range over the front, or of a number: a difference below is rounding
@@ -88,7 +88,7 @@ def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Vari
 
 def _dominance(result: Result, row: Row, minimised: Array) -> dict[str, list[int]]:
     """Return the positions of designs that dominate a row, and of those that it dominates."""
-    from ...optimise.front.constant import spread
+    from ...optimise.front.constant_numbers import spread
 
     values = minimised_values(replace(result, designs=[row], exact=None))[0]
     finite = np.where(np.isfinite(minimised), minimised, math.inf)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from ...objectives.keys import metric_key, split_unit
+from ...objectives.column_keys import metric_key, split_unit
 from ..runs.result import Result, Row
 
 if TYPE_CHECKING:

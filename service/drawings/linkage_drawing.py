@@ -11,7 +11,7 @@ from ...objectives.kinds import System
 from ..designs.toleranced import tolerances_of
 from . import layers as on
 from .dimensions import Lettering, aligned, dimension
-from .parts import Look, fixed_shapes, lengths_in_words, look_of, moving_shapes, pin_positions
+from .linkage_shapes import Look, fixed_shapes, lengths_in_words, look_of, moving_shapes, pin_positions
 from .shapes import Drawing, Line, Point, Shape
 from .titles import TEXT, TRUE_SCALE, with_title
 

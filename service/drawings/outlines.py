@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
-from .parts import Barrel, look_of
+from .linkage_shapes import Barrel, look_of
 from .shapes import Point
 from .swing_parts import Cylinder, half_body, swing_look
 

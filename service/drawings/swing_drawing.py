@@ -12,7 +12,7 @@ from ...objectives.kinds import System, metric_unit_in
 from ..designs.toleranced import tolerances_of
 from . import layers as on
 from .dimensions import Lettering, aligned, dimension
-from .parts import lengths_in_words, pin_positions
+from .linkage_shapes import lengths_in_words, pin_positions
 from .shapes import Anchor, Arc, Drawing, Label, Line, Shape
 from .swing_parts import SwingLook, half_body, swing_look, swing_moving, swing_scenery
 from .titles import TEXT, TRUE_SCALE, with_title
@@ -88,8 +88,8 @@ def _dimensions(drawn: SwingLook, angle: float, mechanism: Mechanism, letters: L
     first, last = sorted(math.degrees(at) for at in (swing.start, swing.end))
     arc = Arc(on.DIMENSIONS, (0.0, 0.0), 0.45 * look.crank, first, last)
     share = 0.25 if bend > 0.0 else 0.75  # on the side of the crank that its own dimension is not on
-    place, beside_it = arc.point_at(first + share * (last - first)), arc.point_at(math.degrees(angle))
-    anchor: Anchor = "start" if place[0] > beside_it[0] else "end"  # the words run away from the crank
+    place, arc_end = arc.point_at(first + share * (last - first)), arc.point_at(math.degrees(angle))
+    anchor: Anchor = "start" if place[0] > arc_end[0] else "end"  # the words run away from the crank
     text = Label(on.DIMENSIONS, f"{last - first:.6g} deg", place, height, anchor=anchor)
     return [*shapes, arc, text]
 

@@ -12,7 +12,7 @@ from ...model.machine.links import Bar
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing, dead_points, placed, require_swing
 from . import layers as on
-from .parts import Look, axes, bearing, link_shapes, look_between, moving_shapes, pin_positions, rails
+from .linkage_shapes import Look, axes, bearing, link_shapes, look_between, moving_shapes, pin_positions, rails
 from .shapes import Arc, Circle, Layer, Line, Outline, Point, Shape
 
 _MM = 1e3

@@ -12,14 +12,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from ...objectives.counted import counted
+from ...objectives.count_text import counted
 from ...objectives.kinds import unit_text
 from ...optimise.decisions.price_of_robustness import robust_cost
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust import robust_quantities
 from ..render.numerals import with_unit
-from ..runs.result import Wanted, wanted_of
-from .marks import BETTER, with_better_arrow
+from ..runs.result import StoredObjective, stored_objectives
+from .design_marks import BETTER, with_better_arrow
 from .scatter import MOST, triangle
 from .style import INK, SMALL, heading, legend_at, new_figure, padded_limits, style_axes, write_text
 
@@ -49,7 +49,7 @@ class PlottedRun:
 
 def comparison_matrix(
     runs: Sequence[PlottedRun],
-    objectives: Sequence[Wanted],
+    objectives: Sequence[StoredObjective],
     *,
     title: str = "Fronts compared",
     notes: Sequence[str] = (),
@@ -87,7 +87,7 @@ def robustness_figure(front: ParetoFront) -> Figure | None:
     first = robust_quantities(front.problem)[0]
     kind = first.case if first.case == "worst case" else f"{100.0 * first.share:.6g} % of machines"
     inner = {quantity.name: quantity.inner.title for quantity in robust_quantities(front.problem)}
-    axes = [replace(item, title=inner.get(item.quantity, item.title)) for item in wanted_of(front.problem)]
+    axes = [replace(item, title=inner.get(item.quantity, item.title)) for item in stored_objectives(front.problem)]
     runs = [
         PlottedRun("nominal front, without errors", comparison.nominal),
         PlottedRun(f"robust front, within tolerances ({kind})", comparison.robust),
@@ -131,6 +131,6 @@ def _style(index: int) -> dict[str, Any]:
     }
 
 
-def _label(objective: Wanted) -> str:
+def _label(objective: StoredObjective) -> str:
     title = with_unit(objective.title.removesuffix(", worst case"), objective.unit, objective.target)
     return with_better_arrow(title, BETTER[objective.sense])

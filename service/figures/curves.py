@@ -75,8 +75,10 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True)
     kappa = crowding(*dimensions[0])
     crowded = [uncrowded(tau, kappa) for tau in np.linspace(0.0, 2.0 * np.pi, SAMPLES // 2)]
     # At a step of a load, the curve has different values on the two sides of the peak.
-    beside = [extreme[1] + side for extreme in extremes.values() if extreme for side in (-_SIDE_STEP, 0.0, _SIDE_STEP)]
-    marked = [inner, outer, *(angle for angle in beside if angle >= 0.0)]
+    near_extremes = [
+        extreme[1] + side for extreme in extremes.values() if extreme for side in (-_SIDE_STEP, 0.0, _SIDE_STEP)
+    ]
+    marked = [inner, outer, *(angle for angle in near_extremes if angle >= 0.0)]
     even, turns = np.linspace(0.0, _TURN, SAMPLES + 1), cycle_turns(mechanism)
     turn_angles = [*np.mod(crowded, _TURN), *even, inner, outer]
     angles = np.unique(np.concatenate([*(np.add(turn_angles, number * _TURN) for number in range(turns)), marked]))

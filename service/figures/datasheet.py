@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ...objectives.keys import split_unit
+from ...objectives.column_keys import split_unit
 from ...objectives.kinds import System, metric_unit_in, unit_text
 from ...objectives.registry import QUANTITIES
 from ..render.numerals import format_number

@@ -12,7 +12,7 @@ from matplotlib.patches import Arc
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System, metric_unit_in
-from ..drawings.parts import Look, fixed_shapes, look_of, moving_shapes, pin_positions
+from ..drawings.linkage_shapes import Look, fixed_shapes, look_of, moving_shapes, pin_positions
 from ..drawings.shapes import Point
 from ..render.numerals import format_number, length
 from .painting import paint, show_rectangle

@@ -14,12 +14,12 @@ from matplotlib.figure import Figure
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust import robust_quantities
+from ..designs.changed_design import Variation
 from ..designs.stored_designs import StoredDesign
-from ..designs.variation import Variation
 from ..resources.garbage import uncollected
 from .comparison import robustness_figure
 from .datasheet import design_datasheet
-from .marks import marks
+from .design_marks import marks
 from .parallel import parallel_coordinates
 from .scatter import scatter_matrix
 from .style import save

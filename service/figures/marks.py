@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...objectives.kinds import System, metric_unit_in
 from ...objectives.tables.varying_column import varying_column
-from ...optimise.front.constant import is_constant
+from ...optimise.front.constant_numbers import is_constant
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.requirements import Objective
 from ..render.numerals import with_unit

@@ -15,7 +15,7 @@ from ..render.formatting import format_text
 Array = NDArray[np.float64]
 CRANK_ANGLE = "crank angle, deg"
 _TURN = 2.0 * np.pi
-THIN, DASHED, FAINT, DOTS, SAMPLES = 5, 6, 7, 8, 9
+SOLID, DASHED, FAINT, DOTS, SAMPLES = 5, 6, 7, 8, 9
 """Styles: full of detail, what that is compared with, swinging behind another line, points, points behind a line."""
 
 
@@ -113,5 +113,5 @@ def sampled_turn(*marked: Sequence[float] | Array, samples: int = 720, turns: in
     samples: number of samples per revolution. Marks on one revolution apply to each.
     """
     every = [np.asarray(angles) + number * _TURN for angles in marked for number in range(turns)]
-    beside_marks = [np.mod(angles + side, turns * _TURN) for angles in every for side in (-1e-9, 1e-9)]
-    return np.unique(np.concatenate([np.linspace(0.0, turns * _TURN, turns * samples + 1), *beside_marks]))
+    near_marks = [np.mod(angles + side, turns * _TURN) for angles in every for side in (-1e-9, 1e-9)]
+    return np.unique(np.concatenate([np.linspace(0.0, turns * _TURN, turns * samples + 1), *near_marks]))

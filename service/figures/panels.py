@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ...objectives.kinds import System
 from ..render.formatting import format_text
 from . import style
-from .panel_figure import DASHED, DOTS, FAINT, SAMPLES, THIN, Line, Panel, PanelFigure, panel_in_units
+from .panel_figure import DASHED, DOTS, FAINT, SAMPLES, SOLID, Line, Panel, PanelFigure, panel_in_units
 
 Array = NDArray[np.float64]
 FigureSource = PanelFigure | Figure | Callable[[System], Figure]
@@ -31,7 +31,7 @@ _STYLES: dict[int, dict[str, Any]] = {
     2: {"color": GREEN, "linewidth": 1.5, "linestyle": (0, (7, 2, 1.5, 2)), "zorder": 3},
     3: {"color": style.INK, "linewidth": 1.4, "linestyle": (0, (1.2, 1.5)), "zorder": 3},
     4: {"color": style.MUTED, "linewidth": 1.3, "linestyle": (0, (10, 3)), "zorder": 3},
-    THIN: {"color": style.BLUE, "linewidth": 1.0, "zorder": 3},
+    SOLID: {"color": style.BLUE, "linewidth": 1.0, "zorder": 3},
     DASHED: {"color": style.INK, "linewidth": 1.1, "linestyle": (0, (4, 2)), "zorder": 3},
     FAINT: {"color": style.MUTED, "linewidth": 0.8, "linestyle": "--", "zorder": 2},
     DOTS: {"color": style.VERMILION, "linestyle": "none", "marker": "o", "markersize": 2.2, "zorder": 4},
@@ -42,7 +42,7 @@ _POINTS: dict[str, Any] = {
     **{"markerfacecolor": "white", "markeredgewidth": 1.4},
 }
 _LEFT, _RIGHT, _FOOT, _HEAD = 0.75, 0.25, 0.5, 0.72  # inches
-_GAP, _ROOM = 0.5, 0.9  # between stacked panels, and between those with axes of their own
+_GAP, _AXES_GAP = 0.5, 0.9  # between stacked panels, and between those with axes of their own
 
 
 def draw_panel_figure(figure_panels: PanelFigure, system: System = "metric", *, space_above: float = 0.0) -> Figure:
@@ -53,7 +53,7 @@ def draw_panel_figure(figure_panels: PanelFigure, system: System = "metric", *, 
         else list(figure_panels.width)
     )
     rows = math.ceil(len(figure_panels.panels) / figure_panels.columns)
-    tall = figure_panels.height - (_GAP if figure_panels.stacked else _ROOM)
+    tall = figure_panels.height - (_GAP if figure_panels.stacked else _AXES_GAP)
     head = _HEAD + (_GAP - 0.3 if figure_panels.stacked and figure_panels.subtitle else 0.0)
     figure = style.new_figure(sum(widths), rows * figure_panels.height + head + space_above)
     style.heading(

@@ -11,11 +11,11 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from ...objectives.counted import counted
+from ...objectives.count_text import counted
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
 from ..render.numerals import on_scale
-from .marks import Axis, dimension_axes, marks, objective_axis
+from .design_marks import Axis, dimension_axes, marks, objective_axis
 from .style import FRAME, INK, MUTED, SMALL, TEXT, add_axes, colours, heading, new_figure, padded_limits
 
 _DASHES = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5)), (0, (8, 2)), (0, (2.5, 1)))

@@ -10,10 +10,10 @@ from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ...objectives.counted import counted
+from ...objectives.count_text import counted
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
-from .marks import Axis, Mark, dimension_axes, marks, objective_axis, with_better_arrow
+from .design_marks import Axis, Mark, dimension_axes, marks, objective_axis, with_better_arrow
 from .style import INK, SMALL, TEXT, add_axes, colours, heading, legend_at, new_figure, padded_limits, style_axes
 
 MOST = 6

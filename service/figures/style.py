@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.extras import NamingExtra
-from ...optimise.front.constant import is_constant
+from ...optimise.front.constant_numbers import is_constant
 from ..render.numerals import on_scale
 from ..resources.garbage import uncollected
 
@@ -115,7 +115,7 @@ def draw_stack(axes: Axes, x: Array, parts: Array, names: Sequence[str]) -> None
         part.set_hatch(hatch)
 
 
-def legend_beside(axes: Axes, *, stacked: int = 0) -> None:
+def legend_at_right(axes: Axes, *, stacked: int = 0) -> None:
     """Write the legend at the right of axes. stacked: number of first entries to list in reverse, the last on top."""
     handles, labels = axes.get_legend_handles_labels()
     order = [*reversed(range(stacked)), *range(stacked, len(handles))]

@@ -37,7 +37,7 @@ def store_address(option: str | None, runs: Path | None = None) -> str:
     return option or os.environ.get(STORE_VARIABLE) or str(runs_place(runs) / FILE)
 
 
-def shown_store(option: str | None, runs: Path | None = None) -> str:
+def printable_store_address(option: str | None, runs: Path | None = None) -> str:
     """Return the address of the store, fit to be printed."""
     from ..store.address import without_secrets
 
@@ -78,7 +78,7 @@ def has_store(option: str | None, runs: Path | None = None) -> bool:
     return file is None or has_content(file)
 
 
-def tell_idle(store: Store) -> None:
+def warn_without_workers(store: Store) -> None:
     """Report that jobs wait if no worker is there to solve them."""
     if not store.workers_at_work():
         print_message("slidercrank: no worker is running, so jobs wait; start one with: slidercrank serve")
@@ -88,7 +88,9 @@ def tell_idle(store: Store) -> None:
 def store_that_is_there(option: str | None) -> Iterator[Store]:
     """Yield the store, closed at the end. Raises `NotFound` for a missing file, which is not created."""
     if not has_store(option):
-        raise NotFound(f"there is no store at {shown_store(option)}; submit a job first, or name another with --store")
+        raise NotFound(
+            f"there is no store at {printable_store_address(option)}; submit a job first, or name another with --store"
+        )
     with open_store(option) as store:
         yield store
 

@@ -96,7 +96,7 @@ def bounded(problem: Problem, seconds: float) -> Problem:
 
 
 @contextlib.contextmanager
-def ending_own(problem: Problem, engine: Engine | None = None) -> Iterator[None]:
+def ending_custom_functions(problem: Problem, engine: Engine | None = None) -> Iterator[None]:
     """End the custom function processes of a problem on leaving: otherwise they run until the problem is freed.
 
     engine: engine that may have called them too; it ends its processes, and starts others when next needed.

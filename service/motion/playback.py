@@ -18,7 +18,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
 from ..designs.cycle_table import CurveColumn, cycle_table
 from ..drawings import layers as on
-from ..drawings.parts import Look, bar, block, fixed_shapes, lengths_in_words, look_of
+from ..drawings.linkage_shapes import Look, bar, block, fixed_shapes, lengths_in_words, look_of
 from ..drawings.shapes import Circle, Shape
 
 ANGLES = 360

@@ -12,7 +12,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
 from ...objectives.kinds import unit_text
-from ...optimise.front.constant import is_constant
+from ...optimise.front.constant_numbers import is_constant
 from ..designs.cycle_table import CurveColumn
 from ..drawings import layers as on
 from ..drawings.svg import elements, group

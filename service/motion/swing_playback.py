@@ -11,7 +11,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
 from ..designs.cycle_table import CurveColumn
 from ..designs.swing_curves import curves_at_even_times, has_position_error, motion_and_drive
-from ..drawings.parts import lengths_in_words
+from ..drawings.linkage_shapes import lengths_in_words
 from ..drawings.shapes import Shape
 from ..drawings.swing_parts import body_shapes, cylinder_parts, swing_look, swing_scenery
 from .playback import ANGLES, EXACT_PARTS, Playback, PlayerText, moving_link_shapes, place_record

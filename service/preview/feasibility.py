@@ -122,11 +122,11 @@ def designs_of(problem: Problem, count: int) -> Array:
     """
     parts = []
     for index, branch in enumerate(elimination_branches(problem)):
-        parts.append(branch.dimensions(first_samples(count, len(branch.free), 1, index))[:, _shown_columns(problem)])
+        parts.append(branch.dimensions(first_samples(count, len(branch.free), 1, index))[:, _length_columns(problem)])
     return np.concatenate(parts)
 
 
-def _shown_columns(problem: Problem) -> list[int]:
+def _length_columns(problem: Problem) -> list[int]:
     """Return the shown columns of designs: the three lengths, and the start of a swing if it varies."""
     column = start_column(problem.mechanism)
     return [0, 1, 2, *([] if column is None else [column])]
@@ -151,7 +151,7 @@ def _turns(designs: Array) -> NDArray[np.bool_]:
 def screened(problem: Problem) -> tuple[Array, Array]:
     """Return designs as in `designs_of` and their greatest relative violation (n,), as many as a short time allows."""
     end = time.monotonic() + _MOMENT
-    columns = _shown_columns(problem)
+    columns = _length_columns(problem)
     designs, violations = [np.zeros((0, len(columns)))], [np.zeros(0)]
     for index, branch in enumerate(elimination_branches(problem)):
         evaluator = Evaluator(problem, branch)

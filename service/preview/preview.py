@@ -8,15 +8,15 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ...model.errors import InfeasibleError, InputError
-from ...objectives.counted import counted
+from ...objectives.count_text import counted
 from ...optimise.feasibility.relaxation import missed
-from ...optimise.front.constant import is_constant
+from ...optimise.front.constant_numbers import is_constant
 from ...optimise.job import Job
-from ...optimise.job.box import STROKE_RATIOS, beyond_both
 from ...optimise.job.file import require_few
+from ...optimise.job.incomplete_formulas import FormulaName, StatedFormula, formula_names, stated_formulas
 from ...optimise.job.messages import place_of
+from ...optimise.job.possible_values import STROKE_RATIOS, beyond_both
 from ...optimise.job.schema import schema_of
-from ...optimise.job.stated_formulas import FormulaName, StatedFormula, formula_names, stated_formulas
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint
 from .feasibility import Ends, Possible, possible
@@ -126,7 +126,7 @@ def _findings(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Pro
         stated,
         possible_values,
         [*left_out(tables, stated), *possible_values.unchecked],
-        reach_sentences(stated, possible_values, fixed_names),
+        infeasibility_sentences(stated, possible_values, fixed_names),
     )
 
 
@@ -143,7 +143,7 @@ def _places(error: InputError) -> list[Wrong]:
     return mistakes
 
 
-def reach_sentences(problem: Problem, possible_values: Possible, fixed_names: Sequence[str]) -> list[str]:
+def infeasibility_sentences(problem: Problem, possible_values: Possible, fixed_names: Sequence[str]) -> list[str]:
     """Return a sentence for each requirement that is out of reach, and one if no sample meets everything.
 
     fixed_names: names of the extra variables, which have one value in the samples.

@@ -35,12 +35,12 @@ class PossibleSwing:
 
     travel (m): ends of its range, for designs that keep the margin and the other checked requirements, if any do; None
     if no design makes the swing. feasible: fraction of the `sampled` designs that meet every checked requirement.
-    example: crank, rod and offset, m; None if no design makes the swing. shown_swing: its swing, between crank angles.
-    unchecked: requirements too slow to check, or that need the rest of the job.
+    example: crank, rod and offset, m; None if no design makes the swing. example_swing: its swing, between crank
+    angles. unchecked: requirements too slow to check, or that need the rest of the job.
     """
 
     swing: Swing
-    shown_swing: Swing | None
+    example_swing: Swing | None
     branch: float
     closing: float
     travel: Ends | None
@@ -104,15 +104,15 @@ def _possible(
     basis = designs[good] if good.any() else designs[closes] if closes.any() else box[turning]
     ends = ends_of(light.mechanism, swing, basis)
     travel = np.abs(positions(ends.end, sign, basis) - positions(ends.start, sign, basis))
-    shown_swing = None
+    example_swing = None
     if example is not None:
         example_ends = ends_of(light.mechanism, swing, example[None])
-        shown_swing = replace(
+        example_swing = replace(
             swing, start=float(example_ends.start[0]), end=float(example_ends.end[0]), stated_for="crank", follows=False
         )
     return PossibleSwing(
         swing=swing,
-        shown_swing=shown_swing,
+        example_swing=example_swing,
         branch=sign,
         closing=float(turning.mean()),
         travel=(float(travel.min()), float(travel.max())) if len(travel) else None,

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from ...objectives.kinds import System
     from ...objectives.quantity import Quantity
-    from ..designs.requirements import Judgement
+    from ..designs.judged_requirements import Judgement
     from .design_analysis import Analysis
 
 

@@ -12,7 +12,7 @@ from typing import Annotated, Any, NotRequired
 
 from typing_extensions import TypedDict
 
-from ...objectives.keys import split_unit
+from ...objectives.column_keys import split_unit
 from ...objectives.kinds import Kind
 
 _Handler = Callable[[Any], dict[str, Any]]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
 from ..designs.display_units import record_in, row_in
-from ..designs.requirements import JudgedChoice, Judgement, judge_rules
+from ..designs.judged_requirements import JudgedChoice, Judgement, judge_rules
 from ..designs.violations import violated_by
 from ..runs.result import Row, rows_of
 from .design_question import BoundQuestion

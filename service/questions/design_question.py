@@ -117,7 +117,7 @@ class DesignQuestion:
         self, mechanism: Mechanism, linkage: Linkage, problem: Problem | None, inputs: Mapping[str, object]
     ) -> dict[str, Any]:
         """Return the numbers as JSON, metric: a question of `optimise.problem.questions`."""
-        from ...model.linkage.single import single
+        from ...model.linkage.single_linkage import single
 
         bound = self.for_problem(mechanism, linkage, problem, inputs)
         if self.command is None:
@@ -161,8 +161,8 @@ class BoundQuestion:
 
     def blocks(self, numbers: dict[str, Any]) -> list[Block]:
         """Return metric numbers as blocks for people."""
-        shown_blocks: list[Block] = self._analysis.blocks(numbers)
-        return shown_blocks
+        answer_blocks: list[Block] = self._analysis.blocks(numbers)
+        return answer_blocks
 
     def notes(self, numbers: dict[str, Any]) -> list[str]:
         """Return notes on the numbers: undefined values, or an unproven optimum."""

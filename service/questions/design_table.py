@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from ...objectives.keys import kind_of_key
+from ...objectives.column_keys import kind_of_key
 from ..designs.columns import find_column
 from ..render.blocks import Text, Unit
 

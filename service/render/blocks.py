@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.keys import kind_of_key
+from ...objectives.column_keys import kind_of_key
 from ...objectives.kinds import LENGTH, RATIO, Kind
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from ...objectives.keys import kind_of_key
+from ...objectives.column_keys import kind_of_key
 from ...objectives.kinds import ANGLE, LENGTH
 from .blocks import Table, Text, Unit, column, recorded
 

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...optimise.problem.problem import Problem
+from ..designs.changed_design import variation_of
 from ..designs.picking_options import minimised_values
 from ..designs.stored_designs import StoredDesign
-from ..designs.variation import variation_of
 from ..jobs.stores import has_store, open_store
 from ..runs.result import Result
 from .subject import Alternative

@@ -5,13 +5,13 @@ from __future__ import annotations
 import time
 
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.counted import counted
-from ...objectives.keys import metric_key
+from ...objectives.column_keys import metric_key
+from ...objectives.count_text import counted
 from ...objectives.kinds import unit_text
 from ...objectives.proportions import STROKE
 from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE
+from ..designs.changed_design import Variation
 from ..designs.columns import chosen_columns, find_column
-from ..designs.variation import Variation
 from ..render.numerals import measured, rounded
 from ..text.summary import machine_in_words
 from .decision_section import decision_section

@@ -7,12 +7,12 @@ from functools import partial
 from typing import get_args
 
 from ...model.errors import InputError
-from ...objectives.keys import key_in
+from ...objectives.column_keys import key_in
 from ...objectives.kinds import unit_text
-from ...objectives.needs import Consequence
+from ...objectives.machine_needs import Consequence
 from ...objectives.registry import QUANTITIES
 from ..designs.columns import Column, all_columns
-from ..designs.requirements import requirements_of
+from ..designs.judged_requirements import requirements_of
 from ..designs.rounding_noise import without_noise
 from ..designs.toleranced import format_toleranced
 from ..designs.trade_offs import trade_offs_of

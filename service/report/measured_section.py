@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
-from ...objectives.counted import counted
+from ...objectives.count_text import counted
 from ...objectives.kinds import System
 from ...objectives.tables.measured import Measured
 from ..figures.panel_figure import PanelFigure

@@ -25,13 +25,13 @@ _FONTS = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
 """Those of the figures, so that pages are the same everywhere; others serve letters that these lack."""
 _ACROSS = 6.77  # inches
 _SHARP = 220  # dots an inch of what is drawn as points
-_UNITS = sorted({unit_text(face.symbol) for of in DISPLAYED_KINDS for face in (of.metric, of.inch) if face}, key=len)[
+_UNITS = sorted({unit_text(unit.symbol) for of in DISPLAYED_KINDS for unit in (of.metric, of.inch) if unit}, key=len)[
     ::-1
 ]
 _UNIT = "|".join(map(re.escape, [*_UNITS, "%"]))
 _OF_NUMBER = re.compile(rf"(?<=\d) (?:{_UNIT})(?![\w/])|(?<=,) (?:{_UNIT})$|^(?:{_UNIT})$")
 """A unit behind its number, at the end of a head, or alone."""
-_KEPT = "\u00a0"  # a space at which no line is broken
+_NO_BREAK = "\u00a0"  # a space at which no line is broken
 
 
 def pdf_file(report: Report) -> bytes:
@@ -84,4 +84,4 @@ def _drawn(picture: Picture, file: Path) -> dict[str, Any]:
 
 def _unbreakable_text(text: str) -> str:
     """Return a text without breaks within a unit, or between a number and its unit."""
-    return _OF_NUMBER.sub(lambda found: found[0].replace(" ", _KEPT), text)
+    return _OF_NUMBER.sub(lambda found: found[0].replace(" ", _NO_BREAK), text)

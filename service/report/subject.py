@@ -7,15 +7,15 @@ from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from ...objectives.keys import key_in
+from ...objectives.column_keys import key_in
 from ...objectives.kinds import System
 from ...objectives.tables.measured import Measured
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.problem import Problem
+from ..designs.changed_design import Variation
 from ..designs.display_units import record_in, result_in, row_in
 from ..designs.stored_designs import StoredDesign, front_of, stored_design
 from ..designs.toleranced import format_toleranced, tolerances_of
-from ..designs.variation import Variation
 from ..designs.violations import violated_by, violations_in_words
 from ..render.numerals import rounded
 from ..runs.result import Cell, Result, Row

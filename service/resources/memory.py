@@ -30,7 +30,7 @@ class Memory:
         self._fresh = min(self._fresh or self._least, self._least)
 
     @property
-    def left_behind(self) -> int:
+    def left_by_earlier_jobs(self) -> int:
         """Memory left behind by earlier jobs, bytes."""
         return self._least - self._fresh
 
@@ -38,7 +38,7 @@ class Memory:
         """Return the memory that the job uses now, bytes, including that of a fresh process."""
         total = memory_taken()
         self._least = min(self._least, total)
-        return total - self.left_behind
+        return total - self.left_by_earlier_jobs
 
 
 def memory_taken() -> int:

@@ -25,7 +25,7 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\r")  # how a cell begins that spreadshee
 
 
 @dataclass(frozen=True, kw_only=True)
-class Wanted:
+class StoredObjective:
     """An objective. column: its key in the designs. target: in `unit`, if the sense is "target"."""
 
     quantity: str
@@ -90,7 +90,7 @@ class Result:
     name: str
     status: str
     message: str
-    objectives: tuple[Wanted, ...]
+    objectives: tuple[StoredObjective, ...]
     designs: list[Row]
     hypervolume: float
     evaluations: int
@@ -118,11 +118,11 @@ class Result:
         fields = {name: json_ready(value) for name, value in vars(self).items() if name not in left_out}
         if columns is not None:
             fields["designs"] = [{name: row[name] for name in columns} for row in fields["designs"]]
-        objectives = [wanted_record(objectives) for objectives in self.objectives]
+        objectives = [objective_record(objectives) for objectives in self.objectives]
         return fields | {"objectives": objectives, "strokes_differ": self.strokes_differ}
 
 
-def wanted_of(problem: Problem) -> list[Wanted]:
+def stored_objectives(problem: Problem) -> list[StoredObjective]:
     """Return the objectives of a problem as shown."""
     objectives = []
     for objective in problem.objectives:
@@ -134,7 +134,7 @@ def wanted_of(problem: Problem) -> list[Wanted]:
             "title": quantity.title,
             "unit": quantity.unit.symbol,
         }
-        objectives.append(Wanted(**names, sense=objective.sense, target=target))
+        objectives.append(StoredObjective(**names, sense=objective.sense, target=target))
     return objectives
 
 
@@ -151,7 +151,7 @@ def result_of(front: ParetoFront, run: str) -> Result:
         name=front.problem.name,
         status=front.status,
         message=front.message,
-        objectives=tuple(wanted_of(front.problem)),
+        objectives=tuple(stored_objectives(front.problem)),
         designs=rows_of(front.columns),
         hypervolume=float(front.hypervolume),
         evaluations=int(front.evaluations),
@@ -191,7 +191,7 @@ def unsearched_result(error: InfeasibleError, run: str = "") -> Result:
         name="" if problem is None else problem.name,
         status="infeasible",
         message=str(error),
-        objectives=() if problem is None else tuple(wanted_of(problem)),
+        objectives=() if problem is None else tuple(stored_objectives(problem)),
         designs=[],
         hypervolume=0.0,
         evaluations=0,
@@ -237,7 +237,7 @@ def _cell(value: Any) -> Cell:
     return float(value)
 
 
-def wanted_record(objective: Wanted) -> dict[str, Any]:
+def objective_record(objective: StoredObjective) -> dict[str, Any]:
     """Return an objective as JSON has it."""
     return {name: value for name, value in vars(objective).items() if value is not None}
 

@@ -76,7 +76,7 @@ class RunFolder:
             except BaseException:
                 shutil.rmtree(hidden, ignore_errors=True)
                 raise
-        self._has_result = self._was_whole = self._is_as_before = False
+        self._has_result = self._was_complete = self._is_as_before = False
         self._lock = _lock(self.path)
         self.log(f"run {self.path.name} started")
 
@@ -91,7 +91,7 @@ class RunFolder:
         run.path = path
         with disk(path):
             run._lock = _lock(path)
-            run._was_whole, run._has_result = not (path / MARK).exists(), True
+            run._was_complete, run._has_result = not (path / MARK).exists(), True
         run._is_as_before = True
         return run
 
@@ -130,7 +130,7 @@ class RunFolder:
 
     def keep_result(self, result: Result, versions: dict[str, str]) -> None:
         """Write front.csv, front.json and versions.json."""
-        self._has_result, self._was_whole = True, False
+        self._has_result, self._was_complete = True, False
         with disk(self.path):
             _write(self.path / "versions.json", json_text(versions))
             _write(self.path / "front.csv", csv_text(result.designs))
@@ -178,7 +178,7 @@ class RunFolder:
         else:
             self.log("".join(traceback.format_exception(error)).rstrip())
             error.add_note(f"log: {self.path / 'log.txt'}")
-        if self._was_whole:
+        if self._was_complete:
             (self.path / MARK).unlink(missing_ok=True)
         else:
             _write(self.path / MARK, f"Started {self.started}, stopped by an error: {reason}\n")

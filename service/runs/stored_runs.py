@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.errors import JobError, RunError
 from ...model.file_names import path_text
-from .result import Exact, Result, Row, Wanted, json_ready, rows_from_csv
+from .result import Exact, Result, Row, StoredObjective, json_ready, rows_from_csv
 from .run_folder import MARK
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def result_from(record: dict[str, Any], rows: list[Row], run: str, exact: Exact 
 
     Raises ValueError, KeyError or TypeError if they contradict each other, or something is missing.
     """
-    objectives = tuple(Wanted(**item) for item in record["objectives"])
+    objectives = tuple(StoredObjective(**item) for item in record["objectives"])
     result = Result(
         run=run,
         name=str(record["name"]),

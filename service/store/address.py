@@ -27,7 +27,7 @@ def without_secrets(text: str) -> str:
     if not server:
         return f"{option}{equals}{HIDDEN}" if _MANGLED.match(value) else text
     url = _parsed(value)
-    return option + equals + (f"{scheme}://{HIDDEN}" if url is None else shown_url(url))
+    return option + equals + (f"{scheme}://{HIDDEN}" if url is None else address_without_secrets(url))
 
 
 def _parsed(text: str) -> URL | None:
@@ -40,7 +40,7 @@ def _parsed(text: str) -> URL | None:
     return None if url.password is not None and after_user.count("@") > 1 else url
 
 
-def shown_url(url: URL) -> str:
+def address_without_secrets(url: URL) -> str:
     """Return an address without its secrets, fit to be shown."""
     hidden = {name: value if name in _OPEN else HIDDEN for name, value in url.query.items()}
     text = url.set(query=hidden, database=url.database and path_text(url.database)).render_as_string(hide_password=True)

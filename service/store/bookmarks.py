@@ -11,9 +11,9 @@ from typing import Any, TypedDict, Unpack
 from sqlalchemy import Connection, and_, delete, insert, select, update
 
 from ...model.errors import InputError, NotFound
-from .clock import now
 from .database import Database
-from .rows import the_job
+from .database_clock import now
+from .job_rows import the_job
 from .schema import bookmarks
 from .serialisation import plain
 
@@ -101,7 +101,7 @@ def keep_design(
         return _changed(connection, job, number, {name: value for name, value in remarks.items() if value})
 
 
-def change_kept(store: Database, job: int, number: int, **remarks: Unpack[Remarks]) -> Bookmark:
+def update_bookmark(store: Database, job: int, number: int, **remarks: Unpack[Remarks]) -> Bookmark:
     """Change name, note, star, decided or reason of a bookmark and return it; only one can be decided."""
     with store.writing() as connection:
         the_job(connection, job, lock=True)
@@ -109,7 +109,7 @@ def change_kept(store: Database, job: int, number: int, **remarks: Unpack[Remark
         return _changed(connection, job, number, dict(remarks))
 
 
-def drop_kept(store: Database, job: int, number: int) -> None:
+def remove_bookmark(store: Database, job: int, number: int) -> None:
     """Delete a bookmark. Raises `NotFound`."""
     with store.writing() as connection:
         the_job(connection, job, lock=True)

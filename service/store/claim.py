@@ -13,11 +13,11 @@ from sqlalchemy import ColumnElement, Connection, and_, case, delete, insert, se
 
 from ...model.errors import LeaseLost
 from ..runs.result import Result, json_ready
-from .clock import JUMP, later, now
 from .database import Database, Full, Unavailable
+from .database_clock import JUMP, later, now
+from .job_rows import NewEvent, add_events, records_of, state_event
 from .queue import MOST_DELAY, put_files
 from .records import NOT_DONE, Artefact, Job
-from .rows import Told, add_events, records_of, state_event
 from .schema import designs, exact, jobs, records, workers
 from .serialisation import cells_of, checksum, packed, packed_exact, plain, summary_of, text_of
 
@@ -49,9 +49,9 @@ class Claim:
     A write that finds the disk full waits for free space, while other threads renew the lease: that takes less space.
     If even the renewal fails, nobody else can claim the job either, and this worker keeps it until someone does.
 
-    has_begun: whether its search has evaluated anything yet. astray: whether the lease ends at a wrong time because the
-    database clock has jumped; it must be renewed. patient: whether a write waits for free space. waits: reason why a
-    write waits; empty if none does. waited: time that writes have waited for free space, s.
+    has_started: whether its search has evaluated anything yet. astray: whether the lease ends at a wrong time because
+    the database clock has jumped; it must be renewed. patient: whether a write waits for free space. waits: reason why
+    a write waits; empty if none does. waited: time that writes have waited for free space, s.
     """
 
     def __init__(self, database: Database, job: Job, lease: float) -> None:
@@ -59,13 +59,13 @@ class Claim:
         self.job = job
         self.lease = lease
         self.cancel_asked = job.cancel_asked
-        self.has_begun = False
+        self.has_started = False
         self._database = database
         self._lock = threading.Condition()
         self._writes = 0
         self._attempts = job.attempts
         self._records = job.records
-        self._kept: list[Record] = []
+        self._unsent: list[Record] = []
         self._renewed = time.monotonic()
         self.astray = False
         self.patient: Patience = lambda _: True
@@ -85,8 +85,8 @@ class Claim:
     def keep(self, record: Record) -> None:
         """Accept the next record; it is written with the next progress report, or at the end."""
         with self._lock:
-            self.has_begun = True
-            self._kept.append(record)
+            self.has_started = True
+            self._unsent.append(record)
 
     def report(self, progress: Progress, front: Mapping[str, Any] | None = None) -> None:
         """Write the progress of the search and the records since the last report. Loading does not count as begun.
@@ -94,7 +94,7 @@ class Claim:
         front: some designs of the front so far, as JSON. Only the latest is stored, with the job: a front in each event
         would make a store of many runs grow.
         """
-        self.has_begun = self.has_begun or not progress.prepares
+        self.has_started = self.has_started or not progress.prepares
         data = json_ready(asdict(progress), gaps=True)
         standing = data if front is None else {**data, "front": json_ready(front, gaps=True)}
         self._write({"progress": text_of(standing)}, [("progress", data)])
@@ -122,7 +122,7 @@ class Claim:
     def start_over(self, reason: str) -> None:
         """Delete all records: the search restarts. reason: reason for the events of the job."""
         with self._lock:
-            self._kept = []
+            self._unsent = []
             of_job = records.c.job == self.job.id
 
             def forget(connection: Connection) -> None:
@@ -171,7 +171,7 @@ class Claim:
         again: whether another attempt may succeed; the job is then queued again after `delay` s, at most a minute,
         unless its attempts are used up. Otherwise it is set aside as failed.
         """
-        attempts = 0 if self._kept else self._attempts
+        attempts = 0 if self._unsent else self._attempts
         tries = f" (attempt {attempts} of {self.job.most_attempts})" if again and attempts else ""
         if again and attempts < self.job.most_attempts:
             self._leave("queued", f"{reason}{tries}", {"due": later(min(delay, MOST_DELAY)), "finished": None})
@@ -211,7 +211,7 @@ class Claim:
     def _write(
         self,
         changes: dict[str, Any],
-        new_events: Sequence[Told],
+        new_events: Sequence[NewEvent],
         rest: Rest | None = None,
         *,
         keep: bool = True,
@@ -227,13 +227,13 @@ class Claim:
                         )
                         return
                     except Unavailable as error:
-                        waited, no_room = time.monotonic() - began, isinstance(error, Full)
-                        if not ((patient or self.patient)(waited) if no_room else self.age <= self.lease):
+                        waited, disk_full = time.monotonic() - began, isinstance(error, Full)
+                        if not ((patient or self.patient)(waited) if disk_full else self.age <= self.lease):
                             raise
                         if waited > _TOLD and not reported:
                             _log.warning("waits to write: %s", error)
                             reported = True
-                        if no_room:
+                        if disk_full:
                             full, self.waits = True, f"waits: {error}"
                             self._lock.wait(_PAUSE)  # other threads write meanwhile
                         else:
@@ -245,10 +245,10 @@ class Claim:
                     self.waited += time.monotonic() - began
 
     def _try(
-        self, changes: dict[str, Any], new_events: Sequence[Told], rest: Rest | None, *, keep: bool, tried: bool
+        self, changes: dict[str, Any], new_events: Sequence[NewEvent], rest: Rest | None, *, keep: bool, tried: bool
     ) -> None:
         """Write everything in one transaction. tried: whether an earlier attempt may already have taken effect."""
-        pending, started = self._kept if keep else [], time.monotonic()
+        pending, started = self._unsent if keep else [], time.monotonic()
         rows = [
             {"job": self.job.id, "number": number, "content": packed(record)}
             for number, record in enumerate(pending, self._records)
@@ -282,7 +282,7 @@ class Claim:
         self._renewed, self.astray = started, False
         self._writes += 1
         self._records += len(rows)
-        self._kept = self._kept[len(pending) :]
+        self._unsent = self._unsent[len(pending) :]
         self._attempts = 0 if rows else self._attempts
 
     @property

@@ -34,7 +34,7 @@ class Jumps:
         self._ahead: float | None = None
         self._until = -math.inf
 
-    def is_settled(self, database_time: float, last_full: float = -math.inf) -> bool:
+    def is_steady(self, database_time: float, last_full: float = -math.inf) -> bool:
         """Return whether the last clock jump and the last full disk are both some time ago.
 
         database_time: time of the database, s. last_full: time of the last full disk on the monotonic clock, s.

@@ -24,7 +24,7 @@ from ...model.errors import StoreError
 from ...model.extras import NamingExtra
 from ...model.file_names import path_text
 from ..resources.disk import LEAST, free, free_space_text
-from .address import HIDDEN, file_of, is_there, secrets_of, shown_url, url_of
+from .address import HIDDEN, address_without_secrets, file_of, is_there, secrets_of, url_of
 
 _PATIENCE = 30.0  # s to wait for other writers
 _POOL = {"pool_size": 20, "pool_use_lifo": True}  # as many stay open as API threads use simultaneously
@@ -61,7 +61,7 @@ class Database:
         Raises `InputError` for an address of another kind, `StoreError` if it cannot be opened.
         """
         url = url_of(address)
-        self.name = shown_url(url)
+        self.name = address_without_secrets(url)
         self._secrets = secrets_of(url)
         self.last_full = -math.inf
         self.sqlite = url.get_backend_name() == "sqlite"
@@ -92,14 +92,14 @@ class Database:
         if self.sqlite and not alone:
             self._use_write_ahead_log()
 
-    def require_room(self) -> None:
+    def require_disk_space(self) -> None:
         """Raise `Full` if the disk of a file is full; the disk of a server is unknown."""
         if self._folder is not None and free(self._folder) < LEAST:
             raise self._full("its disk is full")
 
     def require_ready(self) -> None:
         """Raise `StoreError` if the disk of a file is full, or a server accepts no changes."""
-        self.require_room()
+        self.require_disk_space()
         if self.sqlite:
             return
         query = "SELECT pg_is_in_recovery() OR current_setting('default_transaction_read_only')::bool"

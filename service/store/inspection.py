@@ -8,9 +8,9 @@ import time
 from sqlalchemy import ColumnElement, Connection, FromClause, func, select, text
 
 from ...model.errors import StoreError
-from .clock import now
 from .database import Database, Unavailable
-from .rows import require_sum
+from .database_clock import now
+from .job_rows import require_sum
 from .schema import designs, events, exact, jobs, records
 
 _MOST = 5  # of a kind that are named

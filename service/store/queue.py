@@ -10,9 +10,9 @@ from typing import Any
 from sqlalchemy import Connection, and_, delete, exists, func, insert, not_, or_, select, text, update
 
 from ...model.errors import InputError, QueueFull
-from .clock import JUMP, Jumps, later, now
-from .records import LIMITS, SHOWN, Artefact, Job, Limits
-from .rows import add_events, become, state_event
+from .database_clock import JUMP, Jumps, later, now
+from .job_rows import add_events, become, state_event
+from .records import JOB_COLUMNS, LIMITS, Artefact, Job, Limits
 from .schema import artefacts, jobs, workers
 from .schema_version import LOCK
 from .serialisation import plain, text_of
@@ -30,7 +30,7 @@ _DUE = or_(jobs.c.due <= now(), jobs.c.due > now() + MOST_DELAY)
 
 # Of PostgreSQL's sessions each skips what another has locked; SQLite has one writer at a time and needs no locks.
 _CLAIMABLE = (
-    select(*SHOWN)
+    select(*JOB_COLUMNS)
     .where(or_(and_(jobs.c.state == "queued", _DUE), LEFT))
     .order_by(jobs.c.priority.desc(), jobs.c.id)
     .limit(1)
@@ -57,7 +57,7 @@ def take_turns(connection: Connection) -> None:
 
 def submitted_before(connection: Connection, key: str, tables: Mapping[str, Any]) -> Job | None:
     """Return the job submitted with a key, None if there is none. Raises `InputError` if it differs."""
-    row = connection.execute(select(*SHOWN, jobs.c.tables).where(jobs.c.key == key)).first()
+    row = connection.execute(select(*JOB_COLUMNS, jobs.c.tables).where(jobs.c.key == key)).first()
     if row is None:
         return None
     if json.loads(row.tables) != json.loads(text_of(tables)):
@@ -67,7 +67,7 @@ def submitted_before(connection: Connection, key: str, tables: Mapping[str, Any]
     return Job.from_row(row, left_out=("tables",))
 
 
-def require_room(connection: Connection, most_queued: int) -> None:
+def require_place_in_queue(connection: Connection, most_queued: int) -> None:
     """Raise `QueueFull` if the maximum number of jobs is waiting."""
     waiting = connection.scalar(select(func.count()).where(jobs.c.state == "queued")) or 0
     if waiting >= most_queued:
@@ -119,8 +119,8 @@ def any_claimable(connection: Connection, jumps: Jumps, last_full: float) -> boo
 
     jumps: jumps of the database clock. last_full: time when its disk was full, s. No job is claimed soon after either.
     """
-    clock_settled = jumps.is_settled(connection.execute(select(now())).scalar_one(), last_full)
-    return clock_settled and connection.execute(_CLAIMABLE).first() is not None
+    clock_steady = jumps.is_steady(connection.execute(select(now())).scalar_one(), last_full)
+    return clock_steady and connection.execute(_CLAIMABLE).first() is not None
 
 
 def running(connection: Connection) -> int:
@@ -151,7 +151,7 @@ def claim_next(connection: Connection, worker: str, lease: float) -> Job | None:
             .values(
                 {"state": "running", "reason": "", **in_hand(worker, lease), "events": jobs.c.events + len(new_events)}
             )
-            .returning(*SHOWN)
+            .returning(*JOB_COLUMNS)
         ).one()
         add_events(connection, row.id, row.events, new_events)
         return Job.from_row(row)

@@ -11,7 +11,7 @@ from sqlalchemy import Row as Found
 from sqlalchemy import select
 
 from ...model.errors import InputError
-from ...objectives.counted import counted
+from ...objectives.count_text import counted
 from .schema import bookmarks, jobs
 
 State = Literal["queued", "running", "done", "infeasible", "cancelled", "failed"]
@@ -22,7 +22,7 @@ NOT_DONE = "cancelled before it was done"
 _DECISIONS = select(bookmarks.c.name).where(bookmarks.c.job == jobs.c.id, bookmarks.c.decided).limit(1)
 DECISION = _DECISIONS.correlate(jobs).scalar_subquery()
 """The name of the design decided for in a job."""
-SHOWN = (
+JOB_COLUMNS = (
     *(column for column in jobs.c if column.name not in ("tables", "result", "checksum")),
     DECISION.label("decision"),
 )
@@ -113,7 +113,7 @@ class Job:
 
     @classmethod
     def from_row(cls, row: Found[*tuple[Any, ...]], *, left_out: Sequence[str] = ()) -> Job:
-        """Return a job from a row with the columns `SHOWN`; other columns are ignored."""
+        """Return a job from a row with the columns `JOB_COLUMNS`; other columns are ignored."""
         from pydantic_core import from_json  # in a quarter of the time of json's
 
         values = dict(row._mapping)

@@ -9,22 +9,22 @@ from typing import TYPE_CHECKING, Any
 from sqlalchemy import Connection, and_, insert, or_, select, update
 
 from ...model.errors import InputError, NotFound, RunError
-from .clock import now
-from .records import RESUMABLE, SHOWN, Event, Job, News, State
+from .database_clock import now
+from .records import JOB_COLUMNS, RESUMABLE, Event, Job, News, State
 from .schema import events, jobs, records
 from .serialisation import checksum, text_of, unpacked
 
 if TYPE_CHECKING:
     from ...optimise.search.checkpoints import Record
 
-Told = tuple[str, Mapping[str, Any]]
+NewEvent = tuple[str, Mapping[str, Any]]
 """Kind and data of an event."""
 _TOGETHER = 100  # jobs of one query: databases refuse very long ones
 
 
 def the_job(connection: Connection, number: int, *, lock: bool = False) -> Job:
     """Return a job, locked for the transaction on request. Raises `NotFound` if it does not exist."""
-    query = select(*SHOWN).where(jobs.c.id == number)
+    query = select(*JOB_COLUMNS).where(jobs.c.id == number)
     row = connection.execute(query.with_for_update() if lock else query).first() if 0 < number < 2**63 else None
     if row is None:
         raise NotFound(f"there is no job {number}; list the jobs")
@@ -81,14 +81,14 @@ def damaged(number: int, error: Exception) -> RunError:
     return RunError(f"the result of job {number} is damaged: {type(error).__name__}: {error}; submit the job again")
 
 
-def add_events(connection: Connection, job: int, last: int, new_events: Sequence[Told]) -> None:
+def add_events(connection: Connection, job: int, last: int, new_events: Sequence[NewEvent]) -> None:
     """Add events, the last with the number `last`, to a job whose row was updated in this transaction."""
     for number, (kind, data) in enumerate(new_events, last - len(new_events) + 1):
         row = {"job": job, "number": number, "at": now(), "kind": kind, "data": text_of(data)}
         connection.execute(insert(events).values(row))
 
 
-def state_event(state: str, reason: str = "") -> Told:
+def state_event(state: str, reason: str = "") -> NewEvent:
     """Return the event for a new state of a job."""
     return "state", {"state": state, "reason": reason}
 

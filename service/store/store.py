@@ -16,10 +16,20 @@ from ..runs.run_folder import run_name
 from ..runs.stored_runs import result_from
 from . import queue
 from .claim import Claim
-from .clock import Jumps, now
+from .database_clock import Jumps, now
+from .job_rows import (
+    add_events,
+    become,
+    damaged,
+    news_of,
+    records_of,
+    require_resumable,
+    require_sum,
+    the_job,
+    the_record,
+)
 from .listing import Order, in_order
-from .records import ENDED, NO_LIMITS, NOT_DONE, SHOWN, Artefact, Event, Job, Limits, News, Queueing, State
-from .rows import add_events, become, damaged, news_of, records_of, require_resumable, require_sum, the_job, the_record
+from .records import ENDED, JOB_COLUMNS, NO_LIMITS, NOT_DONE, Artefact, Event, Job, Limits, News, Queueing, State
 from .schema import artefacts, designs, events, exact, jobs
 from .schema_version import upgrade
 from .serialisation import plain, rows_of, unpacked_exact
@@ -83,7 +93,7 @@ class Store(Workers):
             queue.take_turns(connection)  # so that two submissions neither share a key nor overfill the queue
             earlier = queue.submitted_before(connection, key, tables) if key else None
             if earlier is None:
-                queue.require_room(connection, self.most_queued)
+                queue.require_place_in_queue(connection, self.most_queued)
                 number = queue.add_job(connection, tables, files, limits, name=name, run=run_name(name), **values)
         return self.job(number if earlier is None else earlier.id)
 
@@ -120,7 +130,7 @@ class Store(Workers):
 
     def _waiting(self, listed: list[Job]) -> list[Job]:
         try:
-            self.require_room()
+            self.require_place_in_queue()
         except StoreError as error:
             reason = f"waits: {error}"
             return [replace(job, reason=reason) if job.state in ("queued", "running") else job for job in listed]
@@ -139,7 +149,7 @@ class Store(Workers):
     def find(self, run: str) -> Job | None:
         """Return the job with a run folder name, None if there is none."""
         with self.reading() as connection:
-            row = connection.execute(select(*SHOWN).where(jobs.c.run == run)).first()
+            row = connection.execute(select(*JOB_COLUMNS).where(jobs.c.run == run)).first()
         return None if row is None else Job.from_row(row)
 
     def jobs(
@@ -157,7 +167,7 @@ class Store(Workers):
         before: number of a job; only jobs after it in this order, for paging. numbers: numbers to include, all if
         empty. limit: maximum number of jobs.
         """
-        query = in_order(select(*SHOWN), order, before).limit(limit)
+        query = in_order(select(*JOB_COLUMNS), order, before).limit(limit)
         if numbers:
             query = query.where(jobs.c.id.in_(numbers))
         if states:
@@ -294,7 +304,7 @@ class Store(Workers):
         with self.reading() as connection:
             if not queue.any_claimable(connection, self._jumps, self.last_full):
                 return None
-        self.require_room()
+        self.require_place_in_queue()
         with self.writing() as connection:
             if most_running is not None:
                 queue.take_turns(connection)

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 from sqlalchemy import and_, delete, func, insert, select
 
-from .clock import now
 from .database import Database
-from .rows import the_job
+from .database_clock import now
+from .job_rows import the_job
 from .schema import wishes
 
 MOST_WISHES = 50

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from sqlalchemy import delete, exists, func, insert, not_, or_, select, update
 
-from .clock import now
 from .database import Database
+from .database_clock import now
 from .queue import ENDED_LEASE, LEFT
 from .records import Crew, Worker
 from .schema import jobs, workers

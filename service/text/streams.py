@@ -12,7 +12,7 @@ from typing import Any
 from ...model.errors import OutputLost
 from ...model.file_names import path_text
 
-_AS_SHOWN = "slidercrank.shown"
+_ESCAPES = "slidercrank.shown"
 """Name of the error handler for characters that a stream cannot encode."""
 
 
@@ -56,7 +56,7 @@ def reader_left() -> bool:
 
 def guard_streams() -> None:
     """Set up standard streams that report why they fail, and show "?" for characters missing in the terminal."""
-    codecs.register_error(_AS_SHOWN, _replacement_text)
+    codecs.register_error(_ESCAPES, _replacement_text)
     if sys.stderr is None:
         sys.stderr = open(os.devnull, "w")  # noqa: SIM115, PTH123 - as long as this process
     if sys.stdout is None:
@@ -64,10 +64,10 @@ def guard_streams() -> None:
         binary: Any = os.fdopen(os.open(os.devnull, os.O_RDONLY), "wb")
         sys.stdout = Output(binary, encoding="utf-8")
     elif isinstance(sys.stdout, io.TextIOWrapper):
-        encoding, at_once = sys.stdout.encoding, sys.stdout.line_buffering
-        sys.stdout = Output(sys.stdout.detach(), encoding=encoding, errors=_AS_SHOWN, line_buffering=at_once)
+        encoding, is_line_buffered = sys.stdout.encoding, sys.stdout.line_buffering
+        sys.stdout = Output(sys.stdout.detach(), encoding=encoding, errors=_ESCAPES, line_buffering=is_line_buffered)
     if isinstance(sys.stderr, io.TextIOWrapper):
-        sys.stderr.reconfigure(errors=_AS_SHOWN)
+        sys.stderr.reconfigure(errors=_ESCAPES)
 
 
 def _replacement_text(error: UnicodeError) -> tuple[bytes, int]:

@@ -16,7 +16,7 @@ from ...model.machine.strength import Strength
 from ...model.machine.two_turns import cycle_turns
 from ...model.machine.varying import Varying
 from ...model.swing.ends import start_column
-from ...objectives.counted import counted
+from ...objectives.count_text import counted
 from ...objectives.motion_deviation import MotionDeviation
 from ...objectives.own.quantity import OwnQuantity
 from ...objectives.tables.varying_column import columns_of_numbers, varying_column
@@ -78,7 +78,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
 
 def job_in_words(problem: Problem, tables: Mapping[str, Any]) -> dict[str, Any]:
     """Return `summarise` of a problem, with the content of files, and notes on the tables that state it."""
-    from ...optimise.job.notes import notes_of, sources_of
+    from ...optimise.job.job_notes import notes_of, sources_of
 
     return summarise(problem) | {"files": sources_of(tables), "notes": notes_of(tables)}
 

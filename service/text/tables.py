@@ -9,8 +9,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.counted import counted
-from ...objectives.keys import metric_key
+from ...objectives.column_keys import metric_key
+from ...objectives.count_text import counted
 from ..designs.columns import Column, chosen_columns, find_column
 from ..designs.rounding_noise import without_noise
 from ..designs.violations import front_violations_in_words, violations_in_words
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from ...objectives.quantity import Quantity
-    from ..designs.requirements import JudgedRule, Judgement
+    from ..designs.judged_requirements import JudgedRule, Judgement
 
 ROWS = 15
 """Designs shown of a front unless asked otherwise."""
@@ -130,7 +130,7 @@ def usual_keys(result: Result) -> list[str]:
 
 def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
     """Return the columns of `usual_keys` that differ between designs, and the others in words."""
-    from ...optimise.front.constant import is_constant
+    from ...optimise.front.constant_numbers import is_constant
 
     objectives = {objective.column for objective in result.objectives}
     wishes = {objective.column: objective for objective in result.objectives}
@@ -177,7 +177,7 @@ def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column])
 
 def _best_rows(result: Result, objective: Wanted) -> list[int]:
     """Return the positions of the designs that are best in an objective, to rounding; none if all are equal."""
-    from ...optimise.front.constant import SAME
+    from ...optimise.front.constant_numbers import SAME
 
     ranks = [objective.rank(row) for row in result.designs]
     least = min(ranks)

@@ -14,7 +14,7 @@ from dataclasses import KW_ONLY, dataclass, field, replace
 from typing import NoReturn
 
 from ...model.errors import LeaseLost, StoreError
-from ...objectives.counted import counted
+from ...objectives.count_text import counted
 from ...objectives.own.worker import is_guard
 from ..resources.memory import Memory, size_text
 from ..runs.result import Result
@@ -27,7 +27,7 @@ EXHAUSTED = 75
 """Exit code of a process whose job took more memory than it may; another process is to take its place."""
 DEAF = 76
 """Exit code of a process whose search did not end when it was told to; another process is to take its place."""
-_HEARS = 60.0  # s for a search to end once asked: a compiling kernel notices nothing
+_STOP_PATIENCE = 60.0  # s for a search to end once asked: a compiling kernel notices nothing
 Stop = Callable[[], bool]
 
 
@@ -129,7 +129,7 @@ class Heartbeat:
         return now - self._since.setdefault(condition, now)
 
     def _look_at_cancel(self) -> None:
-        if self.patience is None or not self.claim.cancel_asked or self.claim.has_begun or self._end.is_set():
+        if self.patience is None or not self.claim.cancel_asked or self.claim.has_started or self._end.is_set():
             return
         if self._waited("cancelled") >= self.patience:
             self.claim.give_up()
@@ -155,9 +155,9 @@ class Heartbeat:
             return
         if self.grace is None or not reason:
             return
-        if self._waited("told to end") < _HEARS or self._end.is_set():
+        if self._waited("told to end") < _STOP_PATIENCE or self._end.is_set():
             return
-        _log.error("ended: its search did not stop within %g s of being asked to", _HEARS)
+        _log.error("ended: its search did not stop within %g s of being asked to", _STOP_PATIENCE)
         try:
             self.claim.give_up(f"{reason}; its search did not stop when asked to")
         except (LeaseLost, StoreError):
@@ -168,11 +168,11 @@ class Heartbeat:
         if self.grace is None or not self.stop():
             return
         waited = self._waited("worker stops")
-        has_begun = self.claim.has_begun or self.patience is None
-        grace = self.grace if has_begun else min(self.grace, self.patience or 0.0)
+        has_started = self.claim.has_started or self.patience is None
+        grace = self.grace if has_started else min(self.grace, self.patience or 0.0)
         if waited < grace or self._end.is_set():
             return
-        moment = "in the middle of a round" if has_begun else "before its search began"
+        moment = "in the middle of a round" if has_started else "before its search began"
         _log.warning("handed back: its worker stopped %s", moment)
         with contextlib.suppress(LeaseLost, StoreError):
             self.claim.hand_back(f"its worker stopped {moment}; another one continues")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.extras import is_installed
 from ...model.file_names import path_text
-from ..jobs.own_run import begin, end_job_on_error, folder_of, stopped_job, take_up
+from ..jobs.direct_run import begin, end_job_on_error, folder_of, stopped_job, take_up
 from ..runs.result import Result, result_of
 from ..runs.run_folder import RunFolder
 from .heartbeat import Budget, Heartbeat
@@ -62,7 +62,7 @@ def resumed_run(
 
 
 @contextlib.contextmanager
-def kept_alive(claim: Claim, *, again: str) -> Iterator[None]:
+def renewing_claim(claim: Claim, *, again: str) -> Iterator[None]:
     """While entered, renew the claim; an error ends its job. again: the command that continues the run."""
     with end_job_on_error(claim, again=again), Heartbeat(claim):
         yield

@@ -15,7 +15,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import ForeignRecords, InfeasibleError, InputError, LeaseLost, StoreError
-from ..jobs.submission import LONGEST_CALL, bounded, ending_own, parse_allowed
+from ..jobs.submission import LONGEST_CALL, bounded, ending_custom_functions, parse_allowed
 from ..resources.disk import full_places, is_full
 from ..resources.memory import TOLERATED, Memory
 from ..runs.result import json_text, result_of, unsearched_result
@@ -116,7 +116,7 @@ def work(
                 away = False
             if claim is not None:
                 memory.begin()
-                if _leaves_room(claim, memory, terms):
+                if _is_out_of_memory(claim, memory, terms):
                     with contextlib.suppress(StoreError):
                         store.part(name)
                     raise Stale
@@ -131,10 +131,10 @@ def work(
     return count
 
 
-def _leaves_room(claim: Claim, memory: Memory, terms: Terms) -> bool:
+def _is_out_of_memory(claim: Claim, memory: Memory, terms: Terms) -> bool:
     """Whether a job is handed back, for a fresh process: earlier jobs occupy too much memory in this one."""
     allowed = claim.job.limits.stricter(terms.limits).memory
-    if terms.grace is None or allowed is None or memory.left_behind <= TOLERATED * allowed:
+    if terms.grace is None or allowed is None or memory.left_by_earlier_jobs <= TOLERATED * allowed:
         return False
     with contextlib.suppress(LeaseLost, StoreError):  # else its lease ends
         claim.hand_back("a new worker takes it: earlier jobs left too little memory in this one")
@@ -229,7 +229,7 @@ def _solve(
         latest[:] = [front]
 
     def report(at: Progress) -> None:
-        claim.report(at, front_so_far(problem, latest[0]) if latest else None)
+        claim.report(at, front_progress(problem, latest[0]) if latest else None)
         budget.count(at.evaluations)
 
     def should_end() -> bool:
@@ -237,7 +237,7 @@ def _solve(
 
     solve_and_report = partial(solve, problem, progress=report, stages=report, fronts=show)
     search = partial(solve_and_report, cancelled=should_end, keep=claim.keep, engine=engine)
-    with ending_own(problem, engine):
+    with ending_custom_functions(problem, engine):
         try:
             front = search(resume=claim.records())
         except ForeignRecords as error:  # of an earlier release, or another kind of machine
@@ -250,7 +250,7 @@ def _solve(
     _log.info("%s: %s", result.status, result.message)
 
 
-def front_so_far(problem: Problem, values: Array) -> dict[str, Any]:
+def front_progress(problem: Problem, values: Array) -> dict[str, Any]:
     """Return at most `MOST` designs of a front, evenly spread along its first objective, as JSON has them.
 
     values: objectives (n, m), SI, as they are minimised. columns: columns of the objectives in tables of designs.

@@ -26,7 +26,7 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Branch, Mechanism, Tolerance, Tolerances, Window
 from slidercrank.model.machine.strength import Material, Strength
-from slidercrank.objectives.needs import (
+from slidercrank.objectives.machine_needs import (
     A_BAR,
     COMPRESSOR,
     COUPLES,
@@ -39,9 +39,9 @@ from slidercrank.objectives.needs import (
     WEARS,
     Need,
 )
-from slidercrank.objectives.needs import CRANK_MASS as CRANK_WEIGHS
-from slidercrank.objectives.needs import ROD_MASS as ROD_WEIGHS
-from slidercrank.objectives.needs import STRENGTH as STRONG
+from slidercrank.objectives.machine_needs import CRANK_MASS as CRANK_WEIGHS
+from slidercrank.objectives.machine_needs import ROD_MASS as ROD_WEIGHS
+from slidercrank.objectives.machine_needs import STRENGTH as STRONG
 from slidercrank.objectives.quantity import Quantity
 from slidercrank.optimise.job import parse_job
 

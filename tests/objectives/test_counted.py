@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from slidercrank.objectives.counted import counted
+from slidercrank.objectives.count_text import counted
 
 
 def test_only_one_of_something_is_in_the_singular() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from slidercrank.objectives.keys import key_in, metric_key
+from slidercrank.objectives.column_keys import key_in, metric_key
 
 LB, LBF, IN = 0.45359237, 4.4482216152605, 25.4
 

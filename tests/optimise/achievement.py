@@ -29,7 +29,7 @@ _FEASIBLE = 1e-8
 
 
 @dataclass(frozen=True)
-class Wanted:
+class StoredObjective:
     """Weights, reference and ceilings (m,) of objectives as they are minimised, by ideal and span; rho."""
 
     weights: Array
@@ -43,7 +43,7 @@ class Wanted:
 class Independent:
     """A problem with nothing left to be chosen and the wish for its objectives."""
 
-    def __init__(self, problem: Problem, wanted: Wanted) -> None:
+    def __init__(self, problem: Problem, wanted: StoredObjective) -> None:
         self.problem, self.wanted, self.m = problem, wanted, len(problem.objectives)
         self.constraints = constraints_of(problem)
         self.goals = [objective.quantity for objective in problem.objectives]

@@ -12,7 +12,7 @@ import pytest
 from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import load_job, needed_files, parse_job, read_job
 from slidercrank.optimise.job.catalogue import MOST_OPTIONS, read_catalogue
-from slidercrank.optimise.job.notes import notes_of
+from slidercrank.optimise.job.job_notes import notes_of
 from slidercrank.optimise.job.options import idle_options
 from slidercrank.optimise.solve import solve
 from tests.optimise.catalogues import distance

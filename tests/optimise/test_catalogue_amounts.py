@@ -17,7 +17,7 @@ from slidercrank.model.errors import JobError
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import load_job, parse_job
 from slidercrank.optimise.job.catalogue import read_catalogue
-from slidercrank.optimise.job.notes import notes_of
+from slidercrank.optimise.job.job_notes import notes_of
 from slidercrank.optimise.job.options import idle_options
 from tests.optimise.catalogues import front_of
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from slidercrank.optimise.front.constant import SAME, is_constant, spread
+from slidercrank.optimise.front.constant_numbers import SAME, is_constant, spread
 from slidercrank.optimise.front.hypervolume import hypervolume, ignore_progress, scaling
 from slidercrank.optimise.front.picking import by_range, knee, lexicographic, topsis
 from slidercrank.optimise.front.slack import slack_of

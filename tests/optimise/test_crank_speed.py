@@ -16,7 +16,7 @@ from slidercrank.model.errors import JobError
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.speed_profile_cycle import speed_profile_cycle
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.job.notes import notes_of
+from slidercrank.optimise.job.job_notes import notes_of
 
 FOUR_STROKE = {"torque_angles": ["0 deg", "300 deg", "600 deg"], "torques": [0.0, -20.0, 0.0], "cycle": "720 deg"}
 POINTS = ["0 deg", "90 deg", "180 deg", "270 deg"]

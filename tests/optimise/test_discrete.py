@@ -69,7 +69,7 @@ def with_lists(given: dict[str, Any]) -> dict[str, Any]:
 
 @pytest.mark.parametrize("at_once", [1, 7, 35, 36, 100])
 def test_every_combination_is_judged_once_however_many_at_once(at_once: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(combinations, "_AT_ONCE", at_once)
+    monkeypatch.setattr(combinations, "_BATCH", at_once)
     values = {"crank": (40, 50, 60), "rod": (80, 90, 120, 150), "offset": (10, 20, 30)}
     given = {name: {"values": [f"{value} mm" for value in each]} for name, each in values.items()}
     axes = Axes.of_problem(parse_job(job(given, constraints={"stroke": {"min": "90 mm"}})))
@@ -193,7 +193,7 @@ def test_all_combinations_are_judged_in_parts_of_which_the_best_are_kept(monkeyp
     axes = Axes.of_problem(parse_job(job()))
     whole = judge(axes.part, axes.designs(0, axes.count)).best()
     sizes: list[int] = []
-    monkeypatch.setattr(combinations, "_AT_ONCE", 100)
+    monkeypatch.setattr(combinations, "_BATCH", 100)
     monkeypatch.setattr(combinations, "_HELD", 20)
     found = judge_all(axes, lambda done, of: sizes.append(done))
     assert sizes == list(range(0, axes.count, 100))

@@ -13,7 +13,7 @@ from slidercrank.optimise.front.hypervolume import REFERENCE
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.checkpoints import Record
-from slidercrank.optimise.search.growth import Growth
+from slidercrank.optimise.search.front_growth import Growth
 from slidercrank.optimise.search.search import Archive, Run
 from slidercrank.optimise.solve import solve
 

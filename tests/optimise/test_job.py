@@ -25,8 +25,8 @@ from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import FACTS, QUANTITIES
 from slidercrank.objectives.swing_quantity import SwingQuantity
 from slidercrank.optimise.job import Job, job_schema, load_job, parse_job
+from slidercrank.optimise.job.problem_of_job import problem_of
 from slidercrank.optimise.job.sections import EXAMPLE as SECTIONS
-from slidercrank.optimise.job.stated import problem_of
 from slidercrank.optimise.problem.problem import Settings
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range
 from tests.model.cases import with_example

@@ -7,7 +7,7 @@ import pytest
 from slidercrank.model.errors import JobError
 from slidercrank.model.machine.clearance import Clearance
 from slidercrank.optimise.job import Job, parse_job
-from slidercrank.optimise.job.stated import problem_of
+from slidercrank.optimise.job.problem_of_job import problem_of
 
 SMALL: dict[str, Any] = {
     "name": "Small",

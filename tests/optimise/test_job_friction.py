@@ -16,9 +16,9 @@ from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.self_locking import SELF_LOCKING_MARGIN
 from slidercrank.optimise.job import Job, parse_job
-from slidercrank.optimise.job.notes import notes_of
+from slidercrank.optimise.job.job_notes import notes_of
+from slidercrank.optimise.job.problem_of_job import problem_of
 from slidercrank.optimise.job.sections import EXAMPLE
-from slidercrank.optimise.job.stated import problem_of
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Objective
 from slidercrank.optimise.problem.violation import constraints_of

@@ -11,7 +11,7 @@ import pytest
 
 from slidercrank.model.errors import AssemblyError, JobError
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.job.notes import notes_of
+from slidercrank.optimise.job.job_notes import notes_of
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.loaded_stroke import expected_warnings
 from slidercrank.optimise.solve import solve

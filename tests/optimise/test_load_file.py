@@ -14,7 +14,7 @@ from slidercrank.model.errors import JobError
 from slidercrank.model.machine.loads.load import Load
 from slidercrank.optimise.job import load_job, needed_files, parse_job, read_job, with_files
 from slidercrank.optimise.job.curve_file import MOST_POINTS, SHARE
-from slidercrank.optimise.job.notes import sources_of
+from slidercrank.optimise.job.job_notes import sources_of
 
 RANGES = {"crank": ["20 mm", "80 mm"], "rod": ["120 mm", "300 mm"], "offset": ["0 mm", "60 mm"]}
 

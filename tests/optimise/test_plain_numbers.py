@@ -15,7 +15,7 @@ import pytest
 import slidercrank as sc
 from slidercrank.model.errors import InputWarning, JobError
 from slidercrank.optimise.job import parse_job, values
-from slidercrank.optimise.job.notes import notes_of
+from slidercrank.optimise.job.job_notes import notes_of
 
 PRESS = {
     "name": "Press",

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from slidercrank.optimise.search.pieces import Rows
 from slidercrank.optimise.search.polish import ITERATIONS, convex, polish
-from slidercrank.optimise.search.programme import FIRM, ROUNDING
+from slidercrank.optimise.search.polish_programme import FIRM, ROUNDING
 
 Array = NDArray[np.float64]
 Function = Callable[[Any, Any], Any]
@@ -250,7 +250,7 @@ def test_a_design_that_is_best_in_an_objective_stays_so_where_its_slope_vanishes
     loose, firm = polish(*given), polish(*given, best_in=np.array([0]))
     assert 1e-7 < loose.values[0, 0] < 3e-6
     assert firm.values[0, 0] < 1.0 / (4.0 * FIRM**2 * 0.1) + ITERATIONS * ROUNDING
-    monkeypatch.setattr("slidercrank.optimise.search.programme.ROUNDING", 1e-14)
+    monkeypatch.setattr("slidercrank.optimise.search.polish_programme.ROUNDING", 1e-14)
     assert polish(*given, best_in=np.array([0])).values[0, 0] < 1e-11
 
 

@@ -14,10 +14,10 @@ from slidercrank.optimise.decisions.wished import Wished
 from slidercrank.optimise.decisions.wishes import aimed
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job.tables import problem as stated
-from slidercrank.optimise.methods.scalar import SUM
+from slidercrank.optimise.methods.scalar_objective import SUM
 from slidercrank.optimise.problem.table_columns import choice_field
 from slidercrank.optimise.solve import solve
-from tests.optimise.achievement import Independent, Wanted
+from tests.optimise.achievement import Independent, StoredObjective
 from tests.optimise.problems import JOBS, Bounds, degrees, problem, shipped_front
 
 pytestmark = pytest.mark.usefixtures("little")
@@ -101,7 +101,7 @@ def independent(of: ParetoFront, answer: Wished) -> list[Independent]:
                 ceilings[column] = scaled
         elif item.kind != "free":
             weights[column], ceilings[column] = float(item.kind == "improve"), own
-    wanted = Wanted(weights, reference, ceilings, SUM, ideal, span)
+    wanted = StoredObjective(weights, reference, ceilings, SUM, ideal, span)
     return [Independent(part, wanted) for part in of.problem.parts()]
 
 

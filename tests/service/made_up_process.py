@@ -20,7 +20,7 @@ import numpy as np
 
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.search.checkpoints import Identity, Record
-from slidercrank.service.runs.result import Result, Wanted
+from slidercrank.service.runs.result import Result, StoredObjective
 from slidercrank.service.store import Claim, Store
 from slidercrank.service.workers import heartbeat as pulses
 from slidercrank.service.workers import worker
@@ -29,7 +29,7 @@ from slidercrank.service.workers.worker_process import main
 
 ROUNDS = 20
 _LEFT: list[object] = []
-_SENSES = Wanted(quantity="time_ratio", sense="maximise", column="time_ratio", title="Time ratio", unit="")
+_SENSES = StoredObjective(quantity="time_ratio", sense="maximise", column="time_ratio", title="Time ratio", unit="")
 
 
 def solve(
@@ -79,5 +79,5 @@ def _result(status: str) -> Result:
 
 if __name__ == "__main__":
     worker._solve = solve
-    pulses._HEARS = 1.0
+    pulses._STOP_PATIENCE = 1.0
     sys.exit(main())

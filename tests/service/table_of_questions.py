@@ -46,12 +46,12 @@ BESIDE = {
     "like": "service/commands/like.py service/api/like.py",
     "round": "service/commands/round.py service/api/rounding.py",
     "sweep": "service/commands/sweep.py",
-    "wish": "service/commands/wish.py service/api/wish.py service/jobs/wish_history.py",
+    "wish": "service/commands/wish.py service/api/wish.py service/jobs/front_wish_history.py",
 }
 """Modules that serve a single question, beside its folder. What serves several ones is in the row of the service."""
 UNDECLARED = {
     "check": ("job", "service/preview/preview.py service/commands/job.py service/api/preview.py"),
-    "what-if": ("design", "service/designs/variation.py service/api/what_if.py"),
+    "what-if": ("design", "service/designs/changed_design.py service/api/what_if.py"),
     "trade-offs": ("design", "service/designs/trade_offs.py"),
 }
 """Subject and files of what is asked without a declaration of its own.

@@ -15,7 +15,7 @@ import pytest
 
 import slidercrank as sc
 from slidercrank.model.errors import AssemblyError, InputError
-from slidercrank.objectives.keys import kind_of_key, split_unit
+from slidercrank.objectives.column_keys import kind_of_key, split_unit
 from slidercrank.objectives.kinds import DISPLAYED_KINDS, PRESSURE, unit_text
 from slidercrank.objectives.tables.curve_extremes import defined_curves
 from slidercrank.service.api.app import create_app

@@ -13,9 +13,9 @@ import pytest
 
 from slidercrank.model.machine.clearance import Clearance
 from slidercrank.service.cases import case_2, figures
+from slidercrank.service.cases.case_table import collect
 from slidercrank.service.cases.figures import draw_cases
-from slidercrank.service.cases.published import CASES, Case, Row, confirmed, read_table
-from slidercrank.service.cases.table import collect
+from slidercrank.service.cases.printed_values import CASES, Case, Row, confirmed, read_table
 from slidercrank.service.figures.style import new_figure
 from tests.model.virtual_work import path
 from tests.service.conftest import Command

@@ -20,7 +20,7 @@ from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.service.cases import case_5
 from slidercrank.service.cases import figures as of_cases
-from slidercrank.service.cases.published import read_table
+from slidercrank.service.cases.printed_values import read_table
 from slidercrank.service.figures.panel_figure import Line, Panel, PanelFigure
 from slidercrank.service.figures.panels import draw_panel_figure
 from slidercrank.service.questions.approximations import analysis as approximations_analysis

@@ -15,8 +15,8 @@ import pytest
 from sqlalchemy import update
 
 from slidercrank.service.store import Store
-from slidercrank.service.store.clock import now
 from slidercrank.service.store.database import Database
+from slidercrank.service.store.database_clock import now
 from slidercrank.service.store.schema import workers
 from tests.service.conftest import Command
 from tests.service.store.contents import add, end_lease, result, taken

@@ -26,8 +26,8 @@ from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.problem.requirements import Objective
 from slidercrank.service.figures.curves import Curves, cycle_curves
 from slidercrank.service.figures.datasheet import design_datasheet
+from slidercrank.service.figures.design_marks import marks
 from slidercrank.service.figures.front import draw_front
-from slidercrank.service.figures.marks import marks
 from slidercrank.service.figures.panel_figure import Panel, panel_in_units
 from slidercrank.service.figures.parallel import parallel_coordinates
 from slidercrank.service.figures.scatter import scatter_matrix

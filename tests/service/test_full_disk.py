@@ -132,7 +132,7 @@ def solve_meanwhile(
         return search(*given, keep=lambda record: keep(large_record(record.number)), progress=report, **more)
 
     monkeypatch.setattr("slidercrank.optimise.solve.solve", fills)
-    monkeypatch.setattr("slidercrank.service.store.clock.SETTLING", 0.2)
+    monkeypatch.setattr("slidercrank.service.store.database_clock.SETTLING", 0.2)
     stop = threading.Event()
     worker = threading.Thread(target=work, args=(store,), kwargs={"name": "first", "lease": 0.6, "stop": stop.is_set})
     worker.start()

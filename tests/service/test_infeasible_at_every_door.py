@@ -17,7 +17,7 @@ from slidercrank.model.errors import InfeasibleError, InputError, JobError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job import parse_job
 from slidercrank.service.client import Client
-from slidercrank.service.designs.requirements import judge_rules
+from slidercrank.service.designs.judged_requirements import judge_rules
 from slidercrank.service.questions.design_analysis import quantities_of_design
 from slidercrank.service.runs.result import result_of
 from slidercrank.service.runs.run_folder import RunFolder

@@ -13,13 +13,13 @@ import pytest
 
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Claim, Store
-from slidercrank.service.workers.worker import MOST, front_so_far, work
+from slidercrank.service.workers.worker import MOST, front_progress, work
 from tests.service import fronts
 
 
 def test_values_are_those_of_the_table_of_designs() -> None:
     front = fronts.front(designs=20)
-    shown = front_so_far(front.problem, front.values)
+    shown = front_progress(front.problem, front.values)
     assert shown["columns"] == [front.problem.quantity(item.quantity).field for item in front.objectives]
     assert np.array(shown["points"]) == pytest.approx(front.designs[shown["columns"]].to_numpy(), rel=1e-12)
 
@@ -27,7 +27,7 @@ def test_values_are_those_of_the_table_of_designs() -> None:
 def test_a_large_front_is_thinned_and_keeps_its_ends() -> None:
     front = fronts.front(designs=20)
     many = np.linspace(0.0, 1.0, 500)[::-1, None] * np.array([1.0, 1.0, math.radians(1.0), 1e-3])
-    shown = front_so_far(front.problem, many)["points"]
+    shown = front_progress(front.problem, many)["points"]
     assert len(shown) == MOST
     assert shown[0] == pytest.approx([0.0, 0.0, 0.0, 0.0])
     assert shown[-1] == pytest.approx([-1.0, 1.0, -1.0, 1.0])
@@ -36,7 +36,7 @@ def test_a_large_front_is_thinned_and_keeps_its_ends() -> None:
 
 def test_a_front_without_designs_has_no_points() -> None:
     front = fronts.front(designs=1)
-    assert front_so_far(front.problem, np.zeros((0, 4)))["points"] == []
+    assert front_progress(front.problem, np.zeros((0, 4)))["points"] == []
 
 
 def test_a_job_that_is_solved_shows_how_its_front_grows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,8 +12,8 @@ import pytest
 
 from slidercrank.model.file_names import path_from_text, path_text
 from slidercrank.optimise.job import load_job, needed_files
-from slidercrank.service.jobs.own_run import files_of
-from slidercrank.service.store.address import shown_url, url_of
+from slidercrank.service.jobs.direct_run import files_of
+from slidercrank.service.store.address import address_without_secrets, url_of
 from slidercrank.service.workers.worker_process import WorkerSettings
 from tests.service import fronts
 from tests.service.conftest import Command
@@ -68,7 +68,7 @@ def test_a_run_in_a_folder_of_such_a_name_is_read_exported_and_reported(
 def test_a_worker_process_takes_an_address_of_such_a_name(tmp_path: Path) -> None:
     given = WorkerSettings(address=str(tmp_path / f"{LATIN}.db"))
     assert WorkerSettings.read(given.line()) == given
-    assert shown_url(url_of(given.address)).endswith("F%EF%BF%BDrderer.db")
+    assert address_without_secrets(url_of(given.address)).endswith("F%EF%BF%BDrderer.db")
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from slidercrank.objectives.keys import split_unit
+from slidercrank.objectives.column_keys import split_unit
 from slidercrank.service.designs.columns import find_column
 from slidercrank.service.designs.rounding_noise import without_noise
 from slidercrank.service.runs.result import Result, Wanted

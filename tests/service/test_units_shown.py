@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.objectives.keys import key_in, metric_key, split_unit
+from slidercrank.objectives.column_keys import key_in, metric_key, split_unit
 from slidercrank.objectives.kinds import DISPLAYED_KINDS, KINDS, RATIO, metric_unit_in
 from slidercrank.objectives.units import kind_for, per_si, to_si
 from slidercrank.service.designs.columns import find_column

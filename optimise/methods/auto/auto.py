@@ -20,7 +20,7 @@ from ...problem.violation import FEASIBLE
 from ...search.assemble import SELECTING, assemble, span_of
 from ...search.candidates import SAME, Candidates, FrontCandidates, Polished, stacked
 from ...search.evaluation import Evaluator
-from ...search.recorded import polished, projected
+from ...search.recorded_polish import polished, projected
 from ...search.sampling import first_samples, generator, sample_near
 from ...search.search import (
     FIRST,

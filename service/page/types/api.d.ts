@@ -45,13 +45,13 @@ declare global {
     type Certificate = Schemas["CertificateModel"];
     type Cycle = Schemas["CycleModel"];
     type Outlines = Schemas["OutlinesModel"];
-    type Event = Schemas["EventShown"];
+    type Event = Schemas["EventModel"];
     type Example = Schemas["ExampleModel"];
     type Front = Schemas["FrontModel"];
     type FrontPoints = Schemas["FrontPoints"];
-    type FrontSoFar = Schemas["FrontSoFar"];
+    type FrontProgress = Schemas["FrontProgress"];
     type Function = Schemas["FunctionModel"];
-    type Job = Schemas["JobShown"];
+    type Job = Schemas["JobStateModel"];
     type JobRow = Schemas["JobRow"];
     type JobPage = Schemas["JobPage"];
     type Kept = Schemas["BookmarkedDesign"];

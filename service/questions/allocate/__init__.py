@@ -1,7 +1,7 @@
 """Least-cost tolerances within a position error limit: numbers, text and figure."""
 
 from ....objectives.kinds import LENGTH
-from ....optimise.sizing.words import Kind
+from ....optimise.sizing.input_words import Kind
 from ..design_question import DesignQuestion, QuestionCommand
 from ..inputs import Input
 

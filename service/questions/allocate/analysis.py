@@ -15,8 +15,8 @@ from ....model.tolerance.exact import worst
 from ....objectives.kinds import ANGLE, LENGTH, display_unit
 from ....optimise.problem.costs import Costs, costs_before
 from ....optimise.problem.problem import Problem
+from ....optimise.sizing.input_words import Kind
 from ....optimise.sizing.tolerance_allocation import Allocation, allocate
-from ....optimise.sizing.words import Kind
 from ...render.blocks import Block, Table, Text, Unit, Value, column, heading, joined, recorded, sentence, words
 from ..answer_types import Note, Record
 from ..peaks import peak

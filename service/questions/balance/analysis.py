@@ -17,7 +17,7 @@ from ....model.machine.mechanism import Mechanism
 from ....model.signals.averages import average
 from ....model.signals.signals import Signal
 from ....objectives.kinds import FORCE, TORQUE
-from ....objectives.needs import MOTION
+from ....objectives.machine_needs import MOTION
 from ...figures.panel_figure import Line, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, NamedNumber, compared, joined, named_number, number_list
 from ..answer_types import Note, PeakAngle, Record

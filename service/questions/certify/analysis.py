@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ....optimise.front.front import ParetoFront
     from ....optimise.problem.problem import Problem
 
-_SHOWN_NOTES = 8
+_MOST_NOTES = 8
 
 
 def answer(
@@ -119,4 +119,4 @@ def _blocks(certificate: Certificate, front: ParetoFront) -> list[Block]:
     if math.isfinite(gap := certificate.hypervolume_gap):
         volume = f"Hypervolume: {front.hypervolume:.6g}; that of the true front is larger by at most {gap:.3g}"
         blocks.append(sentence(volume))
-    return [*blocks, *(sentence("Note: {note}", note=note) for note in certificate.notes[:_SHOWN_NOTES])]
+    return [*blocks, *(sentence("Note: {note}", note=note) for note in certificate.notes[:_MOST_NOTES])]

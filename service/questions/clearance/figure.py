@@ -16,7 +16,7 @@ from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....objectives.kinds import ACCELERATION, ANGULAR_SPEED, ENERGY, FORCE, LENGTH, PERCENT, RATIO, SPEED, Kind, System
-from ...figures.panel_figure import CRANK_ANGLE, DASHED, DOTS, THIN, Line, Panel, PanelFigure
+from ...figures.panel_figure import CRANK_ANGLE, DASHED, DOTS, SOLID, Line, Panel, PanelFigure
 from ...figures.panels import draw_panel
 from ...figures.style import add_axes, heading, new_figure, write_text
 from ...render.blocks import Text, Unit, Value, words
@@ -81,7 +81,7 @@ def clearance_figure(run: ClearanceRun, system: System = "metric") -> Figure:
     share = f"{format_number(100.0 * off / float(run.linkage.stroke), 2)} % of the stroke"
     note = words(f"largest deviation {{off}}, {share}", off=Value(off, LENGTH, 3))
     greatest = words("greatest {force}", force=Value(float(curves.force.max()), FORCE, 4))
-    x_title, force = "crank angle in the direction of rotation, deg", Line("", curves.angles, curves.force, THIN)
+    x_title, force = "crank angle in the direction of rotation, deg", Line("", curves.angles, curves.force, SOLID)
     contact = Panel("contact force", x_title, (force,), FORCE, turns=True, note=greatest)
     for row, panel in enumerate((contact, acceleration, velocity, replace(position, note=note))):
         draw_panel(add_axes(figure, 0.75, 0.55 + 1.62 * row, 6.7, 1.24), panel, system, has_x_title=row == 0)
@@ -131,7 +131,7 @@ def _motion_panel(curves: LooseCurves, kind: Kind) -> Panel:
     if kind is ACCELERATION:
         peaks = (Value(float(np.abs(values).max()), kind, 3) for values in (loose, ideal))
         note = words("greatest {loose}, ideal {ideal}", **dict(zip(("loose", "ideal"), peaks, strict=True)))
-    lines = (Line("", curves.angles, loose, THIN), Line("", curves.angles, ideal, DASHED))
+    lines = (Line("", curves.angles, loose, SOLID), Line("", curves.angles, ideal, DASHED))
     return Panel(_TITLES[kind], CRANK_ANGLE, lines, kind, turns=True, note=note)
 
 
@@ -140,7 +140,7 @@ def _journal(curves: LooseCurves, radius: float) -> Panel:
     turn, touching = np.linspace(0.0, 2.0 * math.pi, 361), curves.touching
     lines = (
         Line("", radius * np.cos(turn), radius * np.sin(turn), DASHED),
-        Line("", curves.journal_x, curves.journal_y, THIN),
+        Line("", curves.journal_x, curves.journal_y, SOLID),
         Line("", curves.journal_x[touching], curves.journal_y[touching], DOTS),
     )
     title, x_title = (

@@ -16,9 +16,9 @@ from ....optimise.decisions.compare import compare
 from ...designs.display_units import objective_in
 from ...designs.front_comparison import comparison_sentences
 from ...designs.picking_options import minimised_values
-from ...jobs.differences import differences
+from ...jobs.job_differences import differences
 from ...render.blocks import Block, Phrase, Sentence, Table, Text, Value, column, heading, note, sentence
-from ...runs.result import Result, Wanted, wanted_record
+from ...runs.result import Result, StoredObjective, objective_record
 from ..front_or_job_question import Answer
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def _objectives_message(runs: Sequence[ComparedRun]) -> str:
     return ""
 
 
-def _key(objective: Wanted) -> tuple[str, str, float | None]:
+def _key(objective: StoredObjective) -> tuple[str, str, float | None]:
     return objective.quantity, objective.sense, objective.target
 
 
@@ -108,7 +108,7 @@ def _better(runs: Sequence[ComparedRun], sentences: Mapping[System, Sequence[str
 
 def _measures(solved: Sequence[ComparedRun], comparison: Comparison, units: System) -> dict[str, Any]:
     return {
-        "objectives": [wanted_record(objective_in(item, units)) for item in solved[0].result.objectives],
+        "objectives": [objective_record(objective_in(item, units)) for item in solved[0].result.objectives],
         "tolerance": comparison.tolerance,
         "union_hypervolume": comparison.union,
         "runs": [

@@ -1,7 +1,7 @@
 """Counterweight and rod balance for least shaking: numbers, text and figure."""
 
 from ....objectives.kinds import LENGTH, MASS
-from ....optimise.sizing.words import Measure
+from ....optimise.sizing.input_words import Measure
 from ..design_question import DesignQuestion, QuestionCommand
 from ..inputs import Input
 

@@ -14,7 +14,7 @@ from ....model.machine.mechanism import Mechanism
 from ....objectives.kinds import FORCE, LENGTH, MASS, TORQUE, display_unit
 from ....optimise.problem.problem import Problem
 from ....optimise.sizing.counterweight import Balance, RodSpace, Shaking, balance
-from ....optimise.sizing.words import Measure
+from ....optimise.sizing.input_words import Measure
 from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import (
     Block,

@@ -13,7 +13,7 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
 from ....objectives.kinds import RATIO, SPEED, TIME
-from ....objectives.needs import ONE_TIMING
+from ....objectives.machine_needs import ONE_TIMING
 from ....objectives.tables.curve_extremes import CurveExtremes, Extreme, curve_extremes, cuts_of, defined_curves
 from ....objectives.tables.cycle_curves import KINDS
 from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
@@ -30,7 +30,7 @@ from ...render.blocks import (
     sentence,
     words,
 )
-from ...render.extremes import extremes_table
+from ...render.extremes_table import extremes_table
 from ...render.numerals import format_number
 from ...text.tables import finite_or_none
 from ..answer_types import Keys, Note, Record, keys_of_kinds
@@ -147,12 +147,12 @@ def _strokes(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | N
 
 def blocks(numbers: Extremes) -> list[Block]:
     """Return a line for each curve, and the strokes."""
-    shown_blocks: list[Block] = [
+    answer_blocks: list[Block] = [
         heading("Extreme values over the turn, with continuous crank angles"),
         extremes_table(numbers["curves"]),
     ]
     if "undefined_because" in numbers:
-        shown_blocks.append(sentence("Undefined: {reason}", reason=numbers["undefined_because"]))
+        answer_blocks.append(sentence("Undefined: {reason}", reason=numbers["undefined_because"]))
     strokes, lines = numbers["strokes"], list[NamedNumber]()
     for name in _STROKES:
         stroke = strokes[name]
@@ -171,7 +171,7 @@ def blocks(numbers: Extremes) -> list[Block]:
     ):
         if strokes.get(key) is not None:
             lines.append((title, Value(strokes[key], kind), "outward against inward"))
-    return [*shown_blocks, *number_list("Strokes", lines)]
+    return [*answer_blocks, *number_list("Strokes", lines)]
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:

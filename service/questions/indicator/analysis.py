@@ -84,7 +84,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Indicator:
 
 def blocks(numbers: Indicator) -> list[Block]:
     """Return the numbers for people."""
-    shown_blocks: list[Block] = []
+    answer_blocks: list[Block] = []
     for cylinder in numbers["cylinders"]:
         lines: list[NamedNumber] = [
             ("least volume", recorded(cylinder, "least_volume_cm3"), ""),
@@ -97,8 +97,8 @@ def blocks(numbers: Indicator) -> list[Block]:
             angle = recorded(cylinder, f"{name}_ends_deg")
             if angle.number is not None:
                 lines.append((f"{name} ends", angle, event))
-        shown_blocks += number_list(f"Indicator diagram of load {cylinder['load']} (pressures are absolute)", lines)
-    return shown_blocks
+        answer_blocks += number_list(f"Indicator diagram of load {cylinder['load']} (pressures are absolute)", lines)
+    return answer_blocks
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:

@@ -15,7 +15,7 @@ from ....model.linkage.inverse import Solution as Stroke
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Branch, Mechanism
 from ....model.swing.swing import Swing, dead_points, placed, require_swing
-from ....objectives.keys import kind_of_key
+from ....objectives.column_keys import kind_of_key
 from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED
 from ...render.blocks import Block, Table, column, joined, recorded, sentence, words
 from ..answer_types import Note, Record

@@ -14,7 +14,7 @@ from ....optimise.decisions.like import Ends, common, distance, nearest
 from ....optimise.front.hypervolume import scaling
 from ....optimise.problem.requirements import Constraint
 from ...designs.display_units import record_in
-from ...designs.requirements import quantity_names
+from ...designs.judged_requirements import quantity_names
 from ...designs.selection import Condition, parse_condition
 from ...render.blocks import Block, Sentence, Table, Text, Value, column, heading, recorded
 from ...runs.result import Row, rows_of

@@ -11,8 +11,8 @@ import numpy as np
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
-from ....objectives.counted import counted
-from ....objectives.keys import kind_of_key
+from ....objectives.column_keys import kind_of_key
+from ....objectives.count_text import counted
 from ....objectives.kinds import ANGLE
 from ....objectives.tables.curve_extremes import cuts_of, defined_curves
 from ....objectives.tables.cycle_curves import KINDS

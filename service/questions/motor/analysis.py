@@ -24,7 +24,7 @@ from ....model.signals.first_greatest import angle_in_cycle, first_greatest
 from ....model.signals.shaft_statistics import mean_speed_ratio
 from ....model.signals.signals import Signal
 from ....objectives.kinds import INERTIA, POWER, TORQUE
-from ....objectives.needs import SPEED
+from ....objectives.machine_needs import SPEED
 from ...figures.panel_figure import Line, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, named_number, number_list
 from ...text.tables import finite_or_none

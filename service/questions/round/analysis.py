@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
-from ....objectives.keys import key_in, metric_key, split_unit
+from ....objectives.column_keys import key_in, metric_key, split_unit
 from ....objectives.kinds import LENGTH, SMALL_LENGTH, Kind, System, metric_unit_in
 from ....objectives.units import quote
 from ....optimise.front.progress import stage_text

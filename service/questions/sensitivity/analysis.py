@@ -102,17 +102,17 @@ def blocks(numbers: Sensitivity) -> list[Block]:
     heads = [head for name in DIMENSIONS for head in (column(name), column())]
     columns = column("quantity", left=True), column("value"), column("unit", left=True), *heads
     title = "Change of each quantity if a dimension grows by 1 {unit} (and in % if it grows by 1 %)"
-    shown_blocks: list[Block] = [heading(title, unit=Unit(LENGTH)), Table(columns, tuple(rows))]
+    answer_blocks: list[Block] = [heading(title, unit=Unit(LENGTH)), Table(columns, tuple(rows))]
     if tolerance_rows:
         columns = column("quantity", left=True), *map(column, DIMENSIONS), column("unit", left=True)
-        shown_blocks += [
+        answer_blocks += [
             heading("Change of each quantity for the tolerance of a dimension"),
             Table(columns, tuple(tolerance_rows)),
         ]
     return (
-        [*shown_blocks, note("a / b: at a kink, the derivative below and above the dimension")]
+        [*answer_blocks, note("a / b: at a kink, the derivative below and above the dimension")]
         if kinks
-        else shown_blocks
+        else answer_blocks
     )
 
 

@@ -155,13 +155,13 @@ def blocks(numbers: Start) -> list[Block]:
     if steady is not None:
         lines += [(title, recorded(steady, key, digits=4)) for key, title in steady_titles.items()]
     rows = tuple((title, value, Unit(value.kind)) for title, value in lines)
-    shown_blocks: list[Block] = [
+    answer_blocks: list[Block] = [
         sentence("Start from rest: {message}.", message=numbers["message"]),
         Table((column(left=True), column(), column(left=True)), rows),
     ]
     if steady is None:
-        shown_blocks.append(sentence("No steady running: {reason}.", reason=numbers["why_not_steady"] or ""))
-    return shown_blocks
+        answer_blocks.append(sentence("No steady running: {reason}.", reason=numbers["why_not_steady"] or ""))
+    return answer_blocks
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, **options: Any) -> PanelFigure:

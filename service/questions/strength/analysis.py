@@ -14,8 +14,8 @@ from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import TURN, cycle_turns
 from ....model.signals.first_greatest import angle_in_cycle
 from ....model.strength.bar_stress import bar_stress
-from ....model.strength.places import LinkBody
 from ....model.strength.stress_cycle import stress_peaks
+from ....model.strength.stress_locations import LinkBody
 from ....objectives.bars import LINKS, NEAR
 from ....objectives.kinds import ANGLE, LENGTH, PRESSURE
 from ....objectives.link_stress import STATIC, STATIC_SAFETY, eye_stresses
@@ -157,11 +157,11 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
             raise InputError("friction locks the design, so its stresses are undefined; reduce its friction")
         length, worst = float(getattr(linkage, name)), stress.worst
         degrees = np.degrees(stress.theta)
-        face_lines = [
+        fibre_lines = [
             Line(label, degrees, stress.stress[n, worst], n) for n, label in enumerate(("one face", "the other"))
         ]
         at = words("{name} stress at {where}", name=name, where=Value(length * stress.shares[worst], LENGTH, 4))
-        panels.append(crank_angle_panel(at, *face_lines, kind=PRESSURE))
+        panels.append(crank_angle_panel(at, *fibre_lines, kind=PRESSURE))
         envelope_lines = [
             Line(label, length * stress.shares, end, n)
             for n, (label, end) in enumerate(zip(("least", "greatest"), stress.envelope, strict=True))

@@ -10,7 +10,7 @@ import numpy as np
 
 from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
-from ....objectives.keys import kind_of_key
+from ....objectives.column_keys import kind_of_key
 from ....objectives.kinds import ANGULAR_SPEED, LENGTH
 from ....objectives.registry import FACTS
 from ....objectives.tables.sweep import Axis, Parameter, sweep

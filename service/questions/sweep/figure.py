@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ....objectives.kinds import System, metric_unit_in
 from ....objectives.quantity import Quantity
 from ....objectives.tables.sweep import Axis
-from ....optimise.front.constant import is_constant
+from ....optimise.front.constant_numbers import is_constant
 from ...figures.style import (
     BLUE,
     MUTED,

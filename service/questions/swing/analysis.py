@@ -14,7 +14,7 @@ from ....model.swing.swing import Swing
 from ....model.swing.swing_cycle import SwingCycle, SwingPoint
 from ....model.swing.swing_request import SwingRequest, resolve_swing
 from ....model.swing.swing_types import Driver, Law, Side
-from ....objectives.keys import kind_of_key
+from ....objectives.column_keys import kind_of_key
 from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, FORCE, LENGTH, POWER, TORQUE
 from ....objectives.tables.cycle_curves import KINDS
 from ...designs.display_units import rows_in
@@ -27,7 +27,7 @@ from ...designs.swing_curves import (
     swing_rows,
 )
 from ...render.blocks import Block, NamedNumber, Text, heading, number_list, recorded, words
-from ...render.extremes import extremes_table
+from ...render.extremes_table import extremes_table
 from ...text.tables import finite_or_none
 from ..answer_types import Keys, Note, keys_of_kinds
 

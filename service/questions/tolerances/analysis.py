@@ -118,8 +118,8 @@ def numbers(
     of_variance = 100.0 * shares(variances(mechanism, linkage, at))[:, 0]
     simulation = simulate(mechanism, linkage, samples=samples, seed=seed)
     spread = summarise(simulation.greatest, percents=(50.0, 95.0, 99.73)) if samples > 1 + simulation.stuck else None
-    limits_wanted = {"root-sum-square": rss, "worst case": worst_case} if limit is None else {"given": limit}
-    yields = [(name, value, yield_within(simulation.greatest, value)) for name, value in limits_wanted.items()]
+    deviation_limits = {"root-sum-square": rss, "worst case": worst_case} if limit is None else {"given": limit}
+    yields = [(name, value, yield_within(simulation.greatest, value)) for name, value in deviation_limits.items()]
     return {
         "worst_case_mm": 1e3 * worst_case,
         "worst_case_angle_deg": float(np.degrees(at[0])),
@@ -202,18 +202,18 @@ def blocks(numbers: PositionError) -> list[Block]:
             "yield at {size} ({name})", size=recorded(yield_record, "limit_mm", digits=4), name=yield_record["limit"]
         )
         rows.append((limit, f"{share} at {yield_record['confidence_percent']:g} % confidence"))
-    shown_blocks: list[Block] = [
+    answer_blocks: list[Block] = [
         heading("Position error from tolerances: greatest over the counted part of the cycle"),
         Table((column(left=True), column(left=True)), tuple(rows)),
     ]
     if any(row["source"].endswith("clearance") for row in numbers["contributions"]):
-        shown_blocks.append(
+        answer_blocks.append(
             note(
                 "Root-sum-square treats a clearance as three standard deviations; pins pressed to either side scatter "
                 "more widely, as the random machines show."
             )
         )
-    return [*shown_blocks, _sources(numbers["contributions"])]
+    return [*answer_blocks, _sources(numbers["contributions"])]
 
 
 def _sources(contributions: list[Contribution]) -> Table:

@@ -46,7 +46,7 @@ def answered(wished: Wished, at: Mapping[str, object]) -> Answer:
             "design": json_ready(row_in(rows[0], units)) if rows else None,
         }
 
-    description = told_wish(at, wished.row)
+    description = wish_in_words(at, wished.row)
     title = heading("{name}: wished {told}", name=wished.found.problem.name, told=description)
     return Answer(
         record=record,
@@ -57,7 +57,7 @@ def answered(wished: Wished, at: Mapping[str, object]) -> Answer:
     )
 
 
-def told_wish(at: Mapping[str, object], row: int | None) -> str:
+def wish_in_words(at: Mapping[str, object], row: int | None) -> str:
     """Return a wish in words: "time_ratio improve, peak_torque 110 N m, from design 3"."""
     design = [] if row is None else [f"from design {row + 1}"]
     return ", ".join([*(f"{name} {value}" for name, value in at.items()), *design])

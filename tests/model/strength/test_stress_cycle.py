@@ -11,9 +11,9 @@ from slidercrank.model.cycle.cycle import breakpoints
 from slidercrank.model.errors import InputError
 from slidercrank.model.machine.links import Counterweight
 from slidercrank.model.machine.loads.angle_table import AngleTable
-from slidercrank.model.strength.places import LinkBody
 from slidercrank.model.strength.section_forces import CRANK, ROD
 from slidercrank.model.strength.stress_cycle import stress_peaks
+from slidercrank.model.strength.stress_locations import LinkBody
 from tests.model.cases import Array, random_designs
 from tests.model.strength.sections import linkage_with, random_bars, section_stress, stress_rows
 

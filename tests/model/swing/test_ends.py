@@ -15,7 +15,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.machine.varying import Varying
 from slidercrank.model.swing.law import spline, way
-from slidercrank.model.swing.push import bend
+from slidercrank.model.swing.slider_pin_force import bend
 from slidercrank.model.swing.summary import summarise
 from slidercrank.model.swing.swing import Swing, placed
 from slidercrank.objectives.tables.swinging import swing_quantities

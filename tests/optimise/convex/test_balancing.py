@@ -17,8 +17,8 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.sizing.counterweight import Balance, RodSpace, balance
+from slidercrank.optimise.sizing.input_words import Measure
 from slidercrank.optimise.sizing.shaking_rows import rows, with_masses
-from slidercrank.optimise.sizing.words import Measure
 from tests.model.cases import linkage_of, random_designs, random_machine
 
 Array = NDArray[np.float64]

@@ -17,8 +17,8 @@ from slidercrank.model.machine.mechanism import Branch, Clearances, Mechanism, T
 from slidercrank.model.tolerance.first_order import first_order
 from slidercrank.model.tolerance.sources import counted_angles
 from slidercrank.optimise.problem.costs import NAMES, Cost, Costs
+from slidercrank.optimise.sizing.input_words import Kind
 from slidercrank.optimise.sizing.tolerance_allocation import Allocation, allocate
-from slidercrank.optimise.sizing.words import Kind
 from tests.model.cases import linkage_of, random_designs
 
 Array = NDArray[np.float64]

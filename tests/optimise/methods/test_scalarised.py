@@ -11,7 +11,7 @@ import pytest
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.hypervolume import hypervolume, scaling
 from slidercrank.optimise.methods import scalarised
-from slidercrank.optimise.methods.scalar import Form, Programme
+from slidercrank.optimise.methods.scalar_objective import Form, Programme
 from slidercrank.optimise.methods.scalarised import grid, simplex
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.elimination import elimination_branches

@@ -11,7 +11,7 @@ import pytest
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.methods.local import by_slsqp, samples
-from slidercrank.optimise.methods.scalar import Form, Programme
+from slidercrank.optimise.methods.scalar_objective import Form, Programme
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator

@@ -18,7 +18,7 @@ from starlette.responses import PlainTextResponse, Response, StreamingResponse
 from starlette.routing import Route
 
 from slidercrank.service.api.computing import Computing, LongRoute, QuickRoute
-from slidercrank.service.api.problems import answer_problems
+from slidercrank.service.api.problem_documents import answer_problems
 from slidercrank.service.store import Limits
 from slidercrank.service.workers.heartbeat import EXHAUSTED, leave
 from tests.service.api.serving import serving

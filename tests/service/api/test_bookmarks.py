@@ -101,13 +101,13 @@ def test_at_most_one_is_decided_for_and_the_table_says_why(store: Store, client:
     with served(store) as address, Client(address) as opened:
         for design in (1, 2):
             opened.keep(solved.number, design, name=f"Design {design}", note="=cmd")
-        opened.change_kept(solved.number, 1, decided=True, reason="most robust")
-        changed = opened.change_kept(solved.number, 2, decided=True, reason="in stock", star=True)
+        opened.change_bookmark(solved.number, 1, decided=True, reason="most robust")
+        changed = opened.change_bookmark(solved.number, 2, decided=True, reason="in stock", star=True)
         assert (changed["decided"], changed["star"], changed["name"]) == (True, True, "Design 2")
-        assert [one["decided"] for one in opened.kept(solved.number)] == [False, True]
+        assert [one["decided"] for one in opened.bookmarks(solved.number)] == [False, True]
         table = client.get(f"{solved.path}/kept.csv").text
         opened.drop_kept(solved.number, 1)
-        assert [one["number"] for one in opened.kept(solved.number)] == [2]
+        assert [one["number"] for one in opened.bookmarks(solved.number)] == [2]
     rows = list(csv.DictReader(io.StringIO(table)))
     assert [row["reason"] for row in rows] == ["most robust", "in stock"]
     assert rows[0]["note"] == "'=cmd"

@@ -12,7 +12,7 @@ import pytest
 
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.service.jobs.submission import submit
-from slidercrank.service.runs.result import Row, Wanted
+from slidercrank.service.runs.result import Row, StoredObjective
 from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import work
 from tests.service.api.serving import refused
@@ -31,7 +31,7 @@ def sizes(client: httpx.Client) -> list[int]:
     return list(map(len, rows))
 
 
-def front_so_far(count: int = 64) -> dict[str, Any]:
+def front_progress(count: int = 64) -> dict[str, Any]:
     """Return points of a front in four objectives, with all digits."""
     points = np.random.default_rng(3).random((count, len(AXES))).tolist()
     return {"columns": list(AXES), "points": points}
@@ -64,7 +64,7 @@ def test_rows_of_random_jobs_have_600_bytes_at_most_whatever_they_are_doing(clie
     for _ in range(40):
         names = random.choice(sorted(QUANTITIES), size=4, replace=False)
         wanted = tuple(
-            Wanted(quantity=name, sense="minimise", column=QUANTITIES[name].field, title=name, unit="")
+            StoredObjective(quantity=name, sense="minimise", column=QUANTITIES[name].field, title=name, unit="")
             for name in names
         )
         values = random.choice([-1.0, 1.0], (100, 4)) * 10.0 ** random.uniform(-9, 9, (100, 4))
@@ -72,13 +72,13 @@ def test_rows_of_random_jobs_have_600_bytes_at_most_whatever_they_are_doing(clie
         extremes = {name: int(random.integers(100)) for name in names}
         add(store, "Machine " + "x" * int(random.integers(24)))
         claim = taken(store, worker="machine-28238-788875")
-        claim.report(progress(9), front_so_far())
+        claim.report(progress(9), front_progress())
         if random.random() < 0.8:
             state = str(random.choice(["done", "cancelled"]))
             claim.finish(replace(result(state, rows), objectives=wanted, extremes=extremes, evaluations=1_000_000))
             if state == "cancelled" and random.random() < 0.5:  # goes on, with what it has found
                 store.resume(claim.job.id)
-                taken(store, worker="machine-28238-788875").report(progress(9), front_so_far())
+                taken(store, worker="machine-28238-788875").report(progress(9), front_progress())
     assert min(store.counts()[state] for state in ("running", "done", "cancelled")) > 3
     assert sum(job.summary is not None for job in store.jobs(states=["running"])) > 3
     assert max(sizes(client)) <= ROW
@@ -87,7 +87,7 @@ def test_rows_of_random_jobs_have_600_bytes_at_most_whatever_they_are_doing(clie
 def test_a_row_is_part_of_the_job(client: httpx.Client, store: Store) -> None:
     add(store)
     claim = taken(store)
-    claim.report(progress(3), front_so_far())
+    claim.report(progress(3), front_progress())
 
     def row() -> dict[str, Any]:
         found: dict[str, Any] = client.get("/jobs").json()["jobs"][0]
@@ -102,7 +102,7 @@ def test_a_row_is_part_of_the_job(client: httpx.Client, store: Store) -> None:
     assert row()["progress"] is None
     assert row()["summary"] == {"designs": 2, "best": {"time_ratio": 1.25}}
     job = client.get("/jobs/1").json()
-    assert (job["summary"]["points"], job["progress"]["front"]) == ([[1.25], [1.0]], front_so_far())
+    assert (job["summary"]["points"], job["progress"]["front"]) == ([[1.25], [1.0]], front_progress())
 
 
 def test_points_are_of_the_front_found_or_of_that_so_far(client: httpx.Client, store: Store) -> None:
@@ -110,7 +110,7 @@ def test_points_are_of_the_front_found_or_of_that_so_far(client: httpx.Client, s
     for _ in range(8):
         add(store)
     done, failed, infeasible, one, gone, running, fresh = (taken(store) for _ in range(7))
-    so_far = front_so_far(5)
+    so_far = front_progress(5)
     told = [point[:2] for point in so_far["points"]]
     for claim in (done, failed, running):
         claim.report(progress(2), so_far)
@@ -137,7 +137,9 @@ def test_points_are_of_the_front_found_or_of_that_so_far(client: httpx.Client, s
 
 def test_an_undefined_value_of_a_point_is_null(client: httpx.Client, store: Store) -> None:
     add(store)
-    error = Wanted(quantity="motion_error", sense="minimise", column="motion_error_mm", title="Error", unit="mm")
+    error = StoredObjective(
+        quantity="motion_error", sense="minimise", column="motion_error_mm", title="Error", unit="mm"
+    )
     taken(store).finish(replace(result(), objectives=(*result().objectives, error), extremes={}))
     assert points(client, 1) == {1: [[1.25, None], [1.0, None]]}
 
@@ -157,7 +159,7 @@ def test_a_browser_keeps_points_until_a_front_changes(client: httpx.Client, stor
     tag = client.get(path).headers["etag"]
     assert again(tag) == (304, tag)
     for number in (1, 2):
-        claim.report(progress(number), front_so_far(4 * number))
+        claim.report(progress(number), front_progress(4 * number))
         status, changed = again(tag)
         assert (status, again(changed)) == (200, (304, changed))
         assert changed != tag

@@ -8,7 +8,7 @@ import tomllib
 import numpy as np
 
 from slidercrank.objectives.tables.analysis import analyse
-from slidercrank.service.runs.result import Result, Wanted, rows_of
+from slidercrank.service.runs.result import Result, StoredObjective, rows_of
 from slidercrank.service.store import Store
 from tests.service import fronts
 from tests.service.api.fixed_front import put_in
@@ -32,7 +32,7 @@ def large_result(count: int = 10_000) -> Result:
     table = analyse(fronts.MACHINE, dimensions).sort_values("time_ratio", ascending=False, ignore_index=True)
     table["status"] = "stationary"
     wanted = tuple(
-        Wanted(quantity=name, sense=sense, column=key, title=title, unit=unit)
+        StoredObjective(quantity=name, sense=sense, column=key, title=title, unit=unit)
         for name, sense, key, title, unit in _OBJECTIVES
     )
     rows = rows_of(table.to_dict("list"))

@@ -11,7 +11,7 @@ import pytest
 from playwright.sync_api import Page, Request, expect
 
 from slidercrank.service.jobs.submission import submit
-from slidercrank.service.runs.result import Wanted
+from slidercrank.service.runs.result import StoredObjective
 from slidercrank.service.store import Store
 from slidercrank.service.store.bookmarks import keep_design
 from tests.service import fronts
@@ -54,7 +54,7 @@ def test_an_empty_store_leads_to_a_new_run(open_page: Open, store: Store) -> Non
 
 def test_a_run_is_shown_with_its_state_in_words_and_its_best_values(open_page: Open, store: Store) -> None:
     found = result(rows=[{**row, "rod_mm": 120.0, "offset_mm": 30.0, "position_error_mm": 0.25} for row in ROWS])
-    error = Wanted(
+    error = StoredObjective(
         quantity="position_error",
         sense="minimise",
         column="position_error_mm",

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from slidercrank.service.store import Store
 from slidercrank.service.store.backup import back_up
-from slidercrank.service.store.bookmarks import change_kept, keep_design
+from slidercrank.service.store.bookmarks import keep_design, update_bookmark
 from tests.service.api.fixed_front import Solved
 from tests.service.conftest import Command
 
@@ -28,8 +28,8 @@ def test_the_report_of_a_command_has_the_decision_of_the_store(
             row = solved.result.designs[number - 1]
             crank, rod, offset = (float(row[key] or 0.0) / 1e3 for key in ("crank_mm", "rod_mm", "offset_mm"))
             keep_design(store, solved.number, dimensions=(crank, rod, offset), design=number, name=name)
-        change_kept(store, solved.number, 1, reason="too tall")
-        change_kept(store, solved.number, 2, decided=True, reason="fits the gearmotor")
+        update_bookmark(store, solved.number, 1, reason="too tall")
+        update_bookmark(store, solved.number, 2, decided=True, reason="fits the gearmotor")
     assert command(*arguments).exit_code == 0
     text = unescape(re.sub(r"<[^>]+>", " ", out.read_text(encoding="utf-8")))
     assert "Decided for Least torque: fits the gearmotor." in text

@@ -11,10 +11,10 @@ from sqlalchemy import select, update
 
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.search.checkpoints import Identity, Record
-from slidercrank.service.runs.result import Result, Row, Wanted
+from slidercrank.service.runs.result import Result, Row, StoredObjective
 from slidercrank.service.store import Claim, Job, Store
-from slidercrank.service.store.clock import now
 from slidercrank.service.store.database import Database
+from slidercrank.service.store.database_clock import now
 from slidercrank.service.store.schema import jobs, metadata
 
 TABLES = {"name": "Feeder", "variables": {"crank": ["20 mm", "200 mm"]}, "optimiser": {"designs": 8}}
@@ -63,7 +63,9 @@ def result(status: str = "done", rows: list[Row] | None = None) -> Result:
         name="Feeder",
         status=status,
         message=f"{len(rows)} designs",
-        objectives=(Wanted(quantity="time_ratio", sense="maximise", column="time_ratio", title="Time ratio", unit=""),),
+        objectives=(
+            StoredObjective(quantity="time_ratio", sense="maximise", column="time_ratio", title="Time ratio", unit=""),
+        ),
         designs=rows,
         hypervolume=0.5,
         evaluations=400,

@@ -50,11 +50,11 @@ def test_repeating_earlier_rounds_is_told_and_is_not_to_have_begun(store: Store)
     add(store)
     claim = taken(store)
     claim.report(replace(progress(0), stage=REPEATING, step=4, steps=12))
-    assert not claim.has_begun, "so that a job that is cancelled meanwhile ends at once"
+    assert not claim.has_started, "so that a job that is cancelled meanwhile ends at once"
     event = store.events(claim.job.id)[-1]
     assert (event.data["stage"], event.data["step"], event.data["steps"]) == (REPEATING, 4, 12)
     claim.report(progress(1))
-    assert claim.has_begun
+    assert claim.has_started
 
 
 WRITES: dict[str, Callable[[Claim], None]] = {

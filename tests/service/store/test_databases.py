@@ -98,7 +98,7 @@ def test_commits_of_postgresql_are_on_the_disk_and_no_session_sleeps_in_a_transa
 def test_the_clock_goes_on_within_a_transaction(database: Database) -> None:
     from sqlalchemy import select
 
-    from slidercrank.service.store.clock import now
+    from slidercrank.service.store.database_clock import now
 
     with database.writing() as connection:
         first = connection.scalar(select(now()))

@@ -13,7 +13,7 @@ import pytest
 
 from slidercrank.model.errors import LeaseLost
 from slidercrank.service.store import Claim, Store
-from slidercrank.service.store.clock import JUMP, SETTLING, Jumps
+from slidercrank.service.store.database_clock import JUMP, SETTLING, Jumps
 from slidercrank.service.workers.heartbeat import Heartbeat
 from slidercrank.service.workers.worker import solve_claimed, work
 from tests.service.store.clocks import Clock
@@ -33,7 +33,7 @@ def clock(tmp_path: Path) -> Iterator[Clock]:
 @pytest.fixture
 def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let claims settle within a moment of a jump, but not before a heartbeat has looked."""
-    monkeypatch.setattr("slidercrank.service.store.clock.SETTLING", 0.8)
+    monkeypatch.setattr("slidercrank.service.store.database_clock.SETTLING", 0.8)
 
 
 @steps
@@ -124,7 +124,7 @@ def test_a_job_that_its_worker_leaves_is_free_at_once_whatever_the_clock_says(
 @pytest.fixture
 def solving(monkeypatch: pytest.MonkeyPatch) -> Any:
     """Return a function that puts another one in the place of a worker's search; nobody waits long for a clock."""
-    monkeypatch.setattr("slidercrank.service.store.clock.SETTLING", 0.05)
+    monkeypatch.setattr("slidercrank.service.store.database_clock.SETTLING", 0.05)
     monkeypatch.setattr("slidercrank.service.workers.worker.PULSE", 0.005)
     return lambda solve: monkeypatch.setattr("slidercrank.service.workers.worker.solve_claimed", solve)
 

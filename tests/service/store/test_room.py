@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from slidercrank.service.store import Limits, Store
-from slidercrank.service.store.clock import SETTLING, Jumps
 from slidercrank.service.store.database import Full
+from slidercrank.service.store.database_clock import SETTLING, Jumps
 from slidercrank.service.workers.heartbeat import DEAF, Budget, Heartbeat
 from tests.service.made_up_search import until
 from tests.service.store.contents import add, end_lease, progress, same, search_record, taken
@@ -75,7 +75,7 @@ def test_a_job_stays_with_its_worker_while_not_even_its_lease_can_be_renewed(sto
 def test_another_worker_goes_on_with_a_job_whose_worker_died_on_a_full_disk(
     store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("slidercrank.service.store.clock.SETTLING", 0.2)
+    monkeypatch.setattr("slidercrank.service.store.database_clock.SETTLING", 0.2)
     disk = Disk(store)
     add(store)
     taken(store, lease=LEASE).keep(large_record(1))
@@ -134,7 +134,7 @@ def test_time_without_room_does_not_count_as_time_of_the_search() -> None:
 
 def test_a_search_that_waits_for_room_does_not_count_as_deaf(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
     left: list[int] = []
-    monkeypatch.setattr("slidercrank.service.workers.heartbeat._HEARS", 0.0)
+    monkeypatch.setattr("slidercrank.service.workers.heartbeat._STOP_PATIENCE", 0.0)
     monkeypatch.setattr("slidercrank.service.workers.heartbeat.leave", left.append)
     job = add(store)
     claim = taken(store)

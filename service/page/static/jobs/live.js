@@ -50,7 +50,7 @@ export function watch(place, job, { signal, changed }) {
   const pickers = h("div", { class: "row picks" });
   /** @type {Api.Progress[]} */
   const rounds = [];
-  /** @type {Api.FrontSoFar | null} */
+  /** @type {Api.FrontProgress | null} */
   let latest = null;
   /** @type {ReturnType<typeof setTimeout> | null} */
   let timer = null;
@@ -219,7 +219,7 @@ export function watch(place, job, { signal, changed }) {
     }
   }
 
-  /** @param {Api.FrontSoFar} found */
+  /** @param {Api.FrontProgress} found */
   function drawFront(found) {
     latest = found;
     const columns = found.columns.map(columnOf);

@@ -1,4 +1,4 @@
-/** Whether numbers are all the same but for rounding: the rule of slidercrank's optimise/front/constant.py, which says why. */
+/** Whether numbers are all the same but for rounding: the rule of slidercrank's optimise/front/constant_numbers.py, which says why. */
 
 const SAME = 1e-9; // relative spread of what counts as one number
 
