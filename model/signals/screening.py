@@ -1,11 +1,11 @@
 """Peak torque and greatest position error of very many designs together, with gradients.
 
 The innermost loop is over designs, so that every operation is a vector instruction. All designs share the crowded
-angles, at which `locate` samples the curves and finds the cells of the two highest local maxima; these are refined by
-the formulas of `peaks`. The result equals that of `peaks.find_peaks` to rounding where the curve is smooth. Where a
-load changes at the dead centres, a peak that sits on the kink there is found only to the spacing of the angles. This
-suffices for choosing designs; `peaks` evaluates the results. Tables, loads with their own formula and partial strokes
-are not handled here.
+angles, at which `coarse_peaks` samples the curves and finds the cells of the two highest local maxima; these are
+refined by the formulas of `peaks`. The result equals that of `peaks.find_peaks` to rounding where the curve is smooth.
+Where a load changes at the dead centres, a peak that sits on the kink there is found only to the spacing of the angles.
+This suffices for choosing designs; `peaks` evaluates the results. Tables, loads with their own formula and partial
+strokes are not handled here.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def screens(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> boo
     mechanism = mechanism.fullest
     full_cycle = watch.strokes == 0 and watch.start == 0.0 and watch.end == 1.0
     if kind == Signal.POSITION_ERROR_RSS and mechanism.tolerances.clearances != Clearances():
-        return False  # `locate` samples the squares with the tolerances alone
+        return False  # `coarse_peaks` samples the squares with the tolerances alone
     if kind == Signal.TORQUE:
         return (
             full_cycle
@@ -160,10 +160,10 @@ def _refine(
 ) -> Any:
     """Move every lane to its local maximum within one angle on either side, from the vertex of the parabola.
 
-    top: place, vertex and curvature of `locate.two_highest`. work: room (12, lanes). A lane that has settled stays
-    where it is while others take more steps, so its result does not depend on them.
+    top: place, vertex and curvature of `coarse_peaks.two_highest`. work: room (12, lanes). A lane that has settled
+    stays where it is while others take more steps, so its result does not depend on them.
     """
-    share = 0.5 if kind == _RSS else 1.0  # `locate` samples its square, which curves twice as much
+    share = 0.5 if kind == _RSS else 1.0  # `coarse_peaks` samples its square, which curves twice as much
     for j in range(LANES):
         at = max(int(top[0, j]), 0)
         work[4, j], work[5, j], work[6, j] = tau[0, at], tau[1, at], top[1, j] * h

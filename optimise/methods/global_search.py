@@ -139,7 +139,7 @@ def shgo(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 
     S. C. Endres, C. Sandrock and W. W. Focke, "A simplicial homology algorithm for Lipschitz optimisation", J. Glob.
     Optim. 72, 2018. It tells basins from feasible Sobol points and descends into each; where a peak has a kink that
-    ends short of the optimum, so that the epigraph form (`scalar`) goes on from there.
+    ends short of the optimum, so that the epigraph form (`scalar_objective`) goes on from there.
     """
     archive, improvements = Archive.empty(1), Archive.empty(1)
     run.archive = improvements

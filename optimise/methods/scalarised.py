@@ -49,8 +49,8 @@ def epsilon_constraint(front: _Front) -> Aims:
     """Return the aims of minimising the first objective with ceilings on all others, on a grid of the payoff table.
 
     Ceilings far from every sample and optimum are left out; the grid is refined until enough others remain. With the
-    sum, see `scalar`, this is the augmented epsilon-constraint method (G. Mavrotas, "Effective implementation of
-    the epsilon-constraint method in multi-objective mathematical programming problems", Appl. Math. Comput. 213(2),
+    sum, see `scalar_objective`, this is the augmented epsilon-constraint method (G. Mavrotas, "Effective implementation
+    of the epsilon-constraint method in multi-objective mathematical programming problems", Appl. Math. Comput. 213(2),
     2009).
     """
     m, scaled = len(front.payoff), front.scaled(np.concatenate([front.samples.values, front.archive.values]))

@@ -5,9 +5,9 @@ constraints held. The solutions are Pareto-optimal (H. P. Benson, "Existence of 
 maximization problems", JOTA 26(4), 1978). Mutual non-dominance, or a vanishing convex combination of some gradients, is
 not enough: if two objectives do not change with the size of the linkage, a smaller copy may be better in all others.
 
-`programme` states the steps. Their Hessian is that of the Lagrangian, by differences of exact gradients, with the
-multipliers from the programme itself. It is first made convex across the active rows. A full step that curves away from
-rows that it must hold is corrected to second order before it is shortened (Nocedal and Wright, "Numerical
+`polish_programme` states the steps. Their Hessian is that of the Lagrangian, by differences of exact gradients, with
+the multipliers from the programme itself. It is first made convex across the active rows. A full step that curves away
+from rows that it must hold is corrected to second order before it is shortened (Nocedal and Wright, "Numerical
 Optimization", 2006, ch. 18.3): otherwise designs creep along curved constraints. A design that starts outside the
 constraints first moves onto them by the shortest step. Tied peaks enter as separate pieces: a kink is a minimax, not
 noise. Designs advance together, so that every evaluation is a batch.
@@ -96,7 +96,7 @@ class _Batch:
         self.weight = np.full(n, VIOLATION)
         self.loss = np.full((n, len(scale)), LOSS)
         self.roots = np.tile(np.eye(k), (n, 1, 1))
-        """Of the Hessians, see `programme.roots`."""
+        """Of the Hessians, see `polish_programme.roots`."""
         self._begin()
         self.safe = np.where(self._feasible()[:, None], self.u, np.nan)
 

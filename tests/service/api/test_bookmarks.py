@@ -106,7 +106,7 @@ def test_at_most_one_is_decided_for_and_the_table_says_why(store: Store, client:
         assert (changed["decided"], changed["star"], changed["name"]) == (True, True, "Design 2")
         assert [one["decided"] for one in opened.bookmarks(solved.number)] == [False, True]
         table = client.get(f"{solved.path}/kept.csv").text
-        opened.drop_kept(solved.number, 1)
+        opened.delete_bookmark(solved.number, 1)
         assert [one["number"] for one in opened.bookmarks(solved.number)] == [2]
     rows = list(csv.DictReader(io.StringIO(table)))
     assert [row["reason"] for row in rows] == ["most robust", "in stock"]
