@@ -13,7 +13,7 @@ from ..model.kernel.arithmetic import arcsine, magnitude, root
 from ..model.kinematics.geometry import inner_dead_centre, outer_dead_centre
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw import Raw
-from .greatest_of_formulas import GreatestFormula
+from .greatest_of_formulas import GreatestOfFormulas
 from .kinds import ANGLE, SPEED
 from .machine_needs import EVEN_SPEED, Need
 from .machine_needs import SPEED as TURNS
@@ -22,7 +22,7 @@ from .quantity import Array, Formula, Group, Number
 
 
 @dataclass(frozen=True, kw_only=True)
-class NearDeadCentre(GreatestFormula):
+class NearDeadCentre(GreatestOfFormulas):
     """A closed form at a distance from a dead centre; NaN unless the stroke is longer. closed_form: its function."""
 
     closed_form: Callable[[Mechanism, Number], Any] = field(repr=False)

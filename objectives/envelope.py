@@ -21,7 +21,7 @@ import numpy as np
 from ..model.kernel.arithmetic import magnitude
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw import Raw
-from .greatest_of_formulas import GreatestFormula
+from .greatest_of_formulas import GreatestOfFormulas
 from .kinds import LENGTH
 from .proportions import FOOTPRINT
 from .quantity import Formula, Group
@@ -31,7 +31,7 @@ Extent = Callable[[Any, Any, Any, Any, Any], Any]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Envelope(GreatestFormula):
+class Envelope(GreatestOfFormulas):
     """The greatest of several extents."""
 
     extents: Sequence[Extent]

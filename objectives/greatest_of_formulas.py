@@ -12,7 +12,7 @@ from .quantity import Array, Pieces, Quantity, Values, undefined
 
 
 @dataclass(frozen=True, kw_only=True)
-class GreatestFormula(Quantity):
+class GreatestOfFormulas(Quantity):
     """The greatest of its `formulas`, with exact derivatives by all varying numbers; NaN if any formula is NaN.
 
     A formula takes complex numbers and, for bounds over ranges, enclosures: it must not branch on a design's numbers.

@@ -10,7 +10,7 @@ from typing import Any
 from ..model.machine.design import link_properties
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw import Raw
-from .greatest_of_formulas import GreatestFormula
+from .greatest_of_formulas import GreatestOfFormulas
 from .kinds import MASS
 from .machine_needs import CRANK_MASS as CRANK_WEIGHS
 from .machine_needs import MASSES
@@ -19,7 +19,7 @@ from .quantity import Formula, Group, Number
 
 
 @dataclass(frozen=True, kw_only=True)
-class Mass(GreatestFormula):
+class Mass(GreatestOfFormulas):
     """A mass in closed form. closed_form: its function of the raw numbers of a machine."""
 
     closed_form: Formula = field(repr=False)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_WIDTH, _HEIGHT, _ROOM = 320.0, 180.0, 18.0  # px of the SVG
+_WIDTH, _HEIGHT, _MARGIN = 320.0, 180.0, 18.0  # px of the SVG
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Pose:
 def svg(pose: Pose, crank: float, label: str) -> str:
     """Return a linkage as a self-contained SVG element. label: text read out in place of the picture."""
     left, right, bottom, top = pose.box(crank)
-    scale = min((_WIDTH - 2.0 * _ROOM) / (right - left), (_HEIGHT - 2.0 * _ROOM) / (top - bottom))
+    scale = min((_WIDTH - 2.0 * _MARGIN) / (right - left), (_HEIGHT - 2.0 * _MARGIN) / (top - bottom))
     x0 = 0.5 * (_WIDTH - scale * (left + right))
     y0 = 0.5 * (_HEIGHT + scale * (bottom + top))
 
@@ -42,14 +42,14 @@ def svg(pose: Pose, crank: float, label: str) -> str:
         return f'<line x1="{x}" y1="{y}" x2="{u}" y2="{v}" {style}/>'
 
     (ox, oy), (sx, sy) = to_pixels((0.0, 0.0)), to_pixels(pose.slider)
-    thin_line_style, thick_style = (
+    line_style, thick_style = (
         'stroke="#999" stroke-dasharray="4 3"',
         'stroke="currentColor" stroke-width="3" stroke-linecap="round"',
     )
-    parts = [f'<circle cx="{ox}" cy="{oy}" r="{scale * crank:.1f}" fill="none" {thin_line_style}/>']
+    parts = [f'<circle cx="{ox}" cy="{oy}" r="{scale * crank:.1f}" fill="none" {line_style}/>']
     if all(math.isfinite(x) for x in pose.stroke):
         ends = [(x, pose.slider[1]) for x in pose.stroke]
-        parts.append(line(ends[0], ends[1], thin_line_style))
+        parts.append(line(ends[0], ends[1], line_style))
     parts.append(line((0.0, 0.0), pose.pin, thick_style) + line(pose.pin, pose.slider, thick_style))
     parts.append(
         f'<rect x="{float(sx) - 11:.1f}" y="{float(sy) - 7:.1f}" width="22" height="14" fill="none" '

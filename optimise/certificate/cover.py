@@ -107,13 +107,13 @@ def greedy_cover(points: Array, values: Array, epsilon: float) -> IntArray:
     return np.array(sorted(picked), dtype=np.int64)
 
 
-def volume(values: Array) -> float:
+def scaled_hypervolume(values: Array) -> float:
     """Return the hypervolume of scaled values in the units of fronts; what lies beyond the ideal counts too."""
     ideal, span = np.zeros(values.shape[1]), np.ones(values.shape[1])
     return hypervolume(values[nondominated(values)], ideal, span, clip_at_ideal=False)
 
 
-def volume_gap(front: Array, designs: Array, epsilon: float, points: Array) -> float:
+def hypervolume_gap_bound(front: Array, designs: Array, epsilon: float, points: Array) -> float:
     """Return by how much the hypervolume of the true front may exceed that of `front`; all scaled.
 
     Every feasible design is covered by `designs` to epsilon, and lies beyond one of `points` unless the front itself
@@ -121,11 +121,11 @@ def volume_gap(front: Array, designs: Array, epsilon: float, points: Array) -> f
     """
     if not np.isfinite(epsilon):
         return float("inf")
-    largest = volume(designs - epsilon)
+    largest = scaled_hypervolume(designs - epsilon)
     bounds = np.concatenate([front - epsilon, points])
     bounds = bounds[np.isfinite(bounds).all(axis=1)] if np.isfinite(points).all() else bounds[:0]
     if len(bounds):
         bounds = bounds[nondominated(bounds)]
         if len(bounds) <= _EXACT:
-            largest = min(largest, volume(bounds))
-    return max(0.0, largest - volume(front))
+            largest = min(largest, scaled_hypervolume(bounds))
+    return max(0.0, largest - scaled_hypervolume(front))

@@ -21,7 +21,7 @@ from ..search.recorded_polish import polish
 from .boundable import is_usable
 from .boxes import Boxes
 from .certificate import Certificate, Status, Step, message_of
-from .cover import choose_covering, excess, greedy_cover, volume_gap
+from .cover import choose_covering, excess, greedy_cover, hypervolume_gap_bound
 from .tree import Tree, pool
 
 _BATCH = 4096  # boxes halved at a time
@@ -205,7 +205,9 @@ class Search:
             delivered=delivered,
             gap=self.gap,
             hole=self.hole if self.gap > 0.0 else None,
-            hypervolume_gap=volume_gap(self.front, self.designs, proven, np.concatenate([needy, tree.corner])),
+            hypervolume_gap=hypervolume_gap_bound(
+                self.front, self.designs, proven, np.concatenate([needy, tree.corner])
+            ),
             span=self.span,
             added=dimensions,
             added_values=self.added.values * self.span + self.ideal,

@@ -20,7 +20,7 @@ from ..problem.problem import Problem
 from ..problem.table_columns import RESIDUAL, STATUS, choice_field, note_field, slack_field
 from ..problem.violation import constraints_of
 from .candidates import FrontCandidates
-from .cheapest_sufficient import least_options
+from .cheapest_sufficient import cheapest_sufficient
 from .evaluation import Evaluator
 from .fingerprint import versions
 from .pieces import ACTIVE
@@ -168,7 +168,7 @@ def _choice_columns(problem: Problem, variants: IntArray, dimensions: Array) -> 
         choice_field(name): np.array([variant.labels[place] for variant in chosen])
         for place, name in enumerate(problem.choices)
     }
-    columns |= least_options(problem, variants, dimensions)
+    columns |= cheapest_sufficient(problem, variants, dimensions)
     for name in problem.choices:
         for head in problem.heads(name):
             columns[note_field(name, head)] = np.array([variant.note(name, head) for variant in chosen])

@@ -15,7 +15,7 @@ from ..problem.violation import FEASIBLE, constraints_of, violated_by
 _SAME = 1e-9  # relative: a dimension that an option sets
 
 
-def least_options(problem: Problem, variants: IntArray, dimensions: Array) -> Columns:
+def cheapest_sufficient(problem: Problem, variants: IntArray, dimensions: Array) -> Columns:
     """Return the least option (n,) of each catalogue that meets all requirements, all else equal, and its row.
 
     variants: (n,), variant of each design. dimensions: (n, 3 + v). An option that changes other numbers of a design,

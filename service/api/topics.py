@@ -114,7 +114,7 @@ def show_topic(request: RequestedDesignDep, topic: Name, topic_request: TopicReq
         bound_question = topic_request.bind(question, request)
         numbers = bound_question.numbers()
         blocks = bound_question.blocks(numbers)
-        topic_answer = TopicAnswer(
+        topic_model = TopicAnswer(
             job=request.stored_front.job.id,
             number=request.number,
             name=topic,
@@ -122,7 +122,7 @@ def show_topic(request: RequestedDesignDep, topic: Name, topic_request: TopicReq
             told=[BlockModel(**vars(block)) for block in plain_blocks(blocks, topic_request.units)],
             blocks=answer_blocks(blocks),
         )
-        return (request.key,), to_json(topic_answer)
+        return (request.key,), to_json(topic_model)
 
     content = request.stored_front.cached(request.key, topic_request.cache_kind(question, "told"), make)
     return Response(content, media_type="application/json")

@@ -68,9 +68,9 @@ def functions_of(tables: Mapping[str, Any]) -> dict[str, str]:
             continue  # runs nothing
         function = part.get("function")
         if not (isinstance(function, str) and FUNCTION.fullmatch(function)):
-            shown_value = f"got {quote(function)}" if "function" in part else "it is missing"
+            value_text = f"got {quote(function)}" if "function" in part else "it is missing"
             raise JobError(
-                f"quantity.{name[:60]}.function: must name a module and a function in it; {shown_value}; {write}"
+                f"quantity.{name[:60]}.function: must name a module and a function in it; {value_text}; {write}"
             )
         functions[name] = function
     return functions

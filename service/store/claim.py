@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from ...optimise.search.checkpoints import Record
 
 _log = logging.getLogger(__name__)
-_TOLD = 1.0  # s after which a waiting write is reported
+_REPORT_AFTER = 1.0  # s after which a waiting write is reported
 _PAUSE = 0.25  # s between two attempts of a write that the database refused
 Rest = Callable[[Connection], None]
 Patience = Callable[[float], bool]
@@ -230,7 +230,7 @@ class Claim:
                         waited, disk_full = time.monotonic() - began, isinstance(error, Full)
                         if not ((patient or self.patient)(waited) if disk_full else self.age <= self.lease):
                             raise
-                        if waited > _TOLD and not reported:
+                        if waited > _REPORT_AFTER and not reported:
                             _log.warning("waits to write: %s", error)
                             reported = True
                         if disk_full:
