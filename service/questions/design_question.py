@@ -53,10 +53,10 @@ class DesignQuestion:
     The return type of `numbers` is the type of the answer (`answers`), from which its JSON Schema follows.
 
     package: package of the folder; its last part is the name. place: position among the questions, in ascending order.
-    shows: description for the help. needs_job: whether it needs masses, loads or tolerances. tells: columns that it
-    shows, which the table of a design therefore omits. inputs: accepted inputs. An optional function `prepare` of that
-    module gives further options for numbers and figure, from the present ones. An optional function `in_units` gives
-    the numbers in a system of units.
+    shows: description for the help. needs_job: whether it needs masses, loads or tolerances. explained_columns: columns
+    that it shows, which the table of a design therefore omits. inputs: accepted inputs. An optional function `prepare`
+    of that module gives further options for numbers and figure, from the present ones. An optional function `in_units`
+    gives the numbers in a system of units.
 
     command: declaration as a separate command. Its numbers also take `words`, the interface's names for the inputs, and
     `swing`, the swing of the crank in its job, or `problem` if it sizes; the design need not rotate fully. `note` or
@@ -67,7 +67,7 @@ class DesignQuestion:
     place: int = 0
     shows: str = ""
     needs_job: bool = True
-    tells: tuple[str, ...] = ()
+    explained_columns: tuple[str, ...] = ()
     inputs: tuple[Input, ...] = ()
     command: QuestionCommand | None = None
 

@@ -35,7 +35,7 @@ QUESTION_COMMANDS = {name: one.command for name, one in DESIGN_QUESTIONS.items()
 """Those that are commands of their own."""
 TOPICS = {name: one for name, one in DESIGN_QUESTIONS.items() if name not in QUESTION_COMMANDS}
 """Those that `analyse --show` adds, in their order."""
-TOPIC_COLUMNS = tuple(key for topic in TOPICS.values() for key in topic.tells)
+TOPIC_COLUMNS = tuple(key for topic in TOPICS.values() for key in topic.explained_columns)
 """Columns that topics show; the table of a design leaves them out."""
 
 

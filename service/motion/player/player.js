@@ -33,7 +33,7 @@ function between(values, degrees) {
 }
 
 /** @type {(value: number | null) => string} */
-function shown(value) {
+function numberText(value) {
   if (value === null) return "\u2013";
   return String(Number(value.toPrecision(4))).replace("-", "\u2212");
 }
@@ -60,7 +60,7 @@ function draw() {
     cursor.setAttribute("x2", String(angle / data.turns));
   }
   for (const output of outputs)
-    output.textContent = shown(between(data.curves[output.dataset.curve ?? ""], angle));
+    output.textContent = numberText(between(data.curves[output.dataset.curve ?? ""], angle));
   at("angle-now").textContent = `${crank.toFixed(0).replace("-", "\u2212")}\u00b0`;
   if (document.activeElement !== slide || playing) slide.value = String(angle);
 }

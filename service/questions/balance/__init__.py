@@ -6,5 +6,10 @@ QUESTION = DesignQuestion(
     __name__,
     40,
     "shaking force and moment",
-    tells=("peak_shaking_force_N", "rms_shaking_force_N", "peak_shaking_moment_Nm", "rms_shaking_moment_Nm"),
+    explained_columns=(
+        "peak_shaking_force_N",
+        "rms_shaking_force_N",
+        "peak_shaking_moment_Nm",
+        "rms_shaking_moment_Nm",
+    ),
 )

@@ -6,5 +6,5 @@ QUESTION = DesignQuestion(
     __name__,
     30,
     "power, RMS torque over time, reflected inertia",
-    tells=("peak_power_W", "mean_power_W", "peak_reflected_inertia_kg_m2"),
+    explained_columns=("peak_power_W", "mean_power_W", "peak_reflected_inertia_kg_m2"),
 )

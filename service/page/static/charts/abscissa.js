@@ -1,6 +1,6 @@
 /** What curves are drawn over: crank angle, time, the way of the slider, or both ways of a swing. */
 
-import { inShown, unitOf } from "../lib/numbers.js";
+import { inDisplayUnit, unitOf } from "../lib/numbers.js";
 import { between, crankAt, turned } from "./cycle.js";
 import { range } from "./scale.js";
 
@@ -107,7 +107,7 @@ function overWay(name) {
   /** @param {Curved} one @param {number} angle */
   const place = (one, angle) => {
     const way = name === "way" ? wayAt(one, angle) : between(one.curves.slider_position_mm, angle);
-    return way === null ? null : inShown(way, "mm");
+    return way === null ? null : inDisplayUnit(way, "mm");
   };
   return {
     title: name === "way" ? "distance from the inner dead centre" : "slider position",
@@ -117,7 +117,9 @@ function overWay(name) {
         series.flatMap((one) =>
           one.turns
             ? one.centres.map((angle) => place(one, angle))
-            : one.curves.slider_position_mm.map((at) => (at === null ? null : inShown(at, "mm"))),
+            : one.curves.slider_position_mm.map((at) =>
+                at === null ? null : inDisplayUnit(at, "mm"),
+              ),
         ),
         0.02,
       ),

@@ -9,7 +9,7 @@ import { crankAt, extremes } from "./cycle.js";
  * @import { Drawn, Shown } from "./curves.js"
  */
 
-export const ROOM = { left: 56, right: 12, top: 25, bottom: 24 };
+export const MARGIN = { left: 56, right: 12, top: 25, bottom: 24 };
 const NAMES = { turn: ["inner", "outer"], swing: ["start", "end"] };
 
 /** @typedef {{ x: Page.Scale, y: Page.Scale, abscissa: Abscissa, height: number }} Pen Scales of a chart, and what it is drawn over. */
@@ -28,12 +28,12 @@ export function axes({ x, y, abscissa, height }, width) {
     y.ticks.map((tick) => [
       svg("line", {
         class: tick === 0 ? "zero" : "grid",
-        x1: ROOM.left,
-        x2: width - ROOM.right,
+        x1: MARGIN.left,
+        x2: width - MARGIN.right,
         y1: y.at(tick),
         y2: y.at(tick),
       }),
-      svg("text", { x: ROOM.left - 5, y: y.at(tick) + 4, "text-anchor": "end" }, y.text(tick)),
+      svg("text", { x: MARGIN.left - 5, y: y.at(tick) + 4, "text-anchor": "end" }, y.text(tick)),
     ]),
     ticks.map(({ at, text: words }) =>
       svg(
@@ -41,7 +41,7 @@ export function axes({ x, y, abscissa, height }, width) {
         {
           x: x.at(at),
           y: height - 6,
-          "text-anchor": x.at(at) > width - 3 * ROOM.right ? "end" : "middle",
+          "text-anchor": x.at(at) > width - 3 * MARGIN.right ? "end" : "middle",
         },
         words,
       ),
@@ -59,12 +59,12 @@ export function centreLines({ x, abscissa, height }, first) {
     return svg(
       "g",
       { class: "centre" },
-      svg("line", { x1: pixel, x2: pixel, y1: ROOM.top, y2: height - ROOM.bottom }),
+      svg("line", { x1: pixel, x2: pixel, y1: MARGIN.top, y2: height - MARGIN.bottom }),
       svg(
         "text",
         {
           x: pixel,
-          y: ROOM.top - 11,
+          y: MARGIN.top - 11,
           "text-anchor": share < 0.06 ? "start" : share > 0.94 ? "end" : "middle",
         },
         NAMES[first.turns ? "turn" : "swing"][n % 2],

@@ -1,9 +1,9 @@
 /** Curves of a cycle: one chart for each, large or small, with a common cursor at the crank angle. */
 
 import { fill, h, svg } from "../lib/dom.js";
-import { inShown, text, unitOf } from "../lib/numbers.js";
+import { inDisplayUnit, text, unitOf } from "../lib/numbers.js";
 import { abscissaOf } from "./abscissa.js";
-import { axes, centreLines, line, peaks, ROOM, summary } from "./curve_parts.js";
+import { axes, centreLines, line, peaks, MARGIN, summary } from "./curve_parts.js";
 import { between } from "./cycle.js";
 import { range, scale } from "./scale.js";
 
@@ -220,7 +220,7 @@ function chart(panel, turned, resize) {
     /** @param {boolean} yes */
     size(yes) {
       height = yes ? HEIGHTS.large : HEIGHTS.small;
-      cursor.style.height = `${height - ROOM.top - ROOM.bottom}px`;
+      cursor.style.height = `${height - MARGIN.top - MARGIN.bottom}px`;
       sizer.textContent = yes ? "−" : "+";
       sizer.title = yes ? "Make it small" : "Make it large";
       sizer.setAttribute("aria-label", `${sizer.title}: ${panel.title}`);
@@ -235,7 +235,9 @@ function chart(panel, turned, resize) {
         .filter(({ curves }) => curves[key])
         .map((one) => ({
           ...one,
-          values: one.curves[key].map((value) => (value === null ? null : inShown(value, unit))),
+          values: one.curves[key].map((value) =>
+            value === null ? null : inDisplayUnit(value, unit),
+          ),
           ends: endsOf(one.exact?.[key], unit),
         }));
       title.textContent = `${words} (${unitOf(unit)})`;
@@ -245,10 +247,10 @@ function chart(panel, turned, resize) {
       );
       const span = abscissa.span(series);
       x = {
-        ...scale(span.low, span.high, ROOM.left, width - ROOM.right, width > 300 ? 6 : 3),
+        ...scale(span.low, span.high, MARGIN.left, width - MARGIN.right, width > 300 ? 6 : 3),
         width,
       };
-      y = scale(low, high, height - ROOM.bottom, ROOM.top, height > 200 ? 6 : 3);
+      y = scale(low, high, height - MARGIN.bottom, MARGIN.top, height > 200 ? 6 : 3);
       picture.setAttribute("viewBox", `0 0 ${width} ${height}`);
       picture.setAttribute("aria-label", summary(words, unit, series, key, abscissa));
       dots = series.map((one) => h("div", { class: "dot", "data-series": one.series }));
@@ -267,7 +269,7 @@ function chart(panel, turned, resize) {
       if (!x) return;
       const scaled = x;
       const places = series.map((one) => scaled.at(abscissa.place(one, angle) ?? NaN));
-      cursor.style.transform = `translate(${(places[0] ?? 0).toFixed(1)}px, ${ROOM.top}px)`;
+      cursor.style.transform = `translate(${(places[0] ?? 0).toFixed(1)}px, ${MARGIN.top}px)`;
       const values = series.map((one) => between(one.values, angle));
       values.forEach(
         (value, n) =>
@@ -289,7 +291,7 @@ function endsOf(exact, unit) {
   if (!exact) return null;
   const { low, high } = exact;
   return {
-    low: { ...low, value: inShown(low.value, unit) },
-    high: { ...high, value: inShown(high.value, unit) },
+    low: { ...low, value: inDisplayUnit(low.value, unit) },
+    high: { ...high, value: inDisplayUnit(high.value, unit) },
   };
 }

@@ -2,7 +2,7 @@
 
 import { nearest } from "./by_pointer.js";
 
-const BESIDE = 8; // pixels up or down from a line within which it is pointed at
+const NEAR = 8; // pixels up or down from a line within which it is pointed at
 
 /**
  * Draw the line of a design. across, heights: of the axes, and of all designs on them in pixels, below 0 where a design has no value.
@@ -37,5 +37,5 @@ export function nearestLine({ across, heights }, mask, x, y) {
     const isDrawn = mask[row] && from >= 0 && to >= 0;
     return isDrawn ? Math.abs(from + share * (to - from) - y) : Infinity;
   };
-  return nearest(mask.length, distance, BESIDE);
+  return nearest(mask.length, distance, NEAR);
 }

@@ -1,6 +1,6 @@
 /** Parallel coordinates on canvas: every design a line, every axis a quantity; dragging on an axis sets limits. */
 
-import { inShown, text } from "../lib/numbers.js";
+import { inDisplayUnit, text } from "../lib/numbers.js";
 import { wordTicks } from "./axes.js";
 import { Density } from "./density.js";
 import { histograms } from "./histogram.js";
@@ -41,7 +41,7 @@ import { shadesOf } from "./shades.js";
  * @property {ReturnType<typeof shadesOf>} shades
  */
 
-const ROOM = 12; // pixels above and below the axes
+const MARGIN = 12; // pixels above and below the axes
 const NEAR = 22; // pixels from an axis within which a drag is about it
 const EDGE = 7; // pixels from an end of a limit within which a drag moves that end
 const FEW = 500; // lines that are drawn one by one; more of them as a density
@@ -72,7 +72,7 @@ export function parallel(chart) {
     const across = axes.map((_, index) => ((index + 0.5) * width) / Math.max(1, axes.length));
     const scales = axes.map(({ key, flipped }) => {
       const { low, high } = data.range(key);
-      const [start, end] = flipped ? [ROOM, height - ROOM] : [height - ROOM, ROOM];
+      const [start, end] = flipped ? [MARGIN, height - MARGIN] : [height - MARGIN, MARGIN];
       return (chart.log(key) ? logScale : scale)(low, high, start, end);
     });
     const heights = new Int16Array(data.count * axes.length).fill(-1);
@@ -179,15 +179,15 @@ export function parallel(chart) {
     stack.clear(OVER);
     const context = contexts[OVER];
     const { ink, axes, across, scales, heights, height } = view;
-    histograms(context, view, chart.limits.mask, ROOM);
+    histograms(context, view, chart.limits.mask, MARGIN);
     Object.assign(context, { font: FONT, textBaseline: "middle" });
     axes.forEach(({ key }, axis) => {
       const x = across[axis];
       const words = chart.data.words(key);
       Object.assign(context, { strokeStyle: ink.text, lineWidth: 1 });
       context.beginPath();
-      context.moveTo(x, ROOM);
-      context.lineTo(x, height - ROOM);
+      context.moveTo(x, MARGIN);
+      context.lineTo(x, height - MARGIN);
       context.stroke();
       drawLimit(context, axis, chart.limits.of.get(key));
       const unit = chart.data.column(key).unit;
@@ -215,7 +215,7 @@ export function parallel(chart) {
       const y = view.scales[axis].at(
         words ? words.indexOf(String(cells[key])) : Number(cells[key] ?? NaN),
       );
-      return Number.isFinite(y) ? Math.min(view.height - ROOM / 2, Math.max(ROOM / 2, y)) : -1;
+      return Number.isFinite(y) ? Math.min(view.height - MARGIN / 2, Math.max(MARGIN / 2, y)) : -1;
     });
   }
 
@@ -265,7 +265,7 @@ export function parallel(chart) {
   /** @param {{ x: number, y: number }} here */
   function axisAt({ x, y }) {
     const axis = view.across.findIndex((at) => Math.abs(at - x) <= NEAR);
-    return { axis, y: Math.min(view.height - ROOM, Math.max(ROOM, y)) };
+    return { axis, y: Math.min(view.height - MARGIN, Math.max(MARGIN, y)) };
   }
 
   /** Take hold of an axis, of an end of its limit, or of all of it; return whether there is an axis. @param {{ x: number, y: number }} here @param {PointerEvent} event */
@@ -291,8 +291,8 @@ export function parallel(chart) {
     let ends = [dragged.from, pending];
     if (dragged.span) {
       const by = Math.min(
-        view.height - ROOM - dragged.span[1],
-        Math.max(ROOM - dragged.span[0], pending - dragged.from),
+        view.height - MARGIN - dragged.span[1],
+        Math.max(MARGIN - dragged.span[0], pending - dragged.from),
       );
       ends = dragged.span.map((end) => end + by);
     }
@@ -382,7 +382,13 @@ function strength(count) {
 
 /** @param {Page.Range} options @param {string} unit @param {boolean} log @returns {[number, string][]} */
 function ticks({ low, high }, unit, log) {
-  const shownScale = (log ? logScale : scale)(inShown(low, unit), inShown(high, unit), 0, 1, 4);
-  const factor = inShown(1, unit);
-  return shownScale.ticks.map((tick) => [tick / factor, shownScale.text(tick)]);
+  const displayScale = (log ? logScale : scale)(
+    inDisplayUnit(low, unit),
+    inDisplayUnit(high, unit),
+    0,
+    1,
+    4,
+  );
+  const factor = inDisplayUnit(1, unit);
+  return displayScale.ticks.map((tick) => [tick / factor, displayScale.text(tick)]);
 }

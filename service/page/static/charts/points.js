@@ -1,7 +1,7 @@
 /** A scatter as SVG, for some hundreds of points: a front that grows, fronts over each other. */
 
 import { svg } from "../lib/dom.js";
-import { inShown } from "../lib/numbers.js";
+import { inDisplayUnit } from "../lib/numbers.js";
 import { headed } from "../front/columns.js";
 import { nearest } from "./by_pointer.js";
 import { range, scale } from "./scale.js";
@@ -30,7 +30,7 @@ export function points(series, x, y, label, held = null, handlers = undefined) {
   const places = drawn.flat();
   /** @param {0 | 1} index @param {Page.Heading} column @param {number} start @param {number} end */
   const axis = (index, column, start, end) => {
-    const values = places.map((point) => inShown(point[index], column.unit));
+    const values = places.map((point) => inDisplayUnit(point[index], column.unit));
     const { low, high } = held?.[index] ?? range(values);
     return scale(low, high, start, end);
   };
@@ -80,8 +80,8 @@ export function points(series, x, y, label, held = null, handlers = undefined) {
         { class: `series-${1 + (index % 6)}` },
         own.map(([a, b]) =>
           SHAPES[index % SHAPES.length](
-            round(across.at(inShown(a, x.unit))),
-            round(up.at(inShown(b, y.unit))),
+            round(across.at(inDisplayUnit(a, x.unit))),
+            round(up.at(inDisplayUnit(b, y.unit))),
           ),
         ),
       ),
@@ -91,7 +91,10 @@ export function points(series, x, y, label, held = null, handlers = undefined) {
     pointed(
       picture,
       series,
-      (point) => [across.at(inShown(point[0], x.unit)), up.at(inShown(point[1], y.unit))],
+      (point) => [
+        across.at(inDisplayUnit(point[0], x.unit)),
+        up.at(inDisplayUnit(point[1], y.unit)),
+      ],
       handlers,
     );
   return picture;

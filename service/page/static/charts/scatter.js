@@ -1,6 +1,6 @@
 /** Two quantities against each other on canvas, coloured by a third. */
 
-import { inShown } from "../lib/numbers.js";
+import { inDisplayUnit } from "../lib/numbers.js";
 import { drawAxes, wordTicks } from "./axes.js";
 import { drawLasso, thinned } from "./lasso.js";
 import { FONT, layers, squares, writeOver } from "./paint.js";
@@ -32,7 +32,7 @@ import { shadesOf } from "./shades.js";
  * @typedef {{ width: number, height: number, x: Page.Axis, y: Page.Axis, across: Float64Array, up: Float64Array, many: boolean, ink: Page.Ink, shades: { of: Uint8Array, colours: string[] } }} View
  */
 
-const ROOM = 0.04; // of a logarithmic axis, beyond the designs
+const MARGIN = 0.04; // of a logarithmic axis, beyond the designs
 const NEAR = 10; // pixels within which a design is pointed at
 const FEW = 1500; // designs that are drawn as discs; more as squares of pixels, which take a tenth of the time
 const [BACK, FRONT, OVER] = [0, 1, 2];
@@ -117,22 +117,22 @@ export function scatter(chart) {
     const reach = words ? { low: -0.5, high: words.length - 0.5 } : range(withOthers(key));
     const bare = chart.log(key) ? range(withOthers(key), 0) : reach;
     const log = chart.log(key) && bare.low > 0; // a design beside the front may be below
-    const spread = log ? (bare.high / bare.low) ** ROOM : 1;
+    const spread = log ? (bare.high / bare.low) ** MARGIN : 1;
     const { low, high } = log ? { low: bare.low / spread, high: bare.high * spread } : reach;
     const makeScale = log ? logScale : scale;
     const drawn = makeScale(low, high, start, end);
-    const factor = inShown(1, column.unit);
-    const shownScale = makeScale(
-      inShown(drawn.low, column.unit),
-      inShown(drawn.high, column.unit),
+    const factor = inDisplayUnit(1, column.unit);
+    const displayScale = makeScale(
+      inDisplayUnit(drawn.low, column.unit),
+      inDisplayUnit(drawn.high, column.unit),
       start,
       end,
       count,
     );
     const ticks = words
       ? wordTicks(words)
-      : shownScale.ticks.map(
-          (tick) => /** @type {[number, string]} */ ([tick / factor, shownScale.text(tick)]),
+      : displayScale.ticks.map(
+          (tick) => /** @type {[number, string]} */ ([tick / factor, displayScale.text(tick)]),
         );
     return { ...drawn, column, ticks, better: data.better(key) };
   }

@@ -4,7 +4,7 @@ import { address } from "../lib/api.js";
 import { h } from "../lib/dom.js";
 import { menu } from "../lib/menu.js";
 import { attempt, say, sayProblem } from "../lib/notices.js";
-import { printWhole } from "../lib/deferred.js";
+import { printComplete } from "../lib/deferred.js";
 import { apiSystem } from "../lib/numbers.js";
 
 const FILES = [
@@ -43,7 +43,7 @@ export function exportMenu(job, number) {
     {
       type: "button",
       title: "The whole view on paper or as PDF, with all its parts",
-      onclick: ({ currentTarget }) => attempt(printWhole, sayProblem, currentTarget),
+      onclick: ({ currentTarget }) => attempt(printComplete, sayProblem, currentTarget),
     },
     "Print",
   );

@@ -1,12 +1,12 @@
 /** A small picture of the front: all designs in two objectives, the design of the view, and where a change takes it. */
 
 import { fill, h, svg } from "../lib/dom.js";
-import { counted, inShown, withUnit } from "../lib/numbers.js";
+import { counted, inDisplayUnit, withUnit } from "../lib/numbers.js";
 import { range, scale } from "../charts/scale.js";
 import { sense } from "./objectives.js";
 
 const [WIDTH, HEIGHT] = [340, 230];
-const ROOM = { left: 52, right: 12, top: 10, bottom: 24 };
+const MARGIN = { left: 52, right: 12, top: 10, bottom: 24 };
 
 /**
  * Put the picture into `place`; returns {show(row, changed)}: the design, and the changed one or null.
@@ -53,7 +53,7 @@ export function frontMap(place, { objectives, front }) {
   /** @param {Api.Row | null} row @param {Api.Objective} objective @returns {number} */
   const value = (row, objective) => {
     const cell = row?.[objective.column];
-    return typeof cell === "number" ? inShown(cell, objective.unit) : NaN;
+    return typeof cell === "number" ? inDisplayUnit(cell, objective.unit) : NaN;
   };
 
   function arrange() {
@@ -70,8 +70,8 @@ export function frontMap(place, { objectives, front }) {
       [...points.map(([, one]) => one), ...drawnRows.map((row) => value(row, up))],
       0.08,
     );
-    x = scale(wide.low, wide.high, ROOM.left, WIDTH - ROOM.right, 5);
-    y = scale(tall.low, tall.high, HEIGHT - ROOM.bottom, ROOM.top, 4);
+    x = scale(wide.low, wide.high, MARGIN.left, WIDTH - MARGIN.right, 5);
+    y = scale(tall.low, tall.high, HEIGHT - MARGIN.bottom, MARGIN.top, 4);
     fill(
       cloud,
       svg(
@@ -80,12 +80,16 @@ export function frontMap(place, { objectives, front }) {
         y.ticks.map((tick) => [
           svg("line", {
             class: "grid",
-            x1: ROOM.left,
-            x2: WIDTH - ROOM.right,
+            x1: MARGIN.left,
+            x2: WIDTH - MARGIN.right,
             y1: y.at(tick),
             y2: y.at(tick),
           }),
-          svg("text", { x: ROOM.left - 5, y: y.at(tick) + 4, "text-anchor": "end" }, y.text(tick)),
+          svg(
+            "text",
+            { x: MARGIN.left - 5, y: y.at(tick) + 4, "text-anchor": "end" },
+            y.text(tick),
+          ),
         ]),
         x.ticks.map((tick) =>
           svg("text", { x: x.at(tick), y: HEIGHT - 6, "text-anchor": "middle" }, x.text(tick)),

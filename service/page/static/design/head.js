@@ -16,7 +16,7 @@ export function focusLastStep(place) {
 /** @typedef {{ job: string, number: number, named: HTMLElement, front: Api.Front, others: { number: number, name: string, series: number | string }[] }} Place */
 
 /** Return what the reader looks at, whichever design it is. */
-function shown() {
+function currentView() {
   const { query } = read();
   return { over: query.get("over"), tab: query.get("tab") };
 }
@@ -37,7 +37,7 @@ export function designHead({ job, number, named, front, others }) {
             title: words,
             onclick: ({ currentTarget }) => {
               stepped = words;
-              currentTarget.href = link(["jobs", job, "designs", to], { beside, ...shown() });
+              currentTarget.href = link(["jobs", job, "designs", to], { beside, ...currentView() });
             },
           },
           sign,

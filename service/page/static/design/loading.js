@@ -59,7 +59,7 @@ export function cycleOf(cycle) {
  * Return the numbers of the designs that stand beside one, as the address gives them: at most two, each once.
  * @param {URLSearchParams} query @param {number} number
  */
-export function besideOf(query, number) {
+export function comparedDesigns(query, number) {
   const numbers = (query.get("beside") ?? "").split(",").map(Number);
   return [...new Set(numbers)]
     .filter((one) => Number.isInteger(one) && one > 0 && one !== number)

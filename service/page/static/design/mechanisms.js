@@ -171,11 +171,11 @@ export function mechanismsPanel(place, strip, turning, turns) {
       picture.turn(turning.angle);
     });
     showForces();
-    tell(turning);
+    updateControls(turning);
   }
 
   /** @param {{ angle: number, playing: boolean }} state */
-  function tell({ angle: at, playing }) {
+  function updateControls({ angle: at, playing }) {
     for (const picture of drawings) picture.turn(at, !playing);
     const now = performance.now();
     if (!machines.length || (playing && now - since < EVERY)) return;
@@ -197,7 +197,7 @@ export function mechanismsPanel(place, strip, turning, turns) {
   let was = null;
   let since = 0;
   turning.listen((state) => {
-    tell(state);
+    updateControls(state);
     if (state.playing === was) return;
     was = state.playing;
     toggle.textContent = was ? "Pause" : "Play";

@@ -188,7 +188,7 @@ function limits(designs, requirements, slow, names) {
         "th",
         { scope: "row" },
         helpLink(column, names),
-        h("span", { class: "quiet asked" }, ` ${wanted(asked)}`),
+        h("span", { class: "quiet asked" }, ` ${requirementText(asked)}`),
       ),
       designs.map(({ row, name }) => [
         cell(row[asked.column], column, { name }),
@@ -211,7 +211,7 @@ function limits(designs, requirements, slow, names) {
 }
 
 /** Return what a requirement asks, in words. @param {Api.Requirement} requirement */
-export function wanted({ lower, upper, unit }) {
+export function requirementText({ lower, upper, unit }) {
   if (lower !== null && lower === upper) return `exactly ${withUnit(lower, unit)}`;
   if (upper === null) return `at least ${withUnit(lower, unit)}`;
   if (lower === null) return `at most ${withUnit(upper, unit)}`;

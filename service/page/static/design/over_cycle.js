@@ -7,8 +7,8 @@ import { h } from "../lib/dom.js";
 import { apiSystem } from "../lib/numbers.js";
 import { panelsOf } from "./panels.js";
 
-const KEPT = "large curves";
-const KEPT_OF_SWING = "large curves of a swing";
+const CURVE_STORAGE = "large curves";
+const SWING_STORAGE = "large curves of a swing";
 const LARGE = ["way_mm", "torque_Nm", "transmission_angle_deg"]; // unless the reader has chosen others
 const LARGE_OF_SWING = ["slider_position_mm", "drive_N", "drive_Nm", "transmission_angle_deg"];
 
@@ -21,7 +21,7 @@ const LARGE_OF_SWING = ["slider_position_mm", "drive_N", "drive_Nm", "transmissi
  * @param {{ path: string, rpm: number, turns: number, over: string, turned: (angle: number, taken: boolean) => void, told: (over: string) => void }} options
  */
 export function overCycle(place, { path, rpm, turns, over, turned, told: choose }) {
-  const storageKey = turns ? KEPT : KEPT_OF_SWING;
+  const storageKey = turns ? CURVE_STORAGE : SWING_STORAGE;
   const choices = (turns ? OVER : OVER_SWING).filter(({ name }) => name !== "time" || rpm !== 0);
   let chosen = choices.some(({ name }) => name === over) ? over : "angle";
   const choice = h(
@@ -57,7 +57,7 @@ export function overCycle(place, { path, rpm, turns, over, turned, told: choose 
     ),
   );
   const charts = curveCharts(place, turned, {
-    large: largeKept(storageKey, turns ? LARGE : LARGE_OF_SWING),
+    large: hasLargeCurves(storageKey, turns ? LARGE : LARGE_OF_SWING),
     onChoice: (keys) => localStorage.setItem(storageKey, keys.join()),
   });
   /** @type {Page.Machine[]} */
@@ -90,7 +90,7 @@ export function overCycle(place, { path, rpm, turns, over, turned, told: choose 
 }
 
 /** @param {string} name @param {string[]} usual */
-function largeKept(name, usual) {
+function hasLargeCurves(name, usual) {
   const storedKeys = (localStorage.getItem(name) ?? "").split(",").filter(Boolean);
   return storedKeys.length ? storedKeys : usual;
 }

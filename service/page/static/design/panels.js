@@ -58,10 +58,10 @@ export function panelsOf(columns, designs) {
   /** @param {Api.Column} column */
   const some = ({ key }) =>
     designs.some(({ curves }) => curves[key]?.some((value) => value !== null && value !== 0));
-  const shownColumns = ORDER.flatMap(
+  const listedColumns = ORDER.flatMap(
     (start) => columns.find(({ key }) => key.startsWith(start)) ?? [],
   ).filter(some);
-  return shownColumns.map(({ key, title, unit }) => ({
+  return listedColumns.map(({ key, title, unit }) => ({
     key,
     title: capital(title),
     unit,

@@ -4,7 +4,7 @@ import { address, get, isAbort, post, statusOf } from "../lib/api.js";
 import { link } from "../lib/address.js";
 import { blocks } from "../lib/blocks.js";
 import { fill, formOf, h, numberField } from "../lib/dom.js";
-import { apiSystem, inShown, readySystem, unitOf } from "../lib/numbers.js";
+import { apiSystem, inDisplayUnit, readySystem, unitOf } from "../lib/numbers.js";
 import { parseQuantity } from "../lib/quantity_text.js";
 import { sentenceOf } from "../lib/refusals.js";
 
@@ -140,6 +140,7 @@ function fieldOf({ key, unit, usual, example, words, several }, value) {
     : numberField({
         name: key,
         placeholder: usual || example,
-        value: value === null ? "" : String(Number(inShown(Number(value), unit).toPrecision(8))),
+        value:
+          value === null ? "" : String(Number(inDisplayUnit(Number(value), unit).toPrecision(8))),
       });
 }

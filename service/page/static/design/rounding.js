@@ -1,8 +1,8 @@
 /** Round numbers for a design: a step for each number, misses that are allowed, the best rounded neighbours and what each of them costs. */
 
-import { isAbort, postFollowed } from "../lib/api.js";
+import { isAbort, postWithProgress } from "../lib/api.js";
 import { fill, formOf, h, markInvalid, numberField } from "../lib/dom.js";
-import { inShownUnits, plainUnitOf, system, text, unitOf, withUnit } from "../lib/numbers.js";
+import { inDisplayUnits, plainUnitOf, system, text, unitOf, withUnit } from "../lib/numbers.js";
 import { parseNumber } from "../lib/number_text.js";
 import { kindOf, measureOf } from "../lib/units.js";
 import { capital } from "../lib/words.js";
@@ -120,12 +120,12 @@ export function rounding(
       progress.textContent = `${capital(String(stage))}: ${text(Number(step), "", 7)} of ${text(Number(count), "", 7)}`;
     };
     try {
-      const event = await postFollowed(
+      const event = await postWithProgress(
         `jobs/${job}/designs/${number}/rounded`,
         { to, allow, count: COUNT },
         { signal: control.signal, told },
       );
-      tell(/** @type {Api.Rounded} */ (/** @type {unknown} */ (event.rounded)));
+      showRounded(/** @type {Api.Rounded} */ (/** @type {unknown} */ (event.rounded)));
     } catch (error) {
       if (control !== search || signal.aborted) return;
       fill(answer, isAbort(error) && h("p", { class: "quiet" }, "Stopped."));
@@ -136,7 +136,7 @@ export function rounding(
   }
 
   /** @param {Api.Rounded} found */
-  function tell(found) {
+  function showRounded(found) {
     const heads = [
       h("span", { class: "hidden" }, "Apply"),
       ...numbers.map(({ title }) => capital(title)),
@@ -167,7 +167,7 @@ export function rounding(
     );
     fill(
       answer,
-      h("p", { class: found.met ? null : "bad" }, `${inShownUnits(capital(found.message))}.`),
+      h("p", { class: found.met ? null : "bad" }, `${inDisplayUnits(capital(found.message))}.`),
       found.designs.length > 0 &&
         scrolledTable(
           "Round numbers and what they cost",

@@ -3,10 +3,10 @@
 import { isAbort, post } from "../lib/api.js";
 import { fill, h, markInvalid, numberField } from "../lib/dom.js";
 import { parseQuantity } from "../lib/quantity_text.js";
-import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
+import { inDisplayUnit, text, unitOf, withUnit } from "../lib/numbers.js";
 import { link } from "../lib/address.js";
 import { frontMap } from "./front_map.js";
-import { difference, wanted } from "./numbers.js";
+import { difference, requirementText } from "./numbers.js";
 import { lengthsOf } from "./loading.js";
 import { rankOf } from "./rank.js";
 import { sentenceOf } from "../lib/refusals.js";
@@ -152,7 +152,7 @@ export function whatIf(
     if (!moved()) {
       answer = null;
       changed(null);
-      tell();
+      showDesign();
       return;
     }
     busy = true;
@@ -164,12 +164,12 @@ export function whatIf(
       );
       if (moved() && !wrong()) {
         answer = reply;
-        if (holding.checked && !keepsLengths && !again) follow(reply.design);
+        if (holding.checked && !keepsLengths && !again) adoptLengths(reply.design);
         const others = Object.entries(values).map(([key, value]) => `${key}=${value}`);
         changed(reply, {
           lengths: { ...lengthsOf(reply.design), ...(others.length ? { value: others } : {}) },
         });
-        tell();
+        showDesign();
       }
     } catch (error) {
       if (isAbort(error)) return;
@@ -193,7 +193,7 @@ export function whatIf(
   }
 
   /** Let the other lengths stand where they followed to. @param {Api.Row} design */
-  function follow(design) {
+  function adoptLengths(design) {
     const to = lengthsOf(design);
     for (const row of rows) {
       if (row.key === `${last}_mm`) continue;
@@ -202,7 +202,7 @@ export function whatIf(
     }
   }
 
-  function tell() {
+  function showDesign() {
     map.show(base, answer?.design ?? null);
     if (!answer) {
       fill(
@@ -226,7 +226,7 @@ export function whatIf(
   }
 
   showLengths();
-  tell();
+  showDesign();
   if (moved()) ask();
   const lengthsNow = () => ({ ...(answer ? lengthsOf(answer.design) : lengths) });
   return {
@@ -307,7 +307,7 @@ function lengthRow(key, title, [low, high], set) {
   /** @param {number} value */
   function show(value) {
     wrong = understood.textContent = "";
-    number.value = String(Number(inShown(value, "mm").toPrecision(6)));
+    number.value = String(Number(inDisplayUnit(value, "mm").toPrecision(6)));
     markInvalid(number, false);
     slide(value);
   }
@@ -411,6 +411,6 @@ function missed(column, design, requirements) {
     .filter((one) => one.column === column)
     .map(
       (one) =>
-        `Misses a requirement: ${one.title} ${design[column] === null ? "has no value" : withUnit(design[column], one.unit)}; must be ${wanted(one)}.`,
+        `Misses a requirement: ${one.title} ${design[column] === null ? "has no value" : withUnit(design[column], one.unit)}; must be ${requirementText(one)}.`,
     );
 }

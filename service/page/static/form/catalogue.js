@@ -5,7 +5,7 @@ import { plain } from "./controls.js";
 import { field } from "./field.js";
 import { at, idOf, isTable } from "./path.js";
 
-const SHOWN = 6; // names of options
+const MOST_NAMES = 6; // names of options
 const EXAMPLE = "name,peak_torque max (N m),price (EUR),maker\nGM 40,40,310,A\nGM 90,90,450,B";
 const WHY =
   "One row per option. The first line names the columns: name, then limits such as “peak_torque max (N m)”, numbers of the job such as “mechanism.slider.mass (kg)”, and values to store with each design, such as “price (EUR)” or a maker. Stored numbers may be objectives or requirements. An empty cell sets no limit. Columns that begin with # are skipped.";
@@ -57,12 +57,12 @@ function optionsOf(one) {
 function row(form, one, place, all) {
   const path = ["choice", place];
   const names = optionsOf(one).map((option) => String(at(option, ["name"])));
-  const more = names.length > SHOWN ? ` and ${names.length - SHOWN} more` : "";
+  const more = names.length > MOST_NAMES ? ` and ${names.length - MOST_NAMES} more` : "";
   const has = h("p", { class: "quiet wide", role: "status" });
   /** @param {unknown} choice */
   const say = (choice) =>
     has.replaceChildren(
-      `${counted(choice)}${names.length ? `: ${names.slice(0, SHOWN).join(", ")}${more}` : ""}.`,
+      `${counted(choice)}${names.length ? `: ${names.slice(0, MOST_NAMES).join(", ")}${more}` : ""}.`,
     );
   say(one);
   const text = h("textarea", {

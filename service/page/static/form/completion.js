@@ -4,7 +4,7 @@ import { fill, h } from "../lib/dom.js";
 
 const MOST = 12; // names in sight
 const WORD = /[A-Za-z_][\w.]*$/;
-const BEHIND_NUMBER = /[\d.]\s*$/; // what stands there is a unit
+const AFTER_NUMBER = /[\d.]\s*$/; // what stands there is a unit
 
 /**
  * Return an input with the names that it may have below it, as {word, names}. number: it is one for numbers, in which formulas are rare.
@@ -133,7 +133,7 @@ function wordAt(input) {
   const before = input.value.slice(0, input.selectionStart ?? input.value.length);
   const word = WORD.exec(before)?.[0] ?? "";
   const rest = before.slice(0, before.length - word.length);
-  return BEHIND_NUMBER.test(rest) ? null : word;
+  return AFTER_NUMBER.test(rest) ? null : word;
 }
 
 /** Return the names that begin with a word, then those that have it elsewhere, in name or title. @param {string} word @param {Form.Name[]} names */

@@ -3,7 +3,7 @@
 import { isConstant } from "../lib/constant.js";
 import { fill, h } from "../lib/dom.js";
 import { capital, inWords } from "../lib/words.js";
-import { inShownUnits, limitText, unitOf, withUnit } from "../lib/numbers.js";
+import { inDisplayUnits, limitText, unitOf, withUnit } from "../lib/numbers.js";
 
 /** Fill a place with what a preview says. @param {HTMLElement} place @param {Api.Preview} preview */
 export function showFacts(place, { allowed, understood, swing }) {
@@ -101,7 +101,7 @@ function understanding(understood) {
       h(
         "ul",
         {},
-        lines.map((line) => h("li", {}, inShownUnits(line))),
+        lines.map((line) => h("li", {}, inDisplayUnits(line))),
       ),
     ]);
 }

@@ -5,7 +5,7 @@ import { bounds } from "./bounds.js";
 import { completing } from "./completion.js";
 import { plain } from "./controls.js";
 import { field } from "./field.js";
-import { wanted } from "./objective.js";
+import { objectiveField } from "./objective.js";
 import { at, idOf, isTable, put, renamed, written } from "./path.js";
 import { say } from "./typed_field.js";
 import { join, kinds, usual } from "../lib/units.js";
@@ -37,7 +37,7 @@ export function formulaRequirements(form) {
 /** Return the rows of the formulas that are objectives, and a button for another one. @param {Form.Whole} form */
 export function formulaObjectives(form) {
   return rows(form, "objectives", "minimise", (spot, kind, label, again) => {
-    const controls = wanted(form, spot, { title: label, kind, again });
+    const controls = objectiveField(form, spot, { title: label, kind, again });
     const input = controls.find((one) => one instanceof HTMLInputElement);
     return { controls, parts: input ? [{ key: "target", input }] : [] };
   });

@@ -7,7 +7,7 @@ import { fits } from "./motion.js";
 import { idOf, isTable } from "./path.js";
 import { points } from "./points.js";
 import { describe, words } from "./schema.js";
-import { inShownUnits } from "../lib/numbers.js";
+import { inDisplayUnits } from "../lib/numbers.js";
 import { capital } from "../lib/words.js";
 
 /**
@@ -96,7 +96,7 @@ function one(form, load, place, all) {
     const line = chosen.querySelector(".understood");
     if (!(line instanceof HTMLElement)) return;
     line.hidden = loads.length !== all.length;
-    line.textContent = line.hidden ? "" : capital(inShownUnits(loads[place]));
+    line.textContent = line.hidden ? "" : capital(inDisplayUnits(loads[place]));
   }
   say();
   const fields = [

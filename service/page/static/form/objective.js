@@ -36,7 +36,7 @@ export function objective(form, quantity) {
   const controls =
     jobValue === undefined
       ? []
-      : wanted(
+      : objectiveField(
           form,
           { path, id: path },
           { title: quantity.title, kind, again: () => form.redraw() },
@@ -56,7 +56,7 @@ export function objective(form, quantity) {
  * Return the controls of what is wanted of an objective: its direction, or a value to come near to. again: draws them anew.
  * @param {Form.Whole} form @param {Form.Spot} spot @param {{ title: string, kind: string | null, again: () => void }} of
  */
-export function wanted(form, spot, { title, kind, again }) {
+export function objectiveField(form, spot, { title, kind, again }) {
   const jobValue = form.at(spot.path);
   const sense =
     typeof jobValue === "object" && jobValue !== null

@@ -15,11 +15,11 @@ import { words } from "./schema.js";
 import { speedProfile } from "./speed.js";
 import { solving } from "./solving.js";
 import { strength, strengthGiven } from "./strength.js";
-import { targetMotion, wantedGiven } from "./target_motion.js";
+import { targetMotion, targetMotionText } from "./target_motion.js";
 import { varying, varyingNames } from "./varying.js";
 
 const LINE = 90; // characters of what a group has
-const SHOWN = new Set([
+const FORM_TABLES = new Set([
   "name",
   "description",
   "mechanism",
@@ -76,7 +76,7 @@ export function sections(form) {
         byschema(form, ["mechanism", "branch"]),
       ),
       turning(form, "target_motion", () =>
-        more(["Desired motion of the slider", wantedGiven(form)], targetMotion(form)),
+        more(["Desired motion of the slider", targetMotionText(form)], targetMotion(form)),
       ),
     ),
     section(
@@ -219,7 +219,7 @@ function offered(form, part) {
 }
 
 /** @param {Form.Whole} form */
-function asked(form) {
+function requirementOptions(form) {
   return ["motion", "proportions", "requirement"].flatMap((part) => offered(form, part));
 }
 
@@ -233,7 +233,7 @@ function requirements(form, names) {
 
 /** Return the quantities besides the usual ones that the job has requirements on. @param {Form.Whole} form */
 function others(form) {
-  const usual = new Set(asked(form));
+  const usual = new Set(requirementOptions(form));
   return Object.keys(form.at(["constraints"]) ?? {}).filter(
     (name) => !usual.has(name) && form.quantities.has(name),
   );
@@ -241,7 +241,10 @@ function others(form) {
 
 /** @param {Form.Whole} form */
 function adding(form) {
-  const taken = new Set([...asked(form), ...Object.keys(form.at(["constraints"]) ?? {})]);
+  const taken = new Set([
+    ...requirementOptions(form),
+    ...Object.keys(form.at(["constraints"]) ?? {}),
+  ]);
   const left = form.judging().filter((one) => !taken.has(one.name) && fits(form, one));
   const select = h(
     "select",
@@ -365,7 +368,7 @@ function robust(form) {
 
 /** Return which parts of the job have no fields. @param {Form.Whole} form */
 function kept(form) {
-  const parts = Object.keys(form.job).filter((key) => !SHOWN.has(key));
+  const parts = Object.keys(form.job).filter((key) => !FORM_TABLES.has(key));
   const functions = Object.entries(form.at(["quantity"]) ?? {})
     .filter(([, part]) => !(isTable(part) && "formula" in part))
     .map(([name]) => `the function ${name}`);

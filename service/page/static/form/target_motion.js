@@ -9,7 +9,7 @@ const PATH = ["target_motion"];
 const EVERY = 45; // deg between the points that are begun with
 
 /** Return the points of the desired motion in a line; "" without one. @param {Form.Whole} form */
-export function wantedGiven(form) {
+export function targetMotionText(form) {
   const angles = form.at([...PATH, "crank_angles"]);
   return Array.isArray(angles)
     ? `${angles.length} points`

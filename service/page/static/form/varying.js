@@ -6,14 +6,14 @@ import { range } from "./range.js";
 import { describe, words } from "./schema.js";
 
 /** Numbers that have their values beside them. */
-const BESIDE = /^(sections\.pins\.\w+|mechanism\.(crank|rod)\.(width|depth))$/;
+const SECTION_SIZE = /^(sections\.pins\.\w+|mechanism\.(crank|rod)\.(width|depth))$/;
 const VALUES = ["choices", "min", "max", "step", "series", "values"]; // keys of a table that says values
 
 /** Return the fields of the numbers that vary besides the dimensions, and a choice of another one. @param {Form.Whole} form */
 export function varying(form) {
   const taken = new Set(leaves(form).map(({ name }) => name));
-  const all = leaves(form).filter(({ name }) => !beside(form, name));
-  const left = numbers(form).filter(({ name }) => !taken.has(name) && !beside(form, name));
+  const all = leaves(form).filter(({ name }) => !hasSizeField(form, name));
+  const left = numbers(form).filter(({ name }) => !taken.has(name) && !hasSizeField(form, name));
   const select = h(
     "select",
     {
@@ -58,9 +58,9 @@ export function varying(form) {
 }
 
 /** Whether a number has the values that it may take beside it, elsewhere in the form. @param {Form.Whole} form @param {string} name */
-function beside(form, name) {
+function hasSizeField(form, name) {
   return (
-    BESIDE.test(name) &&
+    SECTION_SIZE.test(name) &&
     at(form.job, name.split(".")) !== undefined &&
     form.at(["variables", name]) === undefined
   );

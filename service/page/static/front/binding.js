@@ -4,7 +4,7 @@ import { get, post } from "../lib/api.js";
 import { go } from "../lib/address.js";
 import { fill, h, markInvalid, numberField } from "../lib/dom.js";
 import { attempt } from "../lib/notices.js";
-import { counted, inShown, unitOf, withUnit } from "../lib/numbers.js";
+import { counted, inDisplayUnit, unitOf, withUnit } from "../lib/numbers.js";
 import { parseQuantity } from "../lib/quantity_text.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { capital } from "../lib/words.js";
@@ -101,7 +101,7 @@ export function bindingPanel(explorer) {
       );
     const input = numberField({
       id,
-      value: String(Number(inShown(wider, unit).toPrecision(6))),
+      value: String(Number(inDisplayUnit(wider, unit).toPrecision(6))),
       "aria-describedby": `${id}-unit`,
     });
     const button = h("button", {}, "Widen and run again");

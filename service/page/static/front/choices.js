@@ -166,7 +166,7 @@ export function toggled(selected, number) {
 }
 
 /** Return the columns that are drawn, shown or limited. @type {(chosen: Chosen, limits: Limits) => string[]} */
-export function wanted({ axes, x, y, colour, columns, sort }, { of, lasso }) {
+export function neededColumns({ axes, x, y, colour, columns, sort }, { of, lasso }) {
   const keys = [
     ...LENGTHS,
     ...axes.map(({ key }) => key),

@@ -83,7 +83,7 @@ export function correlations(explorer) {
   let later;
   explorer.signal.addEventListener("abort", () => clearTimeout(later));
 
-  function tell() {
+  function showCorrelation() {
     const { x, y } = chosen;
     const apt = [x, y].every((key) => data.has(key) && !data.words(key)) && x !== y;
     sentence.hidden = !apt;
@@ -141,7 +141,7 @@ export function correlations(explorer) {
 
   function draw() {
     clearTimeout(later);
-    later = setTimeout(tell, WAIT);
+    later = setTimeout(showCorrelation, WAIT);
   }
   return { place, draw };
 }

@@ -28,7 +28,7 @@ import { designTable } from "./table.js";
 import { wishingPanel } from "./wishing.js";
 
 const OFTEN = 120; // ms between two tables while limits are dragged: rows are what takes longest to draw
-const SETTLED = 300; // ms after the last change until the address is written: browsers refuse too many a second
+const PAUSE = 300; // ms after the last change until the address is written: browsers refuse too many a second
 const ORDER = ["marks", "table", "chosen", "all"];
 
 /**
@@ -208,11 +208,11 @@ export class Explorer {
     });
     this.draw("all");
     const { origin } = job;
-    if (origin) attempt(() => this.lookBehind(origin));
+    if (origin) attempt(() => this.drawPreviousFront(origin));
   }
 
   /** Show the front of the run before, once it is here. @param {number} run */
-  async lookBehind(run) {
+  async drawPreviousFront(run) {
     this.before = await previousFront(run, this.signal);
     await this.before?.need([this.chosen.x, this.chosen.y]);
     this.update("all");
@@ -264,7 +264,7 @@ export class Explorer {
       this.waiting = null;
       if (waiting) this.draw(waiting);
       clearTimeout(this.settling);
-      this.settling = setTimeout(() => this.keepAddress(), SETTLED);
+      this.settling = setTimeout(() => this.keepAddress(), PAUSE);
     });
   }
 

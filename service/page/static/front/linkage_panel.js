@@ -35,8 +35,8 @@ export function linkagePanel(explorer) {
   /** @type {ReturnType<typeof playback> | null} */
   let motion = null; // once the service said which way the crank turns
   /** @type {number | null} */
-  let shownRow = null;
-  let isAsked = false;
+  let drawnRow = null;
+  let isRequested = false;
   const swings = !front.columns.some(({ key }) => key === "stroke_mm"); // every design that turns has one
   /** @type {Map<number, Promise<Api.Curves | null>>} */
   const cycles = new Map(); // of designs that swing, by their rows
@@ -57,7 +57,7 @@ export function linkagePanel(explorer) {
 
   /** Ask once for the speed of the crank; without an answer it turns counter-clockwise. */
   async function ask() {
-    isAsked = true;
+    isRequested = true;
     const rpm = await get(
       `jobs/${explorer.job.id}/designs/1/requirements`,
       {},
@@ -76,7 +76,7 @@ export function linkagePanel(explorer) {
   /** It moves while somebody points at a design, or at the panel. */
   function move() {
     const wanted = !still && (within || explorer.pointed !== null);
-    if (wanted && !isAsked) ask();
+    if (wanted && !isRequested) ask();
     if (!motion || wanted === motion.playing) return;
     if (wanted) motion.play();
     else motion.pause();
@@ -93,7 +93,7 @@ export function linkagePanel(explorer) {
       );
     cycles.set(row, cycle);
     const curves = await cycle;
-    if (!curves || shownRow !== row || explorer.signal.aborted) return;
+    if (!curves || drawnRow !== row || explorer.signal.aborted) return;
     drawn.show(explorer.linkages.of(row), curves, {
       frame: explorer.linkages.frame(),
       direction: 0,
@@ -107,9 +107,9 @@ export function linkagePanel(explorer) {
   /** @param {string} what */
   function draw(what) {
     const row =
-      explorer.pointed ?? shownRow ?? (explorer.chosen.selected[0] ?? (front.knee ?? 0) + 1) - 1;
-    if (row !== shownRow || what === "all") {
-      shownRow = row;
+      explorer.pointed ?? drawnRow ?? (explorer.chosen.selected[0] ?? (front.knee ?? 0) + 1) - 1;
+    if (row !== drawnRow || what === "all") {
+      drawnRow = row;
       const linkage = explorer.linkages.of(row);
       const names = namesOf(explorer).get(row) ?? [];
       fill(

@@ -3,7 +3,7 @@
 import { get, isAbort, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { sayProblem } from "../lib/notices.js";
-import { apiSystem, inShownUnits, withUnit } from "../lib/numbers.js";
+import { apiSystem, inDisplayUnits, withUnit } from "../lib/numbers.js";
 import { inWords } from "../lib/words.js";
 import { smallLinkage } from "../mechanism/small_linkage.js";
 import { namesOf } from "./chart_marks.js";
@@ -48,7 +48,7 @@ export function marksPanel(explorer) {
   );
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
-  let askedFor = "";
+  let pendingQuestion = "";
   explorer.signal.addEventListener("abort", () => clearTimeout(timer));
 
   /** @param {Api.Objective} options @param {number} index */
@@ -79,7 +79,7 @@ export function marksPanel(explorer) {
     clearTimeout(timer);
     const { weights } = chosen;
     if (!weights || weights.every((weight) => weight === 0)) {
-      askedFor = "";
+      pendingQuestion = "";
       if (explorer.picked !== null) {
         explorer.picked = null;
         explorer.update("marks");
@@ -92,16 +92,16 @@ export function marksPanel(explorer) {
       .join(", ");
     const where = explorer.limits.conditions();
     const question = JSON.stringify([topsis, where]);
-    if (question === askedFor) return;
+    if (question === pendingQuestion) return;
     timer = setTimeout(async () => {
-      askedFor = question;
+      pendingQuestion = question;
       try {
         const { number } = await get(
           `jobs/${explorer.job.id}/pick`,
           { topsis, where },
           explorer.signal,
         );
-        if (askedFor !== question) return;
+        if (pendingQuestion !== question) return;
         explorer.picked = number - 1;
         fill(
           picked,
@@ -110,7 +110,7 @@ export function marksPanel(explorer) {
           ".",
         );
       } catch (problem) {
-        if (askedFor !== question || isAbort(problem)) return;
+        if (pendingQuestion !== question || isAbort(problem)) return;
         explorer.picked = null;
         if (statusOf(problem) === 404) picked.textContent = "No design is within all limits.";
         else sayProblem(problem);
@@ -177,7 +177,7 @@ export function marksPanel(explorer) {
     fill(
       beyondAllowed,
       front.violations.map((sentence) =>
-        h("p", { class: "error" }, `Beyond the allowable value: ${inShownUnits(sentence)}.`),
+        h("p", { class: "error" }, `Beyond the allowable value: ${inDisplayUnits(sentence)}.`),
       ),
     );
     drawCosts().catch((problem) => !isAbort(problem) && sayProblem(problem));

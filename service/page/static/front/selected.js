@@ -9,12 +9,12 @@ import { fill, h } from "../lib/dom.js";
 export function selectedBar(explorer) {
   const place = h("div", { class: "row selected-designs" });
   /** @type {string | null} */
-  let shownNumbers = null;
+  let selectedNumbers = null;
 
   function draw() {
     const { selected } = explorer.chosen;
-    if (shownNumbers === selected.join()) return;
-    shownNumbers = selected.join();
+    if (selectedNumbers === selected.join()) return;
+    selectedNumbers = selected.join();
     const [first, ...others] = selected;
     fill(
       place,

@@ -1,7 +1,7 @@
 /** The chosen designs as a table: sorted, page by page; the way to them by keyboard. */
 
 import { fill, first as firstOf, focused, h } from "../lib/dom.js";
-import { grouped, inShown, text } from "../lib/numbers.js";
+import { grouped, inDisplayUnit, text } from "../lib/numbers.js";
 import { headed, helpLink } from "./columns.js";
 import { namesOf } from "./chart_marks.js";
 
@@ -221,10 +221,13 @@ export function designTable(explorer) {
  * @param {Api.Row[string]} value @param {string} unit @param {Page.Range} range
  */
 function aligned(value, unit, { low, high }) {
-  const greatest = Math.max(Math.abs(inShown(low, unit)), Math.abs(inShown(high, unit)));
+  const greatest = Math.max(
+    Math.abs(inDisplayUnit(low, unit)),
+    Math.abs(inDisplayUnit(high, unit)),
+  );
   if (typeof value !== "number" || !(greatest >= 1e-2 && greatest < 1e6))
     return text(value, unit, 5);
   const places = Math.max(0, 4 - Math.floor(Math.log10(greatest)));
-  const shown = inShown(value, unit).toFixed(places);
+  const shown = inDisplayUnit(value, unit).toFixed(places);
   return Number(shown) === 0 && value !== 0 ? text(value, unit, 3) : shown.replace("-", "−");
 }

@@ -43,7 +43,7 @@ export function wishQuery(wishes) {
  * Return wishes as the service takes them.
  * @param {Wishes} wishes @param {readonly { quantity: string, unit: string }[]} objectives
  */
-export function asked({ of, design }, objectives) {
+export function wishRequest({ of, design }, objectives) {
   const units = new Map(objectives.map(({ quantity, unit }) => [quantity, unit]));
   const texts = [...of].map(([quantity, { kind, value }]) => {
     const number = `${value} ${units.get(quantity) ?? ""}`.trim();

@@ -5,11 +5,11 @@ import { get, isAbort, post } from "../lib/api.js";
 import { fill, first, formOf, h, markInvalid, numberField } from "../lib/dom.js";
 import { attempt } from "../lib/notices.js";
 import { parseQuantity } from "../lib/quantity_text.js";
-import { inShown, text, unitOf, withUnit } from "../lib/numbers.js";
+import { inDisplayUnit, text, unitOf, withUnit } from "../lib/numbers.js";
 import { bookmarkForm } from "../design/bookmark_form.js";
 import { lengthsOf } from "../design/loading.js";
 import { LENGTHS } from "./linkages.js";
-import { asked, nearest, placed, relative, wishesOf, wrongIn } from "./wishes.js";
+import { wishRequest, nearest, placed, relative, wishesOf, wrongIn } from "./wishes.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { capital } from "../lib/words.js";
 import { headedRow, headsOf, numberCell, scrolledTable } from "../lib/table.js";
@@ -25,7 +25,7 @@ const KINDS = [
   ["keep", "keeps"],
   ["limit", "may worsen to"],
 ];
-const APART = 1e-9; // of a number: less is rounding
+const SAME = 1e-9; // of a number: less is rounding
 
 /** Return {place, cells()} for wishes on the front of an explorer. @param {Explorer} explorer */
 export function wishingPanel(explorer) {
@@ -138,7 +138,7 @@ export function wishingPanel(explorer) {
         value.value =
           wish?.value === undefined
             ? ""
-            : String(Number(inShown(wish.value, unit).toPrecision(10))).replace("-", "−");
+            : String(Number(inDisplayUnit(wish.value, unit).toPrecision(10))).replace("-", "−");
         shape();
       },
     };
@@ -167,12 +167,12 @@ export function wishingPanel(explorer) {
   }
 
   function clean() {
-    tell([]);
+    showProblems([]);
     from.classList.toggle("wanted", relative(said()));
   }
 
   /** Say at each field what is wrong with it. @param {Problem[]} problems */
-  function tell(problems) {
+  function showProblems(problems) {
     /** @param {string} id */
     const textsAt = (id) =>
       problems
@@ -190,7 +190,7 @@ export function wishingPanel(explorer) {
   function submit() {
     const wishes = said();
     const problems = wrongIn(wishes, objectives, data.count);
-    if (problems.length) tell(problems);
+    if (problems.length) showProblems(problems);
     else take(wishes);
   }
 
@@ -213,7 +213,7 @@ export function wishingPanel(explorer) {
     }
     solve.setAttribute("aria-busy", "true"); // not disabled: whoever has changed a wish meanwhile asks again
     try {
-      const reply = await post(`jobs/${job.id}/wish`, asked(wish, objectives), {
+      const reply = await post(`jobs/${job.id}/wish`, wishRequest(wish, objectives), {
         signal: explorer.signal,
       });
       if (request !== turn) return;
@@ -225,7 +225,7 @@ export function wishingPanel(explorer) {
       if (request !== turn || isAbort(problem)) return;
       answered = null;
       show();
-      tell([
+      showProblems([
         {
           ...placed(problem instanceof Error ? problem.message : "", objectives),
           text: `${sentenceOf(problem)}.`,
@@ -253,7 +253,7 @@ export function wishingPanel(explorer) {
     const alike = further.every(
       (key) =>
         wished[key] === other[key] ||
-        Math.abs(Number(wished[key]) - Number(other[key])) <= APART * Math.abs(Number(other[key])),
+        Math.abs(Number(wished[key]) - Number(other[key])) <= SAME * Math.abs(Number(other[key])),
     );
     way = alike
       ? link(
@@ -356,11 +356,11 @@ export function wishingPanel(explorer) {
 
   /** @param {Api.Wished} options @param {Api.Row} wished */
   function numbers({ columns }, wished) {
-    const shownColumns = columns.filter(({ key }) => !key.startsWith("slack_"));
+    const listedColumns = columns.filter(({ key }) => !key.startsWith("slack_"));
     return scrolledTable(
       "All numbers of the wished design",
       headsOf(["Quantity", "wished design", `design ${near}`], (n) => n),
-      shownColumns.map(({ key, title, unit }) =>
+      listedColumns.map(({ key, title, unit }) =>
         headedRow(
           title,
           numberCell(key, wished[key], withUnit(wished[key], unit)),
@@ -428,5 +428,5 @@ export function wishingPanel(explorer) {
 /** Return by how much a value is from another, with its sign; of rounding alone, that they are equal. @param {number} value @param {number} other @param {string} unit */
 function signed(value, other, unit) {
   const by = value - other;
-  return Math.abs(by) <= APART * Math.abs(other) ? "=" : `${by > 0 ? "+" : ""}${text(by, unit, 3)}`;
+  return Math.abs(by) <= SAME * Math.abs(other) ? "=" : `${by > 0 ? "+" : ""}${text(by, unit, 3)}`;
 }

@@ -36,7 +36,7 @@ const FUNCTIONS = new Set([
 const SIGNS = new Map(Object.entries({ "+-": "±", "-": "−", deg: "°" }));
 const TOKEN = /\s*(\+-|\d+(?:\.\d+)?|[A-Za-z]+(?:_[A-Za-z]+)?(?:'s\b|'+)?|[^\sA-Za-z\d])/y;
 
-const OWN = /^(?:cos\()?([A-Z]|mu_\w+)\)? = /; // the symbol that a quantity's formula says
+const SYMBOL_ON_LEFT = /^(?:cos\()?([A-Z]|mu_\w+)\)? = /; // the symbol that a quantity's formula says
 /** @type {Record<string, [string, string | null]>} */
 const SYMBOLS = {
   r: ["crank", "crank"],
@@ -79,7 +79,7 @@ export function symbolsOf(text, quantities) {
   /** @type {typeof SYMBOLS} */
   const symbols = { ...SYMBOLS };
   for (const { name, title, formula: own } of quantities) {
-    const symbol = OWN.exec(own)?.[1];
+    const symbol = SYMBOL_ON_LEFT.exec(own)?.[1];
     if (symbol) symbols[symbol] ??= [title, name];
   }
   const names = [
@@ -216,12 +216,12 @@ function drawn({ tag, text, parts = [] }) {
   return mathml(
     tag,
     {},
-    text ?? parts.map((part, place) => drawn(apart(part, parts[place - 1], parts[place + 1]))),
+    text ?? parts.map((part, place) => drawn(spacedPart(part, parts[place - 1], parts[place + 1]))),
   );
 }
 
 /** Return a part with the room that words need beside symbols. @param {Part} part @param {Part | undefined} before @param {Part | undefined} after */
-function apart(part, before, after) {
+function spacedPart(part, before, after) {
   if (!part.prose) return part;
   const [left, right] = [
     before && before.text !== "(" && before.text !== "|",

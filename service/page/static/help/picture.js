@@ -49,8 +49,8 @@ const PICTURES = {
     marks: () => [
       ghost(OUT),
       ghost(IN),
-      thin(O, OUT.pin),
-      thin(O, IN.pin),
+      dashedLine(O, OUT.pin),
+      dashedLine(O, IN.pin),
       wide(OUT.pin, IN.pin, 1),
       label(18, 62, "slow stroke"),
       label(84, 148, "fast"),
@@ -59,7 +59,7 @@ const PICTURES = {
   "transmission angle": {
     pose: STEEP,
     marks: () => [
-      thin(STEEP.slider, [STEEP.slider[0], 150]),
+      dashedLine(STEEP.slider, [STEEP.slider[0], 150]),
       stroked(`M${STEEP.slider[0]} 122A36 36 0 0 1 ${STEEP.slider[0] - 31.3} ${LINE + 17.7}`),
       label(162, 142, "µ"),
     ],
@@ -190,7 +190,7 @@ function bold(from, to) {
 }
 
 /** @param {Page.Point} from @param {Page.Point} to */
-function thin(from, to) {
+function dashedLine(from, to) {
   return svg("path", { class: "mark dashed", d: `M${from}L${to}` });
 }
 

@@ -5,9 +5,9 @@ import { points } from "../charts/points.js";
 import { growingRange } from "../charts/growing_range.js";
 import { columnOf } from "../front/columns.js";
 import { get, isAbort, statusOf } from "../lib/api.js";
-import { follow } from "../lib/events.js";
+import { listenToJob } from "../lib/events.js";
 import { fill, h } from "../lib/dom.js";
-import { counted, grouped, inShown, unitOf, withUnit } from "../lib/numbers.js";
+import { counted, grouped, inDisplayUnit, unitOf, withUnit } from "../lib/numbers.js";
 import { capital, inWords } from "../lib/words.js";
 import { growth } from "./growth.js";
 import { stages } from "./stages.js";
@@ -116,7 +116,7 @@ export function watch(place, job, { signal, changed }) {
       why.hidden = true;
       clearTimeout(silent);
       silent = setTimeout(explain, LONG);
-      stand(data);
+      showState(data);
       soon();
     } else if (event.kind === "state") {
       const { state, reason } = /** @type {Api.Job} */ (event.data);
@@ -150,7 +150,7 @@ export function watch(place, job, { signal, changed }) {
   }
 
   /** @param {Api.Progress} data @param {boolean} running */
-  function stand(data, running = true) {
+  function showState(data, running = true) {
     bar.max = data.rounds;
     bar.value = data.round;
     const each = (data.seconds ?? 0) / data.round;
@@ -263,7 +263,7 @@ export function watch(place, job, { signal, changed }) {
       return extent(
         `${title} ${unitOf(unit)}`,
         frontPoints.map((point) =>
-          typeof point[place] === "number" ? inShown(point[place], unit) : null,
+          typeof point[place] === "number" ? inDisplayUnit(point[place], unit) : null,
         ),
       );
     };
@@ -305,7 +305,7 @@ export function watch(place, job, { signal, changed }) {
   // The events stop when the service is away, and when the job has ended: the look at the job tells which.
   /** @param {boolean} yes */
   const connected = (yes) => soon(yes ? OFTEN : 0);
-  const stop = follow(job.id, {
+  const stop = listenToJob(job.id, {
     after: Math.max(0, job.events - PAST),
     signal,
     told: takeEvent,
@@ -315,7 +315,7 @@ export function watch(place, job, { signal, changed }) {
   noFront(job);
   if (job.progress) {
     course.add(job.progress);
-    stand(job.progress, job.state === "running");
+    showState(job.progress, job.state === "running");
     if (job.progress.front) drawFront(job.progress.front);
   } else fill(curve, h("p", { class: "quiet" }, "Nothing yet."));
   return () => {

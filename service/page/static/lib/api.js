@@ -84,7 +84,7 @@ export function post(path, body = undefined, { query, signal, headers } = {}) {
  * @param {{ query?: Api.Query, signal: AbortSignal, told: (data: Record<string, unknown>) => void }} options
  * @returns {Promise<Api.Answer<"post", Path>>}
  */
-export async function postFollowed(path, body, { query, signal, told: onProgress }) {
+export async function postWithProgress(path, body, { query, signal, told: onProgress }) {
   const headers = { Accept: "text/event-stream", "Content-Type": "application/json" };
   const response = await answered("POST", address(path, query), {
     headers,

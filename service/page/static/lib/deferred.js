@@ -24,7 +24,7 @@ export function whenNear(place, begin, signal) {
 }
 
 /** Complete the view, then print it. */
-export async function printWhole() {
+export async function printComplete() {
   await Promise.all([...parts].map((complete) => complete()));
   window.print();
 }

@@ -12,7 +12,7 @@ const AGAIN = 2000; // ms until the next try after the connection was refused
  * @param {{ after?: number, signal?: AbortSignal, told: (event: Api.Event) => void, connected?: (yes: boolean) => void }} Followed
  * @returns {() => void}
  */
-export function follow(job, { after = 0, signal, told: onEvent, connected = () => {} }) {
+export function listenToJob(job, { after = 0, signal, told: onEvent, connected = () => {} }) {
   let last = after;
   /** @type {EventSource | null} */
   let source = null;

@@ -4,7 +4,7 @@ import { isAbort } from "./api.js";
 import { byId, h } from "./dom.js";
 import { sentenceOf } from "./refusals.js";
 
-const SHOWN = 6000; // ms
+const DURATION = 6000; // ms
 
 /** Say something. kind: "info" goes away by itself, "error" stays until it is closed. @param {string} sentence @param {"info" | "error"} kind */
 export function say(sentence, kind = "info") {
@@ -13,7 +13,7 @@ export function say(sentence, kind = "info") {
     h("button", { type: "button", "aria-label": "Close", onclick: () => notice.remove() }, "×"),
   );
   byId("notices").append(notice);
-  if (kind === "info") setTimeout(() => notice.remove(), SHOWN);
+  if (kind === "info") setTimeout(() => notice.remove(), DURATION);
 }
 
 /**

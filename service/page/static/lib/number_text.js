@@ -56,7 +56,7 @@ export function parseNumber(typed, field) {
     const parser = new Parser(text, field);
     const { value, unit, half } = parser.whole();
     if (!Number.isFinite(value + (half ?? 0)))
-      return { wrong: `${shown(typed)} has no finite value.` };
+      return { wrong: `${quoted(typed)} has no finite value.` };
     const same =
       unit === null ||
       unit === field.unit ||
@@ -71,10 +71,10 @@ export function parseNumber(typed, field) {
     const ends = half === null ? null : [converted(value - half), converted(value + half)];
     const result = `${ends ? ends.join(" to ") : number}${into ? ` ${into}` : ""}`;
     const said = parser.doubtful
-      ? `${shown(typed)} is read as ${result}; write ${parser.doubtful} if you mean that.`
+      ? `${quoted(typed)} is read as ${result}; write ${parser.doubtful} if you mean that.`
       : result === text
         ? null
-        : `${shown(typed)} = ${result}`;
+        : `${quoted(typed)} = ${result}`;
     return ends ? { ends, unit: into, said: said ?? result } : { number, unit: into, said };
   } catch (problem) {
     if (problem instanceof Unreadable) return { wrong: problem.message };
@@ -105,12 +105,12 @@ class Parser {
     const { value, unit } = this.sum();
     const by = this.taken(SPREAD) ? this.sum() : null;
     if (by && !this.field.range)
-      throw new Unreadable(`${shown(this.text)} is a range; write a single value here.`);
+      throw new Unreadable(`${quoted(this.text)} is a range; write a single value here.`);
     if (this.rest)
       throw new Unreadable(
         this.rest[0] === ")"
-          ? `A bracket is closed in ${shown(this.text)} that was not opened.`
-          : `A sign such as + or * is missing before ${shown(this.rest)}.`,
+          ? `A bracket is closed in ${quoted(this.text)} that was not opened.`
+          : `A sign such as + or * is missing before ${quoted(this.rest)}.`,
       );
     if (!by) return { value, unit, half: null };
     const half = Math.abs(
@@ -134,7 +134,7 @@ class Parser {
     const missing = terms.find(({ unit }) => unit === null);
     if (!bare && missing)
       throw new Unreadable(
-        `A part of ${shown(this.text)} has no unit; write one behind each part, or only at the end.`,
+        `A part of ${quoted(this.text)} has no unit; write one behind each part, or only at the end.`,
       );
     if (bare)
       return { value: terms.reduce((all, { value }, n) => all + signs[n] * value, 0), unit: last };
@@ -153,7 +153,7 @@ class Parser {
   factor(unit) {
     const factor = this.field.factors[unit ?? ""];
     if (factor === undefined)
-      throw new Unreadable(`A share and a value cannot be added, as in ${shown(this.text)}.`);
+      throw new Unreadable(`A share and a value cannot be added, as in ${quoted(this.text)}.`);
     return factor;
   }
 
@@ -165,9 +165,9 @@ class Parser {
       const by = sign === "/" || sign === "÷";
       if (other.unit !== null && (product.unit !== null || by))
         throw new Unreadable(
-          `Only one part of a product has a unit, and not what it is divided by; got ${shown(this.text)}.`,
+          `Only one part of a product has a unit, and not what it is divided by; got ${quoted(this.text)}.`,
         );
-      if (by && other.value === 0) throw new Unreadable(`${shown(this.text)} divides by zero.`);
+      if (by && other.value === 0) throw new Unreadable(`${quoted(this.text)} divides by zero.`);
       product = this.withUnit({
         value: by ? product.value / other.value : product.value * other.value,
         unit: product.unit ?? other.unit,
@@ -189,7 +189,7 @@ class Parser {
     }
     this.rest = this.rest.slice(match[0].length).trimStart();
     if (part.unit !== null)
-      throw new Unreadable(`${shown(this.text)} has two units in one product.`);
+      throw new Unreadable(`${quoted(this.text)} has two units in one product.`);
     return { value: part.value, unit: match[1] };
   }
 
@@ -204,16 +204,16 @@ class Parser {
       const inner = this.sum();
       if (SPREAD.test(this.rest))
         throw new Unreadable(
-          `A range such as 180 mm +- 0.5 mm has no brackets around it; got ${shown(this.text)}.`,
+          `A range such as 180 mm +- 0.5 mm has no brackets around it; got ${quoted(this.text)}.`,
         );
       if (!this.taken(/^\)/))
-        throw new Unreadable(`A bracket of ${shown(this.text)} is not closed.`);
+        throw new Unreadable(`A bracket of ${quoted(this.text)} is not closed.`);
       return inner;
     }
     const mixed = this.matched(MIXED);
     if (mixed) {
       const [, whole, over, under] = mixed.map(Number);
-      if (under === 0) throw new Unreadable(`${shown(this.text)} divides by zero.`);
+      if (under === 0) throw new Unreadable(`${quoted(this.text)} divides by zero.`);
       return { value: whole + over / under, unit: null };
     }
     const digits = this.taken(SPACED) || this.taken(DIGITS);
@@ -221,8 +221,8 @@ class Parser {
     if (WORD.test(this.rest)) throw new Unknown();
     throw new Unreadable(
       this.rest
-        ? `A number is missing before ${shown(this.rest)}.`
-        : `A number is missing at the end of ${shown(this.text)}.`,
+        ? `A number is missing before ${quoted(this.rest)}.`
+        : `A number is missing at the end of ${quoted(this.text)}.`,
     );
   }
 
@@ -244,7 +244,7 @@ class Parser {
     else if (commas + points <= 1) plain = mantissa.replace(",", ".");
     else
       throw new Unreadable(
-        `${shown(mantissa)} is not a number: it has points or commas in more than one place.`,
+        `${quoted(mantissa)} is not a number: it has points or commas in more than one place.`,
       );
     return Number(`${plain}e${power}`);
   }
@@ -286,6 +286,6 @@ function tidy(value) {
 }
 
 /** Return what was typed as words of a sentence. @param {string} text */
-function shown(text) {
+function quoted(text) {
   return `"${text.trim()}"`;
 }

@@ -73,7 +73,7 @@ export function keyOf(key) {
  * somebody, and stays.
  * @param {string} sentence
  */
-export function inShownUnits(sentence) {
+export function inDisplayUnits(sentence) {
   const units = Object.keys(SYSTEMS[system()] ?? {}).sort(
     (one, other) => other.length - one.length,
   );
@@ -108,12 +108,12 @@ export function unitOf(unit) {
 }
 
 /** Return a value of the API in the unit that is shown for it. @param {number} value @param {string} unit */
-export function inShown(value, unit) {
+export function inDisplayUnit(value, unit) {
   return value * (SYSTEMS[system()]?.[unit]?.factor ?? 1);
 }
 
 /** Return a shown value in the unit of the API. @param {number} value @param {string} unit */
-export function fromShown(value, unit) {
+export function fromDisplayUnit(value, unit) {
   return value / (SYSTEMS[system()]?.[unit]?.factor ?? 1);
 }
 
@@ -124,7 +124,7 @@ export function fromShown(value, unit) {
 export function text(value, unit = "", digits = 5) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   if (typeof value !== "number") return String(value);
-  const shown = inShown(value, unit);
+  const shown = inDisplayUnit(value, unit);
   if (shown === 0) return "0";
   const size = Math.abs(shown);
   if (size === Infinity) return shown > 0 ? "∞" : "−∞";
@@ -143,7 +143,7 @@ export function text(value, unit = "", digits = 5) {
  * @param {number} value @param {string} unit @param {"up" | "down"} side @param {number} digits
  */
 export function limitText(value, unit, side, digits = 5) {
-  const shown = inShown(value, unit);
+  const shown = inDisplayUnit(value, unit);
   if (shown === 0) return "0";
   const places = Math.min(Math.max(0, digits - 1 - Math.floor(Math.log10(Math.abs(shown)))), 12);
   const rounding = 1e-10 * Math.abs(shown); // a number nearer to a shorter one than this is that one

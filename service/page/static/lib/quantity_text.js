@@ -1,6 +1,6 @@
 /** What people type into a field of a quantity, in the unit of the API: "37,5", "2*19", "1 1/2 in". */
 
-import { fromShown, plainUnitOf, unitOf } from "./numbers.js";
+import { fromDisplayUnit, plainUnitOf, unitOf } from "./numbers.js";
 import { parseNumber } from "./number_text.js";
 import { kindOf, measureOf } from "./units.js";
 
@@ -11,18 +11,18 @@ import { kindOf, measureOf } from "./units.js";
  * @param {string} typed @param {string} unit of the API @returns {Measured}
  */
 export function parseQuantity(typed, unit) {
-  const shownUnit = plainUnitOf(unit);
-  const kind = kindOf(shownUnit);
-  const parsed = parseNumber(typed, { unit: shownUnit, ...measureOf(kind) });
+  const displayUnit = plainUnitOf(unit);
+  const kind = kindOf(displayUnit);
+  const parsed = parseNumber(typed, { unit: displayUnit, ...measureOf(kind) });
   if (parsed.empty) return { empty: true };
   const value =
-    parsed.number !== undefined && parsed.unit === shownUnit
-      ? fromShown(Number(parsed.number), unit)
+    parsed.number !== undefined && parsed.unit === displayUnit
+      ? fromDisplayUnit(Number(parsed.number), unit)
       : NaN;
   if (parsed.number !== undefined && Number.isFinite(value)) return { value, said: parsed.said };
   return {
     wrong:
       parsed.wrong ??
-      `“${typed.trim()}” is not a valid ${kind ?? "number"}; write a number${shownUnit ? `, in ${unitOf(unit)} or with its unit` : ""}.`,
+      `“${typed.trim()}” is not a valid ${kind ?? "number"}; write a number${displayUnit ? `, in ${unitOf(unit)} or with its unit` : ""}.`,
   };
 }

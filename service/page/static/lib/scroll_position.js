@@ -1,6 +1,6 @@
 /** Where the reader is in a view, down the page: kept with its entry in the history, and found again by back, forward and reload. */
 
-const SETTLED = 150; // ms after the last movement
+const PAUSE = 150; // ms after the last movement
 const PATIENCE = 20_000; // ms that a view has to become as long as it was
 const QUIET = 2_000; // ms without a change of its length, after which it is taken as whole: what still comes above moves the place
 
@@ -21,7 +21,7 @@ export function rememberScroll() {
     "scroll",
     () => {
       clearTimeout(timer);
-      timer = setTimeout(note, SETTLED);
+      timer = setTimeout(note, PAUSE);
     },
     { passive: true },
   );

@@ -1,6 +1,6 @@
 /** Sentences of the service in the words of the page: its messages name the keys of a job file, which the page has no need of. */
 
-import { inShownUnits } from "./numbers.js";
+import { inDisplayUnits } from "./numbers.js";
 
 /** Titles of the parts of the form, by the tables of a job. @type {Record<string, string>} */
 const PARTS = {
@@ -21,7 +21,7 @@ const PARTS = {
   costs: "Tolerances",
 };
 /** Titles of the parts that have some keys of a table for themselves. @type {Record<string, string>} */
-const OWN = {
+const PART_TITLES = {
   "mechanism.speed": "Motion",
   "mechanism.cycle_time": "Motion",
   "mechanism.strokes_per_minute": "Motion",
@@ -56,7 +56,7 @@ const SAID = [
   [
     /\b(?:add|write)(?: to the job)?(?: for example)?(?: an?)? \[\[?([a-z]+)(?:\.[a-z]+)*\]\]?(?: (?:with )?([a-z_]+))?(?:(?!, or (?:use|leave) )[^;])*/g,
     (whole, table, key) =>
-      PARTS[table] ? `give it under “${OWN[`${table}.${key}`] ?? PARTS[table]}”` : whole,
+      PARTS[table] ? `give it under “${PART_TITLES[`${table}.${key}`] ?? PARTS[table]}”` : whole,
   ],
   [
     /add gravity = "[^"]+", or gravity = 0/g,
@@ -128,7 +128,7 @@ export const WORDS = {
 
 /** Return a sentence of the service in the words and units of the page. @param {string} sentence */
 export function inWords(sentence) {
-  return inShownUnits(
+  return inDisplayUnits(
     SAID.reduce(
       (text, [found, said]) => text.replace(found, /** @type {string} */ (said)),
       sentence,

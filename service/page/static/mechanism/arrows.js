@@ -2,7 +2,7 @@
 
 import { between } from "../charts/cycle.js";
 import { h, svg } from "../lib/dom.js";
-import { fromShown, inShown, withUnit } from "../lib/numbers.js";
+import { fromDisplayUnit, inDisplayUnit, withUnit } from "../lib/numbers.js";
 
 const LONGEST = 110; // pixels, of the greatest force over the turn
 const SHORTEST = 3; // less is a dot
@@ -45,11 +45,11 @@ export function forceAt({ along }, curves, angle) {
 
 /** Return the scale of arrows of which the longest is so many N: a bar of a round force. @param {number} greatest */
 export function scaleOf(greatest) {
-  const greatestShown = inShown(greatest, "N");
-  if (!(greatestShown > 0)) return "no force acts";
-  const power = 10 ** Math.floor(Math.log10(greatestShown));
-  const round = fromShown(
-    power * (greatestShown / power >= 5 ? 5 : greatestShown / power >= 2 ? 2 : 1),
+  const greatestDisplayed = inDisplayUnit(greatest, "N");
+  if (!(greatestDisplayed > 0)) return "no force acts";
+  const power = 10 ** Math.floor(Math.log10(greatestDisplayed));
+  const round = fromDisplayUnit(
+    power * (greatestDisplayed / power >= 5 ? 5 : greatestDisplayed / power >= 2 ? 2 : 1),
     "N",
   );
   const bar = h("span", { class: "force-scale", "aria-hidden": "true" });

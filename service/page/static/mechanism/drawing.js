@@ -5,7 +5,7 @@ import { fill, h, svg } from "../lib/dom.js";
 import { text, withUnit } from "../lib/numbers.js";
 import { arrows } from "./arrows.js";
 import { attached } from "./attached.js";
-import { fitted, frameOf, reachOf } from "./frame.js";
+import { fitted, frameOf, sliderRange } from "./frame.js";
 import { bar, placed, scenery } from "./scenery.js";
 
 /**
@@ -155,7 +155,7 @@ export function drawing(place, { label }) {
 
 /** @param {Api.Curves} motion @param {Page.Point | undefined} angles @param {number} turns */
 function deadCentres(motion, angles, turns) {
-  const { low, high } = reachOf(motion);
+  const { low, high } = sliderRange(motion);
   const places = angles ?? [low.angle, high.angle];
   return places.map((angle) => ({
     angle: crankAt({ curves: motion, turns }, angle),

@@ -15,7 +15,7 @@ const LOW = 96; // least height of a small drawing
  * Return the inner and outer end of the slider's way, each {angle, value}; whoever draws a mechanism has one that turns.
  * @param {Api.Curves} motion
  */
-export function reachOf(motion) {
+export function sliderRange(motion) {
   const ends = extremes(motion.slider_position_mm);
   if (!ends)
     throw new Error("A mechanism that is drawn must turn; this one has no slider position.");
@@ -28,7 +28,7 @@ export function reachOf(motion) {
  * @param {Page.Lengths} linkage @param {Api.Curves} motion @param {Api.Outlines} [outlines] @returns {Frame}
  */
 export function frameOf(linkage, motion, outlines) {
-  const { low, high } = reachOf(motion);
+  const { low, high } = sliderRange(motion);
   const linkageFrame = frameWithin(linkage, low.value, high.value);
   if (!outlines) return linkageFrame;
   const [left, bottom, right, top] = outlines.extent_mm;

@@ -15,7 +15,7 @@ import { headedRow, numberCell, table as tableOf } from "../lib/table.js";
 export const title = "Compare runs";
 
 const MOST = 6;
-const SHOWN = 300; // designs of each run in the picture
+const MOST_DESIGNS = 300; // designs of each run in the picture
 
 /** Fronts of several runs over each other, and their best values side by side. @param {HTMLElement} place @param {Page.Visit} options */
 export async function show(place, { query, signal }) {
@@ -63,8 +63,8 @@ export async function show(place, { query, signal }) {
 
   /** Return the quantity that the address names for an axis, if the runs share it. @type {(name: string, otherwise: string) => string} */
   function chosen(name, otherwise) {
-    const wantedKey = query.get(name);
-    return wantedKey !== null && shared.includes(wantedKey) ? wantedKey : otherwise;
+    const requestedKey = query.get(name);
+    return requestedKey !== null && shared.includes(requestedKey) ? requestedKey : otherwise;
   }
 
   /** Return an objective of the runs. @type {(key: string) => Api.Objective} */
@@ -74,23 +74,23 @@ export async function show(place, { query, signal }) {
 
   function drawPicture() {
     const [x, y] = [axes.x, axes.y].map(known);
-    const shownRows = runs.map(({ data }) => spread(data.count));
+    const drawnRows = runs.map(({ data }) => spread(data.count));
     const series = runs.map(({ data, job }, n) => ({
       name: job.name,
-      points: shownRows[n].map((row) => [data.cell(axes.x, row), data.cell(axes.y, row)]),
+      points: drawnRows[n].map((row) => [data.cell(axes.x, row), data.cell(axes.y, row)]),
     }));
     fill(
       picture,
       points(series, x, y, `The fronts of ${runs.length} runs`, null, {
-        at: (n, place) => tell(n === null ? null : { n, row: shownRows[n][place] }),
-        open: (n, place) => go(["jobs", runs[n].job.id, "designs", shownRows[n][place] + 1]),
+        at: (n, place) => showComparison(n === null ? null : { n, row: drawnRows[n][place] }),
+        open: (n, place) => go(["jobs", runs[n].job.id, "designs", drawnRows[n][place] + 1]),
       }),
     );
-    tell(null);
+    showComparison(null);
   }
 
   /** Say what a design has that is pointed at. @param {{ n: number, row: number } | null} one */
-  function tell(one) {
+  function showComparison(one) {
     if (!one) return fill(readout, "Point at a design to read it; click to open it.");
     const { job, data } = runs[one.n];
     fill(
@@ -284,7 +284,7 @@ export async function show(place, { query, signal }) {
 
 /** Return at most `SHOWN` rows, evenly spread. @param {number} count */
 function spread(count) {
-  const number = Math.min(count, SHOWN);
+  const number = Math.min(count, MOST_DESIGNS);
   return Array.from({ length: number }, (_, index) =>
     Math.floor((index * (count - 1)) / Math.max(1, number - 1)),
   );

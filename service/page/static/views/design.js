@@ -2,7 +2,7 @@
 
 import { analyses } from "../design/analyses.js";
 import { endsOf } from "../design/extremes.js";
-import { besideOf, cycleOf, loadDesign, loadFront } from "../design/loading.js";
+import { comparedDesigns, cycleOf, loadDesign, loadFront } from "../design/loading.js";
 import { showNumbers } from "../design/numbers.js";
 import { showObjectives } from "../design/objectives.js";
 import { overCycle } from "../design/over_cycle.js";
@@ -19,7 +19,7 @@ import { placeOf } from "../charts/cycle.js";
 import { keep } from "../lib/address.js";
 import { get, Problem } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
-import { inShownUnits } from "../lib/numbers.js";
+import { inDisplayUnits } from "../lib/numbers.js";
 import { capital } from "../lib/words.js";
 
 export const title = "Design";
@@ -45,7 +45,7 @@ export async function show(place, { parts, query, signal }) {
   const { names } = requirements;
   const [rows, ...others] = await Promise.all([
     loadFront(job, front, signal),
-    ...besideOf(query, number).map((other, n) => loadDesign(job, other, n + 2, signal)),
+    ...comparedDesigns(query, number).map((other, n) => loadDesign(job, other, n + 2, signal)),
   ]);
   if (signal.aborted) return;
 
@@ -211,7 +211,7 @@ export async function show(place, { parts, query, signal }) {
           h(
             "p",
             { class: "error" },
-            `${name}, beyond the allowable value: ${inShownUnits(sentence)}.`,
+            `${name}, beyond the allowable value: ${inDisplayUnits(sentence)}.`,
           ),
         ),
       ),

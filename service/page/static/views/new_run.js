@@ -153,7 +153,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
   );
   const check = checker(({ answer, problem }) => {
     checked = answer ?? null;
-    if (answer) tell(answer);
+    if (answer) showCheck(answer);
     else say(sentenceOf(problem));
   }, signal);
 
@@ -213,7 +213,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     status.textContent = sentence;
   }
   /** @param {Api.Preview} answer */
-  function tell(answer) {
+  function showCheck(answer) {
     form.said = answer;
     for (const field of form.fields.slice()) field.tell?.();
     document.activeElement?.dispatchEvent(new Event("names")); // there may be others now

@@ -26,7 +26,7 @@ export async function show(place, { parts, signal }) {
   const explorer = import("../front/explorer.js"); // comes while the job is asked for
 
   /** Show a job as it stands; null: somebody deleted it. @param {Api.Job | null} job */
-  async function stand(job) {
+  async function showJob(job) {
     if (signal.aborted) return;
     if (job === null) {
       inner?.control.abort();
@@ -57,7 +57,7 @@ export async function show(place, { parts, signal }) {
     if (watched) return;
     if (live) {
       const [{ watch }] = await Promise.all([import("../jobs/live.js"), readySystem()]);
-      if (!bodySignal.aborted) watch(body, job, { signal: bodySignal, changed: stand });
+      if (!bodySignal.aborted) watch(body, job, { signal: bodySignal, changed: showJob });
     } else await ended(job, pendingFront, bodySignal);
   }
 
@@ -115,7 +115,7 @@ export async function show(place, { parts, signal }) {
       h(
         "div",
         { class: "row acts" },
-        actions(job, (now) => (now === null ? gone() : stand(now)), { primary: true }),
+        actions(job, (now) => (now === null ? gone() : showJob(now)), { primary: true }),
         downloads(job, { designs: Boolean(summary?.designs), own: files, signal }),
       ),
     );
@@ -152,12 +152,12 @@ export async function show(place, { parts, signal }) {
       });
     } catch (problem) {
       if (isAbort(problem)) return;
-      if (statusOf(problem) === 404) await stand(null);
+      if (statusOf(problem) === 404) await showJob(null);
       else throw problem;
     }
   }
 
   const job = await get(`jobs/${number}`, {}, signal);
   fill(place, head, body);
-  await stand(job);
+  await showJob(job);
 }

@@ -3,9 +3,9 @@ import { test } from "node:test";
 
 import {
   ends,
-  fromShown,
+  fromDisplayUnit,
   grouped,
-  inShown,
+  inDisplayUnit,
   limitText,
   readySystem,
   text,
@@ -59,10 +59,10 @@ test("a value that is shown in inches is the same length, and comes back", () =>
   for (const value of drawn(500)) {
     for (const [unit, { unit: name, factor }] of Object.entries(INCH)) {
       assert.equal(unitOf(unit), name);
-      assert.ok(Math.abs(inShown(value, unit) / (value * factor) - 1) < 1e-15);
-      assert.ok(Math.abs(fromShown(inShown(value, unit), unit) / value - 1) < 1e-15);
+      assert.ok(Math.abs(inDisplayUnit(value, unit) / (value * factor) - 1) < 1e-15);
+      assert.ok(Math.abs(fromDisplayUnit(inDisplayUnit(value, unit), unit) / value - 1) < 1e-15);
     }
-    assert.equal(inShown(value, "deg"), value);
+    assert.equal(inDisplayUnit(value, "deg"), value);
   }
   assert.equal(withUnit(25.4, "mm"), "1\u00a0in");
   choose("si");
@@ -75,7 +75,7 @@ test("a limit is rounded to the side where all values are possible, by less than
   for (const system of ["si", "inch"]) {
     choose(system);
     for (const value of drawn(2000, [-5, 6])) {
-      const shown = inShown(value, "mm");
+      const shown = inDisplayUnit(value, "mm");
       const step = Math.max(10 ** (Math.floor(Math.log10(Math.abs(shown))) - 4), 1e-12);
       const [up, down] = ["up", "down"].map((side) => read(limitText(value, "mm", side)));
       const room = 1.01e-10 * Math.abs(shown);
