@@ -11,7 +11,7 @@ import { axisFields } from "./axes.js";
 import { previousFront } from "./previous_front.js";
 import { bindingPanel } from "./binding.js";
 import { chooser } from "./chooser.js";
-import { choicesFrom, queryOf, toggled, wanted } from "./choices.js";
+import { choicesFrom, queryOf, toggled, neededColumns } from "./choices.js";
 import { FrontData } from "./data.js";
 import { bookmarksPanel } from "./bookmarks.js";
 import { Limits } from "./limits.js";
@@ -47,7 +47,7 @@ export async function explore(place, { job, front, values, query, files, decisio
   const chosen = choicesFrom(query, front);
   const limits = new Limits(data, chosen.limits, chosen.lasso);
   data.take(values);
-  await data.need(wanted(chosen, limits));
+  await data.need(neededColumns(chosen, limits));
   if (!signal.aborted) new Explorer(place, { job, data, chosen, limits, files, decision, signal });
 }
 
@@ -226,7 +226,7 @@ export class Explorer {
     Object.assign(this.chosen, choices);
     await attempt(async () => {
       await Promise.all([
-        this.data.need(wanted(this.chosen, this.limits)),
+        this.data.need(neededColumns(this.chosen, this.limits)),
         this.before?.need([this.chosen.x, this.chosen.y]),
       ]);
       this.update(what);
