@@ -68,7 +68,8 @@ Number = Annotated[int | None, Field(description="Number of a design in the run.
 Topics = Annotated[
     list[str],
     Field(
-        description=f"Analyses of the design, or {ALL} for every analysis of a rotating crank: {'; '.join(_TOPIC_WORDS)}."
+        description=f"Analyses of the design, or {ALL} for every analysis of a rotating crank: "
+        f"{'; '.join(_TOPIC_WORDS)}."
     ),
 ]
 TopicInputs = Annotated[
