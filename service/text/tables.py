@@ -15,7 +15,7 @@ from ..designs.columns import Column, chosen_columns, find_column
 from ..designs.rounding_noise import without_noise
 from ..designs.violations import front_violations_in_words, violations_in_words
 from ..render.terminal import print_table, table
-from ..runs.result import Cell, Result, Row, Wanted
+from ..runs.result import Cell, Result, Row, StoredObjective
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -175,7 +175,7 @@ def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column])
     return rich_table
 
 
-def _best_rows(result: Result, objective: Wanted) -> list[int]:
+def _best_rows(result: Result, objective: StoredObjective) -> list[int]:
     """Return the positions of the designs that are best in an objective, to rounding; none if all are equal."""
     from ...optimise.front.constant_numbers import SAME
 

@@ -10,7 +10,7 @@ import pytest
 from slidercrank.objectives.column_keys import split_unit
 from slidercrank.service.designs.columns import find_column
 from slidercrank.service.designs.rounding_noise import without_noise
-from slidercrank.service.runs.result import Result, Wanted
+from slidercrank.service.runs.result import Result, StoredObjective
 from slidercrank.service.text.screen import console
 from slidercrank.service.text.tables import show_design, show_front
 
@@ -48,8 +48,8 @@ def result(prices: list[float]) -> Result:
         for row, price in enumerate(prices)
     ]
     wanted = (
-        Wanted(quantity="price", sense="minimise", column="price_EUR", title="price", unit="EUR"),
-        Wanted(quantity="stroke", sense="maximise", column="stroke_mm", title="stroke", unit="mm"),
+        StoredObjective(quantity="price", sense="minimise", column="price_EUR", title="price", unit="EUR"),
+        StoredObjective(quantity="stroke", sense="maximise", column="stroke_mm", title="stroke", unit="mm"),
     )
     return Result(
         run="",
