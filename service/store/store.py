@@ -130,7 +130,7 @@ class Store(Workers):
 
     def _waiting(self, listed: list[Job]) -> list[Job]:
         try:
-            self.require_place_in_queue()
+            self.require_disk_space()
         except StoreError as error:
             reason = f"waits: {error}"
             return [replace(job, reason=reason) if job.state in ("queued", "running") else job for job in listed]
@@ -304,7 +304,7 @@ class Store(Workers):
         with self.reading() as connection:
             if not queue.any_claimable(connection, self._jumps, self.last_full):
                 return None
-        self.require_place_in_queue()
+        self.require_disk_space()
         with self.writing() as connection:
             if most_running is not None:
                 queue.take_turns(connection)
