@@ -104,7 +104,7 @@ class _Curve(NamedTuple):
     stepped: Any
 
 
-class _Room(NamedTuple):
+class _Workspace(NamedTuple):
     """Work space and rule. rates: (c, 1 + v, nodes), curves and derivatives at a panel's nodes. greatest: their sizes.
 
     real, stepped: curves at one node. stack: start, width and depth of the panels that remain. nodes, weights, tail:
@@ -162,64 +162,64 @@ def _fill_curves(kind: Any, theta: Any, square: Any, d: Any, segment: Segment, s
 
 
 @analytic
-def _fill_panel(curve: _Curve, begin: float, width: float, points: int, room: _Room) -> None:
+def _fill_panel(curve: _Curve, begin: float, width: float, points: int, workspace: _Workspace) -> None:
     """Fill curves, derivatives and weights at the nodes of a panel of the crowded angle, Gauss's or equidistant."""
     own, kappa = curve.segment, curve.kappa
     is_even = points == _SMOOTH
     for i in range(points):
-        tau = begin + width * (i / points if is_even else room.nodes[i])
+        tau = begin + width * (i / points if is_even else workspace.nodes[i])
         theta = uncrowded(tau, kappa)
         c, y = math.cos(tau), math.sin(tau)
-        share = 1.0 / points if is_even else room.weights[i]
-        room.weight[i] = share * width / _TURN * kappa / (c * c + kappa * kappa * y * y)
+        share = 1.0 / points if is_even else workspace.weights[i]
+        workspace.weight[i] = share * width / _TURN * kappa / (c * c + kappa * kappa * y * y)
         square = _square_along(theta, curve.d, curve.gap)
-        _fill_curves(curve.kind, theta, square, curve.d, own, curve.sides, room.real)
-        for k in range(room.rates.shape[0]):
-            room.rates[k, 0, i] = room.real[k]
+        _fill_curves(curve.kind, theta, square, curve.d, own, curve.sides, workspace.real)
+        for k in range(workspace.rates.shape[0]):
+            workspace.rates[k, 0, i] = workspace.real[k]
         for v in range(curve.stepped.shape[0]):
             stepped = Segment(curve.stepped[v], own.loads, own.outward, own.piece, own.shift)
             z = design_at(stepped.block, 0)
-            _fill_curves(curve.kind, theta, square, z, stepped, curve.sides, room.stepped)
-            for k in range(room.rates.shape[0]):
-                room.rates[k, v + 1, i] = room.stepped[k].imag / STEP
+            _fill_curves(curve.kind, theta, square, z, stepped, curve.sides, workspace.stepped)
+            for k in range(workspace.rates.shape[0]):
+                workspace.rates[k, v + 1, i] = workspace.stepped[k].imag / STEP
 
 
 @analytic
-def _is_rough(curve: _Curve, width: float, room: _Room) -> bool:
+def _is_rough(curve: _Curve, width: float, workspace: _Workspace) -> bool:
     """Return whether the last Legendre coefficients on a panel exceed the tolerance; raise the greatest sizes."""
-    halve, points = False, room.nodes.shape[0]
+    halve, points = False, workspace.nodes.shape[0]
     resolved = max(1.0, _NOISE / (curve.kappa * curve.kappa))
-    for k in range(room.rates.shape[0]):
-        for row in range(room.rates.shape[1]):
-            least = greatest = room.rates[k, row, 0]
+    for k in range(workspace.rates.shape[0]):
+        for row in range(workspace.rates.shape[1]):
+            least = greatest = workspace.rates[k, row, 0]
             for i in range(points):
-                least, greatest = min(least, room.rates[k, row, i]), max(greatest, room.rates[k, row, i])
-            room.greatest[k, row] = max(room.greatest[k, row], greatest, -least)
-            allowed = (_RESOLVED[0] if row == 0 else _RESOLVED[1]) * resolved * room.greatest[k, row]
+                least, greatest = min(least, workspace.rates[k, row, i]), max(greatest, workspace.rates[k, row, i])
+            workspace.greatest[k, row] = max(workspace.greatest[k, row], greatest, -least)
+            allowed = (_RESOLVED[0] if row == 0 else _RESOLVED[1]) * resolved * workspace.greatest[k, row]
             if curve.kind == WORK:
                 allowed = allowed * (_SHARE * _TURN / width)
             else:
                 allowed = max(allowed, ANGLE_ROUNDING * ((greatest - least) / width))
-            for order in range(0 if halve else room.tail.shape[0]):
+            for order in range(0 if halve else workspace.tail.shape[0]):
                 coefficient = 0.0
                 for i in range(points):
-                    coefficient += room.tail[order, i] * room.rates[k, row, i]
+                    coefficient += workspace.tail[order, i] * workspace.rates[k, row, i]
                 halve = halve or abs(coefficient) > allowed
     return halve
 
 
 @analytic
-def _add_panel(points: int, n: int, room: _Room, means: CurveMeans) -> None:
-    """Add the panel in `room` to the means of design n."""
+def _add_panel(points: int, n: int, workspace: _Workspace, means: CurveMeans) -> None:
+    """Add the panel in `workspace` to the means of design n."""
     has_squares = means.square.shape[1] > 0
-    for k in range(room.rates.shape[0]):
-        value = room.rates[k, 0]
-        for row in range(room.rates.shape[1]):
-            rate = room.rates[k, row]
+    for k in range(workspace.rates.shape[0]):
+        value = workspace.rates[k, 0]
+        for row in range(workspace.rates.shape[1]):
+            rate = workspace.rates[k, row]
             first = second = 0.0
             for i in range(points):
-                first += room.weight[i] * rate[i]
-                second += room.weight[i] * value[i] * rate[i]
+                first += workspace.weight[i] * rate[i]
+                second += workspace.weight[i] * value[i] * rate[i]
             if row == 0:
                 means.mean[n, k] += first
                 if has_squares:
@@ -232,7 +232,7 @@ def _add_panel(points: int, n: int, room: _Room, means: CurveMeans) -> None:
 
 @analytic
 def _add_segment(
-    curve: _Curve, a: float, b: float, points: int, left: int, n: int, room: _Room, means: CurveMeans
+    curve: _Curve, a: float, b: float, points: int, left: int, n: int, workspace: _Workspace, means: CurveMeans
 ) -> int:
     """Add a segment between crank angles to the means of design n.
 
@@ -244,39 +244,39 @@ def _add_segment(
         panels = panels * (int(_PANELS * (high - low) / _TURN) + 1)
     for p in range(panels):
         width = (high - low) / panels
-        room.stack[0, 0], room.stack[0, 1], room.stack[0, 2] = low + width * p, width, 0.0
+        workspace.stack[0, 0], workspace.stack[0, 1], workspace.stack[0, 2] = low + width * p, width, 0.0
         top = 1
         while top > 0:
             top -= 1
-            begin, width, depth = room.stack[top, 0], room.stack[top, 1], room.stack[top, 2]
-            _fill_panel(curve, begin, width, points, room)
-            if left >= 0 and _is_rough(curve, width, room) and depth < DEEPEST and left > 0:
+            begin, width, depth = workspace.stack[top, 0], workspace.stack[top, 1], workspace.stack[top, 2]
+            _fill_panel(curve, begin, width, points, workspace)
+            if left >= 0 and _is_rough(curve, width, workspace) and depth < DEEPEST and left > 0:
                 left -= 1
                 for half in range(2):  # the left one on top: panels are added up in order
-                    room.stack[top, 0] = begin + 0.5 * width * (1 - half)
-                    room.stack[top, 1], room.stack[top, 2] = 0.5 * width, depth + 1.0
+                    workspace.stack[top, 0] = begin + 0.5 * width * (1 - half)
+                    workspace.stack[top, 1], workspace.stack[top, 2] = 0.5 * width, depth + 1.0
                     top += 1
                 continue
-            _add_panel(points, n, room, means)
+            _add_panel(points, n, workspace, means)
     return left
 
 
 @analytic
-def _add_jumps(curve: _Curve, cuts: Cuts, s: int, count: int, n: int, room: _Room, means: CurveMeans) -> None:
+def _add_jumps(curve: _Curve, cuts: Cuts, s: int, count: int, n: int, workspace: _Workspace, means: CurveMeans) -> None:
     """Add to derivatives of design n what the moving ends of segment s contribute: the curve there times the motion."""
     own = curve.segment
     for end in range(2):
         i, theta = (s + 1) % count if end else s, cuts.angle[s + 1] if end else cuts.angle[s]
         square = _square_along(theta, curve.d, curve.gap)
-        _fill_curves(curve.kind, theta, square, curve.d, own, curve.sides, room.real)
+        _fill_curves(curve.kind, theta, square, curve.d, own, curve.sides, workspace.real)
         sign = (1.0 if end else -1.0) / (STEP * _TURN)
         for v in range(curve.stepped.shape[0]):
             stepped = Segment(curve.stepped[v], own.loads, own.outward, own.piece, own.shift)
             slip = shift_of(design_at(stepped.block, 0), stepped, curve.d, own, theta, cuts, i, curve.sides)
             for k in range(means.mean.shape[1]):
-                means.mean_slope[n, k, v] += sign * room.real[k] * slip
+                means.mean_slope[n, k, v] += sign * workspace.real[k] * slip
                 if means.square.shape[1] > 0:
-                    means.square_slope[n, k, v] += 0.5 * sign * room.real[k] * room.real[k] * slip
+                    means.square_slope[n, k, v] += 0.5 * sign * workspace.real[k] * workspace.real[k] * slip
 
 
 @kernel
@@ -292,7 +292,7 @@ def fill_means(
     capacity, curves = breakpoint_capacity(loads), means.mean.shape[1]
     cuts = Cuts(np.empty(capacity), np.empty(capacity, np.int64), np.empty(capacity), np.empty(capacity, np.int64))
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
-    room = _Room(
+    workspace = _Workspace(
         np.empty((curves, nv + 1, _SMOOTH)),
         np.empty(CURVES),
         np.empty(CURVES, np.complex128),
@@ -318,7 +318,7 @@ def fill_means(
         halved = task.rubbing or task.kind == WORK
         points = _SMOOTH if count == 1 and not halved else rule[0].shape[0]
         left = MOST_HALVINGS if halved else -1
-        room.greatest[:] = 0.0
+        workspace.greatest[:] = 0.0
         for s in range(count):
             a, b = cuts.angle[s], cuts.angle[s + 1]
             probe = angle_within(a, b)
@@ -326,9 +326,9 @@ def fill_means(
             segment = Segment(block, loads, outward, piece, shift)
             sides = sides_of(probe, d, segment, task.rubbing)
             curve = _Curve(task.kind, d, gap, kappa, segment, sides, steps[n * nv : (n + 1) * nv])
-            left = _add_segment(curve, a, b, points, left, n, room, means)
+            left = _add_segment(curve, a, b, points, left, n, workspace, means)
             if task.jumps:
-                _add_jumps(curve, cuts, s, count, n, room, means)
+                _add_jumps(curve, cuts, s, count, n, workspace, means)
 
 
 def turn_means(

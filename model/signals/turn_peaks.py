@@ -74,7 +74,7 @@ class _Tops(NamedTuple):
     pin: Integers
 
 
-class _Room(NamedTuple):
+class _Workspace(NamedTuple):
     """Work space for one design.
 
     piece, shift: of the tables. counts, negligible: whether a segment counts, is empty. edge: value and slope at
@@ -171,25 +171,27 @@ def _insert(tops: _Tops, count: int, value: float, theta: float, s: int, p: int)
 
 
 @analytic
-def _sample(task: TurnTask, d: Design, block: Any, count: int, room: _Room) -> float:
+def _sample(task: TurnTask, d: Design, block: Any, count: int, workspace: _Workspace) -> float:
     """Sample all segments of a design for a single peak, else prepare the samples; return the highest value."""
-    cuts, theta, kappa = room.cuts, room.theta, crowding(d.r, d.l, d.e)
-    single = room.tops.value.shape[0] == 1
+    cuts, theta, kappa = workspace.cuts, workspace.theta, crowding(d.r, d.l, d.e)
+    single = workspace.tops.value.shape[0] == 1
     highest, has_motion = -1.0, False
     sine, cosine = 0.0, 1.0
     m = design_motion(sine, cosine, d)
-    room.first[0] = 0
+    workspace.first[0] = 0
     for s in range(count):
         a, b = cuts.angle[s], cuts.angle[s + 1]
-        start = room.first[s]
-        room.first[s + 1] = start
-        room.negligible[s] = b - a < _SHORTEST
+        start = workspace.first[s]
+        workspace.first[s + 1] = start
+        workspace.negligible[s] = b - a < _SHORTEST
         probe = angle_within(a, b)
-        room.counts[s], outward = enter(d, block, 0, probe, task.loads, task.watch, room.piece, room.shift)
-        if room.negligible[s] or not room.counts[s]:
+        workspace.counts[s], outward = enter(
+            d, block, 0, probe, task.loads, task.watch, workspace.piece, workspace.shift
+        )
+        if workspace.negligible[s] or not workspace.counts[s]:
             has_motion = False
             continue
-        segment = Segment(block, task.loads, outward, room.piece, room.shift)
+        segment = Segment(block, task.loads, outward, workspace.piece, workspace.shift)
         sides = sides_of(probe, d, segment, task.rubbing)
         # A segment shorter than the spacing, such as between knots of a long table, has no samples of its own: the
         # slopes at its ends show whether it has a peak.
@@ -199,7 +201,7 @@ def _sample(task: TurnTask, d: Design, block: Any, count: int, room: _Room) -> f
             low, high = crowded(a, kappa), crowded(b, kappa)
             spacings = int(task.angles * (high - low) / _TURN)
             points = min(task.angles + 8, max(5, spacings + 2)) if spacings > 0 else 2
-        room.first[s + 1] = start + points
+        workspace.first[s + 1] = start + points
         theta[start], theta[start + points - 1] = a, b
         for i in range(1, points - 1):
             theta[start + i] = uncrowded(low + (high - low) * i / (points - 1), kappa)
@@ -209,26 +211,31 @@ def _sample(task: TurnTask, d: Design, block: Any, count: int, room: _Room) -> f
                 sine, cosine = math.sin(angle), math.cos(angle)
                 m = design_motion(sine, cosine, d)
             value = signal_within(task.kind, angle, sine, cosine, m, d, segment, sides)
-            room.value[start + i], highest = value, max(highest, value)
+            workspace.value[start + i], highest = value, max(highest, value)
         has_motion = single
     return highest
 
 
 @analytic
-def _peaks_near_samples(curve: _Curve, s: int, floor: float, best: float, room: _Room, peaks: int) -> int:
+def _peaks_near_samples(curve: _Curve, s: int, floor: float, best: float, workspace: _Workspace, peaks: int) -> int:
     """List the peaks next to the samples of segment s that reach `floor`; return the new number of peaks.
 
     best: highest sample so far.
     """
-    a, b, start, end = room.cuts.angle[s], room.cuts.angle[s + 1], room.first[s], room.first[s + 1] - 1
-    f, theta, tops = room.value, room.theta, room.tops
+    a, b, start, end = (
+        workspace.cuts.angle[s],
+        workspace.cuts.angle[s + 1],
+        workspace.first[s],
+        workspace.first[s + 1] - 1,
+    )
+    f, theta, tops = workspace.value, workspace.theta, workspace.tops
     for i in range(start, end + 1):
         if f[i] < floor:
             continue
         if i == start:
-            is_top = room.edge[s, 1] > 0.0 and f[i] >= f[i + 1]
+            is_top = workspace.edge[s, 1] > 0.0 and f[i] >= f[i + 1]
         elif i == end:
-            is_top = room.edge[s, 3] < 0.0 and f[i] >= f[i - 1]
+            is_top = workspace.edge[s, 3] < 0.0 and f[i] >= f[i - 1]
         else:
             is_top = f[i] >= f[i - 1] and f[i] > f[i + 1]
         if not is_top:
@@ -252,75 +259,80 @@ def _peaks_near_samples(curve: _Curve, s: int, floor: float, best: float, room: 
 
 @analytic
 def _inner_peaks(
-    task: TurnTask, d: Design, block: Any, count: int, floor: float, room: _Room
+    task: TurnTask, d: Design, block: Any, count: int, floor: float, workspace: _Workspace
 ) -> tuple[int, float, float, int]:
     """List the peaks between breakpoints; return their number, and value, angle and segment of the highest sample.
 
     Fills values and slopes at the ends of segments.
     """
-    single, peaks = room.tops.value.shape[0] == 1, 0
+    single, peaks = workspace.tops.value.shape[0] == 1, 0
     best, best_at, best_segment = -1.0, 0.0, -1
     for s in range(count):
-        if room.negligible[s] or not room.counts[s]:
+        if workspace.negligible[s] or not workspace.counts[s]:
             continue
-        a, b, start, end = room.cuts.angle[s], room.cuts.angle[s + 1], room.first[s], room.first[s + 1] - 1
+        a, b, start, end = (
+            workspace.cuts.angle[s],
+            workspace.cuts.angle[s + 1],
+            workspace.first[s],
+            workspace.first[s + 1] - 1,
+        )
         hopeful = not single
         for i in range(start, end + 1 if single else start):
-            hopeful = hopeful or not room.value[i] < floor
+            hopeful = hopeful or not workspace.value[i] < floor
         if not hopeful:
-            room.edge[s, :] = -1.0
+            workspace.edge[s, :] = -1.0
             continue
         probe = angle_within(a, b)
-        _, outward = enter(d, block, 0, probe, task.loads, task.watch, room.piece, room.shift)
-        segment = Segment(block, task.loads, outward, room.piece, room.shift)
+        _, outward = enter(d, block, 0, probe, task.loads, task.watch, workspace.piece, workspace.shift)
+        segment = Segment(block, task.loads, outward, workspace.piece, workspace.shift)
         curve = _Curve(task.kind, d, segment, sides_of(probe, d, segment, task.rubbing))
         for side in range(2):
             value, slope = _slope(b if side else a, curve)
-            room.edge[s, 2 * side], room.edge[s, 2 * side + 1] = value, slope
-        room.value[start], room.value[end] = room.edge[s, 0], room.edge[s, 2]
+            workspace.edge[s, 2 * side], workspace.edge[s, 2 * side + 1] = value, slope
+        workspace.value[start], workspace.value[end] = workspace.edge[s, 0], workspace.edge[s, 2]
         for i in range(start, end + 1):
-            if room.value[i] > best:
-                best, best_at, best_segment = room.value[i], room.theta[i], s
-        peaks = _peaks_near_samples(curve, s, floor, best, room, peaks)
+            if workspace.value[i] > best:
+                best, best_at, best_segment = workspace.value[i], workspace.theta[i], s
+        peaks = _peaks_near_samples(curve, s, floor, best, workspace, peaks)
     return peaks, best, best_at, best_segment
 
 
 @analytic
-def _breakpoint_peaks(count: int, room: _Room, peaks: int) -> int:
+def _breakpoint_peaks(count: int, workspace: _Workspace, peaks: int) -> int:
     """List the breakpoints that are peaks, at a kink or a jump; return the new number of peaks."""
-    cuts, counts, edge = room.cuts, room.counts, room.edge
+    cuts, counts, edge = workspace.cuts, workspace.counts, workspace.edge
     for s in range(count):
-        if room.negligible[s]:
+        if workspace.negligible[s]:
             continue
         # The breakpoint between segment `before` and segment s; between the two, breakpoints may coincide.
         before = s - 1 if s > 0 else count - 1
-        while room.negligible[before]:
+        while workspace.negligible[before]:
             before = before - 1 if before > 0 else count - 1
         left = edge[before, 2] if counts[before] else -1.0
         right = edge[s, 0] if counts[s] else -1.0
         tolerance = _CONTINUOUS * max(left, right)
         if counts[before] and left >= right - tolerance and edge[before, 3] >= 0.0:
             if left > right + tolerance or edge[s, 1] <= 0.0:
-                peaks = _insert(room.tops, peaks, left, cuts.angle[s], before, s)
+                peaks = _insert(workspace.tops, peaks, left, cuts.angle[s], before, s)
         elif counts[s] and right > left + tolerance and edge[s, 1] <= 0.0:
-            peaks = _insert(room.tops, peaks, right, cuts.angle[s], s, s)
+            peaks = _insert(workspace.tops, peaks, right, cuts.angle[s], s, s)
     return peaks
 
 
 @analytic
-def _fill_gradient(task: TurnTask, d: Design, block: Any, steps: Any, room: _Room, i: int, out: Any) -> None:
+def _fill_gradient(task: TurnTask, d: Design, block: Any, steps: Any, workspace: _Workspace, i: int, out: Any) -> None:
     """Fill `out` (v,) with the derivatives of peak i. steps: derived numbers (v, rows, 1) with imaginary steps."""
-    cuts, tops = room.cuts, room.tops
+    cuts, tops = workspace.cuts, workspace.tops
     s, pin = tops.segment[i], tops.pin[i]
     probe = angle_within(cuts.angle[s], cuts.angle[s + 1])
-    _, outward = enter(d, block, 0, probe, task.loads, task.watch, room.piece, room.shift)
-    segment = Segment(block, task.loads, outward, room.piece, room.shift)
+    _, outward = enter(d, block, 0, probe, task.loads, task.watch, workspace.piece, workspace.shift)
+    segment = Segment(block, task.loads, outward, workspace.piece, workspace.shift)
     sides = sides_of(probe, d, segment, task.rubbing)
     # A breakpoint at the end of the last segment lies a turn ahead of its list entry.
     angle = tops.angle[i] if pin < 0 or pin == s else cuts.angle[s + 1]
     sine, cosine = math.sin(angle), math.cos(angle)
     for v in range(out.shape[0]):
-        stepped = Segment(steps[v], task.loads, outward, room.piece, room.shift)
+        stepped = Segment(steps[v], task.loads, outward, workspace.piece, workspace.shift)
         z = design_at(stepped.block, 0)
         slip = 0.0
         if pin >= 0:
@@ -344,7 +356,7 @@ def find_in_turns(
     cuts = Cuts(np.empty(capacity), np.empty(capacity, np.int64), np.empty(capacity), np.empty(capacity, np.int64))
     tops = _Tops(np.empty(listed), np.empty(listed), np.empty(listed, np.int64), np.empty(listed, np.int64))
     samples = task.angles + 8 + 5 * capacity
-    room = _Room(
+    workspace = _Workspace(
         cuts,
         np.zeros(loads.kind.shape[0], np.int64),
         np.zeros(loads.kind.shape[0]),
@@ -366,12 +378,12 @@ def find_in_turns(
             continue
         count = cut_cycle(d, block, 0, loads, task.watch, cuts)
         if task.rubbing:
-            count = cut_contacts(d, block, loads, task.watch, cuts, count, room.piece, room.shift)
+            count = cut_contacts(d, block, loads, task.watch, cuts, count, workspace.piece, workspace.shift)
         cuts.angle[count] = cuts.angle[0] + _TURN
-        highest = _sample(task, d, block, count, room)  # for a single peak, low segments need nothing more
+        highest = _sample(task, d, block, count, workspace)  # for a single peak, low segments need nothing more
         floor = _HOPELESS * highest if listed == 1 else -1.0
-        peaks, best, best_at, best_segment = _inner_peaks(task, d, block, count, floor, room)
-        peaks = _breakpoint_peaks(count, room, peaks)
+        peaks, best, best_at, best_segment = _inner_peaks(task, d, block, count, floor, workspace)
+        peaks = _breakpoint_peaks(count, workspace, peaks)
         if peaks == 0 and best_segment >= 0:  # a constant curve
             peaks = _insert(tops, peaks, best, best_at, best_segment, -1)
         for i in range(listed):
@@ -384,4 +396,4 @@ def find_in_turns(
             turned = tops.angle[i] - _TURN * math.floor(tops.angle[i] / _TURN)
             peak_angles[n, i] = turned if turned < _TURN else 0.0  # rounding, for an angle just below zero
             if nv:
-                _fill_gradient(task, d, block, steps[n * nv : (n + 1) * nv], room, i, gradients[n, i])
+                _fill_gradient(task, d, block, steps[n * nv : (n + 1) * nv], workspace, i, gradients[n, i])

@@ -51,11 +51,11 @@ def numbers_section(subject: Subject) -> Section:
     columns, absent = _columns_of_machine(subject)
     lengths = _dimensions_with_tolerance(subject)
     at_bound = {column.key for column in columns if column.key.startswith("slack_") and _active(subject, column)}
-    shown_row = without_noise(subject.row)
+    row_without_noise = without_noise(subject.row)
     rows = tuple(
         (
             column.title,
-            lengths.get(column.key, "0" if column.key in at_bound else rounded(shown_row[column.key])),
+            lengths.get(column.key, "0" if column.key in at_bound else rounded(row_without_noise[column.key])),
             unit_text(column.unit),
             as_stored(subject.row[column.key]),
             column.key,
