@@ -19,7 +19,7 @@ from numpy.polynomial import legendre
 from ..arrays import Array, Mask
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single import single
+from ..linkage.single_linkage import single
 from ..machine.arrangement import require_one_cylinder
 from ..machine.mechanism import Mechanism
 from ..machine.two_turns import cycle_turns

@@ -182,7 +182,7 @@ def test_a_worker_that_is_gone_does_not_look_alive_when_the_clock_was_set(
 def test_jumps_are_told_from_delays_and_from_sleep() -> None:
     here = 100.0
     jumps = Jumps(lambda: here)
-    assert jumps.is_settled(5000.0)
+    assert jumps.is_steady(5000.0)
     for passed, there, settled in (
         (10.0, 5010.0, True),
         (0.5, 5010.5 + 0.9 * JUMP, True),  # a slow answer
@@ -193,4 +193,4 @@ def test_jumps_are_told_from_delays_and_from_sleep() -> None:
         (0.5, 8612.0 + SETTLING - 2.0 * JUMP, False),
     ):
         here += passed
-        assert jumps.is_settled(there) is settled, there
+        assert jumps.is_steady(there) is settled, there

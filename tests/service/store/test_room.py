@@ -119,8 +119,8 @@ def test_nothing_is_claimed_on_a_disk_without_room_though_the_claim_would_fit(
 def test_claims_settle_after_a_full_disk_as_after_a_jump() -> None:
     here = 100.0
     jumps = Jumps(lambda: here)
-    assert not jumps.is_settled(5000.0, last_full=here - 0.9 * SETTLING)
-    assert jumps.is_settled(5000.0, last_full=here - SETTLING)
+    assert not jumps.is_steady(5000.0, last_full=here - 0.9 * SETTLING)
+    assert jumps.is_steady(5000.0, last_full=here - SETTLING)
 
 
 def test_time_without_room_does_not_count_as_time_of_the_search() -> None:
