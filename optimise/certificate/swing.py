@@ -24,7 +24,7 @@ from ...model.signals.signals import design_motion
 from ...model.swing.ends import ends_of, start_column
 from ...model.swing.law import code_of, corners, way_at
 from ...model.swing.peaks import least_drives, swing_peaks
-from ...model.swing.push import bend, free_pin
+from ...model.swing.slider_pin_force import bend, free_pin
 from ...model.swing.swing import Swing, slowly
 from ...model.swing.swing_states import DRIVE, ERROR, POWER
 from ...objectives.swing_quantity import SwingForm, SwingLeast, SwingPeak

@@ -2,11 +2,11 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import {
-  asked,
   nearest,
   placed,
   wishesFrom,
   wishQuery,
+  wishRequest,
   wrongIn,
 } from "../../../../../service/page/static/front/wishes.js";
 import { draws } from "../draws.mjs";
@@ -51,7 +51,7 @@ test("what an address cannot mean is left out", () => {
 
 test("the service is asked in its words, with a design only where one is spoken of", () => {
   assert.deepEqual(
-    asked(
+    wishRequest(
       wishes(
         { time_ratio: { kind: "value", value: 1.25 }, peak_torque: { kind: "limit", value: 110 } },
         3,
@@ -60,7 +60,7 @@ test("the service is asked in its words, with a design only where one is spoken 
     ),
     { at: { time_ratio: "1.25", peak_torque: "may worsen to 110 N m" }, design: null },
   );
-  assert.deepEqual(asked(wishes({ time_ratio: { kind: "improve" } }, 3), OBJECTIVES), {
+  assert.deepEqual(wishRequest(wishes({ time_ratio: { kind: "improve" } }, 3), OBJECTIVES), {
     at: { time_ratio: "improve" },
     design: 3,
   });
