@@ -171,7 +171,7 @@ class Crankshaft(NamedTuple):
     turns: int
 
 
-class _Room(NamedTuple):
+class _Workspace(NamedTuple):
     """Work space. real, stepped: one cylinder's numbers. piece, shift, sides: of the members, in a segment."""
 
     real: Table
@@ -194,7 +194,9 @@ def _fill_numbers(source: Any, ratio: Any, slope: Any, axes: Axes, k: int, out: 
 
 
 @analytic
-def _enter_segment(curve: ShaftCurve, shaft: Crankshaft, items: Evaluations, p: int, room: _Room, out: Any) -> None:
+def _enter_segment(
+    curve: ShaftCurve, shaft: Crankshaft, items: Evaluations, p: int, space: _Workspace, out: Any
+) -> None:
     """Fix strokes, pieces of loads and signs of the members in the segment of evaluation p."""
     watch = CycleWindow(0, 0.0, 1.0, False)
     ratio, slope, _, _ = speed_ratio_at(items.probe[p], shaft.pace)
@@ -202,26 +204,26 @@ def _enter_segment(curve: ShaftCurve, shaft: Crankshaft, items: Evaluations, p: 
         k = curve.members[i]
         half = items.half[p, k]
         loads = shaft.first if half == 0 else shaft.second
-        _fill_numbers(shaft.blocks.plain[items.row[p] * shaft.turns + half], ratio, slope, shaft.axes, k, room.real)
-        d, local = design_at(room.real, 0), items.probe[p] + shaft.axes.lead[k]
-        _, outward = enter(d, room.real, 0, local, loads, watch, room.piece[i], room.shift[i])
-        segment = Segment(room.real, loads, outward, room.piece[i], room.shift[i])
+        _fill_numbers(shaft.blocks.plain[items.row[p] * shaft.turns + half], ratio, slope, shaft.axes, k, space.real)
+        d, local = design_at(space.real, 0), items.probe[p] + shaft.axes.lead[k]
+        _, outward = enter(d, space.real, 0, local, loads, watch, space.piece[i], space.shift[i])
+        segment = Segment(space.real, loads, outward, space.piece[i], space.shift[i])
         signs = sides_of(local, d, segment, curve.rubbing)
-        room.sides[i, 0], room.sides[i, 1], room.sides[i, 2] = signs.turn, signs.slide, signs.swing
-        room.sides[i, 3], room.sides[i, 4] = signs.press, signs.grip
+        space.sides[i, 0], space.sides[i, 1], space.sides[i, 2] = signs.turn, signs.slide, signs.swing
+        space.sides[i, 3], space.sides[i, 4] = signs.press, signs.grip
         out.outward[p, i] = 1 if outward else 0
 
 
 @analytic
 def _sum_members(
-    curve: ShaftCurve, shaft: Crankshaft, items: Evaluations, p: int, place: Any, room: _Room, out: Any
+    curve: ShaftCurve, shaft: Crankshaft, items: Evaluations, p: int, place: Any, space: _Workspace, out: Any
 ) -> Any:
     """Return the curve and its size at one angle of evaluation p.
 
     place: shaft angle, its imaginary step, p with three derivatives there, and the number of the stepped design.
     """
     theta, step, (p_0, p_1, p_2, p_3), v = place
-    axes, sides, numbers = shaft.axes, room.sides, shaft.blocks.stepped.shape[0] // max(1, shaft.blocks.plain.shape[0])
+    axes, sides, numbers = shaft.axes, space.sides, shaft.blocks.stepped.shape[0] // max(1, shaft.blocks.plain.shape[0])
     ratio, slope, bend = complex(p_0, step * p_1), complex(p_1, step * p_2), complex(p_2, step * p_3)
     sum_x, sum_y = 0j, 0j
     size = 0.0
@@ -230,13 +232,13 @@ def _sum_members(
         half = items.half[p, k]
         loads = shaft.first if half == 0 else shaft.second
         source = shaft.blocks.stepped[(items.row[p] * shaft.turns + half) * numbers + v]
-        _fill_numbers(source, ratio, slope, axes, k, room.stepped)
+        _fill_numbers(source, ratio, slope, axes, k, space.stepped)
         speed = source[_ROW_SPEED, 0]
         rate = speed * speed * (slope * slope + ratio * bend)
-        z, local = design_at(room.stepped, 0), theta + axes.lead[k]
+        z, local = design_at(space.stepped, 0), theta + axes.lead[k]
         sine, cosine = math.sin(local), math.cos(local)
         s, c = complex(sine, cosine * step), complex(cosine, -sine * step)
-        segment = Segment(room.stepped, loads, out.outward[p, i] == 1, room.piece[i], room.shift[i])
+        segment = Segment(space.stepped, loads, out.outward[p, i] == 1, space.piece[i], space.shift[i])
         signs = Sides(sides[i, 0], sides[i, 1], sides[i, 2], sides[i, 3], sides[i, 4])
         x, y = _components(curve.kind, s, c, design_motion(s, c, z), z, signs, (complex(local, step), segment), rate)
         if curve.kind in (_SHAKING_FORCE, _ROCKING_COUPLE):
@@ -253,15 +255,17 @@ def fill_curves(curve: ShaftCurve, shaft: Crankshaft, items: Evaluations, out: C
     """Fill `out` with a curve of designs, added up over its members."""
     rows, count, loads = shaft.blocks.plain.shape[1], curve.members.shape[0], shaft.first.kind.shape[0]
     real, stepped = np.empty((rows, 1)), np.empty((rows, 1), np.complex128)
-    room = _Room(real, stepped, np.zeros((count, loads), np.int64), np.zeros((count, loads)), np.zeros((count, 5)))
+    space = _Workspace(
+        real, stepped, np.zeros((count, loads), np.int64), np.zeros((count, loads)), np.zeros((count, 5))
+    )
     for p in range(items.row.shape[0]):
-        _enter_segment(curve, shaft, items, p, room, out)
+        _enter_segment(curve, shaft, items, p, space, out)
         for a in range(items.angle.shape[1]):
             theta = items.angle[p, a]
             ratios = speed_ratio_at(theta, shaft.pace)
             for v in range(out.curve.shape[2] - 1):
                 step = STEP if v == 0 else STEP * items.rate[p, v - 1]
-                value, size = _sum_members(curve, shaft, items, p, (theta, step, ratios, v), room, out)
+                value, size = _sum_members(curve, shaft, items, p, (theta, step, ratios, v), space, out)
                 out.curve[p, a, 1 + v] = value.imag / STEP
                 if v == 0:
                     out.curve[p, a, 0], out.size[p, a] = value.real, size

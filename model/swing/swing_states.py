@@ -129,7 +129,7 @@ class Points(NamedTuple):
     back: Row
 
 
-class _Room(NamedTuple):
+class _Workspace(NamedTuple):
     """Work space: a design's numbers and stepped ones, pieces and shifts of its loads."""
 
     block: Table
@@ -166,7 +166,7 @@ def _probe_angle(path: Path, d: Any, s: Any, start: Any, end: Any) -> Any:
 
 @analytic
 def _drive(
-    path: Path, z: Any, place: Any, probe_angle: float, turning: float, loads: Loads, room: _Room
+    path: Path, z: Any, place: Any, probe_angle: float, turning: float, loads: Loads, space: _Workspace
 ) -> tuple[Any, Any, Any, Any]:
     """Return drive, power, error of the driven side and guide force.
 
@@ -174,11 +174,11 @@ def _drive(
     """
     theta, moved, zs, zc, m, speed = place
     drive, guide, power = 0j, 0j, 0j
-    d, angle, outward = design_at(room.block, 0), complex(theta, moved), False
+    d, angle, outward = design_at(space.block, 0), complex(theta, moved), False
     if path.forces:
         watch = CycleWindow(0, 0.0, 1.0, False, False)
-        _, outward = enter(d, room.block, 0, probe_angle, loads, watch, room.piece, room.shift)
-    segment = Segment(room.stepped, loads, outward, room.piece, room.shift)
+        _, outward = enter(d, space.block, 0, probe_angle, loads, watch, space.piece, space.shift)
+    segment = Segment(space.stepped, loads, outward, space.piece, space.shift)
     load = load_on_slider(m, z, angle, segment) if path.forces else 0j
     j = influences(zs, zc, m, z.l)
     if path.slider:
@@ -192,7 +192,9 @@ def _drive(
         error = off * inverse(magnitude(m.x_1))
     else:
         if path.forces:
-            sides = sides_of(probe_angle, d, Segment(room.block, loads, outward, room.piece, room.shift), path.rubbing)
+            sides = sides_of(
+                probe_angle, d, Segment(space.block, loads, outward, space.piece, space.shift), path.rubbing
+            )
             f = joint_forces(zs, zc, m, z, load, sides)
             drive = torque_without_crank_loads(f.torque, angle, turning, segment)
             guide, power = f.guide, drive * speed
@@ -201,12 +203,12 @@ def _drive(
 
 
 @analytic
-def _fill_state(path: Path, points: Points, p: int, ends: Any, loads: Loads, room: _Room, out: Any) -> None:
+def _fill_state(path: Path, points: Points, p: int, ends: Any, loads: Loads, space: _Workspace, out: Any) -> None:
     """Fill row p of `out` with the state at point p."""
     begin, ending = ends[points.stepped[p], 0], ends[points.stepped[p], 1]
     start, end = begin.real, ending.real
     turning = (1.0 if end > start else -1.0) * (1.0 - 2.0 * points.back[p])
-    d, z = design_at(room.block, 0), design_at(room.stepped, 0)
+    d, z = design_at(space.block, 0), design_at(space.stepped, 0)
     s, s_1, s_2, _ = _way_of(path, points.probe[p], points.probe[p], points.back[p])
     probe_angle = _probe_angle(path, d, s, start, end)
     w, w_1, w_2, w_3 = _way_of(path, points.share[p], points.probe[p], points.back[p])
@@ -237,10 +239,10 @@ def _fill_state(path: Path, points: Points, p: int, ends: Any, loads: Loads, roo
     if not path.slider:
         fast = (end - start) * s_1 * path.per_time
         faster = (end - start) * s_2 * (path.per_time * path.per_time)
-    room.block[_SPEED, 0], room.block[_ACCELERATION, 0] = turning * max(abs(fast), _STILL), faster
-    room.stepped[_SPEED, 0], room.stepped[_ACCELERATION, 0] = speed, rise
-    z = design_at(room.stepped, 0)
-    drive, power, error, guide = _drive(path, z, (theta, moved, zs, zc, m, speed), probe_angle, turning, loads, room)
+    space.block[_SPEED, 0], space.block[_ACCELERATION, 0] = turning * max(abs(fast), _STILL), faster
+    space.stepped[_SPEED, 0], space.stepped[_ACCELERATION, 0] = speed, rise
+    z = design_at(space.stepped, 0)
+    drive, power, error, guide = _drive(path, z, (theta, moved, zs, zc, m, speed), probe_angle, turning, loads, space)
     out[p, DRIVE], out[p, POWER], out[p, ERROR], out[p, GUIDE] = drive, power, error, guide
     out[p, PLACE], out[p, PACE], out[p, ANGLE], out[p, RATE] = m.x, m.x_1, complex(theta, moved), rate
 
@@ -251,7 +253,7 @@ def _states(
 ) -> None:
     rows, count = blocks.shape[1], loads.kind.shape[0]
     block, stepped = np.empty((rows, 1)), np.empty((rows, 1), np.complex128)
-    room = _Room(block, stepped, np.zeros(count, np.int64), np.zeros(count))
+    space = _Workspace(block, stepped, np.zeros(count, np.int64), np.zeros(count))
     last, last_step = -1, -1
     for p in range(points.share.shape[0]):
         if points.design[p] != last:
@@ -260,7 +262,7 @@ def _states(
         if points.stepped[p] != last_step:
             last_step = points.stepped[p]
             stepped[:, :] = steps[last_step]
-        _fill_state(path, points, p, ends, loads, room, out)
+        _fill_state(path, points, p, ends, loads, space, out)
 
 
 def states(blocks: Array, steps: Complexes, loads: Loads, path: Path, points: Points, ends: Complexes) -> Complexes:

@@ -93,11 +93,13 @@ class SwingBoxes:
 
         probe: fractions on the same side of a corner of the law. back: 1 on the return stroke.
         """
-        forth = 1.0 - 2.0 * back
+        direction = 1.0 - 2.0 * back
         way, way_1, way_2, _ = way_at(code_of(self.swing.law), self.swing.table, share, probe)
-        return self.at_way(numbers, np.where(back > 0.5, 1.0 - way, way), forth, forth * way_1, forth * way_2)
+        return self.at_way(
+            numbers, np.where(back > 0.5, 1.0 - way, way), direction, direction * way_1, direction * way_2
+        )
 
-    def at_way(self, numbers: Numbers, way: Array, forth: Any = 1.0, way_1: Any = 0.0, way_2: Any = 0.0) -> _State:
+    def at_way(self, numbers: Numbers, way: Array, direction: Any = 1.0, way_1: Any = 0.0, way_2: Any = 0.0) -> _State:
         """Return the state at fractions of the travel (n, p), with their derivatives by the fraction of the time."""
         d, block = self.machine.design(numbers)
         ends = self.ends(numbers, d)
@@ -115,7 +117,7 @@ class SwingBoxes:
             speed = speed / m.x_1
             rise = (rise - m.x_2 * speed * speed) / m.x_1
         d = d._replace(speed=speed, acceleration=rise) if self.per_time else d._replace(speed=0.0, acceleration=0.0)
-        along = sign_of(travel) * forth
+        along = sign_of(travel) * direction
         outward = m.x_1 * (along * d.branch)
         turning = along
         if self.slider:

@@ -16,7 +16,7 @@ _AMPLE = 1e3  # times the greatest torque of the loads: as good as any
 _ROUNDING = 1e-9
 
 
-def require_room(turn: LawTurn, limits: LawLimits) -> None:
+def require_consistent_limits(turn: LawTurn, limits: LawLimits) -> None:
     """Raise `InputError` where the least crank speed exceeds what the slider's speed allows."""
     low, high = limits.energies(turn.angle, turn.terms.inertia, turn.terms.travel)
     worst = np.unravel_index(int(np.argmax(low - high)), low.shape)
@@ -54,8 +54,8 @@ def unreachable(turn: LawTurn, limits: LawLimits) -> InputError:
             )
     if request.torque_limit is not None:
         solved = programme.solve("peak torque", needs)
-        by_reach = reachable.least_torque(request.torque_limit, longest, 0.0)
-        least = max(by_reach, 0.0 if solved is None else solved.value)
+        by_reachable = reachable.least_torque(request.torque_limit, longest, 0.0)
+        least = max(by_reachable, 0.0 if solved is None else solved.value)
         if least > request.torque_limit * (1.0 - _ROUNDING):
             return InputError(
                 f"a law within these limits needs a torque of at least {least:.6g} N m; {limits.name('torque_limit')} "

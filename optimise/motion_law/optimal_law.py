@@ -18,7 +18,7 @@ from ...model.motion_law.law_turn import LawTurn
 from ...model.motion_law.motion_law import MotionLaw
 from ...model.transient.equation import TURN
 from .bound import lower_bound
-from .contradictions import require_room, unreachable
+from .contradictions import require_consistent_limits, unreachable
 from .law_limits import LawLimits, LawRequest, resolve_limits
 from .reachable import Reachable
 from .stage import Stage, solve_stage
@@ -26,7 +26,7 @@ from .stage import Stage, solve_stage
 GAP = 1e-3
 """Greatest gap between a law and the bound, as a share, at which the law counts as proven."""
 _ROUNDS = 16
-KEPT = 1e-6
+LIMIT_TOLERANCE = 1e-6
 """Greatest share by which a limit may be exceeded."""
 _STUCK = 0.9  # of the gap: finer cells that leave more of it show that it is the relaxation's
 _ROUNDING = 1e-9
@@ -83,14 +83,14 @@ def optimal_law(
     limits = resolve_limits(mechanism, linkage, request, names)
     at_speed = replace(mechanism, speed=mechanism.direction * TURN / limits.cycle_time)
     turn = LawTurn(at_speed, linkage, limits.marks)
-    require_room(turn, limits)
+    require_consistent_limits(turn, limits)
     best, bound = None, 0.0
     for count in range(_ROUNDS):
         stage = solve_stage(turn, limits, None if best is None else best.law)
         if stage is not None:
             dual = max(lower_bound(turn, limits, *proof) for proof in stage.proofs)
             bound = max(bound, _bound(dual, stage, limits))
-            if stage.exceeded <= KEPT and not stage.coarse.any():
+            if stage.exceeded <= LIMIT_TOLERANCE and not stage.coarse.any():
                 last = math.inf if best is None else best.gap
                 best = OptimalLaw(stage.law, limits, stage.value, bound, stage.relaxed, count, stage.exceeded)
                 enough = best.proven or (best.relaxed and best.gap > _STUCK * last)
@@ -115,5 +115,5 @@ def _bound(dual: float, stage: Stage, limits: LawLimits) -> float:
         return max(dual, reachable.within(request.torque_limit or math.inf).shortest)
     least = limits.cycle_time * (1.0 - _ROUNDING) if request.timing == "equal" else 0.0
     guess = float(np.abs(stage.law.torque).max())
-    by_reach = reachable.least_torque(guess, limits.cycle_time * (1.0 + _ROUNDING), least) if guess > 0.0 else 0.0
-    return max(dual, by_reach)
+    by_reachable = reachable.least_torque(guess, limits.cycle_time * (1.0 + _ROUNDING), least) if guess > 0.0 else 0.0
+    return max(dual, by_reachable)

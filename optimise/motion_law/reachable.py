@@ -27,7 +27,7 @@ _ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
-class Reach:
+class ReachableLaws:
     """Laws within a torque: K of the slowest and the fastest at the nodes, J, (n, 16), and their times of a turn, s.
 
     exists: whether there is any law.
@@ -41,7 +41,7 @@ class Reach:
 
 
 class Reachable:
-    """Reach of the laws of a turn within limits of speed."""
+    """What the laws of a turn can reach within limits of speed."""
 
     def __init__(self, turn: LawTurn, limits: LawLimits) -> None:
         self.turn = turn
@@ -52,7 +52,7 @@ class Reachable:
         self.taken = before[cell] + turn.integral_of(turn.terms.load, cell, place)
         self.passed = turn.passed[cell] + place * turn.width[cell]
 
-    def within(self, torque: float) -> Reach:
+    def within(self, torque: float) -> ReachableLaws:
         """Return the laws within a torque, N m."""
         loss = self._three_turns(torque * self.passed + self.taken, torque * TURN + self.turn.work)
         gain = self._three_turns(torque * self.passed - self.taken, torque * TURN - self.turn.work)
@@ -60,7 +60,7 @@ class Reachable:
         within = bool(np.all(slowest <= self.high * (1.0 + _ROUNDING)))
         fastest = np.maximum(fastest, slowest)  # where no law exists, it may be below
         closes = abs(self.turn.work) <= torque * TURN * (1.0 + _ROUNDING)
-        return Reach(slowest, fastest, self._time(slowest), self._time(fastest), within and closes)
+        return ReachableLaws(slowest, fastest, self._time(slowest), self._time(fastest), within and closes)
 
     def least_torque(self, torque: float, longest: float, least: float) -> float:
         """Return the torque, N m, below which no law has a turn of at most `longest` and at least `least`, s.

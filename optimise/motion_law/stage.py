@@ -23,10 +23,10 @@ from .law_limits import LawLimits
 from .programme import Aim, Margins, Multipliers, Programme, Requirement, Solution
 
 _RENEWALS = 20
-_SETTLED = 1e-6
+_CONVERGED = 1e-6
 _TIE = 1e-4  # of the peak torque
 _EQUAL = 1e-7  # of the cycle time
-_KEPT = 2e-7  # of a limit
+_MARGIN = 2e-7  # of a limit
 _ROUNDS = 8
 _COARSE = 0.01  # of a limit, by which it is exceeded within a cell: then the cell is too coarse for margins ...
 _UNTIMED = 1e-5  # ... or if its time is wrong by more of the cycle time
@@ -56,7 +56,7 @@ def solve_stage(turn: LawTurn, limits: LawLimits, guess: MotionLaw | None) -> St
     Between the angles of the programme a law may exceed limits, and its time is not that of Simpson's rule. Both are
     measured, and the programme is solved again with margins.
     """
-    margins, target = Margins(*np.full((3, len(turn.width)), _KEPT)), limits.cycle_time
+    margins, target = Margins(*np.full((3, len(turn.width)), _MARGIN)), limits.cycle_time
     for _ in range(_ROUNDS):
         search = _Search(Programme(turn, limits, margins), guess, target)
         answer = search.best()
@@ -66,7 +66,7 @@ def solve_stage(turn: LawTurn, limits: LawLimits, guess: MotionLaw | None) -> St
         found = _excess(law, limits)
         excess = np.max([found.least, found.greatest, found.acceleration], axis=0)
         coarse = (excess > _COARSE) | (np.abs(search.time_errors(law)) > _UNTIMED * limits.cycle_time)
-        if coarse.any() or (excess.max() <= _KEPT and abs(missing) <= _EQUAL * limits.cycle_time):
+        if coarse.any() or (excess.max() <= _MARGIN and abs(missing) <= _EQUAL * limits.cycle_time):
             break
         guess, target = law, target + missing
         parts = ((getattr(margins, name), getattr(found, name)) for name in ("least", "greatest", "acceleration"))
@@ -172,9 +172,9 @@ class _Search:
             solution = self.programme.solve(aim, least)
             if solution is None:
                 break
-            settled = last is not None and abs(last.value - solution.value) <= _SETTLED * abs(solution.value)
+            converged = last is not None and abs(last.value - solution.value) <= _CONVERGED * abs(solution.value)
             last, reference = solution, solution.energies
-            if settled:
+            if converged:
                 break
         if last is not None and prove:
             self.proofs.append((aim, least, last.multipliers))

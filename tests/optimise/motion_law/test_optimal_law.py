@@ -21,7 +21,7 @@ from slidercrank.model.motion_law.law_turn import LawTurn
 from slidercrank.model.motion_law.motion_law import MotionLaw
 from slidercrank.model.transient.speed_profile_cycle import speed_profile_cycle
 from slidercrank.optimise.motion_law.law_limits import LawRequest, resolve_limits
-from slidercrank.optimise.motion_law.optimal_law import GAP, KEPT, OptimalLaw, optimal_law
+from slidercrank.optimise.motion_law.optimal_law import GAP, LIMIT_TOLERANCE, OptimalLaw, optimal_law
 from slidercrank.optimise.motion_law.reachable import Reachable
 from slidercrank.optimise.motion_law.words import LawObjective
 from tests.model.law_cases import random_case
@@ -49,20 +49,20 @@ def require_within_limits(found: OptimalLaw) -> None:
     angle = np.linspace(0.0, TURN, 20_000)
     speed, acceleration = law.speed(angle), law.acceleration(angle)
     curves = cycle(law.turn.machine, law.turn.linkage, angle, speed=speed, acceleration=acceleration)
-    assert np.all(speed * law.turn.way >= limits.least_speed * (1.0 - KEPT))
-    assert np.all(speed * law.turn.way <= limits.greatest_speed * (1.0 + KEPT))
+    assert np.all(speed * law.turn.way >= limits.least_speed * (1.0 - LIMIT_TOLERANCE))
+    assert np.all(speed * law.turn.way <= limits.greatest_speed * (1.0 + LIMIT_TOLERANCE))
     if request.torque_limit is not None:
-        assert np.abs(curves.torque).max() <= request.torque_limit * (1.0 + KEPT)
+        assert np.abs(curves.torque).max() <= request.torque_limit * (1.0 + LIMIT_TOLERANCE)
     if request.slider_speed is not None:
-        assert np.abs(curves.slider_velocity).max() <= request.slider_speed * (1.0 + KEPT)
+        assert np.abs(curves.slider_velocity).max() <= request.slider_speed * (1.0 + LIMIT_TOLERANCE)
     if request.crank_acceleration is not None:
-        assert np.abs(acceleration).max() <= request.crank_acceleration * (1.0 + KEPT)
+        assert np.abs(acceleration).max() <= request.crank_acceleration * (1.0 + LIMIT_TOLERANCE)
     if request.window is not None and request.window_speed is not None:
         dead = law.turn.linkage.dead_centres[1]
         towards = curves.slider_velocity * law.turn.linkage.sign > 0.0
         inside = towards & (np.abs(curves.slider_position - dead) <= request.window * (1.0 - 1e-9))
         assert inside.sum() > 100
-        assert np.abs(curves.slider_velocity[inside]).max() <= request.window_speed * (1.0 + KEPT)
+        assert np.abs(curves.slider_velocity[inside]).max() <= request.window_speed * (1.0 + LIMIT_TOLERANCE)
 
 
 @pytest.mark.slow
