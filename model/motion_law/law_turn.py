@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.polynomial import legendre
 
-from ..arrays import Array, Mask
+from ..arrays import Array, IntArray, Mask
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.single_linkage import single
@@ -83,9 +83,12 @@ class LawTurn:
         slope, load = 2.0 * self.way * turn.terms.spin, self.way * turn.terms.static
         self.terms = LawTerms(turn.terms.inertia, slope, load, *self.slider(turn.angle))
         cells = np.arange(len(turn.width))
-        ends = [[values_at(values, cells, np.full(len(cells), end)) for end in (0.0, 1.0)] for values in (slope, load)]
+
+        def at_ends(values: Array) -> Array:
+            return np.stack([values_at(values, cells, np.full(len(cells), end)) for end in (0.0, 1.0)])
+
         angles = np.stack([turn.low, turn.low + turn.width])
-        self.end_terms = LawTerms(self.inertia_at(angles), *map(np.stack, ends), *self.slider(angles))
+        self.end_terms = LawTerms(self.inertia_at(angles), at_ends(slope), at_ends(load), *self.slider(angles))
 
     def finer(self, cells: Mask) -> LawTurn:
         """Return the turn with chosen cells (n,) halved."""
@@ -97,7 +100,7 @@ class LawTurn:
     @property
     def weights(self) -> Array:
         """Weights (n, 16) of an integral over phi."""
-        return self.width[:, None] * self._turn.weights
+        return np.asarray(self.width[:, None] * self._turn.weights)
 
     @property
     def low(self) -> Array:
@@ -116,24 +119,24 @@ class LawTurn:
 
     def inertia_at(self, crank_angle: Array) -> Array:
         """Return J, kg m^2, at crank angles, rad."""
-        return self._turn.equation.inertia(crank_angle)
+        return np.asarray(self._turn.equation.inertia(crank_angle))
 
-    def locate(self, crank_angle: Array) -> tuple[Array, Array]:
+    def locate(self, crank_angle: Array) -> tuple[IntArray, Array]:
         """Return the cells (n,) with crank angles, rad, and the places within them, from 0 to 1."""
         phi = np.mod(self.way * (crank_angle - self.start), TURN)
         cell = np.clip(np.searchsorted(self.passed, phi, side="right") - 1, 0, len(self.width) - 1)
-        return cell, (phi - self.passed[cell]) / self.width[cell]
+        return np.asarray(cell), (phi - self.passed[cell]) / self.width[cell]
 
     def integrals(self, values: Array) -> Array:
         """Return integrals over phi (n, 16) from the start of each cell to its nodes of values there."""
         return np.asarray(self.width[:, None] * (values @ self._turn.sums.T))
 
-    def integral_of(self, values: Array, cell: Array, place: Array) -> Array:
+    def integral_of(self, values: Array, cell: IntArray, place: Array) -> Array:
         """Return integrals over phi from the start of cells (n,) to places in them of values at all nodes."""
         return np.asarray(self.width[cell] * np.einsum("ni,ni->n", integrals_to(place), values[cell]))
 
 
-def values_at(values: Array, cell: Array, place: Array) -> Array:
+def values_at(values: Array, cell: IntArray, place: Array) -> Array:
     """Return values (n,) at places from 0 to 1 in cells, from those at all nodes (cells, 16)."""
     basis = legendre.legvander(2.0 * place - 1.0, _NODES - 1) @ _SERIES
     return np.asarray(np.einsum("ni,ni->n", basis, values[cell]))

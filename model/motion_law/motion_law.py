@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, IntArray
 from ..transient.equation import TURN
 from ..transient.speed_profile_cycle import CrankMotion
 from .law_turn import LawTurn, values_at
@@ -133,10 +133,10 @@ class MotionLaw:
         lasts = np.sum(self.turn.weights * self.node_slowness, axis=1)
         return np.concatenate([[0.0], np.cumsum(lasts)[:-1]])
 
-    def _torque(self, cell: Array, place: Array) -> Array:
+    def _torque(self, cell: IntArray, place: Array) -> Array:
         return np.asarray(self.torque[cell] + (np.roll(self.torque, -1) - self.torque)[cell] * place)
 
-    def _energy(self, cell: Array, place: Array) -> Array:
+    def _energy(self, cell: IntArray, place: Array) -> Array:
         first, rise = self.torque[cell], (np.roll(self.torque, -1) - self.torque)[cell]
         gain = self.turn.width[cell] * place * (first + 0.5 * rise * place)
         return np.asarray(self.energies[cell] + gain - self.turn.integral_of(self.turn.terms.load, cell, place))

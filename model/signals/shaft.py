@@ -83,10 +83,10 @@ class Shaft:
         for part in self._parts:
             raw, loads = signal_inputs(part, signal)
             numbers = numbers_of(part, designs, limit=len(raw), gradients=gradients)
-            blocks, steps = derived(raw, loads, numbers.columns, numbers.values, steps=gradients)
+            numbers_block, steps = derived(raw, loads, numbers.columns, numbers.values, steps=gradients)
             self._loads.append(loads)
-            plain.append(blocks)
-            cylinder = blocks[:, None, :, 0].astype(np.complex128)
+            plain.append(numbers_block)
+            cylinder = numbers_block[:, None, :, 0].astype(np.complex128)
             if gradients:
                 rates = steps.imag.reshape(len(designs), len(numbers.columns), -1)
                 if numbers.slopes is not None:

@@ -158,7 +158,7 @@ def _is_listed(angles: Any, count: Any, theta: Any) -> bool:
 @analytic
 def _insert(tops: _Tops, count: int, value: float, theta: float, s: int, p: int) -> int:
     """Insert a peak into the lists, highest first; if they are full, drop the lowest. Return their new length."""
-    capacity = tops.value.shape[0]
+    capacity: int = tops.value.shape[0]
     if count == capacity and value <= tops.value[capacity - 1]:
         return count
     i = min(count, capacity - 1)

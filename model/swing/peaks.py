@@ -112,7 +112,8 @@ def swing_peaks(
     limit: peaks returned per design.
     """
     find = partial(_peaks, state=state, limit=limit, gradients=gradients)
-    return _peaks_of_passing(mechanism, swing, designs, limit, gradients, find, forces=state != ERROR)
+    batch_of = partial(SwingBatch, mechanism, swing, slopes=gradients, forces=state != ERROR)
+    return _peaks_of_passing(mechanism, swing, designs, limit, gradients, find, batch_of)
 
 
 def least_drives(
@@ -134,7 +135,8 @@ def least_drives(
         toward = np.where(last > first, -1.0, 1.0) * (-1.0 if back else 1.0)
         return _maxima(many, (many.pieces(back=back),), DRIVE, limit, gradients, toward)
 
-    return _peaks_of_passing(mechanism, swing, designs, limit, gradients, find, slow=True)
+    batch_of = partial(SwingBatch, mechanism, swing, slopes=gradients, slow=True)
+    return _peaks_of_passing(mechanism, swing, designs, limit, gradients, find, batch_of)
 
 
 def holding_peaks(
@@ -144,7 +146,8 @@ def holding_peaks(
     unit_design = np.ones((1, 3 + len(mechanism.varying)))
     ways = 2 if SwingBatch(mechanism, swing, unit_design, slopes=False, slow=True, free=free).ways_differ else 1
     find = partial(_at_ends, gradients=gradients)
-    return _peaks_of_passing(mechanism, swing, designs, 2 * ways, gradients, find, slow=True, free=free)
+    batch_of = partial(SwingBatch, mechanism, swing, slopes=gradients, slow=True, free=free)
+    return _peaks_of_passing(mechanism, swing, designs, 2 * ways, gradients, find, batch_of)
 
 
 def _peaks_of_passing(
@@ -154,10 +157,9 @@ def _peaks_of_passing(
     limit: int,
     gradients: bool,
     find: Callable[[SwingBatch], Maxima],
-    **options: bool,
+    batch_of: Callable[[Array], SwingBatch],
 ) -> SwingPeaks:
-    """Return the peaks that `find` has of designs that can swing. options: those of `SwingBatch` besides slopes."""
-    batch_of = partial(SwingBatch, mechanism, swing, slopes=gradients, **options)
+    """Return the peaks that `find` has of designs that can swing."""
     designs = np.ascontiguousarray(designs, dtype=np.float64)
     n = len(designs)
     values, places = np.full((n, limit), -np.inf), np.full((n, limit), np.nan)

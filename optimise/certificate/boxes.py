@@ -212,7 +212,7 @@ class Boxes:
 def _curve_bound(value: Enclosure, low: Array, high: Array, *, least: bool) -> Array:
     """Return what no minimised peak, or with `least` no maximised least value, is below."""
     lowest, highest = value.ends(low, high)
-    return -highest.min(axis=1) if least else lowest.max(axis=1)
+    return np.asarray(-highest.min(axis=1) if least else lowest.max(axis=1))
 
 
 def _enclose_curves(

@@ -103,7 +103,8 @@ class BoxMachine:
         if self.loads.datum[k] == 0 and not isinstance(theta, Enclosure):
             return factor * np.interp(theta - _TURN * np.floor((theta - at[0]) / _TURN), at, force)
         counted = theta - block[DESIGN + LOAD_ROWS * k + 1, 0] if self.loads.datum[k] else theta
-        turns = counted - _TURN * np.floor((counted.centre - at[0]) / _TURN)
+        centre = counted.centre if isinstance(counted, Enclosure) else counted
+        turns = counted - _TURN * np.floor((centre - at[0]) / _TURN)
         # A turn before and one after: a box may reach beyond the ends of the table.
         # Where the table steps at its seam, the end of one turn and the start of the next are both sides of that.
         at = np.concatenate([at - _TURN, at, at + _TURN])

@@ -139,25 +139,30 @@ class SwingBoxes:
     def error(self, at: _State) -> Enclosure:
         """Return the error of the driven side, m at the slider or rad at the crank."""
         i = influences(at.sine, at.cosine, at.m, at.d.l)
+        error: Enclosure
         if not self.slider:
-            error: Enclosure = worst_case(i, at.d)
+            error = worst_case(i, at.d)
             return error
-        off = magnitude(i.crank) * at.d.crank_error + magnitude(i.rod) * at.d.rod_error
+        off: Enclosure = magnitude(i.crank) * at.d.crank_error + magnitude(i.rod) * at.d.rod_error
         off = off + magnitude(i.offset) * at.d.offset_error + self.swing.actuator_tolerance
-        return off / magnitude(at.m.x_1)
+        error = off / magnitude(at.m.x_1)
+        return error
 
     def angle(self, numbers: Numbers, way: Array) -> Enclosure:
         """Return the transmission angle of the driven side at fractions of the travel (n, p), rad."""
         at = self.at_way(numbers, way)
-        if self.slider:
-            return np.arcsin(magnitude(bend(at.sine, at.cosine, at.m)) / at.d.l)
-        return 0.5 * np.pi - np.arcsin(magnitude(at.m.l_sin) / at.d.l)
+        sine = magnitude(bend(at.sine, at.cosine, at.m) if self.slider else at.m.l_sin) / at.d.l
+        angle: Enclosure = np.arcsin(sine)
+        return angle if self.slider else 0.5 * np.pi - angle
 
     def opening(self, numbers: Numbers) -> Enclosure:
         """Return |e - r sin(theta)| / l - 1 at both ends (n, 2): the linkage closes where it is below zero."""
         d, _ = self.machine.design(numbers)
         ends = self.ends(numbers, d)
-        return reduce(side_by_side, (magnitude(d.e - d.r * angle.sin()) / d.l - 1.0 for angle in ends.angles))
+        opening: Enclosure = reduce(
+            side_by_side, (magnitude(d.e - d.r * angle.sin()) / d.l - 1.0 for angle in ends.angles)
+        )
+        return opening
 
 
 class SwingCurve:
@@ -232,13 +237,13 @@ class SwingCurve:
         state = self.quantity.state if isinstance(self.quantity, SwingPeak) else None
         if state == ERROR:
             return self.boxes.error(at)
-        drive = self.boxes.drive(at)
+        value: Enclosure = self.boxes.drive(at)
         if isinstance(self.quantity, SwingLeast):
-            return drive * at.along
+            return value * at.along
+        assert state in (POWER, DRIVE, None)
         if state == POWER:
-            return magnitude(drive * at.m.x_1 * at.d.speed if self.boxes.slider else drive * at.d.speed)
-        assert state in (DRIVE, None)
-        return magnitude(drive)
+            value = value * (at.m.x_1 * at.d.speed if self.boxes.slider else at.d.speed)
+        return value.magnitude()
 
 
 def _place_of_least_angle(mechanism: Mechanism, swing: Swing, designs: Array) -> Array:
@@ -261,4 +266,5 @@ def swing_form(mechanism: Mechanism, quantity: SwingForm, numbers: Numbers) -> E
     boxes = SwingBoxes(mechanism, quantity.swing, slow=True)
     ends = boxes.ends(numbers, boxes.machine.design(numbers)[0])
     first, last = ends.positions if quantity.measure == "travel" else ends.angles
-    return magnitude(last - first)
+    size: Enclosure = magnitude(last - first)
+    return size

@@ -221,7 +221,7 @@ def sentence_of(details: ErrorDetails, schema: Schema) -> str:
         if value in _WISHES:
             return f"{quote(value)} belongs below [objectives]; got it below [{path[0]}]; move it there"
         fact = FACTS.get(str(path[-1]))
-        first, *alternatives = map(toml, suggested_bounds(value, fact and fact.kind))
+        first, *alternatives = map(toml, suggested_bounds(value, fact.kind if fact else None))
         write = f"; write {key_of(path[-1:])} = {', '.join(filter(None, (first, ' or '.join(alternatives))))}"
         return f"must be a table with equals, min or max; {value_text}{write}"
     return f"{rule_of(details)}; {value_text}{write}"

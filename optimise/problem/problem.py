@@ -309,13 +309,11 @@ class Problem:
         """
         self._require_chosen()
         if design is None:
-            record: dict[str, Any] = question_to("job", question).answer_of(self, None, inputs)
-            return record
+            return dict(question_to("job", question).answer_of(self, None, inputs))
         machine, sizes = one_design(self.mechanism, design)
         warn_of_lengths(self, sizes, self._greatest)
         linkage = Linkage(sizes[0], sizes[1], sizes[2], machine.branch)
-        record: dict[str, Any] = question_to("design", question).answer(machine, linkage, self, inputs)
-        return record
+        return dict(question_to("design", question).answer(machine, linkage, self, inputs))
 
     def swing(
         self,

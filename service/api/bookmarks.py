@@ -187,8 +187,8 @@ def _varied(stored_front: StoredFront, design: StoredDesign) -> Variation:
 def _bookmark_model(stored_front: StoredFront, bookmark: Bookmark) -> BookmarkedDesign:
     design = _design(stored_front, bookmark)
     varied = _varied(stored_front, design)
-    origin = bookmark.design and stored_design(stored_front.problem, stored_front.result, bookmark.design)
-    same = bool(origin) and bookmark.is_of(origin.variant, origin.values)
+    origin = stored_design(stored_front.problem, stored_front.result, bookmark.design) if bookmark.design else None
+    same = origin is not None and bookmark.is_of(origin.variant, origin.values)
     fields = {name: value for name, value in vars(bookmark).items() if name not in ("job", "variant", "dimensions")}
     return BookmarkedDesign(
         **fields,

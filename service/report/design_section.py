@@ -29,7 +29,7 @@ _MET = 1e-6  # of a slack in its unit: constraints are met to rounding
 def design_section(subject: Subject) -> Section:
     """Return requirements, stationarity, trade-offs and curves of the design."""
     return Section(
-        subject.label.capitalize(),
+        subject.label[:1].upper() + subject.label[1:],
         (
             *_rules(subject),
             *(Paragraph(f"Beyond the allowable value: {unit_text(line)}.", "bad") for line in subject.violated),

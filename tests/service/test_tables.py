@@ -14,7 +14,7 @@ from slidercrank.service.runs.result import Result, StoredObjective
 from slidercrank.service.text.screen import console
 from slidercrank.service.text.tables import show_design, show_front
 
-ROW = {
+ROW: dict[str, float | str | None] = {
     "crank_mm": 40.0,
     "peak_torque_Nm": 12.5,
     "mean_torque_Nm": -5.7e-14,

@@ -114,7 +114,8 @@ SHAFTS: dict[str, Mechanism] = {
 @pytest.mark.parametrize("shaft", SHAFTS)
 def test_profiles_sums_over_cylinders_and_widths_are_proven(shaft: str) -> None:
     wishes: Any = {"peak_torque": "minimise", "footprint": "minimise"}
-    front = solve(problem(wishes, HELD, mechanism=SHAFTS[shaft], designs=12, samples=512))
+    given = problem(wishes, HELD, mechanism=SHAFTS[shaft], designs=12, samples=512)  # type: ignore[arg-type]
+    front = solve(given)
     found = certify_designs(front.problem, front.dimensions, epsilon=0.2, seconds=120.0)
     assert found.proven, found.message
     values = feasible(front.problem, 2000)
