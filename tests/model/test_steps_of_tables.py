@@ -306,11 +306,11 @@ def test_a_shear_that_ends_in_a_step_has_its_peak_just_before() -> None:
         ),
         (
             lambda: AngleTable(angles=(1.0, 1.0, 1.0 + TURN), forces=(0.0, 1.0, 2.0)),
-            "comes again 360 deg later; got three points there",
+            "recurs 360 deg later; got three points there",
         ),
         (
             lambda: CrankTable(angles=(0.0, TURN, TURN), forces=(0.0, 1.0, 2.0)),
-            "comes again 360 deg later; got three points there",
+            "recurs 360 deg later; got three points there",
         ),
     ],
 )

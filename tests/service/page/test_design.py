@@ -306,7 +306,7 @@ def test_what_is_no_length_of_what_if_has_no_answer_and_says_why(opened: Opened,
         ("0", "above 0; got 0"),
         ("-5", "above 0; got -5"),
         ("", "above 0."),
-        ("wide", "no length"),
+        ("wide", "not a valid length"),
     ):
         crank.fill(f"{0.99 * at:.4f}")
         expect(table).to_be_visible()
@@ -315,7 +315,7 @@ def test_what_is_no_length_of_what_if_has_no_answer_and_says_why(opened: Opened,
         expect(table).to_have_count(0)
         expect(crank).to_have_attribute("aria-invalid", "true")
     rod.fill(str(1.01 * float(rod.input_value())))
-    expect(verdict.get_by_role("alert")).to_contain_text("no length")  # the other field is still wrong
+    expect(verdict.get_by_role("alert")).to_contain_text("not a valid length")  # the other field is still wrong
     page.get_by_role("button", name="Reset").click()
     expect(crank).to_have_value(f"{at:.6g}")
     expect(verdict.get_by_role("alert")).to_have_count(0)

@@ -219,6 +219,7 @@ def test_a_column_that_is_constant_but_for_a_last_bit_is_drawn_as_one_value(
         expect(axes).to_be_visible()
         if "axes=" not in query:
             axes.get_by_label("stroke, mm", exact=True).check()
+        page.keyboard.press("Escape")
         expect(field(page, "At least stroke, mm")).to_have_attribute("placeholder", "280")
         expect(field(page, "At most stroke, mm")).to_have_attribute("placeholder", "280")
 
