@@ -541,7 +541,7 @@ def test_a_question_mark_opens_the_sentence_and_leads_to_the_help(form: Open, st
     ask.focus()
     page.keyboard.press("Enter")
     expect(ask).to_have_attribute("aria-expanded", "true")
-    expect(page.get_by_text("The stroke is the way of the slider").first).to_be_visible()
+    expect(page.get_by_text("The stroke is the distance of the slider").first).to_be_visible()
     page.get_by_role("link", name="More about stroke").first.click()
     expect(page.get_by_role("heading", level=1)).to_have_text("stroke")
 

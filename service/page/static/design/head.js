@@ -57,7 +57,7 @@ export function designHead({ job, number, named, front, others }) {
         h(
           "span",
           { class: "quiet" },
-          ` · ${number} of ${front.count}${listed ? `, ${place}. of the ${count} in the list` : ""}`,
+          ` of ${front.count}${listed ? `, ${place}. of the ${count} in the list` : ""}`,
         ),
       ),
       step(before, "Previous design", "‹"),

@@ -90,7 +90,10 @@ export async function show(place, { parts, query, signal }) {
   const files = exportMenu(job, number);
   let own = requirements.name; // of the design itself
   /** Say what the design is called that is shown. */
-  const rename = () => (named.textContent = capital(changed?.name ?? own));
+  const rename = () => {
+    const name = capital(changed?.name ?? own);
+    named.textContent = name === `Design ${number}` ? name : `${name} · ${number}`;
+  };
   const [ofPlace, ofWay, ofTopics] = Array.from({ length: 3 }, () =>
     h(
       "p",
