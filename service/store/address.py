@@ -98,7 +98,7 @@ def is_there(file: Path) -> bool:
     log = Path(f"{file}-wal")
     if log.exists() and not size:
         raise StoreError(
-            f"a write-ahead log must have its store beside it;  {path_text(log)} belongs to one that was deleted or "
+            f"a write-ahead log must have its store beside it; {path_text(log)} belongs to one that was deleted or "
             "truncated; "
             f"put {path_text(file)} back, restore a backup, see docs/service.md, or move the log away"
         )

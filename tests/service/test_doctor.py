@@ -186,7 +186,7 @@ def test_a_store_that_was_deleted_is_a_problem(file: Path, command: Command, mon
         file.unlink()
         code, found = looked_at(command)
         assert (code, found["store"][0]) == (1, "problem")
-        assert "is left of one that was deleted" in found["store"][1]
+        assert "a write-ahead log must have its store beside it" in found["store"][1]
     for left in file.parent.iterdir():
         left.unlink()
     assert looked_at(command)[0] == 0

@@ -66,7 +66,7 @@ def test_what_is_no_store_is_refused(name: str, command: Command, tmp_path: Path
     port = ("--port", 0) if name == "serve" else ()
     (tmp_path / "no.db").write_text("no database")
     assert "file is not a database" in refused(command, name, *port, "--store", tmp_path / "no.db")
-    assert "a store is at postgresql://" in refused(command, name, *port, "--store", "mysql://here/jobs")
+    assert "a store must be postgresql://" in refused(command, name, *port, "--store", "mysql://here/jobs")
     Store(tmp_path / "later.db").close()
     with sqlite3.connect(tmp_path / "later.db") as connection:
         connection.execute("UPDATE alembic_version SET version_num = '9999'")

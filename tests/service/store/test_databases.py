@@ -114,7 +114,7 @@ def test_the_clock_goes_on_within_a_transaction(database: Database) -> None:
     "address", ["mysql://root:secret@there/jobs", "sqlite://", "sqlite:///:memory:", "://", "a://b:c"]
 )
 def test_other_addresses_are_refused_without_telling_passwords(address: str) -> None:
-    with pytest.raises(InputError, match="a store is at postgresql://") as refused:
+    with pytest.raises(InputError, match="a store must be postgresql://") as refused:
         Store(address)
     assert "secret" not in str(refused.value)
 
@@ -392,7 +392,7 @@ def test_an_address_that_cannot_be_read_is_not_shown() -> None:
     assert "secret" not in without_secrets("http://a:secret@host/x?b=secret")
 
 
-@pytest.mark.parametrize("what", ["a folder", "no regular file", "left of one that was deleted"])
+@pytest.mark.parametrize("what", ["a folder", "no regular file", "must have its store beside it"])
 def test_what_can_be_no_store_is_refused_by_every_command_and_stays_as_it_is(
     what: str, tmp_path: Path, command: Command
 ) -> None:
