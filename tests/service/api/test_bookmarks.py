@@ -92,7 +92,7 @@ def test_the_name_of_a_kept_design_is_in_its_files_its_answers_and_the_list(
     sheet = client.get(f"{solved.path}/figures/design_3.svg", params=one["numbers"])
     assert "grosse-a-sheet" in sheet.headers["content-disposition"]
     assert client.get(solved.path).json()["decision"] == "Größe A"
-    listed = {job["number"]: job["decision"] for job in client.get("/api/v1/jobs").json()["jobs"]}
+    listed = {job["id"]: job["decision"] for job in client.get("/api/v1/jobs").json()["jobs"]}
     assert listed[solved.number] == "Größe A"
     client.patch(f"{solved.path}/kept/{one['number']}", json={"decided": False})
     assert client.get(solved.path).json()["decision"] is None
