@@ -226,7 +226,7 @@ class Quantity(ABC):
 
     @property
     def required(self) -> str:
-        """What a job must have for it, in words; empty if every job has it."""
+        """Requirements on a job that states it, in words; empty if every job meets them."""
         table = [f"it needs the table [{self.table}]"] if self.table else []
         return "; ".join(dict.fromkeys([*table, *(need.rule for need in self.needs)]))
 

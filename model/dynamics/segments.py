@@ -58,7 +58,7 @@ class Cuts(NamedTuple):
 
 
 class Segment(NamedTuple):
-    """What decides the loads within one segment of a design's cycle.
+    """State that decides the loads within one segment of a design's cycle.
 
     block: derived numbers (rows, 1), real or with an imaginary step. outward: the slider's stroke. piece, shift: the
     piece of every table and cylinder, and the turns that an angle table is off, filled by `enter`.

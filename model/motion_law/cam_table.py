@@ -31,7 +31,7 @@ class CamTable:
 
 
 def cam_table(law: MotionLaw, intervals: int = POINTS) -> CamTable:
-    """Return the table, whose points are the ends of all cells of the law and equal parts of the longest of them."""
+    """Return the table at the ends of all cells and at equal parts of the longest cells."""
     turn = law.turn
     parts = np.maximum(1, np.ceil(turn.width * intervals / TURN)).astype(np.int64)
     cell = np.repeat(np.arange(len(parts)), parts)

@@ -143,7 +143,7 @@ def values_at(values: Array, cell: IntArray, place: Array) -> Array:
 
 
 def integrals_to(place: Array) -> Array:
-    """Return weights (n, 16) of the integral from the start of a cell of unit width to places from 0 to 1."""
+    """Return weights (n, 16) of integrals over a unit cell, from its start to places from 0 to 1."""
     x = 2.0 * place - 1.0
     return np.asarray(0.5 * legendre.legvander(x, _NODES) @ _INTEGRALS)
 

@@ -1,4 +1,4 @@
-"""A motion law: crank speed over the crank angle, from a drive torque that is linear in each cell of the turn.
+"""Motion laws: crank speed over the crank angle, for a drive torque that is linear in each cell.
 
 The kinetic energy is K = K_start + integral of T - Q over the angle passed (`law_turn`): exact but for the integral of
 Q, a polynomial of degree 15 on each cell. The crank acceleration is continuous except where a load steps.
@@ -73,7 +73,7 @@ class MotionLaw:
         return math.sqrt(float(np.sum(self.turn.weights * self.node_torques**2 * self.node_slowness)) / self.period)
 
     def combined(self, other: MotionLaw, share: float) -> MotionLaw:
-        """Return the law whose K and T are those of this one and, by a share, of another on the same cells."""
+        """Return a mixture of this law's K and T and, by a share, those of another law."""
         torque = (1.0 - share) * self.torque + share * other.torque
         return MotionLaw(self.turn, torque, (1.0 - share) * self.start_energy + share * other.start_energy)
 

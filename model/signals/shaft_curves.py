@@ -183,7 +183,7 @@ class _Workspace(NamedTuple):
 
 @analytic
 def _fill_numbers(source: Any, ratio: Any, slope: Any, axes: Axes, k: int, out: Any) -> None:
-    """Fill `out` with numbers of cylinder k: speed and acceleration at p = ratio, p' = slope, gravity in its axes."""
+    """Fill `out` with numbers of cylinder k: speed, acceleration (p = ratio, p' = slope), gravity in its axes."""
     for row in range(out.shape[0]):
         out[row, 0] = source[row, 0]
     speed, x, y = source[_ROW_SPEED, 0], source[_ROW_X, 0], source[_ROW_Y, 0]

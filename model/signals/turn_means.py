@@ -1,4 +1,4 @@
-"""Means and mean squares of curves over one turn of a crank, with exact gradients: a signal, or those of the work.
+"""Means and mean squares of signals and of work over one turn, with exact gradients.
 
 Smooth curves are integrated by the trapezoidal rule in the crowded angle, which converges geometrically for periodic
 analytic functions; piecewise curves by Gauss-Legendre panels between breakpoints. The nearer a linkage is to locking,

@@ -77,7 +77,7 @@ class Samples(NamedTuple):
 
 
 class Bars(NamedTuple):
-    """Width, depth and density of rod and crank: sizes (n, 6), and derivatives (v, 6) by raw numbers; 0 for no bar."""
+    """Width, depth and density of rod and crank (n, 6), with derivatives (v, 6) by raw numbers; 0 without bar."""
 
     sizes: Table
     rates: Table

@@ -178,7 +178,7 @@ def propose(
 
 @analytic
 def _climb_angle(samples: SampledStress, side: Any, sign: Any, xi: Any, k: int) -> Any:
-    """Return the sample before the maximum of sign times the stress at a place near sample k, and what is there.
+    """Return the sample before the maximum of sign times the stress, near sample k, and its values.
 
     Those are the crank angle of the maximum, the stress, and its slope over the place. Stays within the segment.
     """

@@ -133,7 +133,7 @@ class _SpanCase(NamedTuple):
 
 
 class _Motor(NamedTuple):
-    """What drives. torques: (n,), N m. inertia: of the drive, kg m^2. step_limit: greatest number of steps to solve."""
+    """A motor. torques: (n,), N m. inertia: of the drive, kg m^2. step_limit: greatest number of steps to solve."""
 
     torques: Row
     inertia: float

@@ -1,4 +1,4 @@
-"""Which quantities have bounds over boxes of designs, and why others have none."""
+"""Quantities with bounds over boxes of designs, and reasons why others have none."""
 
 from __future__ import annotations
 

@@ -210,7 +210,7 @@ class Boxes:
 
 
 def _curve_bound(value: Enclosure, low: Array, high: Array, *, least: bool) -> Array:
-    """Return what no minimised peak, or with `least` no maximised least value, is below."""
+    """Return a lower bound on minimised peaks or, with `least`, on negated least values."""
     lowest, highest = value.ends(low, high)
     return np.asarray(-highest.min(axis=1) if least else lowest.max(axis=1))
 

@@ -36,7 +36,7 @@ def crank_at(d: Design, x: Any, side: Any) -> tuple[Any, Any]:
 
 
 def angle_near(d: Design, x: Enclosure, sine: Any, cosine: Any, side: Array, near: Array | None = None) -> Enclosure:
-    """Return the crank angle with a sine and cosine, rad: theta = atan2(e, x) + side acos(...), as the model has it.
+    """Return the crank angle, rad, with its sine and cosine: theta = atan2(e, x) + side acos(...).
 
     near: angles (n, p) less than half a turn away; whole turns are added to get there. Not a number where the angle
     ranges over half a turn or more.

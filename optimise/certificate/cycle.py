@@ -212,7 +212,7 @@ class CycleCurve:
         return (torque * d.speed if self.kind is Signal.POWER else torque), 0.0 * outward
 
     def _first_half(self, d: Design, local: Any) -> tuple[Mask, Mask]:
-        """Return where angles are in the first turn of a cycle of two, and where the whole box is in one of them."""
+        """Return masks: angles in the first of two turns, and boxes that lie within one turn."""
         (datum,) = {load.cycle_datum for load in self.mechanism.loads if load.cycle_turns > 1}
         way = 1.0 if datum == "zero crank angle" else self.mechanism.direction
         counted: Any = local

@@ -1,4 +1,4 @@
-"""A machine over boxes of designs: its numbers, the load on its slider and the torque of loads on its crank."""
+"""A machine over boxes of designs: its numbers, and the loads on slider and crank."""
 
 from __future__ import annotations
 

@@ -89,7 +89,7 @@ class SwingBoxes:
         )
 
     def at_time(self, numbers: Numbers, share: Array, probe: Array, back: Array) -> _State:
-        """Return the state at fractions of the time (n, p); not a number where it is not of all designs of a box.
+        """Return the state at fractions of the time (n, p); NaN where some designs of a box lack it.
 
         probe: fractions on the same side of a corner of the law. back: 1 on the return stroke.
         """
@@ -156,7 +156,7 @@ class SwingBoxes:
         return angle if self.slider else 0.5 * np.pi - angle
 
     def opening(self, numbers: Numbers) -> Enclosure:
-        """Return |e - r sin(theta)| / l - 1 at both ends (n, 2): the linkage closes where it is below zero."""
+        """Return |e - r sin(theta)| / l - 1 at both ends (n, 2), below zero where the linkage closes."""
         d, _ = self.machine.design(numbers)
         ends = self.ends(numbers, d)
         opening: Enclosure = reduce(

@@ -25,7 +25,7 @@ _AS_THEY_ARE = ("status", "message", "hypervolume", "evaluations", "seconds", "s
 
 
 def saved_front(fields: Mapping[str, Any]) -> str:
-    """Return the fields of a front as JSON: arrays in SI, columns in their units; "inf", "-inf" and "nan" as texts."""
+    """Return a front as JSON fields: arrays in SI, columns in their units; "inf", "-inf", "nan" as texts."""
     columns, dimensions, active = fields["columns"], fields["dimensions"], fields["active"]
     record = {
         "form": _FORM,

@@ -177,7 +177,7 @@ def in_words(text: str, error: str) -> str:
 
 
 def with_lines(message: str, text: str) -> str:
-    """Return a message on the tables of a TOML text, with the line number of each key; problems in their order."""
+    """Return a message on the tables of a TOML text, problems in the order of their lines."""
     keys = list(_paths(text.split("\n")))
     lines = {key_of(path[:-1]): number for number, path, brackets in reversed(keys) if brackets == "[["}
     lines |= {key_of(path): number for number, path, _ in keys}

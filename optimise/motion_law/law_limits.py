@@ -1,4 +1,4 @@
-"""What a motion law shall be best for, and the limits that it keeps."""
+"""Request for a motion law, and the limits that follow from it for one machine."""
 
 from __future__ import annotations
 

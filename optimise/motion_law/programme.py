@@ -31,7 +31,7 @@ _TOLERANCE = 1e-9
 
 @dataclass(frozen=True)
 class Requirement:
-    """What a programme requires besides speeds and accelerations; None for nothing.
+    """Requirements of a programme besides speeds and accelerations; None for nothing.
 
     torque_limit: N m. longest: greatest time, s. least: least time, s: by the tangent at a law with `energies`, K at
     starts and middles of cells, J, (2, n), which is stricter; without it by the chord between the limits of K, which
@@ -59,7 +59,7 @@ class Multipliers:
 
 @dataclass(frozen=True)
 class Solution:
-    """T, N m, and K, J, at the starts of cells, (n,); the objective; K at starts and middles, (2, n)."""
+    """T, N m, and K, J, at the starts of cells (n,); objective; K at starts and middles (2, n)."""
 
     torque: Array
     energy: Array
@@ -106,7 +106,7 @@ class Programme:
         self.slowness = (simpson * np.sqrt(0.5 * self.inertia / self.energy_unit) / self.time_unit).ravel()
 
     def time(self, energies: Array) -> float:
-        """Return the time of a turn, s, with K at starts and middles of cells, J, (2, n), by Simpson's rule."""
+        """Return the time of a turn, s, by Simpson's rule; K (2, n), J: at starts and middles."""
         return float(self.slowness @ np.sqrt(self.energy_unit / energies.ravel())) * self.time_unit
 
     def solve(self, aim: Aim, needs: Requirement) -> Solution | None:

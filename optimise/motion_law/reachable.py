@@ -28,7 +28,7 @@ _ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class ReachableLaws:
-    """Laws within a torque: K of the slowest and the fastest at the nodes, J, (n, 16), and their times of a turn, s.
+    """Slowest and fastest law within a torque: K at the nodes (n, 16), J, and times of a turn, s.
 
     exists: whether there is any law.
     """
@@ -41,7 +41,7 @@ class ReachableLaws:
 
 
 class Reachable:
-    """What the laws of a turn can reach within limits of speed."""
+    """Laws of a turn that are possible within limits of speed."""
 
     def __init__(self, turn: LawTurn, limits: LawLimits) -> None:
         self.turn = turn
@@ -63,7 +63,7 @@ class Reachable:
         return ReachableLaws(slowest, fastest, self._time(slowest), self._time(fastest), within and closes)
 
     def least_torque(self, torque: float, longest: float, least: float) -> float:
-        """Return the torque, N m, below which no law has a turn of at most `longest` and at least `least`, s.
+        """Return the torque, N m, below which no law takes between `least` and `longest`, s.
 
         torque: a first guess above zero. Infinite if no torque within reason is enough.
         """
@@ -88,7 +88,10 @@ class Reachable:
         return float(np.sum(self.turn.weights * np.sqrt(0.5 * self.turn.terms.inertia / energy)))
 
     def _least(self, limit: Array, loss: Array, gain: Array) -> Array:
-        """Return the least K over a limit: it loses at most `loss` after an angle, and gains at most `gain` before."""
+        """Return the least K over a limit that loses at most `loss`, and gains at most `gain`.
+
+        It loses after an angle at which it is on the limit, and gains before it.
+        """
         three = np.tile(limit.ravel(), 3)
         after = np.maximum.accumulate(three + loss) - loss
         before = np.maximum.accumulate((three - gain)[::-1])[::-1] + gain

@@ -93,7 +93,7 @@ class _Search:
         self.proofs: list[Proof] = []
 
     def best(self) -> tuple[Solution, Solution | None] | None:
-        """Return the best law, and a faster one to combine with where a least time binds; None if there is none."""
+        """Return the best law, and a faster one to mix in where a least time binds; or None."""
         request = self.limits.request
         if request.objective == "cycle time":
             only = self._prove("cycle time", Requirement(torque_limit=request.torque_limit))
@@ -201,7 +201,7 @@ def _timed(turn: LawTurn, limits: LawLimits, slow: Solution, fast: Solution | No
 
 
 def _with_period(law_of: Callable[[float], MotionLaw], first: float, last: float, period: float) -> MotionLaw:
-    """Return the law of a family with a period, s, if the ends are on either side; else that of the nearer end."""
+    """Return the law of a family with a period, s; if none has it, the nearer end."""
     from scipy.optimize import brentq
 
     errors = [law_of(number).period - period for number in (first, last)]

@@ -68,7 +68,7 @@ class FrontOrJobQuestion:
 
     @property
     def shows(self) -> str:
-        """What it is about, in words."""
+        """Subject of the question, in words."""
         return self.help.partition(".")[0]
 
     @property

@@ -23,7 +23,7 @@ _SAME = 1e-9  # of a dimension: addresses and forms give it with fewer digits
 
 
 class Remarks(TypedDict, total=False):
-    """What people say about a bookmarked design. decided: revokes the earlier decision of its job."""
+    """Words of people about a bookmarked design. decided: revokes the earlier decision of its job."""
 
     name: str
     note: str

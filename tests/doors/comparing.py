@@ -57,7 +57,7 @@ def read_allowances(file: Path) -> list[Allowance]:
 
 
 def data_of(lines: list[str]) -> list[str]:
-    """Return what programs read of a record, one per line: codes, files, keys, values of one word, options, numbers.
+    """Return codes, files, keys, one-word values, options and numbers of a record, one per line.
 
     The words of sentences are left out, their numbers are not: what was only worded otherwise is the same. Drawings
     within HTML are left out too.
@@ -80,7 +80,7 @@ def data_of(lines: list[str]) -> list[str]:
 
 
 def _plain(datum: str) -> str:
-    """Return an option as it is, and a number in one way of writing it: 9.10e-03 is 0.0091, -0 is 0."""
+    """Return an option unchanged, and a number in one spelling: 9.10e-03 is 0.0091, -0 is 0."""
     return datum if datum.startswith("--") else f"{float(datum.replace(chr(0x2212), '-')) + 0.0:.12g}"
 
 

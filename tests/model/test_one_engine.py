@@ -63,7 +63,10 @@ def reached(start: set[str], loop: ast.For | ast.While) -> set[str]:
 
 
 def newton_steps(tree: ast.AST) -> Iterator[ast.BinOp]:
-    """Return expressions x - f / g and x + (b - a) * (f / (f - g)) in loops that give x this value."""
+    """Yield Newton and secant steps that are assigned in loops.
+
+    They are x - f / g and x + (b - a) * (f / (f - g)), which give x this value.
+    """
     for loop in ast.walk(tree):
         if not isinstance(loop, ast.For | ast.While):
             continue

@@ -181,7 +181,7 @@ TABLES = {"quantities": quantities, "certificates": certificates}
 
 
 def section(name: str, text: str) -> tuple[str, str, str]:
-    """Return what is before a table of the page, the table, and what is after it."""
+    """Return the text before a table of the page, the table, and the text after it."""
     before, begin, rest = text.partition(f"<!-- {name} -->\n\n")
     inside, end, after = rest.partition(f"\n<!-- end of {name} -->\n")
     return before + begin, inside, end + after

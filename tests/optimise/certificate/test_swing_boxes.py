@@ -54,7 +54,7 @@ SWINGS: dict[str, Swing] = {
 
 
 def swinging(machine: Mechanism, swing: Swing, offset: tuple[float, float] = (0.01, 0.1)) -> Problem:
-    """Return the problem with every quantity of a swing that can be bounded, each in the sense in which it can."""
+    """Return a problem with every quantity of a swing that has a bound, in its sense."""
     given = problem({"crank_mass": "minimise"}, offset=offset, crank=(0.05, 0.12), rod=(0.15, 0.3))
     given = replace(given, mechanism=machine, motion=swing)
     senses: tuple[Sense, ...] = ("minimise", "maximise")

@@ -20,7 +20,7 @@ DEGREE = 3
 
 @dataclass(frozen=True)
 class Plain:
-    """A slider-crank of plain numbers, SI: a rod whose mass is at a share of its length, forces by stroke, a spring."""
+    """A slider-crank in plain SI numbers: point-mass rod, forces by stroke, a spring."""
 
     crank: float
     rod: float
