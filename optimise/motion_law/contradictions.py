@@ -8,12 +8,15 @@ import numpy as np
 
 from ...model.errors import InputError
 from ...model.motion_law.law_turn import LawTurn
+from ...model.transient.equation import TURN
 from .law_limits import LawLimits, rpm
 from .programme import Margins, Programme, Requirement
 from .reachable import Reachable
 
 _AMPLE = 1e3  # times the greatest torque of the loads: as good as any
 _ROUNDING = 1e-9
+_NARROWING = ("least_speed", "greatest_speed", "slider_speed", "window_speed", "crank_acceleration", "torque_limit")
+"""Limits that may leave almost no law, as fields of a request."""
 
 
 def require_consistent_limits(turn: LawTurn, limits: LawLimits) -> None:
@@ -52,6 +55,12 @@ def unreachable(turn: LawTurn, limits: LawLimits) -> InputError:
                 f"{needed.value * request.crank_acceleration:.6g} rad/s^2; {limits.name('crank_acceleration')} is "
                 f"{request.crank_acceleration:.6g} rad/s^2{slower}"
             )
+    mean_torque = abs(turn.work) / TURN
+    if request.torque_limit is not None and mean_torque > request.torque_limit:
+        return InputError(
+            f"the loads take {abs(turn.work):.6g} J in a turn, a mean torque of {mean_torque:.6g} N m; "
+            f"{limits.name('torque_limit')} is {request.torque_limit:.6g} N m; raise it"
+        )
     if request.torque_limit is not None:
         solved = programme.solve("peak torque", needs)
         by_reachable = reachable.least_torque(request.torque_limit, longest, 0.0)
@@ -61,8 +70,9 @@ def unreachable(turn: LawTurn, limits: LawLimits) -> InputError:
                 f"a law within these limits needs a torque of at least {least:.6g} N m; {limits.name('torque_limit')} "
                 f"is {request.torque_limit:.6g} N m{slower}"
             )
+    narrow = [limits.name(field) for field in _NARROWING if getattr(request, field) is not None]
     return InputError(
         "a motion law must be resolved between the limits of speed; got a machine whose kinetic energy is too small "
         "beside the work of its loads, or limits that leave almost no room; state the inertia of the motor in [drive] "
-        "(motor_inertia, gear_ratio, flywheel), or widen the limits"
+        f"(motor_inertia, gear_ratio, flywheel), or widen {' or '.join(narrow) or 'the limits'}"
     )

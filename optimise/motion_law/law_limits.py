@@ -19,14 +19,15 @@ from ...objectives.dead_centre import before_dead_centre
 from .words import RANGE, LawObjective, Timing
 
 _EDGE = 1e-9  # rad
+_ONLY_CONSTANT = 1e-5  # share between a limit and the mean speed below which no law but constant speed is left
 
 
 @dataclass(frozen=True, kw_only=True)
 class LawRequest:
     """A request for a motion law; SI, magnitudes.
 
-    objective: what is least. cycle_time: s, by default that of the machine's speed; if it is the objective, only the
-    default speeds follow from it. timing: whether the cycle may be shorter. torque_limit: greatest drive torque.
+    objective: what is least. cycle_time: s, by default that of the machine's speed, from which default speeds follow
+    where it is the objective. timing: whether the cycle may be shorter. torque_limit: greatest drive torque.
     window: distance before the slider's dead centre within which window_speed limits the slider.
     """
 
@@ -132,10 +133,14 @@ def resolve_limits(
         raise InputError(f"a motion law needs a cycle time; got a machine without speed; give {name('cycle_time')}")
     if request.objective == "cycle time" and request.torque_limit is None:
         raise InputError(f"the shortest cycle needs a greatest torque; got none; give {name('torque_limit')}")
+    if request.objective == "cycle time" and request.cycle_time is not None and speed:
+        raise InputError(
+            f"the shortest cycle is a result; got {name('cycle_time')} {request.cycle_time:.6g} s; leave it out, or "
+            f"limit {name('greatest_speed')}"
+        )
     if request.objective == "rms torque" and request.timing == "at most":
         raise InputError(
-            f"the RMS torque is over a cycle time that is equal; got {name('timing')} at most, whose standstill would "
-            "count; ask for the equal cycle time"
+            f"the RMS torque is over the whole cycle time; got {name('timing')} at most; ask for the equal cycle time"
         )
     cycle_time = TURN / speed if request.cycle_time is None else request.cycle_time
     mean = TURN / cycle_time
@@ -158,6 +163,12 @@ def resolve_limits(
                 f"a cycle of {cycle_time:.6g} s needs a mean crank speed of {rpm(mean)}; {name('least_speed')} is "
                 f"{rpm(least)}; reduce it, or ask for {TURN / least:.6g} s"
             )
+        for field, limit in (("least_speed", least), ("greatest_speed", greatest)):
+            if abs(mean / limit - 1.0) < _ONLY_CONSTANT and (field == "greatest_speed" or request.timing == "equal"):
+                raise InputError(
+                    f"a cycle of {cycle_time:.6g} s has a mean crank speed of {rpm(mean)}; {name(field)} is "
+                    f"{rpm(limit)}, which leaves constant speed alone; change one of them"
+                )
     window = _window(mechanism, linkage, request, name("window"), name("window_speed"))
     return LawLimits(request, cycle_time, least, greatest, window, mechanism.direction, labels)
 

@@ -295,8 +295,8 @@ class Problem:
         warn_of_lengths(self, sizes, self._greatest)
         return analysed(self.mechanism, machine, sizes, own=self.own, title=self.name, swing=self.motion)
 
-    def ask(self, question: str, design: ArrayLike | None = None, /, **inputs: object) -> dict[str, Any]:
-        """Answer a question about a design (3 + k,), with the keys of the JSON: `problem.ask("press", design)`.
+    def ask(self, question: str, /, design: ArrayLike | None = None, **inputs: object) -> dict[str, Any]:
+        """Answer a question about a design (3 + k,), with the keys of the JSON: `problem.ask("press", design=...)`.
 
         Without a design, the question is about the job: `problem.ask("sweep", over="offset=0 mm..20 mm:5",
         of="peak_torque")` returns `rows` as the command prints them. Lengths that the job leaves open are further

@@ -66,7 +66,7 @@ QUESTION = DesignQuestion(
             "window",
             LENGTH,
             "Working window",
-            "Distance before the dead centre of the job's slider within which a lower slider speed holds.",
+            "Distance before the dead centre that the job's slider names (outer by default), on the stroke towards it.",
             sign="positive",
             example="20 mm",
         ),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.motion_law.cam_table import cam_table
+from ....model.transient.equation import TURN
 from ....model.transient.speed_profile_cycle import speed_profile_curves, speed_profile_cycle
 from ....objectives.kinds import ANGULAR_SPEED, SPEED, TORQUE, Kind, System
 from ....optimise.motion_law.law_limits import LawRequest
@@ -24,6 +26,7 @@ from ...render.numerals import format_number
 from ..answer_types import Note, Record
 
 _RPM = ANGULAR_SPEED.metric.factor
+_ROUNDING = 1e-12  # of the peak torque at constant speed
 
 
 class LawNumbers(Record):
@@ -73,14 +76,19 @@ def prepare(
 def numbers(_: Mechanism, linkage: Linkage, *, optimum: OptimalLaw, **options: Any) -> LawNumbers:
     """Return a law ready for JSON, judged as any speed profile is."""
     law, request = optimum.law, optimum.limits.request
-    judged, even = (speed_profile_cycle(law.turn.machine, linkage, motion) for motion in (law.motion, None))
+    judged = speed_profile_cycle(law.turn.machine, linkage, law.motion)
+    even = speed_profile_cycle(_at_constant_speed(optimum), linkage)
+
+    def without_noise(torque: float) -> float:
+        return 0.0 if torque <= _ROUNDING * even.peaks["torque"].value else torque
+
     return {
         "objective": request.objective,
         "timing": request.timing,
         "cycle_time_s": judged.period,
-        "peak_torque_Nm": judged.peaks["torque"].value,
+        "peak_torque_Nm": without_noise(judged.peaks["torque"].value),
         "peak_torque_angle_deg": math.degrees(judged.peaks["torque"].angle),
-        "rms_torque_Nm": judged.rms_torque,
+        "rms_torque_Nm": without_noise(judged.rms_torque),
         "least_speed_rpm": _RPM * min(abs(judged.least_speed.value), abs(judged.greatest_speed.value)),
         "greatest_speed_rpm": _RPM * max(abs(judged.least_speed.value), abs(judged.greatest_speed.value)),
         "peak_crank_acceleration_rad_s2": judged.acceleration.value,
@@ -95,6 +103,12 @@ def numbers(_: Mechanism, linkage: Linkage, *, optimum: OptimalLaw, **options: A
         "proven": optimum.proven,
         "relaxed": optimum.relaxed,
     }
+
+
+def _at_constant_speed(optimum: OptimalLaw) -> Mechanism:
+    """Return the machine at the constant speed that has the cycle time of the law."""
+    machine = optimum.law.turn.machine
+    return replace(machine, speed=machine.direction * TURN / optimum.law.period)
 
 
 def notes(numbers: LawNumbers) -> list[str]:
@@ -129,7 +143,8 @@ def blocks(numbers: LawNumbers) -> list[Block]:
         sentence(f"{_gain(numbers)}"),
     ]
     if numbers["proven"]:
-        found.append(note(f"Proven: no law within these limits is better by more than {100.0 * numbers['gap']:.2g} %."))
+        margin = f" by more than {100.0 * numbers['gap']:.2g} %" if numbers["gap"] else ""
+        found.append(note(f"Proven: no law within these limits is better{margin}."))
     return found
 
 
@@ -169,7 +184,8 @@ def figure(_: Mechanism, linkage: Linkage, *, optimum: OptimalLaw, problem: Prob
     """Return speed, torque and slider speed over the crank angle, by the law and at constant speed."""
     law = optimum.law
     theta = sampled_turn(law.turn.low)
-    now, even = (speed_profile_curves(law.turn.machine, linkage, theta, motion) for motion in (law.motion, None))
+    now = speed_profile_curves(law.turn.machine, linkage, theta, law.motion)
+    even = speed_profile_curves(_at_constant_speed(optimum), linkage, theta)
     degrees = np.degrees(theta)
 
     def panel(title: str, kind: Kind, first: Any, second: Any) -> Panel:

@@ -185,7 +185,11 @@ def test_no_random_law_is_better_than_the_bound() -> None:
 REFUSALS: list[tuple[dict[str, Any], str]] = [
     (
         {"torque_limit": 20.0},
-        r"a law within these limits needs a torque of at least 27\.\d+ N m; torque_limit is 20 N m",
+        r"the loads take 173\.\d+ J in a turn, a mean torque of 27\.\d+ N m; torque_limit is 20 N m; raise it",
+    ),
+    (
+        {"torque_limit": 60.0, **NARROW},
+        r"a law within these limits needs a torque of at least 7\d\.\d+ N m; torque_limit is 60 N m; raise it",
     ),
     ({"torque_limit": 60.0, **NARROW}, r"needs a torque of at least 74\.\d+ N m"),
     ({"cycle_time": 0.01, **NARROW}, "needs a mean crank speed of 6000 rpm; greatest_speed is 2880 rpm"),
@@ -204,8 +208,11 @@ REFUSALS: list[tuple[dict[str, Any], str]] = [
     ({"window_speed": 1.0}, "got only one; give window"),
     ({"least_speed": 300.0, "greatest_speed": 200.0}, "least_speed must not exceed greatest_speed"),
     ({"objective": "cycle time"}, "the shortest cycle needs a greatest torque; got none; give torque_limit"),
-    ({"objective": "cycle time", "torque_limit": 10.0}, r"needs a torque of at least 27\.\d+ N m"),
-    ({"objective": "rms torque", "timing": "at most"}, "the RMS torque is over a cycle time that is equal"),
+    (
+        {"objective": "cycle time", "torque_limit": 10.0},
+        r"a mean torque of 27\.\d+ N m; torque_limit is 10 N m; raise it",
+    ),
+    ({"objective": "rms torque", "timing": "at most"}, "the RMS torque is over the whole cycle time"),
 ]
 
 
