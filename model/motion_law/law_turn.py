@@ -23,6 +23,7 @@ from ..linkage.single_linkage import single
 from ..machine.arrangement import require_one_cylinder
 from ..machine.mechanism import Mechanism
 from ..machine.two_turns import cycle_turns
+from ..quadrature import legendre_fit
 from ..transient.equation import TURN, CrankEquation
 from ..transient.turn import PeriodicTurn
 
@@ -138,7 +139,7 @@ class LawTurn:
 
 def values_at(values: Array, cell: IntArray, place: Array) -> Array:
     """Return values (n,) at places from 0 to 1 in cells, from those at all nodes (cells, 16)."""
-    basis = legendre.legvander(2.0 * place - 1.0, _NODES - 1) @ _SERIES
+    basis = legendre.legvander(2.0 * place - 1.0, _NODES - 1) @ legendre_fit(_NODES)
     return np.asarray(np.einsum("ni,ni->n", basis, values[cell]))
 
 
@@ -148,9 +149,7 @@ def integrals_to(place: Array) -> Array:
     return np.asarray(0.5 * legendre.legvander(x, _NODES) @ _INTEGRALS)
 
 
-_X, _ = legendre.leggauss(_NODES)
-_SERIES = np.linalg.inv(legendre.legvander(_X, _NODES - 1))
-_INTEGRALS = np.asarray(legendre.legint(np.eye(_NODES), lbnd=-1.0, axis=0)) @ _SERIES
+_INTEGRALS = np.asarray(legendre.legint(np.eye(_NODES), lbnd=-1.0, axis=0)) @ legendre_fit(_NODES)
 
 
 def _require_simple(mechanism: Mechanism) -> None:

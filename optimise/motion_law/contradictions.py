@@ -55,20 +55,20 @@ def unreachable(turn: LawTurn, limits: LawLimits) -> InputError:
                 f"{needed.value * request.crank_acceleration:.6g} rad/s^2; {limits.name('crank_acceleration')} is "
                 f"{request.crank_acceleration:.6g} rad/s^2{slower}"
             )
-    mean_torque = abs(turn.work) / TURN
-    if request.torque_limit is not None and mean_torque > request.torque_limit:
-        return InputError(
-            f"the loads take {abs(turn.work):.6g} J in a turn, a mean torque of {mean_torque:.6g} N m; "
-            f"{limits.name('torque_limit')} is {request.torque_limit:.6g} N m; raise it"
-        )
     if request.torque_limit is not None:
+        mean_torque, name = abs(turn.work) / TURN, limits.name("torque_limit")
+        if mean_torque > request.torque_limit:
+            return InputError(
+                f"the loads take {abs(turn.work):.6g} J in a turn, a mean torque of {mean_torque:.6g} N m; {name} is "
+                f"{request.torque_limit:.6g} N m; raise it"
+            )
         solved = programme.solve("peak torque", needs)
         by_reachable = reachable.least_torque(request.torque_limit, longest, 0.0)
         least = max(by_reachable, 0.0 if solved is None else solved.value)
         if least > request.torque_limit * (1.0 - _ROUNDING):
             return InputError(
-                f"a law within these limits needs a torque of at least {least:.6g} N m; {limits.name('torque_limit')} "
-                f"is {request.torque_limit:.6g} N m{slower}"
+                f"a law within these limits needs a torque of at least {least:.6g} N m; {name} is "
+                f"{request.torque_limit:.6g} N m{slower}"
             )
     narrow = [limits.name(field) for field in _NARROWING if getattr(request, field) is not None]
     return InputError(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
 import numpy as np
 
@@ -20,13 +20,14 @@ from ....optimise.motion_law.optimal_law import OptimalLaw, optimal_law
 from ....optimise.motion_law.words import LawObjective, Timing
 from ....optimise.problem.problem import Problem
 from ...designs.display_units import rows_in
+from ...designs.rounding_noise import without_noise
 from ...figures.panel_figure import DASHED, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, NamedNumber, compared, joined, named_number, note, number_list, sentence
 from ...render.numerals import format_number
+from ...runs.result import Row
 from ..answer_types import Note, Record
 
 _RPM = ANGULAR_SPEED.metric.factor
-_ROUNDING = 1e-12  # of the peak torque at constant speed
 
 
 class LawNumbers(Record):
@@ -78,17 +79,13 @@ def numbers(_: Mechanism, linkage: Linkage, *, optimum: OptimalLaw, **options: A
     law, request = optimum.law, optimum.limits.request
     judged = speed_profile_cycle(law.turn.machine, linkage, law.motion)
     even = speed_profile_cycle(_at_constant_speed(optimum), linkage)
-
-    def without_noise(torque: float) -> float:
-        return 0.0 if torque <= _ROUNDING * even.peaks["torque"].value else torque
-
-    return {
+    record: Row = {
         "objective": request.objective,
         "timing": request.timing,
         "cycle_time_s": judged.period,
-        "peak_torque_Nm": without_noise(judged.peaks["torque"].value),
+        "peak_torque_Nm": judged.peaks["torque"].value,
         "peak_torque_angle_deg": math.degrees(judged.peaks["torque"].angle),
-        "rms_torque_Nm": without_noise(judged.rms_torque),
+        "rms_torque_Nm": judged.rms_torque,
         "least_speed_rpm": _RPM * min(abs(judged.least_speed.value), abs(judged.greatest_speed.value)),
         "greatest_speed_rpm": _RPM * max(abs(judged.least_speed.value), abs(judged.greatest_speed.value)),
         "peak_crank_acceleration_rad_s2": judged.acceleration.value,
@@ -103,6 +100,7 @@ def numbers(_: Mechanism, linkage: Linkage, *, optimum: OptimalLaw, **options: A
         "proven": optimum.proven,
         "relaxed": optimum.relaxed,
     }
+    return cast(LawNumbers, without_noise(record))
 
 
 def _at_constant_speed(optimum: OptimalLaw) -> Mechanism:
