@@ -236,7 +236,7 @@ def to_si(value: object, kind: Kind, *, sign: Sign = "any", plain: bool = True) 
     return number
 
 
-def spread(value: object) -> tuple[str, str] | None:
+def plus_minus_ends(value: object) -> tuple[str, str] | None:
     """Return the ends of a range given by middle and half width, "180 mm +- 0.5 mm".
 
     Each is a text in the unit of the middle; a unit that is missing on one side is that of the other. None if the value

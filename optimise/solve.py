@@ -22,9 +22,9 @@ from .front.progress import REPEATING, Progress, progress_bar
 from .methods.auto.auto import deliver, search_with
 from .methods.auto.partial_front import partial_front
 from .methods.registry import method_of, require_eliminated, require_fit, require_gradients
+from .problem.always_zero import require_ranking
 from .problem.impossible import require_possible
 from .problem.problem import Problem, require_problem
-from .problem.zero_objectives import require_ranking
 from .search.assemble import empty_front
 from .search.checkpoints import Cancelled, Checkpoints, Record, require_records_of
 from .search.elimination import elimination_branches

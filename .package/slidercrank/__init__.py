@@ -89,8 +89,8 @@ if TYPE_CHECKING:
     from slidercrank.optimise.decisions.like import like
     from slidercrank.optimise.decisions.quantities import quantities
     from slidercrank.optimise.decisions.wish import wish
+    from slidercrank.optimise.front.choose_design import Priority
     from slidercrank.optimise.front.front import ParetoFront
-    from slidercrank.optimise.front.picking import Priority
     from slidercrank.optimise.job import job_schema, load_job
     from slidercrank.optimise.job.tables import problem
     from slidercrank.optimise.problem.design_analysis import Analysis, analyse
@@ -113,7 +113,7 @@ else:
         "optimise.adapters.standard_form": ("StandardForm", "standard_form"),
         "optimise.adapters.torch": ("torch_function",),
         "optimise.front.front": ("ParetoFront",),
-        "optimise.front.picking": ("Priority",),
+        "optimise.front.choose_design": ("Priority",),
         "optimise.job": ("job_schema", "load_job"),
         "optimise.job.tables": ("problem",),
         "optimise.problem.design_analysis": ("Analysis", "analyse"),

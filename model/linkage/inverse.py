@@ -82,7 +82,7 @@ def crank_angle_at(linkage: Dimensions, slider_position: ArrayLike, *, solution:
     Linkages that do not rotate fully are accepted: each solution is on the linkage's own branch. Raises
     `AssemblyError` for a position out of reach, and for one that the solution reaches only on the other branch.
     """
-    x, dimensions, d = _triangle(linkage, slider_position)
+    x, dimensions, d = _reachable_positions(linkage, slider_position)
     r, l, e = dimensions
     require_word("solution", solution, Solution)
     product = (r + l + d) * (r + l - d) * (d + l - r) * (d - l + r)
@@ -119,7 +119,7 @@ def crank_motion(
     `AssemblyError` as `crank_angle_at` does.
     """
     v, a = (finite(name, value) for name, value in (("velocity", velocity), ("acceleration", acceleration)))
-    x, dimensions, d = _triangle(linkage, slider_position)
+    x, dimensions, d = _reachable_positions(linkage, slider_position)
     r, l, _ = dimensions
     margin = np.minimum(r + l - d, d - np.abs(l - r))
     _refuse(
@@ -138,7 +138,9 @@ def crank_motion(
     return CrankMotion(*(np.broadcast_to(value, shape) for value in result))
 
 
-def _triangle(linkage: Dimensions, slider_position: ArrayLike) -> tuple[Array, tuple[Array, Array, Array], Array]:
+def _reachable_positions(
+    linkage: Dimensions, slider_position: ArrayLike
+) -> tuple[Array, tuple[Array, Array, Array], Array]:
     """Return position, dimensions and distance of the slider pin from the crank pivot, of one shape."""
     x, r, l, e = np.broadcast_arrays(
         finite("slider position", slider_position), linkage.crank, linkage.rod, linkage.offset

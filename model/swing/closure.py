@@ -19,7 +19,7 @@ from ..kernel.arithmetic import STEP
 from ..kinematics.position import motion
 from ..machine.mechanism import Mechanism
 from .ends import Ends, ends_of
-from .slider_pin_force import bend
+from .slider_pin_force import toggle_distance
 from .swing import Swing
 
 _FLAT = 1e-12
@@ -162,7 +162,7 @@ def _with_slopes(
 
 def _transmission_sine(theta: Any, r: Any, l: Any, e: Any, sign: float) -> Any:
     sine, cosine = np.sin(theta), np.cos(theta)
-    return bend(sine, cosine, motion(sine, cosine, r, l, e, sign))
+    return toggle_distance(sine, cosine, motion(sine, cosine, r, l, e, sign))
 
 
 def _rod_as_fast(ends: Ends, sign: float, designs: Array) -> list[Array]:

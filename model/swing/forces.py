@@ -35,7 +35,7 @@ from ..machine.design import Design
 from ..machine.mechanism import Mechanism
 from ..signals.position_error import influences
 from .law import way as way_of
-from .slider_pin_force import PinRows, PinSides, bend, free_pin, newton_step, pin_rows
+from .slider_pin_force import PinRows, PinSides, free_pin, newton_step, pin_rows, toggle_distance
 from .swing import Swing
 
 _STILL = 1e-200
@@ -132,7 +132,7 @@ def swing_curves(
     else:
         drive, joints = _pushed(theta, m, d, cycle_curves.load, cycle_curves.crank_load)
         power = drive * m.x_1 * speed
-        angle = np.arcsin(np.clip(np.abs(bend(np.sin(theta), np.cos(theta), m)) / linkage.rod, 0.0, 1.0))
+        angle = np.arcsin(np.clip(np.abs(toggle_distance(np.sin(theta), np.cos(theta), m)) / linkage.rod, 0.0, 1.0))
         error = _crank_error(theta, m, d, swing.actuator_tolerance)
     # Drop values that only come from the negligible crank speed.
     load, drive, power = (np.where(np.abs(curve) < _NOTHING, 0.0, curve) for curve in (cycle_curves.load, drive, power))
@@ -182,7 +182,7 @@ def angles_at(linkage: Linkage, swing: Swing, x: Array) -> Array:
     half = np.arccos(np.clip((r * r + d * d - l * l) / (2.0 * r * d), -1.0, 1.0))
     # sin(theta - phi) distinguishes the two solutions: between dead points it keeps the sign of the swing's middle.
     middle = np.array([0.5 * (swing.start + swing.end)])
-    side = float(bend(np.sin(middle), np.cos(middle), _motion(linkage, middle))[0])
+    side = float(toggle_distance(np.sin(middle), np.cos(middle), _motion(linkage, middle))[0])
     theta = np.arctan2(e, x) + (half if side > 0.0 else -half)
     low, high = sorted((swing.start, swing.end))
     theta = theta + 2.0 * np.pi * np.round((0.5 * (low + high) - theta) / (2.0 * np.pi))
@@ -205,7 +205,7 @@ def _pushed(theta: Array, m: Motion, d: Design, load: Array, on_crank: Array) ->
         bx, by = free_pin(sine, cosine, m, d, b)
         if any(np.any(side) for side in sides):
             bx, by = _with_pins(bx, by, partial(pin_rows, sine=sine, cosine=cosine, m=m, d=d, b=b, sides=sides))
-            sure = np.abs(bend(sine, cosine, m)) > d.l * np.sin(locking_angle(d))
+            sure = np.abs(toggle_distance(sine, cosine, m)) > d.l * np.sin(locking_angle(d))
             bx, by = np.where(sure, bx, np.nan), np.where(sure, by, np.nan)
     guide = -by - d.slider_mass * d.gravity_y
     slide = np.sign(m.x_1 * d.speed)

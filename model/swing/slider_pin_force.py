@@ -35,8 +35,8 @@ class PinSides(NamedTuple):
 
 
 @analytic
-def bend(sine: Any, cosine: Any, m: Motion) -> Any:
-    """Return l sin(theta - phi), m: zero where crank and rod are in line."""
+def toggle_distance(sine: Any, cosine: Any, m: Motion) -> Any:
+    """Distance of the slider pin from the crank line, l sin(theta - phi), m; zero where crank and rod are in line."""
     return sine * m.l_cos - cosine * m.l_sin
 
 
@@ -44,7 +44,7 @@ def bend(sine: Any, cosine: Any, m: Motion) -> Any:
 def free_pin(sine: Any, cosine: Any, m: Motion, d: Design, b: Balance) -> tuple[Any, Any]:
     """Return B without friction in the pins, N."""
     crank = b.couple + d.r * (cosine * b.rod_y - sine * b.rod_x)
-    per = inverse(d.r * bend(sine, cosine, m))
+    per = inverse(d.r * toggle_distance(sine, cosine, m))
     return (m.l_cos * crank - d.r * cosine * b.moment) * per, (m.l_sin * crank - d.r * sine * b.moment) * per
 
 

@@ -21,7 +21,7 @@ from ..machine.design import Design, design_at
 from ..machine.raw import Loads
 from ..signals.position_error import influences, worst_case
 from .law import code_of, way_at
-from .slider_pin_force import PinSides, bend, free_pin, newton_step, pin_rows
+from .slider_pin_force import PinSides, free_pin, newton_step, pin_rows, toggle_distance
 from .swing import Swing
 
 Complexes = NDArray[np.complex128]
@@ -70,7 +70,7 @@ def _crank_angle(x: Any, r: Any, l: Any, e: Any, branch: Any, start: float, end:
     half = math.acos(min(1.0, max(-1.0, ratio)))
     middle = 0.5 * (start + end)
     sine, cosine = math.sin(middle), math.cos(middle)
-    side = bend(sine, cosine, motion(sine, cosine, r, l, e, branch))
+    side = toggle_distance(sine, cosine, motion(sine, cosine, r, l, e, branch))
     theta = math.atan2(e, x) + (half if side > 0.0 else -half)
     theta = theta + 2.0 * math.pi * math.floor((middle - theta) / (2.0 * math.pi) + 0.5)
     low, high = min(start, end), max(start, end)

@@ -17,7 +17,7 @@ Shape = Literal["normal", "truncated normal", "uniform", "triangular"]
 Contact = Literal["along the rod", "any direction", "anywhere"]
 
 
-def spread(shape: Shape = "normal", *, sigmas: float = 3.0) -> Any:
+def error_distribution(shape: Shape = "normal", *, sigmas: float = 3.0) -> Any:
     """Return the distribution of an error in units of its limit, as a frozen distribution of `scipy.stats`.
 
     normal: the limit is `sigmas` standard deviations; truncated normal: the same, with nothing beyond the limit.
@@ -43,17 +43,17 @@ def spread(shape: Shape = "normal", *, sigmas: float = 3.0) -> Any:
 class Spreads:
     """The distributions of all sources; errors of different sources are independent.
 
-    crank, rod, offset, crank_angle: distributions in units of the limit, from `spread` or any frozen one of
+    crank, rod, offset, crank_angle: distributions in units of the limit, from `error_distribution` or any frozen one of
     `scipy.stats`. contact: position of a pin in its clearance c. "along the rod": pressed to either side with equal
     probability by the force in the rod (variance of its addition to the rod: c^2). "any direction": in contact, in a
     uniformly distributed direction (c^2 / 2). "anywhere" within the clearance circle, uniform over its area (c^2 / 4).
     The slider touches either side of its guide (c^2), or with "anywhere" is uniform between them (c^2 / 3).
     """
 
-    crank: Any = field(default_factory=spread)
-    rod: Any = field(default_factory=spread)
-    offset: Any = field(default_factory=spread)
-    crank_angle: Any = field(default_factory=spread)
+    crank: Any = field(default_factory=error_distribution)
+    rod: Any = field(default_factory=error_distribution)
+    offset: Any = field(default_factory=error_distribution)
+    crank_angle: Any = field(default_factory=error_distribution)
     contact: Contact = "along the rod"
 
     def __post_init__(self) -> None:
@@ -61,7 +61,9 @@ class Spreads:
         for name in ("crank", "rod", "offset", "crank_angle"):
             distribution = getattr(self, name)
             if not (hasattr(distribution, "rvs") and hasattr(distribution, "var")):
-                raise InputError(f'{name} must be a distribution, such as spread("uniform"); got {distribution!r}')
+                raise InputError(
+                    f'{name} must be a distribution, such as error_distribution("uniform"); got {distribution!r}'
+                )
 
     @property
     def variances(self) -> Array:

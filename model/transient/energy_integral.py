@@ -52,7 +52,7 @@ class Coasting:
 def coasting(turn: PeriodicTurn, inertia: float, speed: float) -> Coasting:
     """Return the periodic turn by the energy integral. inertia: drive's, kg m^2. speed: size of the mean, rad/s.
 
-    Between nodes the energy must not fall below zero: see `cut_where_least`.
+    Between nodes the energy must not fall below zero: see `cut_at_energy_minima`.
     """
     pace, rise = np.full(turn.angle.shape, speed), np.zeros(turn.angle.shape)
     for _ in range(_ROUNDS):
@@ -70,7 +70,7 @@ def coasting(turn: PeriodicTurn, inertia: float, speed: float) -> Coasting:
     return Coasting(load, None, stops)
 
 
-def cut_where_least(turn: PeriodicTurn, load: Array) -> PeriodicTurn:
+def cut_at_energy_minima(turn: PeriodicTurn, load: Array) -> PeriodicTurn:
     """Return the turn with panels that end where W is least; load: on the nodes, N m."""
     from scipy.optimize import brentq
 
@@ -89,10 +89,10 @@ def cut_where_least(turn: PeriodicTurn, load: Array) -> PeriodicTurn:
     return turn.cut(np.array(angles))
 
 
-def graded(turn: PeriodicTurn, load: Array) -> PeriodicTurn:
+def refine_at_energy_minima(turn: PeriodicTurn, load: Array) -> PeriodicTurn:
     """Return the turn with ever finer panels on both sides of the least values of W.
 
-    turn: from `cut_where_least`. load: on the nodes, N m.
+    turn: from `cut_at_energy_minima`. load: on the nodes, N m.
     """
     starts, _ = turn.integral(turn.mean(load) - load)
     least = turn.low[starts - starts.min() <= _NEAR * np.ptp(starts)]

@@ -291,7 +291,7 @@ class _Run:
         ended = [name for name, times in zip(names, event_times, strict=False) if len(times)]
         return solution, ended[0] if ended else "time"
 
-    def _standing(self, stretch: Span, local: float) -> float:
+    def _breakaway_torque(self, stretch: Span, local: float) -> float:
         """Return the torque that resists a start from standstill in the span's direction, N m."""
         at = np.array([local])
         if self.equation.rubs:
@@ -308,7 +308,7 @@ class _Run:
         for way, index in ((1.0, self.index), (-1.0, before)):
             stretch = self.equation.stretch(index, way)
             local = stretch.high if index != self.index else self.local
-            static = self._standing(stretch, local)
+            static = self._breakaway_torque(stretch, local)
             push[way] = way * (motor - static) - _EPS * (abs(motor) + abs(static))
         arrived = self.arrived
         self.way = next((way for way in (-arrived, arrived) if push[way] > 0.0), 0.0)

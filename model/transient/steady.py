@@ -13,7 +13,7 @@ from ..machine.dissipation import works_over_a_turn
 from ..machine.drive import Drive, speed_range
 from ..machine.mechanism import Mechanism
 from .balanced import balanced_speed
-from .energy_integral import coasting, cut_where_least, graded
+from .energy_integral import coasting, cut_at_energy_minima, refine_at_energy_minima
 from .equation import TURN
 from .forward import drive_of
 from .shaft import equation_of
@@ -103,7 +103,7 @@ class Runner:
             return coast.guess
 
         turn, solved = self.turn, None
-        for finer in (cut_where_least, graded):
+        for finer in (cut_at_energy_minima, refine_at_energy_minima):
             turn = finer(turn, coasting(turn, inertia, self.speed).load)
             solved = turn.resolved(_no_motor, inertia, guess, mean_speed=self.speed)
             if solved is not None:
@@ -129,7 +129,7 @@ class Runner:
         try:
             running = self.constant(inertia)
         except InputError:
-            turn = cut_where_least(self.turn, coasting(self.turn, inertia, self.speed).load)
+            turn = cut_at_energy_minima(self.turn, coasting(self.turn, inertia, self.speed).load)
             coast = coasting(turn, inertia, self.speed)
             if self.viscous or coast.guess is None or not coast.stops:
                 raise

@@ -36,7 +36,7 @@ _TICK = 0.1  # s between two questions whether the call is to end
 _PAUSE = 1.0  # s that a tick takes at most, on a busy machine; longer, and this process was suspended
 _ENDING = 5.0  # s that a process without an output has to end
 _FRAME = re.compile(r'File "([^"]+)", line (\d+)')
-_PROGRAM = "from slidercrank.objectives.own.guard import main; main()"
+_PROGRAM = "from slidercrank.objectives.own.guard_process import main; main()"
 _KILLED = 9, 128 + 9  # exit codes
 
 Message = tuple[bytes, bytes]

@@ -22,7 +22,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from ...model.arrays import IntArray
-from ...model.tolerance.spreads import Shape, spread
+from ...model.tolerance.spreads import Shape, error_distribution
 from ..quantity import Array
 from .points import star
 
@@ -53,7 +53,7 @@ class Sample:
         power = (self.samples - 1).bit_length()
         points = qmc.Sobol(len(self.columns), scramble=True, rng=np.random.default_rng(self.seed)).random_base2(power)
         deviations = np.zeros((len(points), 3))
-        deviations[:, list(self.columns)] = spread(self.shape).ppf(np.clip(points, _LEAST, 1.0 - _LEAST))
+        deviations[:, list(self.columns)] = error_distribution(self.shape).ppf(np.clip(points, _LEAST, 1.0 - _LEAST))
         return deviations
 
     @cached_property
@@ -131,7 +131,7 @@ def linear_quantile(coefficients: Array, share: float) -> tuple[Array, Array]:
     """Return the quantile (n,) of c . z and its gradient by c (n, d); z is normal, its limits three deviations."""
     from scipy.special import ndtri
 
-    sigmas = float(ndtri(share)) / 3.0  # `spread` takes the limit as three deviations
+    sigmas = float(ndtri(share)) / 3.0  # `error_distribution` takes the limit as three deviations
     size = np.sqrt((coefficients**2).sum(axis=1))
     slope = coefficients / np.where(size > 0.0, size, 1.0)[:, None]
     return sigmas * size, sigmas * slope

@@ -14,7 +14,7 @@ from ...model.arrays import IntArray, Mask
 from ...model.errors import InputError
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
-from ...model.tolerance.spreads import Shape, spread
+from ...model.tolerance.spreads import Shape, error_distribution
 from ..kinds import Kind
 from ..quantity import Array, Pieces, Quantity, Values
 from .points import PointValues, corners, evaluate_points, limits_of, match_pieces, star, uncertain
@@ -147,7 +147,9 @@ class RobustQuantity(Quantity):
         if self.case == "percentile":
             from scipy.special import ndtri
 
-            width = float(ndtri(self.share)) * np.sqrt((steps**2).sum(axis=1) * float(spread(self.shape).var()))
+            width = float(ndtri(self.share)) * np.sqrt(
+                (steps**2).sum(axis=1) * float(error_distribution(self.shape).var())
+            )
         else:
             width = np.abs(steps).sum(axis=1)
         return np.where(_box_turns_fully(dimensions, limits), inner.values + sign * width, sign * np.inf)

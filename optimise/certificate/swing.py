@@ -24,7 +24,7 @@ from ...model.signals.signals import design_motion
 from ...model.swing.ends import ends_of, start_column
 from ...model.swing.law import code_of, corners, way_at
 from ...model.swing.peaks import least_drives, swing_peaks
-from ...model.swing.slider_pin_force import bend, free_pin
+from ...model.swing.slider_pin_force import free_pin, toggle_distance
 from ...model.swing.swing import Swing, slowly
 from ...model.swing.swing_states import DRIVE, ERROR, POWER
 from ...objectives.swing_quantity import SwingForm, SwingLeast, SwingPeak
@@ -85,7 +85,9 @@ class SwingBoxes:
         middle = 0.5 * (first + last)
         sine, cosine = middle.sin(), middle.cos()
         return _Ends(
-            (first, last), (positions[0], positions[1]), sign_of(bend(sine, cosine, design_motion(sine, cosine, d)))
+            (first, last),
+            (positions[0], positions[1]),
+            sign_of(toggle_distance(sine, cosine, design_motion(sine, cosine, d))),
         )
 
     def at_time(self, numbers: Numbers, share: Array, probe: Array, back: Array) -> _State:
@@ -151,7 +153,7 @@ class SwingBoxes:
     def angle(self, numbers: Numbers, way: Array) -> Enclosure:
         """Return the transmission angle of the driven side at fractions of the travel (n, p), rad."""
         at = self.at_way(numbers, way)
-        sine = magnitude(bend(at.sine, at.cosine, at.m) if self.slider else at.m.l_sin) / at.d.l
+        sine = magnitude(toggle_distance(at.sine, at.cosine, at.m) if self.slider else at.m.l_sin) / at.d.l
         angle: Enclosure = np.arcsin(sine)
         return angle if self.slider else 0.5 * np.pi - angle
 

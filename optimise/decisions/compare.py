@@ -14,7 +14,7 @@ import numpy as np
 
 from ...model.arrays import Array, IntArray, Mask
 from ...model.errors import InputError
-from ..front.constant_numbers import spread
+from ..front.constant_numbers import column_ranges
 from ..front.dominance import nondominated
 from ..front.hypervolume import hypervolume, scaling
 
@@ -100,7 +100,7 @@ def compare(fronts: Sequence[Array], *, tolerance: float = TOLERANCE) -> Compari
 def _scaling(everything: Array) -> tuple[Array, Array]:
     """Return ideal and range of the union front; if that has no range, the range of all designs."""
     best = everything[nondominated(everything)]
-    best_range = spread(best)
+    best_range = column_ranges(best)
     return best.min(axis=0), np.where(best_range > 0.0, best_range, scaling(everything)[1])
 
 

@@ -22,10 +22,10 @@ def is_constant(values: ArrayLike, *, size: ArrayLike = 0.0) -> Mask:
     The spread is compared with the greatest magnitude, or with `size` if that is greater: the target, for a distance
     from it. NaN and infinity do not count; a column without numbers is constant. Zero needs a size, having no scale.
     """
-    return np.asarray(spread(values, size=size) == 0.0)
+    return np.asarray(column_ranges(values, size=size) == 0.0)
 
 
-def spread(values: ArrayLike, *, size: ArrayLike = 0.0) -> Array:
+def column_ranges(values: ArrayLike, *, size: ArrayLike = 0.0) -> Array:
     """Return the range of each column of values, as `is_constant` takes them; exactly 0 where it is constant."""
     values = np.ascontiguousarray(np.moveaxis(np.asarray(values, dtype=np.float64), 0, -1))  # ten times faster
     finite = np.where(np.isfinite(values), values, np.nan)

@@ -29,11 +29,11 @@ from ..problem.problem import Problem
 from ..problem.questions import question_to, subject_of
 from ..problem.requirements import Objective
 from ..problem.table_columns import least_field
-from .constant_numbers import spread
+from .choose_design import Normalisation, Priority, by_range, knee, lexicographic, topsis
+from .constant_numbers import column_ranges
 from .discrete_search import DiscreteSearch
 from .front_picture import figure, svg
 from .nonnegative import nonnegative_least_squares
-from .picking import Normalisation, Priority, by_range, knee, lexicographic, topsis
 from .progress import Progress
 from .rounded import Rounded
 from .rounding import doubtful_misses, ranges_or_sizes, rounding
@@ -211,7 +211,7 @@ class ParetoFront:
         return knee(self.values, size=self._sizes)
 
     def topsis(self, weights: Mapping[str, float], *, normalisation: Normalisation = "range") -> int:
-        """Return the row chosen by weights of the objectives, see `picking.closeness`; the others have no weight.
+        """Return the row chosen by weights of the objectives, see `choose_design.closeness`; the others have no weight.
 
         `front.topsis({"peak_torque": 2.0, "transmission_angle": 1.0})`. Raises `InputError` for other names.
         """
@@ -223,7 +223,7 @@ class ParetoFront:
         return topsis(self.values, shares, normalisation=normalisation, size=self._sizes)
 
     def lexicographic(self, *priorities: Priority | str) -> int:
-        """Return the row that remains when objectives decide in turn, see `picking.lexicographic`.
+        """Return the row that remains when objectives decide in turn, see `choose_design.lexicographic`.
 
         `front.lexicographic(Priority(quantity="peak_torque", share=0.1), "transmission_angle")`: of the designs within
         a tenth of the range from the least torque, the one with the best transmission angle. A name alone means a
@@ -348,7 +348,7 @@ class ParetoFront:
         owner, slopes = self.goals[row]
         m, k = len(self.objectives), slopes.shape[1]
         units = np.array([quantity.unit.factor for quantity in self._quantities])
-        ranges = spread(self.values, size=self._sizes)
+        ranges = column_ranges(self.values, size=self._sizes)
         spans = units * np.where(ranges > 0.0, ranges, 1.0)
         left = self.values[row] - self.values.min(axis=0)
         slopes = slopes * (units / spans)[owner.astype(int)][:, None]
@@ -374,7 +374,7 @@ class ParetoFront:
         display units.
         """
         require_word("system", system, System)
-        rates, ranges = self.rates(row), spread(self.values, size=self._sizes)
+        rates, ranges = self.rates(row), column_ranges(self.values, size=self._sizes)
         units = np.array([quantity.unit.factor for quantity in self._quantities])
         better = (self.values[row] - self.values.min(axis=0)) * units
         worse = (self.values.max(axis=0) - self.values[row]) * units

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...model.arrays import Array, IntArray
 from ...model.kernel.kernel import Row, Table, kernel
-from .constant_numbers import spread
+from .constant_numbers import column_ranges
 
 REFERENCE = 1.1
 """Reference point in the scaled space, where ideal is 0 and nadir 1."""
@@ -25,7 +25,7 @@ def ignore_progress(done: int, total: int) -> None:
 
 def scaling(values: Array) -> tuple[Array, Array]:
     """Return ideal and range of objective values (n, m); a constant objective has its size as range."""
-    ideal, span = np.ascontiguousarray(values.T).min(axis=1), spread(values)
+    ideal, span = np.ascontiguousarray(values.T).min(axis=1), column_ranges(values)
     return ideal, np.where(span > 0.0, span, np.maximum(np.abs(ideal), 1e-12))
 
 

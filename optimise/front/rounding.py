@@ -25,7 +25,7 @@ from ...objectives.units import quote, to_si
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
 from ..problem.violation import FEASIBLE, constraints_of
-from .constant_numbers import spread
+from .constant_numbers import column_ranges
 from .rounded import Rounded
 from .rounding_search import RoundingSearch, Steps, number_text
 
@@ -104,7 +104,7 @@ def ranges_or_sizes(values: Array, reference: Array, sizes: Sequence[float]) -> 
 
     reference: (m,), the objectives of a design, which give the size. sizes: (m,), targets, which count if greater.
     """
-    span = spread(values, size=sizes)
+    span = column_ranges(values, size=sizes)
     sizes_of_reference = np.maximum(np.where(np.isfinite(reference), np.abs(reference), 0.0), sizes)
     return np.where(span > 0.0, span, np.where(sizes_of_reference > 0.0, sizes_of_reference, 1.0))
 

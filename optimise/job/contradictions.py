@@ -20,11 +20,11 @@ from ...objectives.swing_quantity import SwingQuantity
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.units import quote
 from ..feasibility.swinging import require_swinging
+from ..problem.always_zero import require_ranking
 from ..problem.impossible import require_longer_slow_stroke
 from ..problem.problem import Problem
 from ..problem.requirements import Range, merged
 from ..problem.restatement import restate
-from ..problem.zero_objectives import require_ranking
 from ..search.elimination import require_slow_side, signs
 from .linear_contradictions import require_compatible
 from .messages import key_of

@@ -52,7 +52,7 @@ def _unit(text: str) -> str:
     return text
 
 
-def one_line(text: str) -> str:
+def require_one_line(text: str) -> str:
     """Return a text; refuse one that is empty or of several lines."""
     if not text.strip() or not text.isprintable():
         raise InputError(f"must be one line of text, not empty; got {quote(text)}")
@@ -61,7 +61,7 @@ def one_line(text: str) -> str:
 
 MOST_QUANTITIES = 20
 """Functions and named formulas of a job."""
-Title = Annotated[str, Field(max_length=60), AfterValidator(one_line)]
+Title = Annotated[str, Field(max_length=60), AfterValidator(require_one_line)]
 
 
 class FunctionPart(Part):

@@ -16,7 +16,7 @@ from ...objectives.units import quote
 from ..methods.registry import methods
 from ..problem.problem import Settings
 from .costs import CostsPart
-from .custom_quantities import MOST_QUANTITIES, Declared, QuantityPart, named, one_line
+from .custom_quantities import MOST_QUANTITIES, Declared, QuantityPart, named, require_one_line
 from .drive import DrivePart
 from .joints import ClearancePart, FrictionPart
 from .loads import Load
@@ -93,7 +93,7 @@ def _require_objective(objectives: ObjectivesPart) -> ObjectivesPart:
 class Job(Part):
     """A slider-crank to be sized: what is given, what may vary, what must hold and what is wanted."""
 
-    name: Annotated[str, Field(max_length=80), AfterValidator(one_line)] = required(
+    name: Annotated[str, Field(max_length=80), AfterValidator(require_one_line)] = required(
         "name of the job and of its run", "Vibrating sieve"
     )
     description: Annotated[str, Field(max_length=4000), AfterValidator(_printable)] | None = optional(

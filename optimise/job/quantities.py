@@ -32,7 +32,7 @@ from ...model.linkage.linkage import SlowStroke
 from ...objectives.formula.formulas import ROOTS, Formulas, is_formula
 from ...objectives.kinds import RATIO, Kind
 from ...objectives.registry import FACTS
-from ...objectives.units import closest, quote, spread
+from ...objectives.units import closest, plus_minus_ends, quote
 from ..problem.requirements import SENSES, Constraint, Objective, Word
 from .grids import swap
 from .messages import key_of, toml
@@ -45,7 +45,7 @@ class Bounds(Part):
     @model_validator(mode="wrap")
     @classmethod
     def _possible(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
-        if isinstance(data, Mapping) and set(data) == {"equals"} and (ends := spread(data["equals"])):
+        if isinstance(data, Mapping) and set(data) == {"equals"} and (ends := plus_minus_ends(data["equals"])):
             try:
                 bounds = handler(dict(zip(("min", "max"), ends, strict=True)))
             except ValidationError as error:

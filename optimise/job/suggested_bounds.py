@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from ...objectives.kinds import RATIO, Kind
-from ...objectives.units import number_and_unit, spread
+from ...objectives.units import number_and_unit, plus_minus_ends
 
 _FORMS = {
     "min": re.compile(r"\s*(?:>=?|=>|≥|at least\b|min(?:imum)?\b)[\s:=]*(.+)", re.IGNORECASE | re.DOTALL),
@@ -26,7 +26,7 @@ def suggested_bounds(value: str | float, kind: Kind | None) -> list[dict[str, An
         for word, form in _FORMS.items():
             if match := form.fullmatch(value):
                 return [{word: _with_unit(match[1].strip(), kind)}]
-    words = ("equals",) if spread(value) else ("equals", "min", "max")
+    words = ("equals",) if plus_minus_ends(value) else ("equals", "min", "max")
     return [{word: _with_unit(value, kind)} for word in words]
 
 

@@ -27,7 +27,7 @@ from ...model.machine.loads import load
 from ...model.machine.mechanism import Tolerance
 from ...objectives import kinds, units
 from ...objectives.kinds import Kind
-from ...objectives.units import Sign, quote, spread, to_si
+from ...objectives.units import Sign, plus_minus_ends, quote, to_si
 from .grids import Grid, grid_schema, read_grid, says_values, swap
 from .named_files import SOURCE
 
@@ -272,7 +272,7 @@ class RangeOf(_Read):
             return read_grid(value, self._length)
         if isinstance(value, Mapping) and set(value) == {"choices"}:
             return self._choices(value["choices"])
-        ends = value if isinstance(value, list | tuple) else spread(value) or (value, value)
+        ends = value if isinstance(value, list | tuple) else plus_minus_ends(value) or (value, value)
         text = value[0] if isinstance(value, list | tuple) and len(value) == 1 else value
         if isinstance(text, str) and (two := _ENDS.fullmatch(text)):
             write = f'["{two[1]} {two[2] or two[4]}", "{two[3]} {two[4]}"]'

@@ -25,7 +25,7 @@ from ...model.machine.varying import Varying
 from ...objectives.catalogue_amount import Amount
 from ...objectives.formula.formulas import Formulas
 from ...objectives.kinds import ANGULAR_SPEED
-from ...objectives.units import quote, spread
+from ...objectives.units import plus_minus_ends, quote
 from ..problem.discrete import Discrete
 from ..problem.problem import Variant
 from ..problem.requirements import Constraint, Range
@@ -287,7 +287,7 @@ def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
                 f"{key}: must have at least two values; got one, {grid.rule}; give it as a fixed number instead"
             )
         given = [grid.values[0], grid.values[-1]]
-    given = spread(given) or given
+    given = plus_minus_ends(given) or given
     if not isinstance(given, list | tuple) or len(given) != 2:
         raise JobError(
             f"{key}: must be a range [lower, upper], {{ choices = [...] }}, or values; got {quote(given)}; "

@@ -14,9 +14,9 @@ from collections.abc import Sequence
 from ..problem.problem import Problem
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
+from .optuna_trials import ask_points, completed_trials, new_study, search_space, silence_optuna
 from .population import Brood, Generation, evolve, generation_seed, generation_size
 from .registry import Method
-from .trials import ask_points, completed_trials, new_study, search_space, silence_optuna
 
 BATCH = 20
 """Designs proposed before any of them is evaluated, where the job sets no number of samples; those under way count as

@@ -13,8 +13,8 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.units import quote
 from ...optimise.job.model import Job as JobModel
 from ...optimise.problem.questions import SUBJECTS
+from ..designs.choice_options import require_single_choice
 from ..designs.columns import find_column
-from ..designs.picking_options import require_single_choice
 from ..designs.stored_designs import front_of, stored_design
 from ..presets.jobs import shipped_jobs
 from ..questions.compare.runs import ComparedRun, compared_run

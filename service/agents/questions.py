@@ -136,7 +136,7 @@ def check(call: Call, *, job: JobInput, files: Files = {}) -> ToolAnswer:  # noq
     """Check a job before it is searched: what was understood, or what is wrong or contradictory, with the remedy."""
     from ...objectives.own.quantity import OwnQuantity
     from ..preview.preview import look_at
-    from ..text.summary import freedom_in_words, job_in_words
+    from ..text.job_in_words import freedom_in_words, job_in_words
 
     tables = tables_of(job, files)
     look = look_at(tables, call.problem)

@@ -13,8 +13,8 @@ from pydantic import Field
 from ...model.errors import InfeasibleError, InputError
 from ...model.file_names import path_text
 from ...objectives.kinds import System
+from ..designs.choice_options import require_single_choice
 from ..designs.display_units import result_in
-from ..designs.picking_options import require_single_choice
 from ..designs.selection import no_match_message, numbered_rows, result_part
 from ..designs.stored_designs import front_of, stored_design
 from ..jobs.submission import LONGEST_CALL, ending_custom_functions, job_json
@@ -198,7 +198,7 @@ def _chosen_number(result: Result, chosen: Sequence[int], pick: Pick) -> int | N
     """Return the number of the design named, or chosen by its values, None without either."""
     if pick.design is None:
         return pick.row(result, chosen)
-    require_single_choice(pick.design, result, has_other_choice=pick.picking)
+    require_single_choice(pick.design, result, has_other_choice=pick.chooses_by_value)
     return pick.design - 1
 
 

@@ -15,8 +15,8 @@ from pydantic import BaseModel, BeforeValidator, Field
 from pydantic_core import to_json
 
 from ...model.errors import InfeasibleError, InputError
+from ..designs.choice_options import chosen_row
 from ..designs.columns import Column, all_columns, find_columns
-from ..designs.picking_options import picked_row
 from ..designs.selection import chosen_rows, no_match_message, result_part
 from ..designs.violations import front_violations_in_words, violations_in_words
 from ..page.router import response_with_etag
@@ -216,7 +216,7 @@ def pick_design(
     if not result.designs:
         raise InfeasibleError(result.message)
     rows = chosen_rows(result, where)
-    row = picked_row(result, rows, knee=knee, topsis=topsis, lexicographic=lexicographic)
+    row = chosen_row(result, rows, knee=knee, topsis=topsis, lexicographic=lexicographic)
     if row is None:
         raise InfeasibleError(no_match_message(result, where))
     return PickedModel(job=stored_front.job.id, number=row + 1, design=json_ready(result.designs[row]))

@@ -185,6 +185,6 @@ def check_job(request: Annotated[RequestedJob, Depends(requested_job)], settings
 
 def understood(problem: Problem, tables: Mapping[str, Any]) -> Understood:
     """Return a problem in words, as understood from its tables."""
-    from ..text.summary import job_in_words
+    from ..text.job_in_words import job_in_words
 
     return Understood(**job_in_words(problem, tables))

@@ -20,8 +20,8 @@ from ...model.arrays import Array
 from ...model.errors import InputError, NotFound
 from ...optimise.problem.problem import Problem
 from ..designs.changed_design import Variation, variation_of, with_numbers
+from ..designs.choice_options import minimised_values
 from ..designs.columns import Column, all_columns
-from ..designs.picking_options import minimised_values
 from ..designs.stored_designs import StoredDesign, front_of, stored_design
 from ..jobs.submission import LONGEST_ANSWER, bounded, parse_allowed
 from ..runs.result import Result, Row

@@ -80,7 +80,7 @@ def export(
 
     files = {f"--{name}": file for name, file in vars(of_design).items() if file is not None}
     csv, json, conditions = tables.csv, tables.json, selection.where
-    if (choice.design is not None or choice.picking) and not files:
+    if (choice.design is not None or choice.chooses_by_value) and not files:
         raise InputError(f"one design needs at least one of {', '.join(_FILES)}; got none; add one")
     if not tables.requested and not files:
         raise InputError(

@@ -18,7 +18,7 @@ def check(
     """Check a job file and report how it is understood."""
     from ...objectives.own.quantity import OwnQuantity
     from ...optimise.job import load_job, read_job
-    from ..text.summary import freedom_in_words, job_in_words
+    from ..text.job_in_words import freedom_in_words, job_in_words
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", InputWarning)  # among the answer

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
-from ..designs.picking_options import require_single_choice
+from ..designs.choice_options import require_single_choice
 from ..designs.rotating_crank import require_rotating_crank
 from ..designs.selection import plain_number
 from ..runs.stored_runs import problem_of

@@ -105,11 +105,11 @@ def _show(screen: Console, listed: list[Job]) -> None:
     for job in listed:
         submitted = time.strftime("%Y-%m-%d %H:%M", time.localtime(job.submitted))
         state = "stopping" if job.state == "running" and job.cancel_asked else job.state
-        rows.add_row(str(job.id), submitted, _short(job.name, 32), state, _short(_standing(job), 120))
+        rows.add_row(str(job.id), submitted, _short(job.name, 32), state, _short(_progress_or_result(job), 120))
     screen.print(rows)
 
 
-def _standing(job: Job) -> str:
+def _progress_or_result(job: Job) -> str:
     """Return the progress or the result of a job in words."""
     if job.state in ("done", "cancelled") and job.summary is not None and job.summary["designs"]:
         best = []

@@ -12,8 +12,8 @@ import typer
 
 from ...model.errors import InputError, SlidercrankError
 from ...objectives.kinds import System
+from ..designs.choice_options import require_single_choice
 from ..designs.display_units import result_in
-from ..designs.picking_options import require_single_choice
 from ..designs.selection import chosen_rows, no_match_message
 from ..jobs.find_run import find_run
 from ..runs.result import Result
@@ -82,9 +82,9 @@ class Choice(Pick):
         if not result.designs:
             raise NoDesigns(result)
         if self.design is not None:
-            require_single_choice(self.design, result, has_other_choice=bool(self.picking or conditions))
+            require_single_choice(self.design, result, has_other_choice=bool(self.chooses_by_value or conditions))
             return self.design
-        if not self.picking:
+        if not self.chooses_by_value:
             raise InputError("choose one design with --design NO, --knee, --topsis or --lexicographic; got none")
         row = self.row(result, chosen_rows(result, conditions or []))
         if row is None:

@@ -13,8 +13,8 @@ from ...model.errors import InputError
 from ...model.swing.swing import require_swing
 from ...objectives.tables.varying_column import varying_column
 from ..runs.result import Result, Row, rows_of
+from .choice_options import minimised_values, target_sizes
 from .judged_requirements import ranges_of, requirements_of, unmet_columns
-from .picking_options import minimised_values, target_sizes
 from .stored_designs import StoredDesign
 
 _SAME = 1e-9  # of an objective's range over the front, or of a number: a difference below is rounding
@@ -88,14 +88,14 @@ def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Vari
 
 def _dominance(result: Result, row: Row, minimised: Array) -> dict[str, list[int]]:
     """Return the positions of designs that dominate a row, and of those that it dominates."""
-    from ...optimise.front.constant_numbers import spread
+    from ...optimise.front.constant_numbers import column_ranges
 
     values = minimised_values(replace(result, designs=[row], exact=None))[0]
     finite = np.where(np.isfinite(minimised), minimised, math.inf)
     bounded = np.isfinite(finite).all(axis=1)
     if not bounded.any() or not np.isfinite(values).all():
         return {"dominated_by": [], "dominates": []}
-    span = spread(finite[bounded], size=target_sizes(result))
+    span = column_ranges(finite[bounded], size=target_sizes(result))
     gain = (values - finite) / np.where(span > 0.0, span, 1.0)  # positive where the design of the front is better
     positions = {}
     for name, way in (("dominated_by", gain), ("dominates", -gain)):

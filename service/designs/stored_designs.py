@@ -71,7 +71,7 @@ def stored_design(problem: Problem, result: Result, number: int) -> StoredDesign
 def front_of(problem: Problem, result: Result) -> ParetoFront:
     """Return a stored front with its problem; without `Result.exact`, the slopes at the designs are unknown."""
     from ...optimise.front.front import ParetoFront
-    from .picking_options import minimised_values
+    from .choice_options import minimised_values
 
     rows = [{name: math.nan if cell is None else cell for name, cell in row.items()} for row in result.designs]
     exact = result.exact or _reconstructed(problem, result.designs)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ...optimise.problem.problem import Problem
 from ..designs.changed_design import variation_of
-from ..designs.picking_options import minimised_values
+from ..designs.choice_options import minimised_values
 from ..designs.stored_designs import StoredDesign
 from ..jobs.stores import has_store, open_store
 from ..runs.result import Result

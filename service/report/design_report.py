@@ -13,7 +13,7 @@ from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE
 from ..designs.changed_design import Variation
 from ..designs.columns import chosen_columns, find_column
 from ..render.numerals import measured, rounded
-from ..text.summary import machine_in_words
+from ..text.job_in_words import machine_in_words
 from .decision_section import decision_section
 from .design_section import design_section, linkage_picture, numbers_section
 from .document import Facts, Report, Section

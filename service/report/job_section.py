@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from ...objectives.kinds import unit_text
 from ...optimise.search.fingerprint import version_of
 from ..render.numerals import rounded
-from ..text.summary import freedom_in_words, summarise
+from ..text.job_in_words import freedom_in_words, summarise
 from .document import Block, Facts, Paragraph, Section
 from .subject import Subject
 

@@ -140,7 +140,7 @@ def stored_objectives(problem: Problem) -> list[StoredObjective]:
 
 def result_of(front: ParetoFront, run: str) -> Result:
     """Return the result of a run from its front."""
-    from ...optimise.problem.zero_objectives import idle_rules
+    from ...optimise.problem.always_zero import idle_rules
     from ...optimise.search.driving_loads import front_driven_by_loads
     from ...optimise.search.loaded_stroke import front_warnings
 

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..designs.picking_options import picked_row
+from ..designs.choice_options import chosen_row
 from ..designs.selection import chosen_rows
 from ..runs.result import Result
 from .options import DesignOfRun
@@ -73,10 +73,10 @@ class Pick:
     ] = None
 
     @property
-    def picking(self) -> bool:
+    def chooses_by_value(self) -> bool:
         """Whether a design is chosen by its values."""
         return self.knee or self.topsis is not None or self.lexicographic is not None
 
     def row(self, result: Result, rows: Sequence[int]) -> int | None:
         """Return the index of the row chosen by its values, None without such an option or without rows."""
-        return picked_row(result, rows, knee=self.knee, topsis=self.topsis, lexicographic=self.lexicographic)
+        return chosen_row(result, rows, knee=self.knee, topsis=self.topsis, lexicographic=self.lexicographic)

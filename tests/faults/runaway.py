@@ -16,7 +16,7 @@ from itertools import cycle
 from pathlib import Path
 from typing import Any
 
-from slidercrank.objectives.own.guard import PRINTED
+from slidercrank.objectives.own.guard_process import PRINTED
 
 from .lifeline import die_with_parent
 from .serving import Serving, left_over

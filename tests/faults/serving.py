@@ -85,7 +85,7 @@ class Serving:
 
     def functions(self) -> list[psutil.Process]:
         """Return the processes of own functions, with all that they have started."""
-        return [process for process in self.look_at_processes() if says(process, "own.guard")]
+        return [process for process in self.look_at_processes() if says(process, "own.guard_process")]
 
     def until_ready(self) -> None:
         """Wait until it answers and has a worker; watch it from then on."""

@@ -12,7 +12,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Tolerance, Tolerances
 from slidercrank.model.tolerance.sources import limits
-from slidercrank.model.tolerance.spreads import Spreads, spread
+from slidercrank.model.tolerance.spreads import Spreads, error_distribution
 from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.quantity import RobustQuantity, Side
@@ -106,7 +106,7 @@ def test_first_order_differs_from_the_corners_by_second_order(name: str) -> None
 def test_percentile_of_the_stroke_is_that_of_the_monte_carlo_simulation(shape: str) -> None:
     """Independent: the simulation's own draws, the linkage's own stroke, the sorted sample's own rank."""
     count = 400_000
-    dimension = spread(shape)  # type: ignore[arg-type]
+    dimension = error_distribution(shape)  # type: ignore[arg-type]
     spreads = Spreads(crank=dimension, rod=dimension, offset=dimension)
     for row, (crank, rod, offset) in enumerate(DESIGNS):
         reach = limits(COARSE, Linkage(crank, rod, offset))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.stats import binomtest
 
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.tolerance.spreads import spread
+from slidercrank.model.tolerance.spreads import error_distribution
 from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.robust.points import limits_of
 from slidercrank.objectives.robust.quantity import RobustQuantity
@@ -32,7 +32,7 @@ def realised(front: ParetoFront, *, samples: int, seed: int = 1_000_000_007) -> 
         for quantity in robust_quantities(problem):
             promised = float(quantity.evaluate(problem.mechanism, design).values[0])
             machines = np.repeat(design, samples, axis=0)
-            deviations = spread(quantity.shape if quantity.case == "percentile" else "uniform").rvs(
+            deviations = error_distribution(quantity.shape if quantity.case == "percentile" else "uniform").rvs(
                 (samples, 3), random_state=np.random.default_rng([seed, row])
             )
             machines[:, :3] += deviations * limits_of(problem.mechanism, design)

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from slidercrank.optimise.front.constant_numbers import SAME, is_constant, spread
+from slidercrank.optimise.front.choose_design import by_range, knee, lexicographic, topsis
+from slidercrank.optimise.front.constant_numbers import SAME, column_ranges, is_constant
 from slidercrank.optimise.front.hypervolume import hypervolume, ignore_progress, scaling
-from slidercrank.optimise.front.picking import by_range, knee, lexicographic, topsis
 from slidercrank.optimise.front.slack import slack_of
 from slidercrank.optimise.problem.requirements import Constraint
 from slidercrank.optimise.problem.violation import constraints_of
@@ -71,7 +71,7 @@ def test_a_last_bit_of_a_constant_objective_changes_no_choice() -> None:
 def test_distances_from_a_target_that_is_met_are_rounding() -> None:
     values = np.array([[3e-16, 1.0], [0.0, 2.0], [1e-16, 0.5]])
     assert knee(values, size=[0.28, 0.0]) == 2
-    assert spread(values, size=[0.28, 0.0]).tolist() == [0.0, 1.5]
+    assert column_ranges(values, size=[0.28, 0.0]).tolist() == [0.0, 1.5]
 
 
 def test_what_has_no_value_is_never_the_best() -> None:

@@ -9,7 +9,7 @@ import pytest
 from slidercrank.model.errors import JobError
 from slidercrank.model.machine.mechanism import Clearances
 from slidercrank.optimise.job import parse_job
-from slidercrank.service.text.summary import summarise
+from slidercrank.service.text.job_in_words import summarise
 
 
 def job(**tolerances: Any) -> dict[str, Any]:

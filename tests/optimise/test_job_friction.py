@@ -25,7 +25,7 @@ from slidercrank.optimise.problem.violation import constraints_of
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
-from slidercrank.service.text.summary import summarise
+from slidercrank.service.text.job_in_words import summarise
 
 FEEDER = tomllib.loads((Path(__file__).parents[2] / "runs/feeder.toml").read_text(encoding="utf-8"))
 TABLE = {"guide": 0.1, "crank_pin": {"radius": "10 mm", "coefficient": 0.08}}

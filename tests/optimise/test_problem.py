@@ -16,7 +16,7 @@ from slidercrank.model.kinematics.target_motion import TargetMotion
 from slidercrank.objectives.average_torque import RMS_TORQUE
 from slidercrank.objectives.kinds import LENGTH
 from slidercrank.objectives.motion_deviation import MotionDeviation
-from slidercrank.optimise.front.picking import closeness
+from slidercrank.optimise.front.choose_design import closeness
 from slidercrank.optimise.problem.problem import Settings, Variant
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range
 from slidercrank.optimise.solve import solve

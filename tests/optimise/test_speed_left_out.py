@@ -15,7 +15,7 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
-from slidercrank.service.text.summary import summarise
+from slidercrank.service.text.job_in_words import summarise
 
 TABLES: dict[str, Any] = {
     "name": "Pusher",

@@ -84,7 +84,7 @@ def submit(store: Store, function: str) -> int:
 
 def functions() -> set[int]:
     """Return the processes of own functions that this one has; other tests leave some."""
-    return {child.pid for child in psutil.Process().children(recursive=True) if says(child, "own.guard")}
+    return {child.pid for child in psutil.Process().children(recursive=True) if says(child, "own.guard_process")}
 
 
 def test_the_process_of_a_function_ends_with_its_job(store: Store) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from slidercrank.optimise.front.picking import Priority
+from slidercrank.optimise.front.choose_design import Priority
 from slidercrank.service.designs.selection import numbered_rows
 from slidercrank.service.runs.result import Result, json_ready, result_of, rows_from_csv
 from slidercrank.service.runs.run_folder import RunFolder

@@ -13,9 +13,9 @@ import numpy as np
 from ....model.errors import InputError
 from ....objectives.kinds import TIME, System
 from ....optimise.decisions.compare import compare
+from ...designs.choice_options import minimised_values
 from ...designs.display_units import objective_in
 from ...designs.front_comparison import comparison_sentences
-from ...designs.picking_options import minimised_values
 from ...jobs.job_differences import differences
 from ...render.blocks import Block, Phrase, Sentence, Table, Text, Value, column, heading, note, sentence
 from ...runs.result import Result, StoredObjective, objective_record

@@ -15,7 +15,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.machine.varying import Varying
 from slidercrank.model.swing.law import spline, way
-from slidercrank.model.swing.slider_pin_force import bend
+from slidercrank.model.swing.slider_pin_force import toggle_distance
 from slidercrank.model.swing.summary import summarise
 from slidercrank.model.swing.swing import Swing, placed
 from slidercrank.objectives.tables.swinging import swing_quantities
@@ -32,7 +32,7 @@ def by_places(case: Case) -> Case | None:
     theta = np.array([swing.start, swing.end])
     sine, cosine = np.sin(theta), np.cos(theta)
     m = motion(sine, cosine, linkage.crank, linkage.rod, linkage.offset, linkage.sign)
-    side = np.sign(bend(sine, cosine, m))
+    side = np.sign(toggle_distance(sine, cosine, m))
     middle = 0.5 * (swing.start + swing.end)
     if side[0] != side[1] or abs(m.x[1] - m.x[0]) < 1e-3 or abs(middle) > 1.5:
         return None

@@ -16,7 +16,7 @@ from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerance
 from slidercrank.model.tolerance.exact import extremes, worst
 from slidercrank.model.tolerance.first_order import first_order, shares
 from slidercrank.model.tolerance.monte_carlo import CHUNK, simulate, summarise, variances, yield_within
-from slidercrank.model.tolerance.spreads import Contact, Shape, Spreads, spread
+from slidercrank.model.tolerance.spreads import Contact, Shape, Spreads, error_distribution
 from tests.model.tolerance.machines import PUBLISHED, SUPPORT, random_cases
 
 TURN = np.array([0.2, 1.3, 2.9, 4.0, 5.5])
@@ -44,7 +44,7 @@ def test_standard_deviation_is_a_third_of_the_root_sum_square_for_limits_of_thre
 @pytest.mark.parametrize("contact", ["along the rod", "any direction", "anywhere"])
 @pytest.mark.parametrize("shape", ["normal", "truncated normal", "uniform", "triangular"])
 def test_variance_is_the_sum_of_those_of_the_sources(shape: Shape, contact: Contact) -> None:
-    of = spread(shape)
+    of = error_distribution(shape)
     spreads = Spreads(crank=of, rod=of, offset=of, crank_angle=of, contact=contact)
     for mechanism, linkage in ((PUBLISHED, SUPPORT), CASES[3], (GAPPED, Linkage(0.14, 0.31, 0.06))):
         found = simulate(mechanism, linkage, TURN, samples=SAMPLES, seed=3, spreads=spreads)
@@ -56,14 +56,14 @@ def test_variance_is_the_sum_of_those_of_the_sources(shape: Shape, contact: Cont
 
 def test_shares_of_the_variance_sum_to_one() -> None:
     for mechanism, linkage in CASES:
-        parts = shares(variances(mechanism, linkage, TURN, spreads=Spreads(rod=spread("uniform"))))
+        parts = shares(variances(mechanism, linkage, TURN, spreads=Spreads(rod=error_distribution("uniform"))))
         np.testing.assert_allclose(parts.sum(axis=0), 1.0, rtol=1e-14)
 
 
 @pytest.mark.parametrize("shape", ["truncated normal", "uniform", "triangular"])
 @pytest.mark.parametrize("contact", ["along the rod", "any direction", "anywhere"])
 def test_errors_within_limits_stay_within_the_exact_extremes(shape: Shape, contact: Contact) -> None:
-    of = spread(shape)
+    of = error_distribution(shape)
     spreads = Spreads(crank=of, rod=of, offset=of, crank_angle=of, contact=contact)
     for mechanism, linkage in random_cases(2, seed=92, coarse=1.0):
         found = simulate(mechanism, linkage, TURN, samples=2000, seed=4, spreads=spreads)
@@ -107,7 +107,7 @@ def test_clopper_pearson_interval_of_no_failures_has_its_closed_form() -> None:
 
 def test_first_order_exact_and_simulation_agree_on_case_four() -> None:
     """With normal errors cut at the limits: the exact worst case bounds all, the first order within its remainder."""
-    of = spread("truncated normal")
+    of = error_distribution("truncated normal")
     found = simulate(PUBLISHED, SUPPORT, TURN, seed=7, spreads=Spreads(crank=of, rod=of, offset=of, crank_angle=of))
     one, exact = first_order(PUBLISHED, SUPPORT, TURN), extremes(PUBLISHED, SUPPORT, TURN)
     assert np.all(np.abs(found.errors).max(axis=0) <= exact.size)
@@ -199,8 +199,8 @@ def test_wrong_arguments_are_refused(arguments: dict[str, Any], message: str) ->
 
 def test_wrong_distributions_and_limits_are_refused() -> None:
     for wrong, message in (
-        (lambda: spread("gaussian"), "shape must be 'normal' or"),  # type: ignore[arg-type]
-        (lambda: spread(sigmas=0.0), "sigmas, standard deviations within the limit, must be positive"),
+        (lambda: error_distribution("gaussian"), "shape must be 'normal' or"),  # type: ignore[arg-type]
+        (lambda: error_distribution(sigmas=0.0), "sigmas, standard deviations within the limit, must be positive"),
         (lambda: Spreads(contact="nowhere"), "contact must be"),  # type: ignore[arg-type]
         (lambda: Spreads(rod="uniform"), "rod must be a distribution"),
         (lambda: yield_within([0.0], math.nan), "must be zero or more and finite"),

@@ -12,7 +12,7 @@ import pytest
 from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.job import load_job
 from slidercrank.service.designs.changed_design import variation_of
-from slidercrank.service.designs.picking_options import minimised_values
+from slidercrank.service.designs.choice_options import minimised_values
 from slidercrank.service.designs.stored_designs import design_of
 from tests.service.api.fixed_front import Solved, client_of
 

@@ -17,7 +17,7 @@ from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Facts, Report, Table
 from slidercrank.service.report.subject import Subject
 from slidercrank.service.runs.result import result_of
-from slidercrank.service.text.summary import summarise
+from slidercrank.service.text.job_in_words import summarise
 
 PRESS = tomllib.loads((Path(__file__).parents[3] / "runs" / "press.toml").read_text(encoding="utf-8"))
 OPTIONS = {"small": ("400 N m", "250 N m"), "large": ("500 N m", "300 N m")}

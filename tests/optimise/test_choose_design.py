@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.optimise.front.picking import Priority, closeness, knee, lexicographic, topsis
+from slidercrank.optimise.front.choose_design import Priority, closeness, knee, lexicographic, topsis
 from tests.optimise.independent import Array
 from tests.service import fronts
 

@@ -21,13 +21,13 @@ from ...objectives.motion_deviation import MotionDeviation
 from ...objectives.own.quantity import OwnQuantity
 from ...objectives.tables.varying_column import columns_of_numbers, varying_column
 from ...optimise.job.options import idle_options, impossible_options
+from ...optimise.problem.always_zero import idle_rules
 from ...optimise.problem.costs import Cost
 from ...optimise.problem.discrete import Discrete
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective, Range
 from ...optimise.problem.restatement import restate
 from ...optimise.problem.violation import constraints_of
-from ...optimise.problem.zero_objectives import idle_rules
 from ...optimise.search.driving_loads import driven_by_loads
 from ...optimise.search.elimination import EliminationBranch, elimination_branches
 from ...optimise.search.loaded_stroke import expected_warnings

@@ -17,7 +17,7 @@ import pytest
 
 from slidercrank.model.kernel.interruption import interrupted_by
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.objectives.own import guard
+from slidercrank.objectives.own import guard_process
 from slidercrank.objectives.own import worker as own_worker
 from slidercrank.objectives.own.apply import Refused
 from slidercrank.objectives.own.worker import Worker
@@ -281,7 +281,7 @@ def test_what_a_function_prints_is_passed_on_up_to_a_bound(
     asked(Mechanism(), DESIGNS, None)
     asked.close()
     printed, note = capfd.readouterr().err.split("\n", 1)
-    assert printed == "x" * guard.PRINTED
+    assert printed == "x" * guard_process.PRINTED
     assert note == "A custom function printed more than 1 MB; the rest is left out; print less.\n"
 
 
@@ -317,5 +317,5 @@ def test_what_is_below_the_bound_is_passed_on_with_an_end_of_its_last_line(
     asked = worker("babbles")
     asked(Mechanism(), DESIGNS, None)
     asked.close()
-    assert len(expected) < guard.PRINTED
+    assert len(expected) < guard_process.PRINTED
     assert capfd.readouterr().err == f"{expected}and no more\n"

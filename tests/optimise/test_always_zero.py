@@ -19,9 +19,9 @@ from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.quantity import RobustQuantity
 from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.problem.always_zero import require_ranking
 from slidercrank.optimise.problem.problem import Problem, Variant
 from slidercrank.optimise.problem.requirements import Objective
-from slidercrank.optimise.problem.zero_objectives import require_ranking
 from slidercrank.optimise.solve import solve
 
 JOB: dict[str, Any] = {

@@ -28,11 +28,11 @@ def require_single_choice(design: int, result: Result, *, has_other_choice: bool
         raise InputError(f"the run has designs 1 to {count}; got {design}; name one of them")
 
 
-def picked_row(
+def chosen_row(
     result: Result, rows: Sequence[int], *, knee: bool, topsis: str | None, lexicographic: str | None
 ) -> int | None:
     """Return the index of the row that the options choose, None without such an option. Raises `InputError` for two."""
-    from ...optimise.front import picking
+    from ...optimise.front import choose_design
 
     ways = [
         name
@@ -49,10 +49,10 @@ def picked_row(
         return None
     values, sizes = minimised_values(result)[list(rows)], target_sizes(result)
     if weights is not None:
-        return rows[picking.topsis(values, weights, size=sizes)]
+        return rows[choose_design.topsis(values, weights, size=sizes)]
     if order is not None:
-        return rows[picking.lexicographic(values, order, size=sizes)]
-    return rows[picking.knee(values, size=sizes)]
+        return rows[choose_design.lexicographic(values, order, size=sizes)]
+    return rows[choose_design.knee(values, size=sizes)]
 
 
 def minimised_values(result: Result) -> Array:

@@ -9,7 +9,7 @@ import pytest
 
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.objectives.kinds import LENGTH
-from slidercrank.objectives.units import spread, to_si
+from slidercrank.objectives.units import plus_minus_ends, to_si
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.requirements import Range
 
@@ -37,7 +37,7 @@ TABLES: dict[str, Any] = {
     ],
 )
 def test_a_middle_and_half_a_width_are_read_as_two_ends(text: object, ends: tuple[str, str] | None) -> None:
-    assert spread(text) == ends
+    assert plus_minus_ends(text) == ends
 
 
 def test_the_ends_are_those_of_sums_and_differences_of_the_values() -> None:
@@ -45,7 +45,7 @@ def test_the_ends_are_those_of_sums_and_differences_of_the_values() -> None:
     for _ in range(200):
         middle, half = round(draw.uniform(-500.0, 500.0), 3), round(draw.uniform(0.0, 5.0), 4)
         one, other = draw.choice(["mm", "m", "in", "µm"]), draw.choice(["mm", "in", "cm"])
-        ends = spread(f"{middle} {one} {draw.choice(['+-', '±', '+/-'])} {half} {other}")
+        ends = plus_minus_ends(f"{middle} {one} {draw.choice(['+-', '±', '+/-'])} {half} {other}")
         assert ends is not None
         at, by = to_si(f"{middle} {one}", LENGTH), to_si(f"{half} {other}", LENGTH)
         assert [to_si(end, LENGTH) for end in ends] == pytest.approx([at - by, at + by], rel=1e-14, abs=1e-16)
@@ -53,7 +53,7 @@ def test_the_ends_are_those_of_sums_and_differences_of_the_values() -> None:
 
 def test_half_a_width_of_another_kind_is_refused() -> None:
     with pytest.raises(InputError, match="both parts of a range have units of one kind"):
-        spread("180 mm +- 2 deg")
+        plus_minus_ends("180 mm +- 2 deg")
 
 
 def test_a_variable_a_requirement_and_another_number_of_the_job_take_such_a_range() -> None:

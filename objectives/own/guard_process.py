@@ -35,9 +35,9 @@ def main() -> None:
     del sys.argv[1:]  # modules of the user may read it
     if hasattr(os, "fork"):
         _fork(int(asking), log)
-    from .child import main as answer
+    from .child import main as run_function
 
-    answer()
+    run_function()
 
 
 def _fork(asking: int, log: str) -> None:

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from ...model.arrays import Array
 from ...model.errors import InputError
 from ...model.machine.loads.load import require_word
-from .constant_numbers import spread
+from .constant_numbers import column_ranges
 
 Normalisation = Literal["range", "vector"]
 _TIE = 1e-9  # of a range, of a closeness: nearer together is rounding
@@ -46,7 +46,7 @@ class Priority:
 def by_range(values: Array, *, size: ArrayLike = 0.0) -> Array:
     """Return objectives scaled by their range over the designs: 0 is best, 1 worst; 0 where all are the same."""
     _require_designs(values)
-    span = spread(values, size=size)
+    span = column_ranges(values, size=size)
     scaled = np.where(span > 0.0, values - values.min(axis=0), 0.0) / np.where(span > 0.0, span, 1.0)
     return np.where(np.isfinite(values), scaled, values)
 
@@ -112,7 +112,7 @@ def lexicographic(values: Array, order: Sequence[tuple[int, float, float]], *, s
     columns = [column for column, _, _ in order]
     if not columns or len(set(columns)) < len(columns):
         raise InputError("a ranking must name at least one objective, each once; put the most important first")
-    span, scaled = spread(values, size=size), by_range(values, size=size)
+    span, scaled = column_ranges(values, size=size), by_range(values, size=size)
     rows = np.arange(len(values))
     for place, (column, absolute, share) in enumerate(order):
         last = place == len(order) - 1
