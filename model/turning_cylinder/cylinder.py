@@ -1,0 +1,115 @@
+"""Size of a single-stage cylinder, and what a swing needs of it: lengths, pressures, buckling."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array
+from ..checks import require_numbers
+from ..errors import InputError
+
+STEEL = 210e9
+"""Modulus of elasticity of steel, Pa."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cylinder:
+    """A single-stage hydraulic or pneumatic cylinder; None for what is not known.
+
+    closed_length: least length between the pins A and B along the line, m. stroke: m. bore, rod: diameters, m.
+    supply_pressure: Pa above that of the other side. seal_friction: N, against the motion. modulus: modulus of
+    elasticity of the piston rod, Pa.
+    """
+
+    closed_length: float | None = None
+    stroke: float | None = None
+    bore: float | None = None
+    rod: float | None = None
+    supply_pressure: float | None = None
+    seal_friction: float = 0.0
+    modulus: float = STEEL
+
+    def __post_init__(self) -> None:
+        for name in tuple(self.__dataclass_fields__)[:4]:
+            require_numbers(self, name, phrase=f"the {name.replace('_', ' ')} of a cylinder", above=0.0, unit="m")
+        require_numbers(self, "supply_pressure", "modulus", phrase="the {} of a cylinder", above=0.0, unit="Pa")
+        require_numbers(self, "seal_friction", phrase="the friction of a seal", least=0.0, unit="N")
+        if (self.closed_length is None) != (self.stroke is None):
+            given = "no stroke" if self.stroke is None else "no closed length"
+            raise InputError(
+                f"the lengths of a cylinder follow from closed length and stroke; got {given}; give both, or neither"
+            )
+        if self.stroke is not None and self.closed_length is not None and self.stroke >= self.closed_length:
+            raise InputError(
+                "the stroke of a single-stage cylinder must be less than its closed length; got a stroke of "
+                f"{1e3 * self.stroke:.6g} mm and a closed length of {1e3 * self.closed_length:.6g} mm; shorten the "
+                "stroke"
+            )
+        if self.bore is not None and self.rod is not None and self.rod >= self.bore:
+            raise InputError(
+                f"the bore must exceed the piston rod; got a bore of {1e3 * self.bore:.6g} mm and a piston rod of "
+                f"{1e3 * self.rod:.6g} mm; enlarge the bore"
+            )
+        if self.supply_pressure is not None and self.bore is None:
+            raise InputError(
+                "a supply pressure needs the bore of the cylinder; got "
+                f"{1e-5 * self.supply_pressure:.6g} bar and no bore; give the bore"
+            )
+
+    @property
+    def areas(self) -> tuple[float, float] | None:
+        """Full area, which pushes, and annular area, which pulls, m^2; both full without a piston rod."""
+        if self.bore is None:
+            return None
+        rod = self.rod or 0.0
+        return 0.25 * math.pi * self.bore**2, 0.25 * math.pi * (self.bore**2 - rod**2)
+
+    def require_lengths(self, shortest: float, longest: float, remedy: str) -> None:
+        """Raise `InputError` unless the cylinder has all lengths between two, m. remedy: last part of the sentence."""
+        if self.closed_length is None or self.stroke is None:
+            return
+        open_length = self.closed_length + self.stroke
+        if shortest < self.closed_length:
+            raise InputError(
+                "the swing must not need a cylinder shorter than its closed length; got a closed length of "
+                f"{1e3 * self.closed_length:.6g} mm, and the swing needs {1e3 * shortest:.6g} mm, "
+                f"{1e3 * (self.closed_length - shortest):.6g} mm less; {remedy}"
+            )
+        if longest > open_length:
+            raise InputError(
+                "the swing must not need a cylinder longer than closed length plus stroke; got "
+                f"{1e3 * open_length:.6g} mm, and the swing needs {1e3 * longest:.6g} mm, "
+                f"{1e3 * (longest - open_length):.6g} mm more; {remedy}"
+            )
+
+    def pressures(self, push: float, pull: float) -> tuple[float, float] | None:
+        """Return the pressures, Pa, that push and pull, N, need on the full and on the annular area."""
+        return None if self.areas is None else (push / self.areas[0], pull / self.areas[1])
+
+    def require_pressure(self, push: float, pull: float) -> None:
+        """Raise `InputError` if the supply pressure cannot push or pull with these forces, N."""
+        needed = self.pressures(push, pull)
+        if needed is None or self.supply_pressure is None:
+            return
+        for way, pressure, force in zip(("push", "pull"), needed, (push, pull), strict=True):
+            if pressure > self.supply_pressure:
+                raise InputError(
+                    f"the supply pressure must hold the lever: a {way} of {force:.6g} N needs "
+                    f"{1e-5 * pressure:.5g} bar; got {1e-5 * self.supply_pressure:.5g} bar; raise it, enlarge the "
+                    "bore, or move a pivot"
+                )
+
+    def buckling_margin(self, length: Array, push: Array) -> Array | None:
+        """Return Euler's load over the push at lengths between the pins, m; inf where nothing pushes.
+
+        pi^2 E I / L^2, I = pi d^4 / 64 of the piston rod: both ends pinned, and the whole length as slender as the
+        piston rod, so that a stiffer barrel only adds. None without the piston rod. Source: S. P. Timoshenko and J. M.
+        Gere, Theory of Elastic Stability, chapter 2, fundamental case of buckling of a prismatic bar.
+        """
+        if self.rod is None:
+            return None
+        load = math.pi**2 * self.modulus * (math.pi * self.rod**4 / 64.0) / length**2
+        return np.divide(load, push, out=np.full(np.shape(push), np.inf), where=push > 0.0)

@@ -1,0 +1,242 @@
+"""A lever on a fixed pivot, moved by a cylinder that turns about another: the slider-crank with its rod fixed.
+
+The lever turns about O, the cylinder about A; B is the pin of the piston rod on the lever:
+
+    crank  r = OB        frame  f = OA        offset  e: distance of the cylinder's line through B from A
+    psi: angle from OA to OB, counter-clockwise        gamma: direction of the cylinder's line, from A's side to B
+
+The chain is that of the offset slider-crank: the rod is fixed as the frame, and the slider position is the length L of
+the cylinder along its line. The law of cosines gives
+
+    D^2 = AB^2 = r^2 + f^2 - 2 r f cos(psi),   L^2 = D^2 - e^2,   L dL/dpsi = r f sin(psi).
+
+B lies at A + e n + L u, with u = (cos(gamma), sin(gamma)) and n = u turned by +90 deg: for e > 0 the line passes A on
+the side that is left of the way to B. Where O, A and B are in line, sin(psi) = 0, no force of the cylinder turns the
+lever: a dead point.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array
+from ..checks import require_numbers
+from ..errors import AssemblyError, InputError
+
+_TURN = 2.0 * math.pi
+Vectors = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, kw_only=True)
+class TurningCylinder:
+    """The fixed dimensions of a lever and its turning cylinder, m and rad.
+
+    crank: OB. frame: OA. frame_angle: direction of OA from +x. offset: distance of the cylinder's line from A, signed.
+    pin_angle: angle from the lever's own line, whose angle is the lever angle, to OB.
+    """
+
+    crank: float
+    frame: float
+    frame_angle: float
+    offset: float = 0.0
+    pin_angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_numbers(self, "crank", phrase="the lever's radius OB", above=0.0, unit="m")
+        if self.frame == 0.0:
+            raise InputError(
+                "lever and cylinder must turn about two different pivots; got both in one place, 0 mm apart; "
+                "move one of them"
+            )
+        require_numbers(self, "frame", phrase="the distance OA of the pivots", above=0.0, unit="m")
+        require_numbers(self, "frame_angle", "offset", "pin_angle", phrase="the {} of a lever")
+
+    def relative_angle(self, lever_angle: Any) -> Any:
+        """Return psi, rad, for lever angles, rad from +x."""
+        return lever_angle + (self.pin_angle - self.frame_angle)
+
+    def length(self, lever_angle: Any) -> Any:
+        """Return the length of the cylinder, m, at lever angles, rad; NaN where |offset| exceeds AB."""
+        return cylinder_length(self.crank, self.frame, self.offset, self.relative_angle(lever_angle))
+
+    def lever_angle(self, length: Any, *, near: float) -> Any:
+        """Return the lever angles, rad, at lengths of the cylinder, m; NaN for lengths out of reach.
+
+        near: a lever angle on the same side of the dead points, at most half a turn from the results.
+        """
+        psi = self.relative_angle(near)
+        turns = math.floor(psi / _TURN + 0.5)
+        side = 1.0 if psi - _TURN * turns >= 0.0 else -1.0
+        angle = side * angle_at_length(self.crank, self.frame, self.offset, length)
+        return angle + (_TURN * turns + self.frame_angle - self.pin_angle)
+
+    @property
+    def length_range(self) -> tuple[float, float]:
+        """Least and greatest length, m, over all lever angles at which the linkage closes."""
+        near, far = (self.crank - self.frame) ** 2, (self.crank + self.frame) ** 2
+        least, greatest = (math.sqrt(max(square - self.offset**2, 0.0)) for square in (near, far))
+        return least, greatest
+
+    def dead_points(self, start: float, end: float) -> list[float]:
+        """Return the lever angles, rad, between two at which O, A and B are in line, ends included."""
+        low, high = sorted((self.relative_angle(start), self.relative_angle(end)))
+        first, last = math.ceil(low / math.pi), math.floor(high / math.pi)
+        return [math.pi * k - self.relative_angle(0.0) for k in range(first, last + 1)]
+
+    def dead_point_margin(self, start: float, end: float) -> float:
+        """Return the least angle, rad, that the lever keeps from a dead point between two lever angles."""
+        if self.dead_points(start, end):
+            return 0.0
+        return min(abs(math.remainder(self.relative_angle(angle), math.pi)) for angle in (start, end))
+
+    def require_swing(self, start: float, end: float) -> None:
+        """Raise an error unless the cylinder moves the lever all the way between two angles, rad.
+
+        `InputError` for equal ends and for a dead point, `AssemblyError` where the linkage does not close.
+        """
+        if not math.isfinite(start) or not math.isfinite(end) or start == end:
+            raise InputError(
+                f"a swing needs two different lever angles; got {_degrees(start)} and {_degrees(end)}; change one"
+            )
+        dead = self.dead_points(start, end)
+        if dead:
+            raise InputError(
+                "a cylinder moves the lever only between dead points, where both pivots and the pin are in line; the "
+                f"swing from {_degrees(start)} to {_degrees(end)} has one at {_degrees(dead[0])}; swing on one side "
+                "of it, or turn the frame"
+            )
+        lengths = self.length(np.array([start, end]))
+        if np.isnan(lengths).any() or not np.all(lengths > 0.0):
+            angle = start if not lengths[0] > 0.0 else end
+            distance = float(pin_distance(self.crank, self.frame, self.relative_angle(angle)))
+            raise AssemblyError(
+                "the cylinder's line must reach the lever over the whole swing: |offset| < distance from A to B; got "
+                f"an offset of {1e3 * self.offset:.6g} mm and {1e3 * distance:.6g} mm at {_degrees(angle)}; reduce "
+                "the offset, or swing less far"
+            )
+
+    def at(self, lever_angle: Array) -> LeverMotion:
+        """Return the motion of lever and cylinder at lever angles (n,), rad."""
+        r, e = self.crank, self.offset
+        radial = np.exp(1j * (lever_angle + self.pin_angle))
+        span = r * radial - self.frame * np.exp(1j * self.frame_angle)
+        length = np.sqrt(np.abs(span) ** 2 - e * e)
+        line = span / (length + 1j * e)
+        bend = radial * line.conj()
+        turn_1 = r * bend.real / length
+        length_1 = e * turn_1 - r * bend.imag
+        turn_2 = (-r * bend.imag * (1.0 - turn_1) - turn_1 * length_1) / length
+        length_2 = (r * self.frame * np.cos(self.relative_angle(lever_angle)) - length_1**2) / length
+        sine = np.abs((span.conj() * radial).imag) / np.abs(span)
+        transmission = np.arcsin(np.minimum(sine, 1.0))
+        return LeverMotion(radial, span, line, length, length_1, length_2, turn_1, turn_2, transmission)
+
+    def angle_error(self, lever_angle: Array, errors: DimensionErrors) -> Array:
+        """Return the worst-case error of the lever angle, rad, to first order.
+
+        L^2 = r^2 + f^2 - 2 r f cos(psi) - e^2 at a given length: r f sin(psi) dpsi = L dL + e de - (r - f cos(psi)) dr
+        - (f - r cos(psi)) df. Without bound at a dead point.
+        """
+        r, f, psi = self.crank, self.frame, self.relative_angle(lever_angle)
+        cosine = np.cos(psi)
+        total = (
+            self.length(lever_angle) * errors.length
+            + abs(self.offset) * errors.offset
+            + np.abs(r - f * cosine) * errors.crank
+            + np.abs(f - r * cosine) * errors.frame
+        )
+        return np.asarray(total / np.abs(r * f * np.sin(psi)))
+
+    @property
+    def time_ratio(self) -> float | None:
+        """Time ratio of the cylinder's turn where the lever turns fully at constant speed; None where it cannot.
+
+        With m the lesser and M the greater of crank and frame, the crank turns by c on the fast stroke,
+        c = acos((m - e) / M) + acos((m + e) / M), and the ratio is (2 pi - c) / c. Crank < frame: the cylinder swings
+        between two reversals (shaper, oscillating pump). Frame < crank: it turns fully too (Whitworth), and a stroke
+        lasts from one crossing of the normal of OA through A to the other.
+        """
+        lesser, greater = sorted((self.crank, self.frame))
+        if lesser + abs(self.offset) >= greater:
+            return None
+        fast = sum(math.acos((lesser + side * self.offset) / greater) for side in (-1.0, 1.0))
+        return (_TURN - fast) / fast
+
+
+class DimensionErrors(NamedTuple):
+    """Tolerances, m, of OB, OA, offset and length of the cylinder."""
+
+    crank: float = 0.0
+    frame: float = 0.0
+    offset: float = 0.0
+    length: float = 0.0
+
+
+class LeverMotion(NamedTuple):
+    """Motion at lever angles (n,). Vectors are complex numbers x + i y; derivatives are by the lever angle.
+
+    radial: direction of OB. span: AB, m. line: direction of the cylinder, towards B. length: L, m, with its
+    derivatives. turn_1, turn_2: derivatives of the cylinder's angle gamma. transmission: angle between AB and the lever
+    OB, rad, 0 to pi/2; along AB a cylinder without mass pushes.
+    """
+
+    radial: Vectors
+    span: Vectors
+    line: Vectors
+    length: Array
+    length_1: Array
+    length_2: Array
+    turn_1: Array
+    turn_2: Array
+    transmission: Array
+
+
+def pin_distance(crank: Any, frame: Any, psi: Any) -> Any:
+    """Return AB, m, at angles psi from OA to OB, rad; complex for complex steps."""
+    return np.sqrt(crank * crank + frame * frame - 2.0 * crank * frame * np.cos(psi))
+
+
+def cylinder_length(crank: Any, frame: Any, offset: Any, psi: Any) -> Any:
+    """Return the length L of the cylinder, m, at angles psi, rad; NaN where |offset| exceeds AB."""
+    with np.errstate(invalid="ignore"):
+        return np.sqrt(pin_distance(crank, frame, psi) ** 2 - offset * offset)
+
+
+def angle_at_length(crank: Any, frame: Any, offset: Any, length: Any) -> Any:
+    """Return psi in [0, pi], rad, at lengths of the cylinder, m; NaN out of reach; complex for complex steps.
+
+    The law of cosines in tangent form: tan(psi / 2)^2 = (D^2 - (r - f)^2) / ((r + f)^2 - D^2).
+    """
+    square = length * length + offset * offset
+    with np.errstate(invalid="ignore", divide="ignore"):
+        near, far = square - (crank - frame) ** 2, (crank + frame) ** 2 - square
+        return 2.0 * np.arctan(np.sqrt(near / far))
+
+
+def sizes_for_stroke(
+    lengths: tuple[float, float], angles: tuple[float, float], offset: float = 0.0
+) -> tuple[float, float] | None:
+    """Return the lesser and the greater of OB and OA, m, from cylinder lengths at two angles psi.
+
+    Either may be the lever. r f = (L2^2 - L1^2) / (2 (cos(psi1) - cos(psi2))), and r^2 + f^2 follows from either end;
+    None where no linkage has these.
+    """
+    (first, second), (psi_1, psi_2) = lengths, angles
+    fall = math.cos(psi_1) - math.cos(psi_2)
+    if fall == 0.0:
+        return None
+    product = (second**2 - first**2) / (2.0 * fall)
+    squares = first**2 + offset**2 + 2.0 * product * math.cos(psi_1)
+    if product <= 0.0 or squares < 2.0 * product:
+        return None
+    total, difference = math.sqrt(squares + 2.0 * product), math.sqrt(squares - 2.0 * product)
+    return 0.5 * (total - difference), 0.5 * (total + difference)
+
+
+def _degrees(angle: float) -> str:
+    return f"{math.degrees(angle):.6g} deg"

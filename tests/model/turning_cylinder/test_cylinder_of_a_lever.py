@@ -1,0 +1,125 @@
+"""Reach, pressures, flow and buckling of a lever's cylinder, and the numbers of a whole swing."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from slidercrank.model.errors import InputError
+from slidercrank.model.turning_cylinder.cylinder import Cylinder
+from slidercrank.model.turning_cylinder.forces import LeverSwing, lever_curves
+from slidercrank.model.turning_cylinder.lever import DimensionErrors, TurningCylinder
+from slidercrank.model.turning_cylinder.summary import summarise
+from tests.model.turning_cylinder.machines import some_machine
+from tests.model.turning_cylinder.test_lever_forces import LIFT, carrying_80_kg
+
+TIPPER = carrying_80_kg(0.35, 0.9)
+SLOW = LeverSwing(*LIFT)
+
+
+def test_the_published_swing_says_whether_a_single_stage_cylinder_can_make_it() -> None:
+    long, short = summarise(carrying_80_kg(0.4, 0.6), SLOW, Cylinder()), summarise(TIPPER, SLOW, Cylinder())
+    assert (long.single_stage, short.single_stage) == (False, True)
+    assert long.extension_ratio == pytest.approx(827.145 / 390.255, rel=1e-5)
+    assert short.push.value == pytest.approx(1710.09, abs=5e-3)
+    assert short.push.lever_angle == pytest.approx(LIFT[0])
+    assert short.pull.value == 0.0
+    assert (short.hold[1], short.energy_out) == pytest.approx((1278.19, 608.726), abs=5e-3)
+
+
+def test_peaks_are_those_of_a_dense_sweep_in_both_directions() -> None:
+    random = np.random.default_rng(11)
+    jumps = [third + side for third in (1.0 / 3.0, 2.0 / 3.0) for side in (-1e-9, 0.0, 1e-9)]  # of a trapezoid
+    share = np.sort([*np.linspace(0.0, 1.0, 20_001), *jumps])
+    for _ in range(12):
+        machine, swing = some_machine(random)
+        cylinder = Cylinder(bore=0.08, rod=0.04, seal_friction=35.0)
+        found, curves = summarise(machine, swing, cylinder), lever_curves(machine, swing, share)
+        size = float(np.abs(curves.push).max()) + 35.0
+        assert found.push.value == pytest.approx(max(curves.push.max() + 35.0, 0.0), abs=1e-5 * size)
+        assert found.pull.value == pytest.approx(max(35.0 - curves.push.min(), 0.0), abs=1e-5 * size)
+        for point, forces in ((found.pin, curves.pin), (found.pivot, curves.pivot)):
+            assert point.value == pytest.approx(float(np.abs(forces).max()), rel=1e-5)
+        assert found.transmission.value == pytest.approx(float(curves.transmission.min()), abs=1e-6)
+        assert found.energy_out + found.energy_back == pytest.approx(
+            70.0 * abs(found.lengths[1] - found.lengths[0]), abs=1e-9 * size
+        )
+        if swing.duration is not None:
+            assert found.speed is not None
+            assert found.flows is not None
+            assert found.speed.value == pytest.approx(float(np.abs(curves.speed).max()), rel=1e-6)
+            areas = 0.25 * math.pi * 0.08**2, 0.25 * math.pi * (0.08**2 - 0.04**2)
+            assert found.flows == pytest.approx([area * found.speed.value for area in areas], rel=1e-12)
+
+
+def test_pressures_are_forces_over_the_full_and_the_annular_area() -> None:
+    cylinder = Cylinder(bore=0.04, rod=0.02, seal_friction=50.0)
+    found = summarise(TIPPER, SLOW, cylinder)
+    assert found.pressures == pytest.approx((1760.0899 / (math.pi * 4e-4), 0.0), rel=1e-6)
+    down = summarise(replace(TIPPER, gravity=(0.0, 9.81)), SLOW, cylinder)
+    assert down.pressures == pytest.approx((0.0, 1760.0899 / (math.pi * 3e-4)), rel=1e-6)
+    assert down.buckling_margin is None
+    assert found.flows is None
+
+
+def test_the_buckling_margin_is_the_load_of_the_slender_column_over_the_push() -> None:
+    """A steel rod of 20 mm whose pins are 1 m apart: pi^3 E d^4 / 64 = 16.278 kN."""
+    load = Cylinder(rod=0.02).buckling_margin(np.array([1.0]), np.array([1.0]))
+    assert load is not None
+    assert load[0] == pytest.approx(math.pi**3 * 210e9 * 0.02**4 / 64.0, rel=1e-12)
+    assert load[0] == pytest.approx(16278.0, rel=1e-4)
+    found = summarise(TIPPER, SLOW, Cylinder(rod=0.02)).buckling_margin
+    assert found is not None
+    curves = lever_curves(TIPPER, SLOW, np.linspace(0.0, 1.0, 5001))
+    assert found.value == pytest.approx(float((load[0] / curves.length**2 / curves.push).min()), rel=1e-6)
+
+
+def test_sizes_that_take_the_whole_stroke_make_the_swing_with_it() -> None:
+    cylinder = Cylinder(closed_length=0.64, stroke=0.44)
+    fitting = summarise(TIPPER, SLOW, cylinder).fitting_sizes
+    assert fitting is not None
+    lengths = [
+        TurningCylinder(crank=one, frame=other, frame_angle=math.radians(-60.0)).length(np.array(LIFT))
+        for one, other in (fitting, fitting[::-1])
+    ]
+    assert np.allclose(lengths, [0.64, 1.08], rtol=1e-9)
+
+
+def test_an_error_of_the_lever_angle_needs_tolerances() -> None:
+    assert summarise(TIPPER, SLOW, Cylinder()).angle_error is None
+    assert summarise(TIPPER, SLOW, Cylinder(), DimensionErrors()).angle_error is None
+    found = summarise(TIPPER, SLOW, Cylinder(), DimensionErrors(length=1e-3)).angle_error
+    assert found is not None
+    assert found.value == pytest.approx(1e-3 / min(TIPPER.sizes.at(np.array(LIFT)).length_1), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("sizes", "part"),
+    [
+        ({"closed_length": 0.7, "stroke": 0.5}, "a closed length of 700 mm, and the swing needs 670.74 mm, 29.2601 mm"),
+        (
+            {"closed_length": 0.65, "stroke": 0.4},
+            "got 1050 mm, and the swing needs 1071.43 mm, 21.4349 mm more",
+        ),
+        (
+            {"closed_length": 0.6, "stroke": 0.6},
+            "stroke of a single-stage cylinder must be less than",
+        ),
+        ({"closed_length": 0.6}, "got no stroke; give both, or neither"),
+        ({"stroke": 0.6}, "got no closed length; give both, or neither"),
+        (
+            {"bore": 0.02, "rod": 0.02},
+            "the bore must exceed the piston rod; got a bore of 20 mm",
+        ),
+        ({"supply_pressure": 1e6}, "a supply pressure needs the bore of the cylinder; got 10 bar and no bore"),
+        ({"bore": 0.04, "supply_pressure": 1e6}, "a push of 1710.09 N needs 13.608 bar; got 10 bar; raise it"),
+        ({"bore": math.nan}, "the bore of a cylinder must be positive and finite; got nan m"),
+        ({"seal_friction": -1.0}, "the friction of a seal must be zero or more and finite; got -1 N"),
+    ],
+)
+def test_a_cylinder_that_cannot_make_the_swing_is_refused_with_the_amount(sizes: dict[str, float], part: str) -> None:
+    with pytest.raises(InputError, match=part):
+        summarise(TIPPER, SLOW, Cylinder(**sizes))
