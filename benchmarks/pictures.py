@@ -24,7 +24,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.optimise.job import load_job, parse_job
 from slidercrank.optimise.solve import solve
-from slidercrank.service.drawings.linkage_drawing import linkage_drawing
+from slidercrank.service.drawings.design_drawing import linkage_drawing
 from slidercrank.service.figures.front import draw_front
 from slidercrank.service.figures.painting import drawing_figure
 from slidercrank.service.figures.panels import save_figure

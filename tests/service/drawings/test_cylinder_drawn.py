@@ -13,8 +13,8 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.loads.cylinder import Head
 from slidercrank.model.machine.mechanism import Branch, Mechanism
+from slidercrank.service.drawings.design_drawing import linkage_drawing
 from slidercrank.service.drawings.dxf import dxf_file
-from slidercrank.service.drawings.linkage_drawing import linkage_drawing
 from slidercrank.service.drawings.shapes import Drawing, Line, Outline
 from slidercrank.service.drawings.svg import svg_file
 

@@ -28,12 +28,11 @@ from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.swing.swing import Swing
 from slidercrank.objectives.kinds import System
 from slidercrank.service.designs.toleranced import format_toleranced
+from slidercrank.service.drawings.design_drawing import linkage_drawing, swing_drawing
 from slidercrank.service.drawings.dxf import dxf_file
 from slidercrank.service.drawings.layers import LAYERS, SWING_LAYERS
-from slidercrank.service.drawings.linkage_drawing import linkage_drawing
 from slidercrank.service.drawings.shapes import Circle, Dimension, Drawing, Label, Line, Outline
 from slidercrank.service.drawings.svg import svg_file
-from slidercrank.service.drawings.swing_drawing import swing_drawing
 from tests.service import fronts
 
 EXACT = 1e-9  # relative to the size of the linkage
@@ -270,7 +269,7 @@ def test_dxf_is_written_where_the_home_folder_cannot_be(tmp_path: Path) -> None:
         "from slidercrank.model.linkage.linkage import Linkage;"
         "from slidercrank.model.machine.mechanism import Mechanism;"
         "from slidercrank.service.drawings.dxf import dxf_file;"
-        "from slidercrank.service.drawings.linkage_drawing import linkage_drawing;"
+        "from slidercrank.service.drawings.design_drawing import linkage_drawing;"
         "print(len(dxf_file(linkage_drawing(Mechanism(), Linkage(0.04, 0.064, 0.02), name='x'))))"
     )
     home = tmp_path / "a file"

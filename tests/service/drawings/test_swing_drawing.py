@@ -20,10 +20,10 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.swing.swing import Swing
+from slidercrank.service.drawings.design_drawing import swing_drawing
 from slidercrank.service.drawings.dxf import dxf_file
 from slidercrank.service.drawings.shapes import WIDE, Label
 from slidercrank.service.drawings.svg import svg_file
-from slidercrank.service.drawings.swing_drawing import swing_drawing
 from slidercrank.service.figures.painting import drawing_figure
 from slidercrank.service.figures.swing import swing_figure
 from tests.model.swing.swings import Case, random_swings
