@@ -6,7 +6,7 @@ from ...model.errors import InfeasibleError
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.varying import number_at
 from ...objectives.bars import LINKS, NEAR
-from ...objectives.link_stress import LinkStress
+from ...objectives.link_strength import LinkStress
 from ..problem.problem import Problem
 
 

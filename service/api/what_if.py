@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field
 from ...model.errors import InputError
 from ..designs.changed_design import variation_of, with_numbers
 from ..designs.columns import all_columns
-from ..designs.cycle_table import LEAST, MOST
+from ..designs.design_curves import LEAST, MOST
 from ..designs.hold_equalities import hold_equalities
 from ..designs.judged_requirements import quantity_names, ranges_of, requirements_of, speed_rpm
 from ..designs.violations import violated_by, violations_in_words

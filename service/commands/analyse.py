@@ -179,7 +179,7 @@ def _draw(
 
 
 def _write_cycle(mechanism: Mechanism, linkage: Linkage, file: Path, units: System, *, machine: bool) -> None:
-    from ..designs.cycle_table import cycle_csv
+    from ..designs.design_curves import cycle_csv
 
     text = cycle_csv(mechanism, linkage, units, machine=machine)
     write_file(file, text)

@@ -1,4 +1,4 @@
-"""Motion of a linkage for playback on a page, and the playback of a rotating one."""
+"""Motion of a linkage for playback on a page, fully rotating or swinging."""
 
 from __future__ import annotations
 
@@ -16,10 +16,13 @@ from ...model.cycle.indicator import indicator
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
-from ..designs.cycle_table import CurveColumn, cycle_table
+from ...model.swing.swing import Swing
+from ..designs.design_curves import CurveColumn, cycle_table
+from ..designs.swing_curves import curves_at_even_times, has_position_error, motion_and_drive
 from ..drawings import layers as on
 from ..drawings.linkage_shapes import Look, bar, block, fixed_shapes, lengths_in_words, look_of
 from ..drawings.shapes import Circle, Shape
+from ..drawings.swing_parts import body_shapes, cylinder_parts, swing_look, swing_scenery
 
 ANGLES = 360
 """Places of the curves, of a turn: a degree apart."""
@@ -73,6 +76,14 @@ _TURNS = PlayerText(
     note="Dead centres are dashed in the drawing and dotted lines in the curves. "
     + EXACT_PARTS.format("slider and pins\nare for show"),
 )
+_SWING = PlayerText(
+    control="Back and forth",
+    times="swings a minute",
+    span_name="the swing, back and forth",
+    note="Both ends of the swing are dashed in the drawing; a dotted line in the curves is where it turns back. "
+    + EXACT_PARTS.format("slider, pins, the cylinder and the body on the crank are for show"),
+)
+_LEFT_OUT = ("crank_angle", "load")
 
 
 def turn_playback(mechanism: Mechanism, linkage: Linkage) -> Playback:
@@ -150,3 +161,49 @@ def moving_link_shapes(look: Look) -> dict[str, list[Shape]]:
         "crank": [bar(on.CRANK, pin, (look.crank, 0.0), look.crank_width)],
         **{name: [Circle(on.PINS, pin, look.pin)] for name in ("pivot", "crank-pin", "slider-pin")},
     }
+
+
+def swing_playback(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Playback:
+    """Return the motion of a swinging linkage. Raises the errors of `require_swing`."""
+    drawn = swing_look(mechanism, linkage, swing)
+    ways = curves_at_even_times(mechanism, drawn.linkage, drawn.swing, ANGLES)
+    angles = np.concatenate([way.crank_angle for way in ways])
+    at = drawn.linkage.at(angles)
+    columns = [
+        CurveColumn(
+            curve.field,
+            curve.title,
+            curve.kind.metric.symbol,
+            np.concatenate([curve.values_in(way) for way in ways]).tolist(),
+        )
+        for curve in motion_and_drive(drawn.swing)
+        if curve.name not in _LEFT_OUT
+        and (curve.attribute != "driven_error" or has_position_error(mechanism, drawn.swing))
+    ]
+    moving = moving_link_shapes(drawn.look)
+    if drawn.body is not None:
+        moving["crank"] = [*moving["crank"], *body_shapes(drawn.body, drawn.look, 0.0)]
+    pushed: dict[str, list[Shape]] = {}
+    if drawn.cylinder is not None:
+        rod, barrel = cylinder_parts(drawn.cylinder, drawn.look)
+        pushed = {"push": [rod], "barrel": [barrel]}
+    timed = drawn.swing.duration
+    start, end = (math.degrees(angle) for angle in (drawn.swing.start, drawn.swing.end))
+    how = "slowly" if timed is None else f"{drawn.swing.law} law, {timed:g} s per stroke"
+    return Playback(
+        summary=f"{lengths_in_words(drawn.linkage, digits=6)}; from {start:.6g} to {end:.6g} deg, "
+        f"the {drawn.swing.driver} driven, {how}",
+        record={
+            **place_record(drawn.look, at.slider_position, at.rod_angle),
+            "angles": [round(math.degrees(angle), 9) for angle in angles],
+            "direction": 1,
+            "perSecond": 0.0 if timed is None else 0.5 / timed,
+        },
+        columns=columns,
+        marks=(0.5 * ANGLES,),
+        still=swing_scenery(drawn),
+        moving={**pushed, **moving},
+        extent=drawn.extent,
+        size=drawn.look.size,
+        words=_SWING,
+    )

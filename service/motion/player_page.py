@@ -13,12 +13,11 @@ from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
 from ...objectives.kinds import unit_text
 from ...optimise.front.constant_numbers import is_constant
-from ..designs.cycle_table import CurveColumn
+from ..designs.design_curves import CurveColumn
 from ..drawings import layers as on
 from ..drawings.svg import elements, group
 from ..render.numerals import format_number as number
-from .playback import ANGLES, Playback, turn_playback
-from .swing_playback import swing_playback
+from .playback import ANGLES, Playback, swing_playback, turn_playback
 
 _PLAYER = Path(__file__).parent / "player"
 _STRIP = (float(ANGLES), 64.0)  # width, one unit a degree of a motion of one turn, and height

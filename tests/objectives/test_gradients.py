@@ -13,7 +13,7 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.peaks import STORED_PEAKS
 from slidercrank.objectives.bars import OfBars, Part
 from slidercrank.objectives.closed_form import ClosedFormQuantity
-from slidercrank.objectives.pin_rubbing import PinRubbing
+from slidercrank.objectives.pins import PinRubbing
 from slidercrank.objectives.quantity import Group, Pieces, Quantity
 from slidercrank.objectives.registry import QUANTITIES
 from tests.model.cases import MACHINES, SMOOTH, Array, fitted, random_designs, random_friction, random_machine

@@ -14,7 +14,7 @@ from slidercrank.model.machine.links import Bar, RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.strength import Criterion
-from slidercrank.objectives.link_safety import critical_stress
+from slidercrank.objectives.link_strength import critical_stress
 from slidercrank.objectives.registry import QUANTITIES
 from tests.model.cases import STRENGTH, Array, random_designs
 from tests.model.strength.sections import eye_rows, linkage_with, random_bars, stress_rows

@@ -30,7 +30,7 @@ TERMS = {
     "service/api/preview.py": "the answer of the preview has these keys",
     "objectives/tables/cycle_curves.py": "curves over the cycle, not quantities",
     "service/questions/inverse/analysis.py": "on which stroke a crank angle puts the slider at a position",
-    "service/designs/cycle_table.py": "curves over the cycle, not quantities",
+    "service/designs/design_curves.py": "curves over the cycle, not quantities",
     "service/designs/swing_curves.py": "curves over a swing, not quantities",
     "service/page/static/design/panels.js": "curves over the cycle, not quantities",
 }

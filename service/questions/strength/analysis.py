@@ -18,7 +18,7 @@ from ....model.strength.stress_cycle import stress_peaks
 from ....model.strength.stress_locations import LinkBody
 from ....objectives.bars import LINKS, NEAR
 from ....objectives.kinds import ANGLE, LENGTH, PRESSURE
-from ....objectives.link_stress import STATIC, STATIC_SAFETY, eye_stresses
+from ....objectives.link_strength import STATIC, STATIC_SAFETY, eye_stresses
 from ....objectives.quantity import Group
 from ....objectives.registry import QUANTITIES
 from ....objectives.tables.missing_values import missing_value_reason

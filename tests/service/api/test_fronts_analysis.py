@@ -20,7 +20,7 @@ from slidercrank.optimise.job import job_schema, load_job, parse_job
 from slidercrank.optimise.problem.table_columns import choice_field
 from slidercrank.optimise.solve import solve
 from slidercrank.service.cli import app as command_line
-from slidercrank.service.designs.cycle_table import cycle_table
+from slidercrank.service.designs.design_curves import cycle_table
 from slidercrank.service.designs.stored_designs import design_of, front_of
 from slidercrank.service.questions.design_analysis import quantities_of_design
 from slidercrank.service.runs.result import result_of

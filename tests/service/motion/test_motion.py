@@ -17,7 +17,7 @@ from slidercrank.model.errors import AssemblyError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.service.designs.cycle_table import cycle_table
+from slidercrank.service.designs.design_curves import cycle_table
 from slidercrank.service.motion.animated_gif import FRAMES, MILLISECONDS, animated_gif
 from slidercrank.service.motion.player_page import player_page
 from tests.service import fronts

@@ -13,7 +13,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.swing.swing import Swing
-from slidercrank.service.designs.cycle_table import cycle_table
+from slidercrank.service.designs.design_curves import cycle_table
 from slidercrank.service.motion.player_page import player_page
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Picture

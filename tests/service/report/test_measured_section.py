@@ -10,7 +10,7 @@ import pytest
 
 from slidercrank.objectives.tables.measured import Measured, measured_from
 from slidercrank.optimise.problem.design_analysis import Analysis
-from slidercrank.service.designs.cycle_table import cycle_csv
+from slidercrank.service.designs.design_curves import cycle_csv
 from slidercrank.service.designs.measured_file import read_measured
 from slidercrank.service.questions.measured.analysis import numbers
 from slidercrank.service.render.numerals import rounded
