@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from fastapi import APIRouter
 from pydantic import BaseModel, Field, ValidationError
 
-from ...model.cycle.stroke_times import slow_stroke, time_ratio
+from ...model.cycle.stroke_times import massless_machine, slow_stroke, time_ratio
 from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import Kind
 from ...objectives.machine_needs import ONE_TIMING
+from ..designs.cycle_table import cycle_table
 from .computing import QuickRoute
 from .job_files import Understood, understood
 from .job_requests import Submission, problem_of_tables
@@ -25,7 +28,11 @@ if TYPE_CHECKING:
 
 router = APIRouter(route_class=QuickRoute, tags=["jobs"])
 
-_ANGLES = 72
+_ANGLES = 180
+_CURVES = (
+    *("crank_angle_deg", "slider_position_mm", "slider_velocity_m_s"),
+    *("slider_acceleration_m_s2", "transmission_angle_deg"),
+)
 Ends = tuple[float, float]
 
 
@@ -79,17 +86,19 @@ class AllowedModel(BaseModel):
 
 
 class MotionModel(BaseModel):
-    """The slider over a turn of the crank, evenly spaced from 0 deg."""
+    """The slider over a turn of the crank at the speed of the job, else at 1 rad/s, evenly spaced from 0 deg."""
 
     crank_angle_deg: list[float]
     slider_position_mm: list[float]
+    slider_velocity_m_s: list[float]
+    slider_acceleration_m_s2: list[float]
     transmission_angle_deg: list[float]
 
 
 class ExampleModel(BaseModel):
     """A linkage within the ranges. feasible: whether it meets all checked requirements.
 
-    slider_ends_mm: slider positions at the inner and the outer dead centre.
+    slider_ends_mm, dead_centres_deg: slider positions and crank angles at the inner and the outer dead centre.
     """
 
     crank_mm: float = Field(examples=[40.0])
@@ -100,6 +109,7 @@ class ExampleModel(BaseModel):
     slow_stroke: str = Field(examples=["outward"])
     stroke_mm: float
     slider_ends_mm: tuple[float, float] = Field(examples=[(59.2, 139.6)])
+    dead_centres_deg: tuple[float, float] = Field(examples=[(189.6, 4.1)])
     time_ratio: float | None = Field(description="null if cylinders differ", examples=[1.2])
     least_transmission_angle_deg: float
     motion: MotionModel
@@ -244,6 +254,7 @@ def _example(look: Look) -> ExampleModel | None:
         return None
     machine = look.stated.mechanism
     linkage = Linkage(*look.possible.example, machine.branch)
+    inner, outer = (math.degrees(float(angle)) for angle in linkage.dead_centre_angles)
     return ExampleModel(
         crank_mm=1e3 * float(linkage.crank),
         rod_mm=1e3 * float(linkage.rod),
@@ -253,9 +264,10 @@ def _example(look: Look) -> ExampleModel | None:
         slow_stroke=str(slow_stroke(machine, linkage)),
         stroke_mm=1e3 * float(linkage.stroke),
         slider_ends_mm=(1e3 * float(linkage.dead_centres[0]), 1e3 * float(linkage.dead_centres[1])),
+        dead_centres_deg=(inner, outer),
         time_ratio=float(time_ratio(machine, linkage)) if ONE_TIMING.is_met(machine) else None,
         least_transmission_angle_deg=math.degrees(float(linkage.least_transmission_angle)),
-        motion=_motion(linkage),
+        motion=_motion(machine, linkage),
     )
 
 
@@ -303,11 +315,7 @@ def _swing_example(possible: PossibleSwing, lengths: tuple[float, float, float])
     )
 
 
-def _motion(linkage: Linkage) -> MotionModel:
-    theta = np.arange(_ANGLES) * (2.0 * np.pi / _ANGLES)
-    positions = linkage.at(theta)
-    return MotionModel(
-        crank_angle_deg=np.degrees(theta).tolist(),
-        slider_position_mm=(1e3 * positions.slider_position).tolist(),
-        transmission_angle_deg=np.degrees(positions.transmission_angle).tolist(),
-    )
+def _motion(machine: Mechanism, linkage: Linkage) -> MotionModel:
+    turning = replace(massless_machine(machine), speed=machine.speed or 1.0)
+    curves = {column.key: column.values for column in cycle_table(turning, linkage, angles=_ANGLES)}
+    return MotionModel(**{key: curves[key] for key in _CURVES})

@@ -155,9 +155,7 @@ def infeasibility_sentences(problem: Problem, possible_values: Possible, fixed_n
         if name in constraints and ends is not None:
             sentences += _nearest_possible(problem, constraints[name], ends)
     if possible_values.turning == 0.0:
-        sentences.append(
-            "no crank within these ranges rotates fully: the rod must be longer than crank and offset together"
-        )
+        sentences.append(_locking(problem))
     elif possible_values.sampled and possible_values.feasible == 0.0 and not sentences:
         hardest = ""
         if possible_values.hardest is not None and possible_values.hardest[1] < 1.0:
@@ -170,6 +168,24 @@ def infeasibility_sentences(problem: Problem, possible_values: Possible, fixed_n
             "the search looks more closely"
         )
     return sentences
+
+
+def _locking(problem: Problem) -> str:
+    """Return a sentence on ranges in which no crank rotates fully: the rod that is missing, and the remedy."""
+    crank, rod, offset = problem.crank, problem.rod, problem.offset
+    nearest_line = 0.0 if offset.lower <= 0.0 <= offset.upper else min(abs(offset.lower), abs(offset.upper))
+    needed = crank.lower + nearest_line
+    fixed = all(item.lower == item.upper for item in (crank, rod, offset))
+    subject = "this crank does not rotate" if fixed else "no crank within these ranges rotates"
+    rule = f"{subject} fully: the rod must be longer than crank and offset together"
+    if needed < rod.upper:
+        return f"{rule}; hardly any of these are: allow longer rods"
+    at_least, at_most = ("", "") if fixed else ("at least ", "at most ")
+    longer = f" by more than {1e3 * (needed - rod.upper):.6g} mm" if needed > rod.upper else ""
+    return (
+        f"{rule}, which take {at_least}{1e3 * needed:.6g} mm; got {at_most}{1e3 * rod.upper:.6g} mm; "
+        f"lengthen the rod{longer}"
+    )
 
 
 def _nearest_possible(problem: Problem, constraint: Constraint, ends: Ends) -> list[str]:

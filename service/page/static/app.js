@@ -23,6 +23,11 @@ const VIEWS = [
     load: () => import("./views/new_run.js"),
   },
   {
+    name: "look",
+    match: (parts) => parts[0] === "look" && parts.length === 1,
+    load: () => import("./views/look.js"),
+  },
+  {
     name: "compare",
     match: (parts) => parts[0] === "compare" && parts.length === 1,
     load: () => import("./views/compare.js"),

@@ -85,7 +85,7 @@ declare namespace Page {
     /** Extremes of its curves between their points too, by column; places in the cycle. Without them they are those of the points. */
     exact?: Record<string, Ends>;
     /** Of its drawings: piston, cylinders, actuator, body on the crank. */
-    outlines: Api.Outlines;
+    outlines?: Api.Outlines;
     /** Of the cycle; null where it has no speed. */
     seconds?: number | null;
   }

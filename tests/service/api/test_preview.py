@@ -11,6 +11,7 @@ from typing import Any
 from unittest.mock import Mock
 
 import httpx
+import numpy as np
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
@@ -91,6 +92,42 @@ def test_the_example_is_a_linkage_within_the_ranges_that_meets_the_requirements(
     motion = example["motion"]
     at = linkage.at([math.radians(angle) for angle in motion["crank_angle_deg"]])
     assert motion["slider_position_mm"] == pytest.approx((1e3 * at.slider_position).tolist(), rel=1e-12)
+
+
+@pytest.mark.parametrize("speed", ["90 rpm", "-90 rpm", None])
+def test_curves_of_three_fixed_lengths_are_those_of_the_linkage_and_rest_at_its_dead_centres(
+    shared: httpx.Client, speed: str | None
+) -> None:
+    job: Job = {"variables": {"crank": "50 mm", "rod": "150 mm", "offset": "40 mm"}}
+    example = preview(shared, job | ({"mechanism": {"speed": speed}} if speed else {}))["example"]
+    omega = {"90 rpm": 3.0 * math.pi, "-90 rpm": -3.0 * math.pi, None: 1.0}[speed]
+    curves = {key: np.array(values) for key, values in example["motion"].items()}
+    theta, step = np.radians(curves["crank_angle_deg"]), 1e-4
+
+    def position(angle: Any) -> Any:  # m: x = r cos(theta) + sqrt(l^2 - (e - r sin(theta))^2)
+        return 0.05 * np.cos(angle) + np.sqrt(0.15**2 - (0.04 - 0.05 * np.sin(angle)) ** 2)
+
+    before, at, after = position(theta - step), position(theta), position(theta + step)
+    assert curves["slider_position_mm"] == pytest.approx(1e3 * at, rel=1e-12)
+    assert curves["slider_velocity_m_s"] == pytest.approx(omega * (after - before) / (2 * step), abs=1e-7)
+    acceleration = omega**2 * (after - 2 * at + before) / step**2
+    assert curves["slider_acceleration_m_s2"] == pytest.approx(acceleration, abs=1e-5)
+    centres = position(np.radians(example["dead_centres_deg"]))
+    assert 1e3 * centres == pytest.approx(example["slider_ends_mm"], rel=1e-12)
+    assert example["slider_ends_mm"] == pytest.approx([1e3 * math.sqrt(d) for d in (0.0084, 0.0384)], rel=1e-12)
+
+
+def test_a_crank_that_locks_is_told_how_much_longer_a_rod_it_needs(shared: httpx.Client) -> None:
+    lengths = {"crank": "50 mm", "rod": "80 mm", "offset": "-40 mm"}
+    (said,) = preview(shared, {"variables": lengths})["allowed"]["said"]
+    assert said == (
+        "this crank does not rotate fully: the rod must be longer than crank and offset together, which take 90 mm; "
+        "got 80 mm; lengthen the rod by more than 10 mm"
+    )
+    assert preview(shared, {"variables": lengths | {"rod": "120 mm"}})["allowed"]["said"] == []
+    ranges = {"crank": ["50 mm", "60 mm"], "rod": ["70 mm", "80 mm"], "offset": ["-40 mm", "-35 mm"]}
+    (said,) = preview(shared, {"variables": ranges})["allowed"]["said"]
+    assert said.endswith("take at least 85 mm; got at most 80 mm; lengthen the rod by more than 5 mm")
 
 
 def test_strokes_of_the_ranges_are_those_of_the_closed_form(shared: httpx.Client) -> None:
@@ -201,7 +238,7 @@ def test_ranges_in_which_nothing_turns_are_said(shared: httpx.Client) -> None:
     found = preview(shared, {"variables": {"crank": "100 mm", "rod": "90 mm", "offset": "0 mm"}})
     assert found["example"] is None
     assert found["allowed"]["turning_share"] == 0.0
-    assert "no crank within these ranges rotates fully" in found["allowed"]["said"][0]
+    assert "this crank does not rotate fully" in found["allowed"]["said"][0]
 
 
 WRONG = {

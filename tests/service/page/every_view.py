@@ -67,6 +67,7 @@ def fill(store: Store, results: tuple[Result, Result], tables: dict[str, Any]) -
     return [
         View("runs", "/", (".runs .run .thumbnail circle",)),
         View("new_run", "/new?preset=feeder", (".beside .status.good:text-is('Ready to start.')", ".sketch svg")),
+        View("look", "/look", (".curves .chart", ".facts dd")),
         View("live", f"/jobs/{claim.job.id}", (".points circle", ".log li")),
         View("no_solution", f"/jobs/{none}", (".outcome",)),
         View("front", f"/jobs/{first}", ("table.designs tbody tr", ".linkage svg", ".marks li")),

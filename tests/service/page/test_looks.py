@@ -18,7 +18,10 @@ from tests.service.page.conftest import Pages, watch
 from tests.service.page.every_view import HEIGHTS, WIDTHS, View, fill
 from tests.service.page.looks import faults
 
-VIEWS = ("runs", "new_run", "live", "no_solution", "front", "design", "designs", "compare", "help", "quantity")
+VIEWS = (
+    *("runs", "new_run", "look", "live", "no_solution", "front"),
+    *("design", "designs", "compare", "help", "quantity"),
+)
 
 # Curves out of sight are drawn anew a moment after those in sight.
 DRAWN = """() => [...document.querySelectorAll(".curves .chart")].every((chart) =>
@@ -66,4 +69,4 @@ def test_every_view_is_measured(shown: tuple[str, dict[str, View]], pytestconfig
     _, views = shown
     assert tuple(views) == VIEWS
     files = {file.stem for file in Path(pytestconfig.rootpath, "service/page/static/views").glob("*.js")}
-    assert files == {"runs", "new_run", "run", "design", "compare", "help"}
+    assert files == {"runs", "new_run", "look", "run", "design", "compare", "help"}

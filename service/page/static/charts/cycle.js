@@ -37,11 +37,11 @@ export function turned(angle) {
  * @param {readonly (number | null)[]} values @param {number} angle @returns {number | null}
  */
 export function between(values, angle) {
-  const place = (turned(angle) / 360) * values.length;
+  const place = (turned(angle) * values.length) / 360; // in this order, so that the angle of a point is exact
   const first = Math.floor(place);
   const [from, to] = [values[first % values.length], values[(first + 1) % values.length]];
-  if (from === null || to === null) return null;
-  return from + (place - first) * (to - from);
+  if (from === null || place === first) return from;
+  return to === null ? null : from + (place - first) * (to - from);
 }
 
 /** Return {low, high} of a curve, each with its {angle, value}; null for a curve without values. @param {readonly (number | null)[]} values */

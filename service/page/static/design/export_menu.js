@@ -70,7 +70,8 @@ export function exportMenu(job, number) {
   };
 }
 
-async function copyLink() {
+/** Copy the address of this view, and say so. */
+export async function copyLink() {
   try {
     await navigator.clipboard.writeText(location.href);
     say("Link copied. It shows the same view to anyone with access to this service.");

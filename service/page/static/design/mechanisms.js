@@ -8,7 +8,10 @@ import { drawing } from "../mechanism/drawing.js";
 import { lengthsOf } from "./loading.js";
 import { around, frameOf } from "../mechanism/frame.js";
 
-/** @import { playback as playbackOf } from "../mechanism/playback.js" */
+/**
+ * @import { Grips } from "../mechanism/grips.js"
+ * @import { playback as playbackOf } from "../mechanism/playback.js"
+ */
 
 const EVERY = 100; // ms between two readouts while it moves
 /** What sets the place in the cycle, and how, by the turns in it. */
@@ -23,6 +26,8 @@ const WORDS = [
     "Drag the crank, or use the arrow keys (2°) and the page keys (20°) on the crank angle; a cycle is two turns.",
   ],
 ];
+const GRIPS =
+  "Drag the crank pin, the slider or the guide, or step to one with Tab and use the arrow and page keys.";
 /** @type {Record<string, number>} */
 const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 }; // deg
 
@@ -30,9 +35,11 @@ const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown
  * Put mechanisms into `place`, and into `strip` what turns them; turning: of turning.js. Returns
  * show(machines): each {name, series, row, curves, centres, sliderEnds}, drawn at one scale; the first is the one that is told of; faded(yes); close().
  * turns: of the crank in a cycle, 0 of a swing.
+ * grips: of grips.js, by which the lengths of a single mechanism without forces are dragged.
  * @param {HTMLElement} place @param {HTMLElement} strip @param {ReturnType<typeof playbackOf>} turning @param {number} turns
+ * @param {Grips | null} [grips]
  */
-export function mechanismsPanel(place, strip, turning, turns) {
+export function mechanismsPanel(place, strip, turning, turns, grips = null) {
   const [named, hint] = WORDS[turns];
   const drawn = h("div", { class: "machines" });
   /** @type {Page.Machine[]} */
@@ -81,11 +88,11 @@ export function mechanismsPanel(place, strip, turning, turns) {
       "div",
       { class: "row controls" },
       h("label", {}, "Speed ", pace),
-      h("label", {}, forces, " Forces"),
+      !grips && h("label", {}, forces, " Forces"),
       largest,
     ),
     legend,
-    h("p", { class: "quiet hint" }, hint),
+    h("p", { class: "quiet hint" }, grips ? GRIPS : hint),
   );
 
   fill(
@@ -136,7 +143,7 @@ export function mechanismsPanel(place, strip, turning, turns) {
       const places = machines.map(() => h("div", { class: "machine" }));
       fill(drawn, places);
       drawings = places.map((each, n) =>
-        draggable(drawing(each, { label: "" }), (at) =>
+        draggable(drawing(each, { label: "", grips }), (at) =>
           hold(placeOf(machines[n], at, turning.angle)),
         ),
       );

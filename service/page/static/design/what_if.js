@@ -1,25 +1,16 @@
 /** Sliders for other lengths ("What if?"), and where the change leaves the front. */
 
 import { isAbort, post } from "../lib/api.js";
-import { fill, h, markInvalid, numberField } from "../lib/dom.js";
-import { parseQuantity } from "../lib/quantity_text.js";
-import { inDisplayUnit, text, unitOf, withUnit } from "../lib/numbers.js";
+import { fill, h } from "../lib/dom.js";
+import { text, withUnit } from "../lib/numbers.js";
 import { link } from "../lib/address.js";
 import { frontMap } from "./front_map.js";
+import { lengthRow, LENGTHS, SAME } from "./length_row.js";
 import { difference, requirementText } from "./numbers.js";
 import { lengthsOf } from "./loading.js";
 import { rankOf } from "./rank.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { headedRow, headsOf, numberCell, table } from "../lib/table.js";
-
-/** @type {[keyof Page.Lengths, string][]} */
-const LENGTHS = [
-  ["crank_mm", "Crank"],
-  ["rod_mm", "Rod"],
-  ["offset_mm", "Offset"],
-];
-const STEPS = 1000; // of a slider over its range
-const SAME = 1e-9; // relative
 
 /**
  * Put the sliders into `place`. path: of the design in the API; base: its row; ranges, requirements: of the API; objectives, front:
@@ -233,104 +224,6 @@ export function whatIf(
     apply,
     lengths: lengthsNow,
     dimensions: () => (moved() ? { ...lengthsNow(), ...values } : null),
-  };
-}
-
-/**
- * Return the controls of a length. set(value): a length was chosen, null where what was typed is none.
- * @param {keyof Page.Lengths} key @param {string} title @param {readonly number[]} ends @param {(value: number | null) => void} set
- */
-function lengthRow(key, title, [low, high], set) {
-  const fixed = low === high;
-  const id = `what-if-${key}`;
-  const outside = h(
-    "span",
-    { class: "at-limit", role: "status", hidden: true },
-    " · outside the job",
-  );
-  const understood = h("span", { class: "quiet ends", role: "status" }); // how a sum or another unit was read
-  let wrong = ""; // why what was typed is no length
-  const number = numberField({
-    id,
-    disabled: fixed,
-    oninput: () => {
-      const { value, said = "", wrong: sentence = "" } = typed();
-      wrong = sentence;
-      markInvalid(number, wrong);
-      if (value !== undefined) slide(value);
-      understood.textContent = said;
-      set(value ?? null);
-    },
-    // Put the length that was understood in place of what was typed, and leave in sight how.
-    onchange: () => {
-      const { value, said = "" } = typed();
-      if (value === undefined) return;
-      show(value);
-      understood.textContent = said;
-    },
-  });
-  const slider = h("input", {
-    type: "range",
-    min: 0,
-    max: STEPS,
-    step: 1,
-    disabled: fixed,
-    "aria-label": `${title}, slider`,
-    oninput: () => {
-      const position = slider.value;
-      const value = low + (Number(position) / STEPS) * (high - low);
-      show(value);
-      slider.value = position;
-      set(value);
-    },
-  });
-
-  /** Return what the field says, or why it is no length. @returns {{ value?: number, said?: string | null, wrong?: string }} */
-  function typed() {
-    const parsed = parseQuantity(number.value, "mm");
-    if (parsed.value !== undefined && (parsed.value > 0 || key === "offset_mm")) return parsed;
-    return {
-      wrong:
-        parsed.wrong ??
-        `${title} needs a length${key === "offset_mm" ? "" : " above 0"}${parsed.empty ? "" : `; got ${number.value.trim()}`}.`,
-    };
-  }
-
-  /** Show a length beside its field, and whether it is outside the ranges of the job. @param {number} value */
-  function slide(value) {
-    slider.value = String(high > low ? (STEPS * (value - low)) / (high - low) : 0);
-    slider.setAttribute("aria-valuetext", withUnit(value, "mm", 5));
-    outside.hidden =
-      fixed || (value >= low - SAME * Math.abs(low) && value <= high + SAME * Math.abs(high));
-  }
-
-  /** @param {number} value */
-  function show(value) {
-    wrong = understood.textContent = "";
-    number.value = String(Number(inDisplayUnit(value, "mm").toPrecision(6)));
-    markInvalid(number, false);
-    slide(value);
-  }
-
-  return {
-    key,
-    node: h(
-      "div",
-      { class: "length" },
-      h("label", { for: id }, title),
-      slider,
-      number,
-      h("span", { class: "quiet" }, unitOf("mm")),
-      h(
-        "span",
-        { class: "quiet ends" },
-        fixed ? "fixed by the job" : `${text(low, "mm", 4)} to ${withUnit(high, "mm", 4)}`,
-        outside,
-      ),
-      understood,
-    ),
-    show,
-    wrong: () => wrong,
   };
 }
 

@@ -1,4 +1,4 @@
-/** The job that an empty form begins with. */
+/** The jobs that a form begins with. */
 
 /** Return a job that can be solved, in the reader's units: system is "si" or "inch". @param {"si" | "inch"} system @returns {Form.Job} */
 export function firstJob(system) {
@@ -34,5 +34,29 @@ export function firstJob(system) {
       position_error: "minimise",
     },
     optimiser: { designs: 100, seed: 1 },
+  };
+}
+
+/**
+ * Return a job with ranges around a mechanism, which keeps its stroke: crank, rod, offset and stroke, mm, and the crank speed, rpm.
+ * @param {"si" | "inch"} system @param {number[]} numbers @returns {Form.Job}
+ */
+export function jobAround(system, [crank, rod, offset, stroke, rpm]) {
+  const job = firstJob(system);
+  const [factor, unit] = system === "inch" ? [1 / 25.4, "in"] : [1, "mm"];
+  /** @param {number} mm */
+  const length = (mm) => `${Number((factor * mm).toPrecision(4))} ${unit}`;
+  const nearest = Math.max(Math.abs(offset) - crank / 2, 0);
+  const ends = [nearest, Math.abs(offset) + crank / 2].map((mm) => (offset < 0 ? -mm : mm));
+  return {
+    ...job,
+    name: "Around one mechanism",
+    mechanism: { .../** @type {Form.Job} */ (job.mechanism), speed: `${rpm} rpm` },
+    variables: {
+      crank: [length(crank / 2), length(1.5 * crank)],
+      rod: [length(rod / 2), length(2 * rod)],
+      offset: ends.sort((a, b) => a - b).map(length),
+    },
+    constraints: { stroke: { equals: length(stroke) } },
   };
 }

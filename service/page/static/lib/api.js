@@ -3,6 +3,7 @@
 import { letIn } from "./token.js";
 
 const PREFIX = "api/v1";
+const LONGEST = 30; // s to wait before a request is sent again
 
 /** Refusal of the service, in its own sentence; status 0 is no answer at all. */
 export class Problem extends Error {
@@ -177,10 +178,11 @@ function infinite(key, value) {
 }
 
 /**
- * Return a response, of whatever status; where the token is missing the reader is asked for it, and the request is sent once more.
- * @param {string} method @param {string} url @param {RequestInit} options @returns {Promise<Response>}
+ * Return a response, of whatever status. Where the token is missing the reader is asked for it, and the request is sent once more; a GET
+ * that a busy service puts off is sent again at the time that it names, three times at most.
+ * @param {string} method @param {string} url @param {RequestInit} options @param {number} left times that it may be sent again @returns {Promise<Response>}
  */
-export async function answered(method, url, options = {}) {
+export async function answered(method, url, options = {}, left = 3) {
   let response;
   try {
     response = await fetch(url, { method, ...options });
@@ -188,5 +190,19 @@ export async function answered(method, url, options = {}) {
     if (isAbort(error)) throw error;
     throw new Problem(0, "The service does not answer; this page continues when it is back.");
   }
+  const seconds = Number(response.headers.get("Retry-After"));
+  if (response.status === 503 && method === "GET" && left > 0 && seconds > 0) {
+    await passed(1000 * Math.min(seconds, LONGEST), options.signal);
+    return answered(method, url, options, left - 1);
+  }
   return response.status === 401 && (await letIn()) ? answered(method, url, options) : response;
+}
+
+/** Wait for so many ms. Throws an AbortError once `signal` is aborted. @param {number} ms @param {AbortSignal | null} [signal] */
+async function passed(ms, signal) {
+  signal?.throwIfAborted();
+  await new Promise((resolve, reject) => {
+    setTimeout(resolve, ms);
+    signal?.addEventListener("abort", () => reject(signal.reason), { once: true });
+  });
 }

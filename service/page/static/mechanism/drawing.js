@@ -5,18 +5,19 @@ import { fill, h, svg } from "../lib/dom.js";
 import { text, withUnit } from "../lib/numbers.js";
 import { arrows } from "./arrows.js";
 import { attached } from "./attached.js";
-import { fitted, frameOf, sliderRange } from "./frame.js";
+import { fitted, frameOf, placeIn, sliderRange } from "./frame.js";
 import { bar, placed, scenery } from "./scenery.js";
 
 /**
  * @import { Frame, View } from "./frame.js"
+ * @import { Grips } from "./grips.js"
  * @typedef {{ frame?: Frame, direction?: number, dead_centres_deg?: Page.Point, slider_ends_mm?: Page.Point, largest_force?: number, small?: boolean, angle?: number, turns?: number, outlines?: Api.Outlines }} Options
  */
 
 const EVERY = 100; // ms between two values while it moves; faster ones cannot be read
 
 /**
- * Put a drawing into `place`; label: what a screen reader says of it. It fills the width of its place and returns
+ * Put a drawing into `place`; label: what a screen reader says of it; grips: of grips.js, by which its lengths are dragged. It fills the width of its place and returns
  * - show(linkage, motion, options): draw {crank_mm, rod_mm, offset_mm}; motion: curves {crank_angle_deg, slider_position_mm} over a
  *   turn from 0 deg, evenly spaced; with transmission_angle_deg its angle is written, with the forces of the API they are arrows.
  *   options: frame (of frame.js, to draw several at one scale), direction (1 counter-clockwise, -1 clockwise), dead_centres_deg
@@ -28,17 +29,22 @@ const EVERY = 100; // ms between two values while it moves; faster ones cannot b
  * - turn(angle, settled): set the crank to an angle in deg; settled: whether it stays there, so that what is written may be read. - fade(yes): show that it is not what was asked for.
  * - forces(yes): show the arrows. - angleAt(x, y): the crank angle that points to a place on the screen. - node: both pictures; handle: what
  *   lies over the crank circle, to be taken hold of. - close().
- * @param {HTMLElement} place @param {{ label: string }} options
+ * @param {HTMLElement} place @param {{ label: string, grips?: Grips | null }} options
  */
-export function drawing(place, { label }) {
+export function drawing(place, { label, grips = null }) {
   const parts = movingParts();
   const handle = svg("circle", { class: "handle" });
   // What stands still is a picture of its own, so that it is not painted again in every frame.
   const [still, moving] = [
     svg("svg", { class: "still" }),
-    svg("svg", { class: "moving" }, parts.nodes, handle),
+    svg("svg", { class: "moving" }, parts.nodes, handle, grips?.nodes),
   ];
-  const node = h("div", { class: "mechanism", role: "img", "aria-label": label }, still, moving);
+  const node = h(
+    "div",
+    { class: "mechanism", role: grips ? "group" : "img", "aria-label": label },
+    still,
+    moving,
+  );
   place.append(node);
   /** @type {{ linkage: Page.Lengths, motion: Api.Curves, options: Options } | null} */
   let current = null; // {linkage, motion, options}
@@ -54,7 +60,8 @@ export function drawing(place, { label }) {
     const { outlines } = options;
     const machineFrame = frameOf(linkage, motion, outlines);
     const { block, tall } = machineFrame;
-    view = fitted(options.frame ?? machineFrame, width, options.small);
+    if (!view || !grips?.isHeld())
+      view = fitted(options.frame ?? machineFrame, width, options.small);
     for (const one of [still, moving])
       one.setAttribute("viewBox", `0 0 ${view.width} ${view.height}`);
     const link = Math.min(Math.max(0.05 * (linkage.crank_mm + linkage.rod_mm) * view.unit, 7), 20);
@@ -73,6 +80,7 @@ export function drawing(place, { label }) {
         written: !options.small,
         swings: turns === 0,
         outlines,
+        hasStrokeAngles: grips !== null,
       }),
     );
     measure(handle, { cx: view.x(0), cy: view.y(0), r: linkage.crank_mm * view.unit + 0.8 * link });
@@ -97,7 +105,8 @@ export function drawing(place, { label }) {
     angle = to;
     if (!view || !current) return;
     const { linkage, motion } = current;
-    const position = between(motion.slider_position_mm, angle) ?? NaN;
+    const position = between(motion.slider_position_mm, angle);
+    if (position === null) return; // the crank locks before
     const radians =
       (crankAt({ curves: motion, turns: current.options.turns ?? 1 }, angle) * Math.PI) / 180;
     const pin = /** @type {Page.Point} */ ([
@@ -114,6 +123,7 @@ export function drawing(place, { label }) {
       settled,
     );
     if (arrowed) parts.forces.move(pivot, pin, slider, angle);
+    grips?.move(view, pin, slider, linkage);
   }
 
   const watcher = new ResizeObserver(
@@ -141,13 +151,8 @@ export function drawing(place, { label }) {
     /** @param {number} x @param {number} y */
     angleAt(x, y) {
       if (!view) return angle;
-      const box = node.getBoundingClientRect();
-      const factor = view.width / box.width;
-      return (
-        (Math.atan2(view.y(0) - (y - box.top) * factor, (x - box.left) * factor - view.x(0)) *
-          180) /
-        Math.PI
-      );
+      const [across, up] = placeIn(node, view, x, y);
+      return (Math.atan2(up, across) * 180) / Math.PI;
     },
     close: () => watcher.disconnect(),
   };

@@ -93,3 +93,13 @@ export function fitted(frame, width, small = false) {
     y: (millimetres) => top + unit * (frame.high - millimetres),
   };
 }
+
+/** Return the place in the mechanism, mm, of one on the screen. @param {Element} node that shows it @param {View} view @param {number} x @param {number} y @returns {Page.Point} */
+export function placeIn(node, view, x, y) {
+  const box = node.getBoundingClientRect();
+  const factor = view.width / box.width;
+  return [
+    ((x - box.left) * factor - view.x(0)) / view.unit,
+    (view.y(0) - (y - box.top) * factor) / view.unit,
+  ];
+}

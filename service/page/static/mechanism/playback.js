@@ -9,7 +9,7 @@ const TURNS = [16, 8, 4, 2, 1]; // s of a turn, to choose from
 const SHORTEST = 0.2; // s of a turn that a screen can show
 
 /**
- * Return the shared crank angle: {angle, playing, pace, paces, set(angle), play(), pause(), choose(pace), listen(told)}.
+ * Return the shared crank angle: {angle, direction, playing, pace, paces, set(angle), play(), pause(), choose(pace), listen(told)}.
  * rpm: cycles a minute, the sign the direction of the crank. cycle: what it is called. told({angle, playing, settled}) is called for every change and every frame; settled:
  * whether nothing moves, so that what takes longer to draw may be drawn.
  * @param {number} rpm @param {AbortSignal} signal @param {string} cycle
@@ -18,11 +18,11 @@ export function playback(rpm, signal, cycle = "one turn") {
   /** @type {((turn: Page.Turn) => void)[]} */
   const listeners = [];
   const paces = pacesOf(rpm, cycle);
-  const direction = rpm < 0 ? -1 : 1;
   let frame = 0;
   let last = 0;
   const state = {
     angle: 0,
+    direction: rpm < 0 ? -1 : 1,
     playing: false,
     pace: paces.find((pace) => pace.chosen) ?? paces[0],
     paces,
@@ -36,7 +36,7 @@ export function playback(rpm, signal, cycle = "one turn") {
   const step = (now) => {
     const seconds = last ? Math.min((now - last) / 1000, 0.1) : 0; // after a pause of the browser it goes on where it was
     last = now;
-    state.angle = turned(state.angle + (direction * 360 * seconds) / state.pace.seconds);
+    state.angle = turned(state.angle + (state.direction * 360 * seconds) / state.pace.seconds);
     tell();
     frame = requestAnimationFrame(step);
   };
@@ -48,7 +48,6 @@ export function playback(rpm, signal, cycle = "one turn") {
   };
   signal.addEventListener("abort", () => cancelAnimationFrame(frame), { once: true });
   return Object.assign(state, {
-    direction,
     /** @param {number} angle */
     set(angle) {
       state.angle = turned(angle);

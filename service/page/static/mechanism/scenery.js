@@ -1,7 +1,8 @@
 /** Fixed parts of a mechanism: bearing, guide, centre lines, paths of the pins, dead centres, offset. */
 
 import { svg } from "../lib/dom.js";
-import { withUnit } from "../lib/numbers.js";
+import { turned } from "../charts/cycle.js";
+import { text, withUnit } from "../lib/numbers.js";
 import { barrel, walls } from "./attached.js";
 
 /** @typedef {{ angle: number, position: number }} Centre A dead centre, deg and mm. */
@@ -13,10 +14,11 @@ const PITCH = 9; // pixels between the strokes of a hatching
 /**
  * Return the parts that stand still, as SVG elements.
  * centres: the two dead centres, each {angle, position} in deg and mm, as the curve has them; ends: exact positions there, for the dimension; view: of frame.js; link: width of the links in pixels; written: whether
- * the offset stands there in words; swings: whether the centres are the ends of a swing; block, tall: of frame.js; outlines: of the API.
+ * the offset stands there in words; swings: whether the centres are the ends of a swing; block, tall: of frame.js; outlines: of the API;
+ * hasStrokeAngles: whether the crank angles of both strokes are drawn, if it rotates fully.
  * @param {{
  *   linkage: Page.Lengths, centres: Centre[], ends?: Page.Point, view: View, block: number, tall: number, link: number, direction: number, written: boolean,
- *   swings?: boolean, outlines?: Api.Outlines,
+ *   swings?: boolean, outlines?: Api.Outlines, hasStrokeAngles?: boolean,
  * }} options
  */
 export function scenery({
@@ -31,6 +33,7 @@ export function scenery({
   written,
   swings = false,
   outlines,
+  hasStrokeAngles = false,
 }) {
   const { crank_mm: r, offset_mm: e } = linkage;
   const [x, y] = [view.x, view.y];
@@ -57,9 +60,10 @@ export function scenery({
     swings ? null : rotation(view, r, direction),
     offset(view, e, reach[0] + 20, written),
     written &&
-      ends &&
+      ends?.every(Number.isFinite) &&
       strokeOf(view, ends, y(e) - (e < 0 ? -1 : 1) * (0.54 * tall * view.unit + 16), swings),
     written && !swings && crankOf(view, r, e),
+    hasStrokeAngles && ends?.every(Number.isFinite) && strokeAngles(view, r, e, centres, direction),
     bearing(x(0), y(0), link),
   ];
 }
@@ -196,6 +200,36 @@ function crankOf(view, r, e) {
     svg("path", { d: `M${view.x(0)} ${view.y(0)}L${x} ${y}M${wing(0.4)}L${x} ${y}L${wing(-0.4)}` }),
     svg("text", { x: x + 8, y: y + (down > 0 ? 6 : 2) }, `crank ${withUnit(r, "mm", 4)}`),
   );
+}
+
+/**
+ * Draw the crank angles of the outward and the inward stroke, whose ratio is the time ratio at constant speed.
+ * @param {View} view @param {number} r @param {number} e @param {Centre[]} centres @param {number} direction
+ */
+function strokeAngles(view, r, e, [inner, outer], direction) {
+  const radius = 0.5 * view.unit * r;
+  const share = e < 0 ? 0.6 : 0.4; // where the values stand: beside the dimension of the crank
+  if (radius < 24) return null;
+  const span = turned(outer.angle - inner.angle); // counter-clockwise from the inner to the outer dead centre
+  /** @param {number} degrees @param {number} size */
+  const at = (degrees, size) => [
+    view.x(0) + size * Math.cos((degrees * Math.PI) / 180),
+    view.y(0) - size * Math.sin((degrees * Math.PI) / 180),
+  ];
+  return [
+    { from: inner.angle, over: span, name: direction > 0 ? "outward" : "inward" },
+    { from: outer.angle, over: 360 - span, name: direction > 0 ? "inward" : "outward" },
+  ].map(({ from, over, name }) => {
+    const [x, y] = at(from + share * over, 1.45 * radius);
+    return svg(
+      "g",
+      { class: `stroke-angle ${name}` },
+      svg("path", {
+        d: `M${at(from, radius)}A${radius} ${radius} 0 ${over > 180 ? 1 : 0} 0 ${at(from + over, radius)}`,
+      }),
+      svg("text", { x, y: y + 4, "text-anchor": "middle" }, `${text(over, "deg", 4)}°`),
+    );
+  });
 }
 
 /** @param {number} x @param {number} y @param {number} link */

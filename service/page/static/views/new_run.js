@@ -10,8 +10,8 @@ import { reader } from "../form/schema.js";
 import { sections } from "../form/sections.js";
 import { readyKinds } from "../lib/units.js";
 import { sketch } from "../form/sketch.js";
-import { firstJob } from "../form/start.js";
-import { go, keep } from "../lib/address.js";
+import { firstJob, jobAround } from "../form/start.js";
+import { go, keep, link } from "../lib/address.js";
 import { get, isInfeasible, post, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { system } from "../lib/numbers.js";
@@ -53,8 +53,14 @@ export async function show(place, { query, signal }) {
  * @param {URLSearchParams} query @param {Api.Preset[]} shipped @param {AbortSignal} signal @returns {Promise<Form.Draft>}
  */
 async function first(query, shipped, signal) {
-  const [preset, from] = [query.get("preset"), query.get("from")];
-  const source = preset ? `preset ${preset}` : from ? `job ${from}` : null;
+  const [preset, from, around] = ["preset", "from", "around"].map((key) => query.get(key));
+  const source = preset
+    ? `preset ${preset}`
+    : from
+      ? `job ${from}`
+      : around
+        ? `around ${around}`
+        : null;
   const before = kept();
   if (before && (source === null || before.source === source)) return before;
   if (from)
@@ -62,6 +68,7 @@ async function first(query, shipped, signal) {
       ...begin(await get(`jobs/${encodeURIComponent(from)}/job`, {}, signal), `job ${from}`),
       submission: history.state?.submission ?? {},
     };
+  if (around) return begin(jobAround(system(), around.split(",").map(Number)), `around ${around}`);
   if (!preset) return begin(firstJob(system()), "");
   const machine = shipped.find(({ name }) => name === preset);
   if (!machine) throw new Error(`No shipped job is called "${preset}".`);
@@ -76,7 +83,8 @@ function begin(job, source) {
 /** Return what the address says of where a draft began. @param {string} source */
 function addressOf(source) {
   const [kind, name] = source.split(" ");
-  return kind === "preset" ? { preset: name } : kind === "job" ? { from: name } : {};
+  const key = { preset: "preset", job: "from", around: "around" }[kind];
+  return key ? { [key]: name } : {};
 }
 
 /**
@@ -335,6 +343,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
         from,
         over,
         undo,
+        h("a", { href: link(["look"]) }, "Look at one mechanism"),
       ),
     ),
     h(

@@ -216,6 +216,7 @@ export async function show(place, { query, signal }) {
       "p",
       { class: "row" },
       h("a", { class: "button primary", href: "#/new" }, "New run"),
+      h("a", { class: "button", href: link(["look"]) }, "Look at one mechanism"),
       h("span", { class: "quiet" }, "from scratch, or start from an example:"),
     ),
     machines.node,

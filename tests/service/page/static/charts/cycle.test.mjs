@@ -29,6 +29,7 @@ test("a curve goes through its points and straight between them, also over the e
     const found = between(values, (place + share) * step + 360 * draw.whole(-2, 2));
     if (from === null || to === null) assert.equal(found, null);
     else assert.ok(Math.abs(found - (from * (1 - share) + to * share)) < 1e-9);
+    if (360 % values.length === 0) assert.equal(between(values, place * step), from);
   }
 });
 

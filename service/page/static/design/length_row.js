@@ -1,0 +1,116 @@
+/** A field and a slider for a length of a linkage. */
+
+import { h, markInvalid, numberField } from "../lib/dom.js";
+import { inDisplayUnit, text, unitOf, withUnit } from "../lib/numbers.js";
+import { parseQuantity } from "../lib/quantity_text.js";
+
+/** @type {[keyof Page.Lengths, string][]} */
+export const LENGTHS = [
+  ["crank_mm", "Crank"],
+  ["rod_mm", "Rod"],
+  ["offset_mm", "Offset"],
+];
+const STEPS = 1000; // of a slider over its range
+export const SAME = 1e-9; // relative
+
+/**
+ * Return the controls of a length. set(value): a length was chosen, null where what was typed is none. ends: those of the job,
+ * or of the slider alone: `isOfJob` is false.
+ * @param {keyof Page.Lengths} key @param {string} title @param {readonly number[]} ends @param {(value: number | null) => void} set
+ * @param {{ isOfJob?: boolean }} [options]
+ */
+export function lengthRow(key, title, [low, high], set, { isOfJob = true } = {}) {
+  const fixed = low === high;
+  const id = `what-if-${key}`;
+  const outside = h(
+    "span",
+    { class: "at-limit", role: "status", hidden: true },
+    " · outside the job",
+  );
+  const understood = h("span", { class: "quiet ends", role: "status" }); // how a sum or another unit was read
+  let wrong = ""; // why what was typed is no length
+  const number = numberField({
+    id,
+    disabled: fixed,
+    oninput: () => {
+      const { value, said = "", wrong: sentence = "" } = typed();
+      wrong = sentence;
+      markInvalid(number, wrong);
+      if (value !== undefined) slide(value);
+      understood.textContent = said;
+      set(value ?? null);
+    },
+    // Put the length that was understood in place of what was typed, and leave in sight how.
+    onchange: () => {
+      const { value, said = "" } = typed();
+      if (value === undefined) return;
+      show(value);
+      understood.textContent = said;
+    },
+  });
+  const slider = h("input", {
+    type: "range",
+    min: 0,
+    max: STEPS,
+    step: 1,
+    disabled: fixed,
+    "aria-label": `${title}, slider`,
+    oninput: () => {
+      const position = slider.value;
+      const value = low + (Number(position) / STEPS) * (high - low);
+      show(value);
+      slider.value = position;
+      set(value);
+    },
+  });
+
+  /** Return what the field says, or why it is no length. @returns {{ value?: number, said?: string | null, wrong?: string }} */
+  function typed() {
+    const parsed = parseQuantity(number.value, "mm");
+    if (parsed.value !== undefined && (parsed.value > 0 || key === "offset_mm")) return parsed;
+    return {
+      wrong:
+        parsed.wrong ??
+        `${title} needs a length${key === "offset_mm" ? "" : " above 0"}${parsed.empty ? "" : `; got ${number.value.trim()}`}.`,
+    };
+  }
+
+  /** Show a length beside its field, and whether it is outside the ranges of the job. @param {number} value */
+  function slide(value) {
+    slider.value = String(high > low ? (STEPS * (value - low)) / (high - low) : 0);
+    slider.setAttribute("aria-valuetext", withUnit(value, "mm", 5));
+    outside.hidden =
+      fixed ||
+      !isOfJob ||
+      (value >= low - SAME * Math.abs(low) && value <= high + SAME * Math.abs(high));
+  }
+
+  /** @param {number} value */
+  function show(value) {
+    wrong = understood.textContent = "";
+    number.value = String(Number(inDisplayUnit(value, "mm").toPrecision(6)));
+    markInvalid(number, false);
+    slide(value);
+  }
+
+  return {
+    key,
+    node: h(
+      "div",
+      { class: "length" },
+      h("label", { for: id }, title),
+      slider,
+      number,
+      h("span", { class: "quiet" }, unitOf("mm")),
+      h(
+        "span",
+        { class: "quiet ends", hidden: !isOfJob },
+        fixed ? "fixed by the job" : `${text(low, "mm", 4)} to ${withUnit(high, "mm", 4)}`,
+        outside,
+      ),
+      understood,
+    ),
+    show,
+    wrong: () => wrong,
+  };
+}
