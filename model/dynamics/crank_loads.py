@@ -39,9 +39,9 @@ def torque_without_crank_loads(torque: Any, theta: Any, way: float, segment: Seg
             elif i == last:
                 torque = torque - loads.force[last - 1]
             else:
-                slope = (loads.force[i] - loads.force[i - 1]) / (loads.at[i] - loads.at[i - 1])
+                slope = (loads.force[i] - loads.force[i - 1]) / (loads.knots[i] - loads.knots[i - 1])
                 at = theta - block[q + 1, 0] if loads.datum[k] > 0 else theta
-                torque = torque - (loads.force[i - 1] + slope * (at + shift[k] - loads.at[i - 1]))
+                torque = torque - (loads.force[i - 1] + slope * (at + shift[k] - loads.knots[i - 1]))
     return torque
 
 

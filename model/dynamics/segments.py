@@ -86,7 +86,7 @@ def crank_angle_at(x: float, r: float, l: float, e: float, second: bool) -> floa
 @analytic
 def breakpoint_capacity(loads: Loads) -> int:
     """Return the greatest number of breakpoints that a design can have."""
-    return int(BASE_CAPACITY + 2 * loads.at.shape[0] + 4 * loads.kind.shape[0])
+    return int(BASE_CAPACITY + 2 * loads.knots.shape[0] + 4 * loads.kind.shape[0])
 
 
 @analytic
@@ -151,7 +151,7 @@ def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: CycleWindow, c
             continue
         if loads.kind[k] == _ANGLE_TABLE:
             for i in range(first, last - 1):
-                at = loads.at[i] + block[DESIGN + LOAD_ROWS * k + 1, j]
+                at = loads.knots[i] + block[DESIGN + LOAD_ROWS * k + 1, j]
                 n = add_cut(cuts, n, at, _FIXED if loads.datum[k] == 0 else _TURNED, at, k)
             continue
         scale, datum = block[DESIGN + LOAD_ROWS * k, j], block[DESIGN + LOAD_ROWS * k + 1, j]
@@ -159,7 +159,7 @@ def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: CycleWindow, c
             # Knots by rising crank angle: most are then added behind all others.
             rising = (d.branch * scale > 0.0) != second
             for i in range(first, last):
-                at = loads.at[i if rising else first + last - 1 - i]
+                at = loads.knots[i if rising else first + last - 1 - i]
                 x = datum + scale * at
                 if d.inner + margin < x < d.outer - margin:
                     n = add_cut(cuts, n, crank_angle_at(d.branch * x, d.r, d.l, d.e, second), _KNOT, at, k)
@@ -219,23 +219,23 @@ def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Lo
             continue
         if loads.kind[k] == _ANGLE_TABLE:
             at = theta - block[DESIGN + LOAD_ROWS * k + 1, j]
-            shift[k] = -_TURN * math.floor((at - loads.at[first]) / _TURN)
+            shift[k] = -_TURN * math.floor((at - loads.knots[first]) / _TURN)
             at = at + shift[k]
         else:
             at = block[DESIGN + LOAD_ROWS * k, j] * (x - block[DESIGN + LOAD_ROWS * k + 1, j])
         low, high, near = first, last, piece[k]
         if first <= near < last:  # usually the piece of the previous segment, or its neighbour
-            if loads.at[near] < at:
+            if loads.knots[near] < at:
                 low = near + 1
-                if low < last and loads.at[low] >= at:
+                if low < last and loads.knots[low] >= at:
                     high = low
             else:
-                high = near - 1 if near > first and loads.at[near - 1] >= at else near
-                if high > first and loads.at[high - 1] < at:
+                high = near - 1 if near > first and loads.knots[near - 1] >= at else near
+                if high > first and loads.knots[high - 1] < at:
                     low = high
         while low < high:
             middle = (low + high) // 2
-            if loads.at[middle] < at:
+            if loads.knots[middle] < at:
                 low = middle + 1
             else:
                 high = middle
@@ -297,17 +297,17 @@ def load_on_slider(m: Any, d: Any, theta: Any, segment: Segment) -> Any:
         elif i == last:
             force = force + factor * loads.force[last - 1]
         else:
-            slope = (loads.force[i] - loads.force[i - 1]) / (loads.at[i] - loads.at[i - 1])
+            slope = (loads.force[i] - loads.force[i - 1]) / (loads.knots[i] - loads.knots[i - 1])
             if loads.kind[k] == _ANGLE_TABLE:
                 # Summed separately, as the compiler may regroup a sum: tables from zero keep their last digits.
                 if loads.datum[k] == 0:
-                    force = force + factor * (loads.force[i - 1] + slope * (theta + shift[k] - loads.at[i - 1]))
+                    force = force + factor * (loads.force[i - 1] + slope * (theta + shift[k] - loads.knots[i - 1]))
                 else:
                     at = theta - block[DESIGN + LOAD_ROWS * k + 1, 0]
-                    force = force + factor * (loads.force[i - 1] + slope * (at + shift[k] - loads.at[i - 1]))
+                    force = force + factor * (loads.force[i - 1] + slope * (at + shift[k] - loads.knots[i - 1]))
             else:
                 at = block[DESIGN + LOAD_ROWS * k, 0] * (d.branch * m.x - block[DESIGN + LOAD_ROWS * k + 1, 0])
-                force = force + factor * (loads.force[i - 1] + slope * (at - loads.at[i - 1]))
+                force = force + factor * (loads.force[i - 1] + slope * (at - loads.knots[i - 1]))
     return force
 
 

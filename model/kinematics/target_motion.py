@@ -89,7 +89,7 @@ class Fit(NamedTuple):
 class _Case(NamedTuple):
     """One linkage and the points (n,) of the desired motion. b: its branch, +1 or -1. shifts: whether a shift is free.
 
-    sines, cosines: of the crank angles of the points. at: their positions, m. d, slope, bend: work space, each point's
+    sines, cosines: of the crank angles of the points. positions: theirs, m. d, slope, bend: work space, each point's
     deviation and its derivatives by the phase.
     """
 
@@ -99,7 +99,7 @@ class _Case(NamedTuple):
     b: float
     sines: Row
     cosines: Row
-    at: Row
+    positions: Row
     shifts: bool
     d: Row
     slope: Row
@@ -109,14 +109,14 @@ class _Case(NamedTuple):
 @analytic
 def _measure(phase: Any, rms: Any, case: _Case) -> tuple[float, float]:
     """Return the deviation at a phase and the best shift, zero where fixed; fills each point's deviation."""
-    r, l, e, b, sines, cosines, at, shifts, d, _, _ = case
-    n = at.shape[0]
+    r, l, e, b, sines, cosines, positions, shifts, d, _, _ = case
+    n = positions.shape[0]
     # Angle-sum formulas avoid a sine or cosine within the loop.
     p, q = r * math.sin(phase), r * math.cos(phase)
     high, low, total = -math.inf, math.inf, 0.0
     for i in range(n):
         l_sin = e - (sines[i] * q + cosines[i] * p)
-        d[i] = b * (cosines[i] * q - sines[i] * p) + math.sqrt(l * l - l_sin * l_sin) - at[i]
+        d[i] = b * (cosines[i] * q - sines[i] * p) + math.sqrt(l * l - l_sin * l_sin) - positions[i]
         high, low, total = max(high, d[i]), min(low, d[i]), total + d[i]
     if rms:
         mean = total / n if shifts else 0.0
@@ -132,8 +132,8 @@ def _measure(phase: Any, rms: Any, case: _Case) -> tuple[float, float]:
 @analytic
 def _newton(phase: Any, case: _Case) -> float:
     """Return Newton's step of the phase for the mean square of the deviations there; zero where not convex."""
-    r, l, e, b, sines, cosines, at, shifts, d, slope, bend = case
-    n = at.shape[0]
+    r, l, e, b, sines, cosines, positions, shifts, d, slope, bend = case
+    n = positions.shape[0]
     p, q = math.sin(phase), math.cos(phase)
     mean = mean_slope = 0.0
     for i in range(n):
@@ -179,15 +179,15 @@ def _bound(phase: Any, half: Any, bend: Any, case: _Case) -> Any:
     bend: bound of the deviations' curvature. With the shift free, the common part of deviations, and of their slopes,
     does not count.
     """
-    r, l, e, b, sines, cosines, at, shifts, d, slope, _ = case
+    r, l, e, b, sines, cosines, positions, shifts, d, slope, _ = case
     p, q = r * math.sin(phase), r * math.cos(phase)
     high = low = -math.inf
     common = rising = falling = 0.0
-    for i in range(at.shape[0]):
+    for i in range(positions.shape[0]):
         up, out = sines[i] * q + cosines[i] * p, cosines[i] * q - sines[i] * p
         l_sin = e - up
         l_cos = math.sqrt(l * l - l_sin * l_sin)
-        d[i], slope[i] = b * out + l_cos - at[i], l_sin * out / l_cos - b * up
+        d[i], slope[i] = b * out + l_cos - positions[i], l_sin * out / l_cos - b * up
         if d[i] > high:
             high, rising = d[i], slope[i]
         if -d[i] > low:
@@ -195,7 +195,7 @@ def _bound(phase: Any, half: Any, bend: Any, case: _Case) -> Any:
     if shifts:
         common = 0.5 * (rising + falling)
     high_least = low_least = -math.inf
-    for i in range(at.shape[0]):
+    for i in range(positions.shape[0]):
         loss = half * abs(slope[i] - common)
         high_least, low_least = max(high_least, d[i] - loss), max(low_least, -d[i] - loss)
     rest = 0.5 * bend * half * half
@@ -267,12 +267,14 @@ def _least_square(case: _Case, grid: Any) -> float:
 
 
 @seldom_kernel
-def _fit(designs: Table, b: float, angles: Row, at: Row, rms: bool, turns: bool, shifts: bool, out: Table) -> None:
-    d, slope, bend = np.empty(at.shape[0]), np.empty(at.shape[0]), np.empty(at.shape[0])
+def _fit(
+    designs: Table, b: float, angles: Row, positions: Row, rms: bool, turns: bool, shifts: bool, out: Table
+) -> None:
+    d, slope, bend = np.empty(positions.shape[0]), np.empty(positions.shape[0]), np.empty(positions.shape[0])
     sines, cosines, cells, grid = np.sin(angles), np.cos(angles), np.empty((3, 4 * _PHASES)), np.empty(_PHASES)
     for row in range(designs.shape[0]):
         r, l, e = designs[row, 0], designs[row, 1], designs[row, 2]
-        case = _Case(r, l, e, b, sines, cosines, at, shifts, d, slope, bend)
+        case = _Case(r, l, e, b, sines, cosines, positions, shifts, d, slope, bend)
         phase = 0.0
         if turns and rms:
             phase = _least_square(case, grid)
@@ -285,13 +287,13 @@ def _fit(designs: Table, b: float, angles: Row, at: Row, rms: bool, turns: bool,
 def fit(target: TargetMotion, branch: float, measure: Measure, designs: Array) -> Fit:
     """Return the least deviation for designs (n, 3): crank, rod, offset, m, each rotating fully; branch +1 or -1."""
     designs = turning(designs)
-    angles, at = np.array(target.crank_angles), np.array(target.positions)
+    angles, positions = np.array(target.crank_angles), np.array(target.positions)
     free = target.phase == "free", target.shift == "free"
     out = np.empty((len(designs), 3))
     in_chunks(
         len(designs),
         lambda begin, end: _fit(
-            designs[begin:end], branch, angles, at, measure == "rms", free[0], free[1], out[begin:end]
+            designs[begin:end], branch, angles, positions, measure == "rms", free[0], free[1], out[begin:end]
         ),
     )
     return Fit(out[:, 0], np.mod(out[:, 1] + math.pi, _TURN) - math.pi, out[:, 2])

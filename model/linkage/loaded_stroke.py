@@ -30,7 +30,7 @@ def loaded_stroke(mechanism: Mechanism, dimensions: Array) -> NDArray[np.str_]:
     """
     dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64))
     if mechanism.varying:
-        parts = [_work(mechanism.at(row[3:].tolist()), row[None, :3]) for row in dimensions]
+        parts = [_work(mechanism.with_values(row[3:].tolist()), row[None, :3]) for row in dimensions]
         outward, inward = np.concatenate([np.zeros((2, 0)), *parts], axis=1)
     else:
         outward, inward = _work(mechanism, dimensions)

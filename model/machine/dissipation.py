@@ -125,7 +125,7 @@ def _tried(mechanism: Mechanism) -> list[Mechanism]:
     if not mechanism.varying:
         return [mechanism]
     inner = [item.lower + (0.618 * n % 1.0) * (item.upper - item.lower) for n, item in enumerate(mechanism.varying, 1)]
-    return [mechanism.fullest, mechanism.at(inner)]
+    return [mechanism.fullest, mechanism.with_values(inner)]
 
 
 def _load_works(machine: Mechanism) -> bool:

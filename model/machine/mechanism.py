@@ -195,12 +195,13 @@ class Mechanism:
     @cached_property
     def fullest(self) -> Mechanism:
         """The machine with all varying numbers at their bounds of greatest size: it has all features of any design."""
-        return self.at([item.fullest for item in self.varying]) if self.varying else self
+        return self.with_values([item.fullest for item in self.varying]) if self.varying else self
 
     @property
     def ends(self) -> tuple[Mechanism, Mechanism]:
         """The machines with the lower and with the upper bounds of all varying numbers."""
-        return self.at([item.lower for item in self.varying]), self.at([item.upper for item in self.varying])
+        lower, upper = ([getattr(item, end) for item in self.varying] for end in ("lower", "upper"))
+        return self.with_values(lower), self.with_values(upper)
 
     @property
     def load_texts(self) -> list[str]:
@@ -208,7 +209,7 @@ class Mechanism:
         low, high = self.ends
         return [range_text(at_low.text, at_high.text) for at_low, at_high in zip(low.loads, high.loads, strict=True)]
 
-    def at(self, values: Sequence[float]) -> Mechanism:
+    def with_values(self, values: Sequence[float]) -> Mechanism:
         """Return the machine with these values, SI, of its varying numbers (k,)."""
         machine: Mechanism = with_values(self.nominal, self.varying, values)
         return machine

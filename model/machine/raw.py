@@ -49,14 +49,14 @@ class Loads(NamedTuple):
 
     kind: (k,), see `loads.registry.code_of`. datum: (k,). factor: (k, 3), whether a table acts in the outward
     stroke, in the inward stroke, and as a torque on the crank. start: (k + 1,), index at which a load's table begins.
-    at, force: knots of the tables. on_crank: whether any load is a torque on the crank.
+    knots, force: of the tables. on_crank: whether any load is a torque on the crank.
     """
 
     kind: Integers
     datum: Integers
     factor: Table
     start: Integers
-    at: Row
+    knots: Row
     force: Row
     on_crank: bool
 
@@ -68,7 +68,9 @@ def raw_vector(mechanism: Mechanism) -> Array:
     """
     if mechanism.varying:
         names = ", ".join(item.name for item in mechanism.varying)
-        raise InputError(f"this takes one machine; got one in which {names} varies; give mechanism.at(values) instead")
+        raise InputError(
+            f"this takes one machine; got one in which {names} varies; give mechanism.with_values(values) instead"
+        )
     raw = [0.0] * (Raw.END + LOAD_SLOTS * len(mechanism.loads))  # faster to slice than an array
     raw[Raw.BRANCH] = mechanism.sign
     raw[Raw.SPEED] = mechanism.speed

@@ -91,7 +91,7 @@ def require_possible(mechanism: Any) -> None:
         if load.every_corner:
             _require_corners(load, f"loads.{index}.", varying)
     for ends in ([item.lower for item in varying], [item.upper for item in varying]):
-        mechanism.at(ends)
+        mechanism.with_values(ends)
 
 
 def _require_corners(load: Any, prefix: str, varying: Sequence[Varying]) -> None:

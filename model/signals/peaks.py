@@ -88,5 +88,5 @@ def find_peaks(
         part = slice(begin, end)
         find_in_turns(task, blocks, steps, values[part], peak_angles[part], slopes[part] if gradients else slopes)
 
-    in_chunks(n, work, knots=len(loads.at))
+    in_chunks(n, work, knots=len(loads.knots))
     return Peaks(values, peak_angles, numbers.chain(slopes) if gradients else None)

@@ -161,13 +161,13 @@ class ShaftCurve(NamedTuple):
 
 
 class Crankshaft(NamedTuple):
-    """Cylinders and speed of a shaft. turns: halves of its cycle, with loads `first` and `second`."""
+    """Cylinders and speed of a shaft. turns: halves of its cycle, with loads `first_turn` and `second_turn`."""
 
     axes: Axes
     pace: SpeedRatio
     blocks: Blocks
-    first: Loads
-    second: Loads
+    first_turn: Loads
+    second_turn: Loads
     turns: int
 
 
@@ -203,7 +203,7 @@ def _enter_segment(
     for i in range(curve.members.shape[0]):
         k = curve.members[i]
         half = items.half[p, k]
-        loads = shaft.first if half == 0 else shaft.second
+        loads = shaft.first_turn if half == 0 else shaft.second_turn
         _fill_numbers(shaft.blocks.plain[items.row[p] * shaft.turns + half], ratio, slope, shaft.axes, k, space.real)
         d, local = design_at(space.real, 0), items.probe[p] + shaft.axes.lead[k]
         _, outward = enter(d, space.real, 0, local, loads, watch, space.piece[i], space.shift[i])
@@ -230,7 +230,7 @@ def _sum_members(
     for i in range(curve.members.shape[0]):
         k = curve.members[i]
         half = items.half[p, k]
-        loads = shaft.first if half == 0 else shaft.second
+        loads = shaft.first_turn if half == 0 else shaft.second_turn
         source = shaft.blocks.stepped[(items.row[p] * shaft.turns + half) * numbers + v]
         _fill_numbers(source, ratio, slope, axes, k, space.stepped)
         speed = source[_ROW_SPEED, 0]
@@ -253,7 +253,7 @@ def _sum_members(
 @seldom_kernel
 def fill_curves(curve: ShaftCurve, shaft: Crankshaft, items: Evaluations, out: CurveArrays) -> None:
     """Fill `out` with a curve of designs, added up over its members."""
-    rows, count, loads = shaft.blocks.plain.shape[1], curve.members.shape[0], shaft.first.kind.shape[0]
+    rows, count, loads = shaft.blocks.plain.shape[1], curve.members.shape[0], shaft.first_turn.kind.shape[0]
     real, stepped = np.empty((rows, 1)), np.empty((rows, 1), np.complex128)
     space = _Workspace(
         real, stepped, np.zeros((count, loads), np.int64), np.zeros((count, loads)), np.zeros((count, 5))

@@ -353,7 +353,7 @@ def turn_means(
         part = CurveMeans(*(column[begin:end] if len(column) else column for column in means))
         fill_means(task, blocks, steps, gaps[begin:end], _RULE, part)
 
-    in_chunks(count, work, knots=len(task.loads.at))
+    in_chunks(count, work, knots=len(task.loads.knots))
     if gradients:
         return CurveMeans(means.mean, means.square, numbers.chain(means.mean_slope), numbers.chain(means.square_slope))
     return means

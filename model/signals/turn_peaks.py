@@ -78,7 +78,7 @@ class _Workspace(NamedTuple):
     """Work space for one design.
 
     piece, shift: of the tables. counts, negligible: whether a segment counts, is empty. edge: value and slope at
-    start and end of each. first: where the samples of each segment begin. theta, value: samples of all segments.
+    start and end of each. starts: where the samples of each segment begin. theta, value: samples of all segments.
     """
 
     cuts: Cuts
@@ -87,7 +87,7 @@ class _Workspace(NamedTuple):
     counts: Flags
     negligible: Flags
     edge: Table
-    first: Integers
+    starts: Integers
     theta: Row
     value: Row
     tops: _Tops
@@ -178,11 +178,11 @@ def _sample(task: TurnTask, d: Design, block: Any, count: int, workspace: _Works
     highest, has_motion = -1.0, False
     sine, cosine = 0.0, 1.0
     m = design_motion(sine, cosine, d)
-    workspace.first[0] = 0
+    workspace.starts[0] = 0
     for s in range(count):
         a, b = cuts.angle[s], cuts.angle[s + 1]
-        start = workspace.first[s]
-        workspace.first[s + 1] = start
+        start = workspace.starts[s]
+        workspace.starts[s + 1] = start
         workspace.negligible[s] = b - a < _SHORTEST
         probe = angle_within(a, b)
         workspace.counts[s], outward = enter(
@@ -201,7 +201,7 @@ def _sample(task: TurnTask, d: Design, block: Any, count: int, workspace: _Works
             low, high = crowded(a, kappa), crowded(b, kappa)
             spacings = int(task.angles * (high - low) / _TURN)
             points = min(task.angles + 8, max(5, spacings + 2)) if spacings > 0 else 2
-        workspace.first[s + 1] = start + points
+        workspace.starts[s + 1] = start + points
         theta[start], theta[start + points - 1] = a, b
         for i in range(1, points - 1):
             theta[start + i] = uncrowded(low + (high - low) * i / (points - 1), kappa)
@@ -225,8 +225,8 @@ def _peaks_near_samples(curve: _Curve, s: int, floor: float, best: float, worksp
     a, b, start, end = (
         workspace.cuts.angle[s],
         workspace.cuts.angle[s + 1],
-        workspace.first[s],
-        workspace.first[s + 1] - 1,
+        workspace.starts[s],
+        workspace.starts[s + 1] - 1,
     )
     f, theta, tops = workspace.value, workspace.theta, workspace.tops
     for i in range(start, end + 1):
@@ -273,8 +273,8 @@ def _inner_peaks(
         a, b, start, end = (
             workspace.cuts.angle[s],
             workspace.cuts.angle[s + 1],
-            workspace.first[s],
-            workspace.first[s + 1] - 1,
+            workspace.starts[s],
+            workspace.starts[s + 1] - 1,
         )
         hopeful = not single
         for i in range(start, end + 1 if single else start):

@@ -120,7 +120,7 @@ def _of_samples(bars: StressLocations, sides: Array, criteria: Array, margin: fl
     climb(samples, criteria, candidates, values, angles)
     choose(candidates, criteria, values, angles, chosen)
     rows = chosen[chosen >= 0]
-    at = candidates.at[rows]
+    at = candidates.samples[rows]
     angle_there, further = theta[at], np.minimum(at + 1, len(theta) - 1)
     ahead = (segment[further] == segment[at]) & (theta[further] > angle_there)
     spacing = np.abs(theta[np.where(ahead, further, at - 1)] - angle_there)

@@ -26,16 +26,16 @@ _PLACE, _ANGLE = 1e-5, 1e-9  # fraction of the length, 1 - cosine of crank angle
 
 
 class Candidates(NamedTuple):
-    """Maxima to be climbed, c of them; all (c,), `at` (c, 2).
+    """Maxima to be climbed, c of them; all (c,), `samples` (c, 2).
 
-    bar: number of the bar. side: number of its side. pull: number of the criterion. at: samples next to both crank
+    bar: number of the bar. side: number of its side. pull: number of the criterion. samples: those next to both crank
     angles. share: place along the bar.
     """
 
     bar: Integers
     side: Integers
     pull: Integers
-    at: IntegerTable
+    samples: IntegerTable
     share: Row
 
 
@@ -51,7 +51,7 @@ def first_candidates(candidates: Candidates, count: int) -> Candidates:
         candidates.bar[:count],
         candidates.side[:count],
         candidates.pull[:count],
-        candidates.at[:count],
+        candidates.samples[:count],
         candidates.share[:count],
     )
 
@@ -93,12 +93,12 @@ def _list_maxima(row: Any, first: Any, begin: Any, count: Any, sign: Any, listed
 class SampledStress(NamedTuple):
     """Samples (s,) of a link's stress over the cycles of designs, one design after the other.
 
-    theta: crank angles, rad. first: whether a segment begins. stress: (s, 2 WIDE), coefficients and their slopes over
+    theta: crank angles, rad. begins: whether a segment begins. stress: (s, 2 WIDE), coefficients and their slopes over
     the crank angle. sides: (f,), 1 or -1.
     """
 
     theta: Row
-    first: Flags
+    begins: Flags
     stress: Table
     sides: Row
 
@@ -161,16 +161,16 @@ def propose(
                     ups[0] = downs[0] = 0
                     for end in range(2):  # one call, as the compiler inlines each call separately
                         if end == 0 and p > 0.0:
-                            high_count = _list_maxima(row, samples.first, begin, count, 1.0, ups)
+                            high_count = _list_maxima(row, samples.begins, begin, count, 1.0, ups)
                         elif end == 1 and q > 0.0:
-                            low_count = _list_maxima(row, samples.first, begin, count, -1.0, downs)
+                            low_count = _list_maxima(row, samples.begins, begin, count, -1.0, downs)
                     for pair in range(high_count * low_count):
                         up, down = ups[pair // low_count], downs[pair % low_count]
                         height = (p * row[up] if p > 0.0 else 0.0) - (q * row[down] if q > 0.0 else 0.0)
                         if height < floor:
                             continue
                         candidates.bar[total], candidates.side[total], candidates.pull[total] = n, f, g
-                        candidates.at[total, 0], candidates.at[total, 1] = begin + up, begin + down
+                        candidates.samples[total, 0], candidates.samples[total, 1] = begin + up, begin + down
                         candidates.share[total] = xi
                         total += 1
     return total
@@ -182,7 +182,7 @@ def _climb_angle(samples: SampledStress, side: Any, sign: Any, xi: Any, k: int) 
 
     Those are the crank angle of the maximum, the stress, and its slope over the place. Stays within the segment.
     """
-    stress, first, last = samples.stress, samples.first, samples.theta.shape[0] - 1
+    stress, first, last = samples.stress, samples.begins, samples.theta.shape[0] - 1
     t = 0.0
     for _ in range(_ITERATIONS):
         rate = sign * _stress_at_share(stress, k, _SLOPE, side, xi)
@@ -234,8 +234,8 @@ def climb(samples: SampledStress, criteria: Table, candidates: Candidates, value
                 if weight == 0.0:
                     continue
                 sign = 1.0 if weight > 0.0 else -1.0
-                k, angles[c, end], height, rise = _climb_angle(samples, side, sign, xi, candidates.at[c, end])
-                candidates.at[c, end] = k
+                k, angles[c, end], height, rise = _climb_angle(samples, side, sign, xi, candidates.samples[c, end])
+                candidates.samples[c, end] = k
                 value += weight * height
                 slope += weight * rise
             if slope > 0.0:

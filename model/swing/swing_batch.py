@@ -162,7 +162,7 @@ class SwingBatch:
                     angle = np.arcsin(e / span)
                 yield from self._cuts_at_angle(angle if ahead == (self.sign > 0.0) else np.pi - angle, PACE)
         for k, kind in enumerate(self.loads.kind.tolist()):
-            for knot in self.loads.at[self.loads.start[k] : self.loads.start[k + 1]].tolist():
+            for knot in self.loads.knots[self.loads.start[k] : self.loads.start[k + 1]].tolist():
                 if kind == int(Enters.ANGLE_TABLE):
                     yield from self._cuts_at_angle(np.full(self.count, knot), ANGLE)
                 else:

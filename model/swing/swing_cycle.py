@@ -163,7 +163,7 @@ class SwingCycle:
         else:  # then no load is counted from a dead centre
             loads = load_structure(self.mechanism)
             for k, load in enumerate(self.mechanism.loads):
-                knots = loads.at[loads.start[k] : loads.start[k + 1]]
+                knots = loads.knots[loads.start[k] : loads.start[k + 1]]
                 angles += knots.tolist() if load.enters == Enters.ANGLE_TABLE else self._angles_at_positions(knots)
         return [occurrence for angle in angles for occurrence in swing.occurrences(float(angle))]
 

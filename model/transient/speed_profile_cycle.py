@@ -78,11 +78,11 @@ class SpeedProfileCycle:
 class CrankMotion(NamedTuple):
     """A crank speed over the crank angle besides the machine's own.
 
-    at: function of crank angles (n,), rad, that returns crank speed, rad/s, and acceleration, rad/s^2. knots: crank
-    angles (k,), rad, at which they are not analytic.
+    speed_at: function of crank angles (n,), rad, that returns crank speed, rad/s, and acceleration, rad/s^2.
+    knots: crank angles (k,), rad, at which they are not analytic.
     """
 
-    at: Callable[[Array], tuple[Array, Array]]
+    speed_at: Callable[[Array], tuple[Array, Array]]
     knots: Array
 
 
@@ -90,7 +90,7 @@ def speed_profile_curves(
     mechanism: Mechanism, linkage: Linkage, crank_angle: Array, motion: CrankMotion | None = None
 ) -> SpeedProfileCurves:
     """Return the curves of one fully turning linkage at crank angles (n,), rad. motion: instead of the machine's."""
-    speed, acceleration = crank_speed(mechanism, crank_angle) if motion is None else motion.at(crank_angle)
+    speed, acceleration = crank_speed(mechanism, crank_angle) if motion is None else motion.speed_at(crank_angle)
     curves = cycle(mechanism, linkage, crank_angle, speed=speed, acceleration=acceleration)
     shaken = shaking_curves(mechanism, linkage, crank_angle, speed=speed, acceleration=acceleration)
     named = {

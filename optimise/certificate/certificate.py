@@ -34,9 +34,9 @@ class Certificate:
     excess of the true front's hypervolume over the front's, in its units, including volume beyond the front's ideal
     point. added: (n, 3 + v), SI, the designs that complete the front; added_values: (n, m), SI, minimised; table: all
     their quantities. boxes: number of boxes bounded. open: number of open boxes. remaining: their fraction of the
-    design box. where: the ranges of a design's numbers, SI, in the open box with the largest excess, (3 + v, 2); None
-    if none is open. notes: requirements that the bounds did not use. The proof holds without them, but is harder to
-    obtain.
+    design box. worst_open_box: the ranges of a design's numbers, SI, in the open box with the largest excess, (3 + v,
+    2); None if none is open. notes: requirements that the bounds did not use. The proof holds without them, but is
+    harder to obtain.
     """
 
     status: Status
@@ -53,7 +53,7 @@ class Certificate:
     boxes: int
     open: int
     remaining: float
-    where: Array | None
+    worst_open_box: Array | None
     notes: tuple[str, ...]
     seconds: float
     message: str

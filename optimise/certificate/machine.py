@@ -95,7 +95,7 @@ class BoxMachine:
         self, k: int, m: Any, d: Design, block: Any, theta: Array | Enclosure, outward: Enclosure
     ) -> Enclosure | Any:
         part = slice(self.loads.start[k], self.loads.start[k + 1])
-        at, force = self.loads.at[part], self.loads.force[part]
+        at, force = self.loads.knots[part], self.loads.force[part]
         factor = self.loads.factor[k, 2] or by_stroke(outward, *self.loads.factor[k, :2].tolist())
         if self.loads.kind[k] != Enters.ANGLE_TABLE:
             row = DESIGN + LOAD_ROWS * k

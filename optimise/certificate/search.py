@@ -215,7 +215,7 @@ class Search:
             boxes=tree.bounded,
             open=len(tree),
             remaining=tree.volume(),
-            where=open_range,
+            worst_open_box=open_range,
             notes=self._notes(),
             seconds=time.perf_counter() - self.start,
             message=message_of(status, self.epsilon, proven, delivered, self.gap, len(self.front), len(dimensions)),

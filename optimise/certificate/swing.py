@@ -45,7 +45,7 @@ class _Ends(NamedTuple):
 
 
 class _State(NamedTuple):
-    """A state. along: the driver's way, 1 towards greater places. way: 1 where the crank turns counter-clockwise."""
+    """A state. driver_way: 1 towards greater places of the driver. way: 1 where the crank turns counter-clockwise."""
 
     sine: Enclosure
     cosine: Enclosure
@@ -54,7 +54,7 @@ class _State(NamedTuple):
     d: Design
     block: Any
     outward: Enclosure
-    along: Array
+    driver_way: Array
     way: Array
 
 
@@ -119,13 +119,13 @@ class SwingBoxes:
             speed = speed / m.x_1
             rise = (rise - m.x_2 * speed * speed) / m.x_1
         d = d._replace(speed=speed, acceleration=rise) if self.per_time else d._replace(speed=0.0, acceleration=0.0)
-        along = sign_of(travel) * direction
-        outward = m.x_1 * (along * d.branch)
-        turning = along
+        driver_way = sign_of(travel) * direction
+        outward = m.x_1 * (driver_way * d.branch)
+        turning = driver_way
         if self.slider:
-            outward = constant(along * d.branch, place)
-            turning = along * sign_of(m.x_1) if self.needs_angle else along
-        return _State(sine, cosine, angle, m, d, block, outward, along, turning)
+            outward = constant(driver_way * d.branch, place)
+            turning = driver_way * sign_of(m.x_1) if self.needs_angle else driver_way
+        return _State(sine, cosine, angle, m, d, block, outward, driver_way, turning)
 
     def drive(self, at: _State) -> Enclosure:
         """Return the torque on the crank, N m, or the force on the slider, N, without friction."""
@@ -241,7 +241,7 @@ class SwingCurve:
             return self.boxes.error(at)
         value: Enclosure = self.boxes.drive(at)
         if isinstance(self.quantity, SwingLeast):
-            return value * at.along
+            return value * at.driver_way
         assert state in (POWER, DRIVE, None)
         if state == POWER:
             value = value * (at.m.x_1 * at.d.speed if self.boxes.slider else at.d.speed)

@@ -40,7 +40,7 @@ class Outcome:
     range_: float
 
     @property
-    def met(self) -> bool:
+    def is_met(self) -> bool:
         """Whether the design found reaches the desired value, or stays within the allowed one."""
         return self.short is None or self.short <= _ROUNDING * self.range_
 
@@ -113,7 +113,7 @@ class Wished:
     @property
     def possible(self) -> bool:
         """Whether the design meets every wish."""
-        return bool(self.outcomes) and all(outcome.met for outcome in self.outcomes)
+        return bool(self.outcomes) and all(outcome.is_met for outcome in self.outcomes)
 
     def sentences(self, system: System = "metric") -> list[str]:
         """Return in words whether the wish can be met, then wish and outcome of each objective."""

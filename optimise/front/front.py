@@ -146,7 +146,7 @@ class ParetoFront:
 
     def mechanism(self, row: int) -> Mechanism:
         """Return the machine of a design, with its choices and extra variables in place."""
-        return self.part(row).mechanism.at(self.dimensions[row, 3:].tolist())
+        return self.part(row).mechanism.with_values(self.dimensions[row, 3:].tolist())
 
     def ask(self, question: str, row: int | None = None, /, **inputs: object) -> dict[str, Any]:
         """Answer a question about the front, or about the design in a row, as `Problem.ask` does.

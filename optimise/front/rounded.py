@@ -84,7 +84,7 @@ class Rounded:
         return f"Rounded({self.problem.name!r}: {self.message})"
 
     @property
-    def met(self) -> bool:
+    def is_met(self) -> bool:
         """Whether the designs meet every requirement within the allowed misses."""
         return self.feasible_count > 0
 
@@ -100,7 +100,7 @@ class Rounded:
         near = f"{counted(self.judged, 'rounded design')} within {counted(self.steps_tried, 'step')}"
         if self.steps_tried < REACHES[0]:
             near += f" (not {REACHES[0]}, because {len(self.steps)} numbers are rounded together)"
-        if self.met:
+        if self.is_met:
             keep = "keeps" if self.feasible_count == 1 else "keep"
             tolerance = f" within {self._allowed_in_words(system)}" if self.allowed else ""
             missing = sum(bool(self._excessive_misses(row)) for row in range(len(self)))

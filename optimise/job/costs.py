@@ -26,7 +26,7 @@ from .values import (
 PositiveAngle = Annotated[float, Physical(kinds.ANGLE, "positive")]
 
 
-_Exponent = Annotated[PositiveRatio, Limited("from 0.25 to 4", "processes have 0.5 to 3", least=0.25, most=4.0)]
+_Exponent = Annotated[PositiveRatio, Limited("from 0.25 to 4", "processes have 0.5 to 3", least=0.25, greatest=4.0)]
 
 
 class _CostPart(Checked[Cost]):

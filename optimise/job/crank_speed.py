@@ -26,14 +26,14 @@ _FASTEST, _SLOWEST = 2e-5, TIME.limit
 """s, of a turn: the limits of all three keys."""
 _HINT = "others are beyond any machine; check the unit"
 _ROUNDING = 1e-12  # relative, of a speed in rpm
-_CYCLE_TIME = Within(TIME, "positive", rule="a time from 20 us to 1e9 s", hint=_HINT, least=_FASTEST, most=_SLOWEST)
+_CYCLE_TIME = Within(TIME, "positive", rule="a time from 20 us to 1e9 s", hint=_HINT, least=_FASTEST, greatest=_SLOWEST)
 _STROKES = Within(
     STROKE_RATE,
     "positive",
     rule="a number from 6e-8 to 3e6",
     hint=_HINT,
     least=6e-8,
-    most=3e6,
+    greatest=3e6,
 )
 
 
@@ -58,7 +58,7 @@ _SPEED = _CrankSpeed(
     rule="a speed from 6e-8 to 3e6 rpm, either way",
     hint=_HINT,
     least=-2.0 * math.pi / _FASTEST * (1.0 + _ROUNDING),
-    most=2.0 * math.pi / _FASTEST * (1.0 + _ROUNDING),
+    greatest=2.0 * math.pi / _FASTEST * (1.0 + _ROUNDING),
 )
 
 

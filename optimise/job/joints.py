@@ -13,12 +13,12 @@ from .values import Built, Checked, Fraction, Limited, PositiveClearance, Positi
 
 Coefficient = Annotated[
     Fraction,
-    Limited("a coefficient of friction of at most 2", "greased steel on bronze has about 0.1", most=2.0),
+    Limited("a coefficient of friction of at most 2", "greased steel on bronze has about 0.1", greatest=2.0),
 ]
 _Restitution = Annotated[
-    Fraction, Limited("above 0 and at most 1", "steel on steel has about 0.9", above=0.0, most=1.0)
+    Fraction, Limited("above 0 and at most 1", "steel on steel has about 0.9", greater_than=0.0, greatest=1.0)
 ]
-_Poisson = Annotated[Fraction, Limited("from 0 to 0.5", "steel has 0.3", most=0.5)]
+_Poisson = Annotated[Fraction, Limited("from 0 to 0.5", "steel has 0.3", greatest=0.5)]
 
 
 class PinPart(Built[Pin]):

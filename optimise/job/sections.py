@@ -48,7 +48,12 @@ _CORRECT = "correct the number or its unit"
 _Elasticity = Annotated[
     float,
     Within(
-        PRESSURE, "positive", rule="from 10 MPa to 2 TPa", hint=f"steel has 207 GPa; {_CORRECT}", least=1e7, most=2e12
+        PRESSURE,
+        "positive",
+        rule="from 10 MPa to 2 TPa",
+        hint=f"steel has 207 GPa; {_CORRECT}",
+        least=1e7,
+        greatest=2e12,
     ),
 ]
 _Strength = Annotated[
@@ -59,7 +64,7 @@ _Strength = Annotated[
         rule="from 1 MPa to 20 GPa",
         hint=f"steels have 200 to 2,000 MPa; {_CORRECT}",
         least=1e6,
-        most=2e10,
+        greatest=2e10,
     ),
 ]
 _Bearing = Annotated[
@@ -70,7 +75,7 @@ _Bearing = Annotated[
         rule="from 10 kPa to 5 GPa",
         hint=f"bushes bear 1 to 100 MPa; {_CORRECT}",
         least=1e4,
-        most=5e9,
+        greatest=5e9,
     ),
 ]
 """Solid bars of any material, from soft plastics to fibres, lie far within: what does not has another unit."""

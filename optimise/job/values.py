@@ -184,18 +184,18 @@ class Within(Physical):
     rule: str
     hint: str
     least: float
-    most: float
+    greatest: float
 
     def read(self, value: object) -> float:
         """Return the value in SI; raises InputError."""
         number = super().read(value)
-        if not self.least <= number <= self.most:
+        if not self.least <= number <= self.greatest:
             raise InputError(f"must be {self.rule}; got {quote(value)}; {self.hint}")
         return number
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         value_schema = super().__get_pydantic_json_schema__(schema, handler)
-        number = {"type": "number", "minimum": self.least, "maximum": self.most}
+        number = {"type": "number", "minimum": self.least, "maximum": self.greatest}
         if "anyOf" not in value_schema:  # of a kind without a unit, which no text has
             return {key: subschema for key, subschema in value_schema.items() if key != "exclusiveMinimum"} | number
         return value_schema | {
@@ -205,18 +205,20 @@ class Within(Physical):
 
 @dataclass(frozen=True)
 class Limited:
-    """Marks a number as one between limits, in the schema too. above: it is greater. rule, hint: of the refusal."""
+    """Marks a number between limits, in the schema too. greater_than: an excluded limit. rule, hint: of the refusal."""
 
     rule: str
     hint: str
     least: float | None = None
-    above: float | None = None
-    most: float | None = None
+    greater_than: float | None = None
+    greatest: float | None = None
 
     def check(self, value: float) -> float:
         """Return a value within the limits; raises InputError."""
-        low = (self.least is not None and value < self.least) or (self.above is not None and value <= self.above)
-        if low or (self.most is not None and value > self.most):
+        low = (self.least is not None and value < self.least) or (
+            self.greater_than is not None and value <= self.greater_than
+        )
+        if low or (self.greatest is not None and value > self.greatest):
             raise InputError(f"must be {self.rule}; got {value:g}; {self.hint}")
         return value
 
@@ -225,7 +227,7 @@ class Limited:
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         value_schema: dict[str, Any] = handler(schema)
-        limits = {"minimum": self.least, "exclusiveMinimum": self.above, "maximum": self.most}
+        limits = {"minimum": self.least, "exclusiveMinimum": self.greater_than, "maximum": self.greatest}
         stated = {word: limit for word, limit in limits.items() if limit is not None}
         lower = {"minimum", "exclusiveMinimum"}
         return {key: rule for key, rule in value_schema.items() if not (key in lower and lower & set(stated))} | stated
@@ -440,10 +442,10 @@ Number = Annotated[float, Physical(kinds.RATIO)]
 Fraction = Annotated[float, Physical(kinds.RATIO, "zero or more")]
 PositiveRatio = Annotated[float, Physical(kinds.RATIO, "positive")]
 GasExponent = Annotated[
-    PositiveRatio, Limited("from 0.2 to 10", "1 is isothermal, 1.4 adiabatic air", least=0.2, most=10.0)
+    PositiveRatio, Limited("from 0.2 to 10", "1 is isothermal, 1.4 adiabatic air", least=0.2, greatest=10.0)
 ]
-CompressionRatio = Annotated[PositiveRatio, Limited("above 1", "6 to 20 are usual", above=1.0)]
-HeatCapacityRatio = Annotated[PositiveRatio, Limited("above 1", "1.4 is cold air, 1.3 burnt gas", above=1.0)]
+CompressionRatio = Annotated[PositiveRatio, Limited("above 1", "6 to 20 are usual", greater_than=1.0)]
+HeatCapacityRatio = Annotated[PositiveRatio, Limited("above 1", "1.4 is cold air, 1.3 burnt gas", greater_than=1.0)]
 PositiveRange = Annotated[tuple[float, float] | Choices | Grid, RangeOf("positive")]
 AnyRange = Annotated[tuple[float, float] | Choices | Grid, RangeOf()]
 LengthTolerance = Annotated[float | str, ToleranceOf()]

@@ -40,7 +40,7 @@ def unreachable(turn: LawTurn, limits: LawLimits) -> InputError:
     longest = math.inf if request.objective == "cycle time" else limits.cycle_time * (1.0 + _ROUNDING)
     needs = Requirement(longest=None if math.isinf(longest) else longest)
     reachable = Reachable(turn, limits)
-    shortest = reachable.within(_AMPLE * max(load, request.torque_limit or 0.0, 1.0)).shortest
+    shortest = reachable.laws_within(_AMPLE * max(load, request.torque_limit or 0.0, 1.0)).shortest
     if shortest > longest:
         return InputError(
             f"the limits of speed allow no cycle shorter than {shortest:.6g} s; {limits.name('cycle_time')} is "

@@ -92,7 +92,7 @@ class LawLimits:
         """Return the greatest speed of the slider, m/s, at crank angles."""
         speed = np.full(crank_angle.shape, self.request.slider_speed or math.inf)
         if self.request.window_speed is not None:
-            speed[self._within(crank_angle)] = min(self.request.window_speed, self.request.slider_speed or math.inf)
+            speed[self._in_window(crank_angle)] = min(self.request.window_speed, self.request.slider_speed or math.inf)
         return speed
 
     def energies(self, crank_angle: Array, inertia: Array, travel: Array) -> tuple[Array, Array]:
@@ -108,7 +108,7 @@ class LawLimits:
             return None
         return AccelerationLimit(-terms.inertia_slope / terms.inertia, greatest * terms.inertia)
 
-    def _within(self, crank_angle: Array) -> Mask:
+    def _in_window(self, crank_angle: Array) -> Mask:
         if self.window is None:
             return np.zeros(crank_angle.shape, np.bool_)
         passed = np.mod(self.way * (crank_angle - self.window[0]) + _EDGE, TURN)

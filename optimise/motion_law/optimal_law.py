@@ -112,7 +112,7 @@ def _bound(dual: float, stage: Stage, limits: LawLimits) -> float:
         return math.sqrt(max(0.0, dual))
     reachable = Reachable(stage.law.turn, limits)
     if request.objective == "cycle time":
-        return max(dual, reachable.within(request.torque_limit or math.inf).shortest)
+        return max(dual, reachable.laws_within(request.torque_limit or math.inf).shortest)
     least = limits.cycle_time * (1.0 - _ROUNDING) if request.timing == "equal" else 0.0
     guess = float(np.abs(stage.law.torque).max())
     by_reachable = reachable.least_torque(guess, limits.cycle_time * (1.0 + _ROUNDING), least) if guess > 0.0 else 0.0

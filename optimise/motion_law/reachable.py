@@ -52,7 +52,7 @@ class Reachable:
         self.taken = before[cell] + turn.integral_of(turn.terms.load, cell, place)
         self.passed = turn.passed[cell] + place * turn.width[cell]
 
-    def within(self, torque: float) -> ReachableLaws:
+    def laws_within(self, torque: float) -> ReachableLaws:
         """Return the laws within a torque, N m."""
         loss = self._three_turns(torque * self.passed + self.taken, torque * TURN + self.turn.work)
         gain = self._three_turns(torque * self.passed - self.taken, torque * TURN - self.turn.work)
@@ -69,7 +69,7 @@ class Reachable:
         """
 
         def suffices(torque: float) -> bool:
-            reach = self.within(torque)
+            reach = self.laws_within(torque)
             return reach.exists and reach.shortest <= longest and reach.longest >= least
 
         low, high = 0.0, torque

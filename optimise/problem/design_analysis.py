@@ -58,13 +58,13 @@ class Analysis(Mapping[str, float]):
 
     A mapping from the names of job files. It excludes quantities that the machine does not define: accessing one raises
     `InputError` with the reason, and `undefined` has the reasons for all. mechanism: the machine of this design.
-    linkage: its dimensions. found: the mapping itself. title: title of the problem, "" without one. swing: motion of
-    its crank in place of a full turn.
+    linkage: its dimensions. quantity_values: the mapping itself. title: title of the problem, "" without one. swing:
+    motion of its crank in place of a full turn.
     """
 
     mechanism: Mechanism
     linkage: Linkage
-    found: Mapping[str, float]
+    quantity_values: Mapping[str, float]
     undefined: Mapping[str, str]
     quantities: tuple[Quantity, ...]
     title: str = ""
@@ -72,20 +72,20 @@ class Analysis(Mapping[str, float]):
 
     def __getitem__(self, name: str) -> float:
         """Return a quantity or formula, SI. Raises `InputError` if it is undefined or unknown."""
-        if name in self.found:
-            return self.found[name]
+        if name in self.quantity_values:
+            return self.quantity_values[name]
         if name in self.undefined:
             raise InputError(f"{name} is not defined here: {self.undefined[name]}")
         require_in_motion([name], self.quantities, self.swing)
         (known,) = resolve_quantities([name], self.mechanism, self.quantities, turning=self.swing is None)
-        if isinstance(known, FormulaQuantity) and known.name not in self.found:
+        if isinstance(known, FormulaQuantity) and known.name not in self.quantity_values:
             return self._of_formula(known)
-        if known.name not in self.found:
+        if known.name not in self.quantity_values:
             raise InputError(
                 f"{name} needs a rotating crank; this crank swings; ask for a quantity of a swing, such as "
-                f"{', '.join(of.name for of in self.quantities if of.name in self.found)}"
+                f"{', '.join(of.name for of in self.quantities if of.name in self.quantity_values)}"
             )
-        return self.found[known.name]
+        return self.quantity_values[known.name]
 
     def _of_formula(self, formula: FormulaQuantity) -> float:
         sizes = [float(getattr(self.linkage, name)) for name in DIMENSIONS]
@@ -98,16 +98,16 @@ class Analysis(Mapping[str, float]):
     def get(self, name: str, /, default: float | Default) -> float | Default: ...
     def get(self, name: str, /, default: object = None) -> object:
         """Return a quantity, SI, or `default` if it is undefined or unknown."""
-        return self.found.get(name, default)
+        return self.quantity_values.get(name, default)
 
     def __contains__(self, name: object) -> bool:
-        return name in self.found
+        return name in self.quantity_values
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self.found)
+        return iter(self.quantity_values)
 
     def __len__(self) -> int:
-        return len(self.found)
+        return len(self.quantity_values)
 
     @property
     def violated(self) -> dict[str, float]:
@@ -116,14 +116,14 @@ class Analysis(Mapping[str, float]):
         Allowable values are the bearing pressure and the shear yield strength S_y / sqrt(3) of the material at the
         pins, and safeties of 1 in the bars. Without a material there are none.
         """
-        return {name: float(beyond[0]) for name, beyond in violations(self.mechanism, self.found.get).items()}
+        return {name: float(beyond[0]) for name, beyond in violations(self.mechanism, self.quantity_values.get).items()}
 
     def table(self) -> pd.DataFrame:
         """Return a table with a row for each quantity, by name: title, value, display unit, reason if undefined."""
         rows = {
             item.name: {
                 "title": item.title,
-                "value": item.unit.factor * self.found.get(item.name, np.nan),
+                "value": item.unit.factor * self.quantity_values.get(item.name, np.nan),
                 "unit": item.unit.symbol,
                 "undefined_because": self.undefined.get(item.name, ""),
             }
@@ -209,12 +209,16 @@ class Analysis(Mapping[str, float]):
         return f"<div>{lines}{self.linkage._repr_html_() or ''}{table}</div>"
 
     def __repr__(self) -> str:
-        named_quantities = [item for item in self.quantities if item.name in self.found][:4]
+        named_quantities = [item for item in self.quantities if item.name in self.quantity_values][:4]
         numbers = ", ".join(
-            f"{item.title} {item.unit.factor * self.found[item.name]:.4g} {item.unit.symbol}".rstrip()
+            f"{item.title} {item.unit.factor * self.quantity_values[item.name]:.4g} {item.unit.symbol}".rstrip()
             for item in named_quantities
         )
-        parts = [numbers, f"{len(self.found)} quantities, {len(self.undefined)} undefined", self._violation_text()]
+        parts = [
+            numbers,
+            f"{len(self.quantity_values)} quantities, {len(self.undefined)} undefined",
+            self._violation_text(),
+        ]
         return f"Analysis({self.linkage.label}: {'; '.join(filter(None, parts))})"
 
     def _violation_text(self) -> str:
@@ -232,7 +236,7 @@ def one_design(mechanism: Mechanism, design: ArrayLike) -> tuple[Mechanism, Arra
             f"a design must be {len(names)} finite numbers ({', '.join(names)}), SI; got {shortly(design)}; give one "
             "design, as a list of these"
         )
-    machine = mechanism.at(sizes[3:].tolist())
+    machine = mechanism.with_values(sizes[3:].tolist())
     return machine, sizes
 
 

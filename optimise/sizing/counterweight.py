@@ -85,8 +85,8 @@ class RodBalance:
     """
 
     mass: float
-    along: float
-    across: float
+    moment_along: float
+    moment_across: float
     inertia: float
 
 
@@ -95,10 +95,10 @@ class Balance:
     """The best balance.
 
     moment, angle: moment of the counterweight, kg m, and its angle from the crank's direction, rad. radius: radius of
-    the counterweight in `after`, m; mass: mass at that radius, kg. rod: rod balance; None unless requested. before: the
-    original mechanism; after: the balanced one. objective: the minimised value, N. bound: its lower bound from the cone
-    programme, accurate to about 1e-9 of the shaking before. saving: decrease per kg m by which `most` is raised.
-    rounds: rounds of the exchange. converged: False if it ended with peaks still rising.
+    the counterweight in `balanced`, m; mass: mass at that radius, kg. rod: rod balance; None unless requested.
+    original: mechanism before; balanced: the one after. objective: the minimised value, N. bound: its lower bound from
+    the cone programme, accurate to about 1e-9 of the shaking before. saving: decrease per kg m by which `most` is
+    raised. rounds: rounds of the exchange. converged: False if it ended with peaks still rising.
     """
 
     moment: float
@@ -106,8 +106,8 @@ class Balance:
     radius: float
     rod: RodBalance | None
     linkage: Linkage
-    before: Mechanism
-    after: Mechanism
+    original: Mechanism
+    balanced: Mechanism
     shaking_before: Shaking
     shaking_after: Shaking
     objective: float
@@ -123,7 +123,7 @@ class Balance:
 
     def hodograph(self, crank_angle: Array) -> tuple[ShakingCurves, ShakingCurves]:
         """Return the shaking before and after at crank angles (n,), rad: force_y over force_x is the hodograph."""
-        before, after = (shaking_curves(each, self.linkage, crank_angle) for each in (self.before, self.after))
+        before, after = (shaking_curves(each, self.linkage, crank_angle) for each in (self.original, self.balanced))
         return before, after
 
 

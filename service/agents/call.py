@@ -14,7 +14,7 @@ from ...optimise.job import parse_job, read_job, with_files
 from ...optimise.job.file import require_plain, toml_tables
 from ..jobs.find_run import find_run
 from ..jobs.stores import open_store
-from ..jobs.submission import LONGEST_ANSWER, LONGEST_CALL, bounded, parse_allowed, require_allowed
+from ..jobs.submission import LONGEST_CALL, LONGEST_WAIT, bounded, parse_allowed, require_allowed
 from ..presets.jobs import shipped_jobs
 from ..runs.result import Result
 from ..runs.stored_runs import job_file, problem_of, read_run
@@ -31,7 +31,7 @@ _LONGEST = 255  # characters in a name; no file name is longer
 
 
 @dataclass(frozen=True)
-class ToolAnswer:
+class ToolResult:
     """Answer of a tool. record: for programs. text: for people. is_error: whether the caller has to do something."""
 
     record: dict[str, Any]
@@ -87,9 +87,9 @@ class Call:
         file = job_file(folder)
         if file is not None:
             require_allowed(read_job(file), self.allowed)
-        return bounded(problem_of(folder, result), LONGEST_ANSWER)
+        return bounded(problem_of(folder, result), LONGEST_WAIT)
 
-    def problem(self, tables: Mapping[str, Any], *, seconds: float = LONGEST_ANSWER, feasible: bool = True) -> Problem:
+    def problem(self, tables: Mapping[str, Any], *, seconds: float = LONGEST_WAIT, feasible: bool = True) -> Problem:
         """Return the problem of a job. seconds: time limit per function call, s. feasible: whether it must be feasible.
 
         Raises `JobError`.

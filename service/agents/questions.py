@@ -23,11 +23,11 @@ from ..jobs.find_run import run_folders
 from ..jobs.job_toml import job_toml
 from ..jobs.submission import ending_custom_functions
 from ..presets.jobs import shipped_jobs
-from ..questions.answer_types import schema_of as schema_of_answer
 from ..questions.design_question import DesignQuestion
 from ..questions.discovery import ALL, DESIGN_QUESTIONS, FRONT_OR_JOB_QUESTIONS, QUESTIONS
 from ..questions.front_or_job_question import FrontOrJobQuestion, SearchListener
-from .call import Call, ToolAnswer, tables_of, text_of
+from ..questions.record_types import schema_of as schema_of_record
+from .call import Call, ToolResult, tables_of, text_of
 from .inputs import Design, Files, JobInput, TopicRequest
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ _OF_TOPIC = ("name", "title", "help", "usual", "example", "required")
 _OF_KEY = ("description", "examples", "default", "enum")
 
 
-def list_contents(call: Call) -> ToolAnswer:
+def list_contents(call: Call) -> ToolResult:
     """List the included jobs, the quantities, the topics with their inputs, and the latest runs.
 
     `describe` explains each. Start from the included job closest to the task.
@@ -67,7 +67,7 @@ def list_contents(call: Call) -> ToolAnswer:
         *("Runs, newest first:", *(f"  {run['run']}: {run['message']}" for run in runs)),
     ]
     record = {"jobs": jobs, "quantities": quantities, "topics": topics, "runs": runs}
-    return ToolAnswer(record, "\n".join(lines))
+    return ToolResult(record, "\n".join(lines))
 
 
 def describe(
@@ -81,7 +81,7 @@ def describe(
             max_length=200,
         ),
     ],
-) -> ToolAnswer:
+) -> ToolResult:
     """Describe a quantity (meaning, formula, unit), a topic, an included job (its tables and TOML), or a job key."""
     word = name.strip()
     facts = {item["name"]: item for item in facts_of_all()}
@@ -98,7 +98,7 @@ def describe(
         input_lines = "".join(f"\n  {item.name}: {item.remark}" for item in QUESTIONS[word].inputs)
         lines.append(f"topic {word}: {topic['shows']}{input_lines}")
     if word in DESIGN_QUESTIONS:
-        topic["answer"] = schema = schema_of_answer(DESIGN_QUESTIONS[word].answer_type)
+        topic["answer"] = schema = schema_of_record(DESIGN_QUESTIONS[word].record_type)
         lines.append(f"  answer, whose keys end otherwise in inches: {', '.join(schema['properties'])}")
     if word in shipped_jobs():
         text = job_toml(shipped_jobs()[word])
@@ -111,10 +111,10 @@ def describe(
         near = closest(word, [*facts, *QUESTIONS, *shipped_jobs()])
         remedy = f"did you mean {near}?" if near else "call `list` for all names"
         raise NotFound(f"a name must be that of a quantity, a topic, a job or a key of a job; got {word!r}; {remedy}")
-    return ToolAnswer(record, "\n".join(lines))
+    return ToolResult(record, "\n".join(lines))
 
 
-def ask(call: Call, *, subject: Design, question: TopicRequest) -> ToolAnswer:
+def ask(call: Call, *, subject: Design, question: TopicRequest) -> ToolResult:
     """Analyse one design: all its quantities, how it meets the rules of its job, and topics such as static_forces.
 
     The design is one of a run, its knee if none is named, or has lengths of your own for a job. Some topics are of
@@ -132,7 +132,7 @@ def ask(call: Call, *, subject: Design, question: TopicRequest) -> ToolAnswer:
         return _analyse_rotating(call, machine, options, question)
 
 
-def check(call: Call, *, job: JobInput, files: Files = {}) -> ToolAnswer:  # noqa: B006
+def check(call: Call, *, job: JobInput, files: Files = {}) -> ToolResult:  # noqa: B006
     """Check a job before it is searched: what was understood, or what is wrong or contradictory, with the remedy."""
     from ...objectives.own.quantity import OwnQuantity
     from ..preview.preview import look_at
@@ -148,21 +148,21 @@ def check(call: Call, *, job: JobInput, files: Files = {}) -> ToolAnswer:  # noq
     }
     if look.problem is None:
         lines = [": ".join(filter(None, (mistake.path, mistake.sentence))) for mistake in look.wrong]
-        return ToolAnswer(record, "\n".join(("this job cannot be solved:", *dict.fromkeys((*lines, *look.sentences)))))
+        return ToolResult(record, "\n".join(("this job cannot be solved:", *dict.fromkeys((*lines, *look.sentences)))))
     for quantity in look.problem.own:
         if isinstance(quantity, OwnQuantity):
             quantity.require_function()
     record |= job_in_words(look.problem, tables)
     lists = [f"{name}: {'; '.join(record[name])}" for name in ("given", "variables", "rules", "objectives", "warnings")]
     heading = f"a valid job: {look.problem.name}"
-    return ToolAnswer(
+    return ToolResult(
         record, "\n".join((heading, *lists, freedom_in_words(look.problem), *look.sentences, *record["notes"]))
     )
 
 
 def _analyse_rotating(
     call: Call, machine: Machine, options: Mapping[str, dict[str, Any]], question: TopicRequest
-) -> ToolAnswer:
+) -> ToolResult:
     """Analyse a design that rotates fully. options: options of each topic."""
     from ..questions.analysis_text import show_analysis
     from ..questions.design_analysis import analysis_of, judge_design, quantities_of_design
@@ -182,10 +182,10 @@ def _analyse_rotating(
     text = text_of(
         lambda screen: show_analysis(screen, analysis, judgement, question.units, custom=machine.problem.own)
     )
-    return ToolAnswer(analysis.record(question.units, judgement), "\n".join((text, *analysis.notes, *analysis.refused)))
+    return ToolResult(analysis.record(question.units, judgement), "\n".join((text, *analysis.notes, *analysis.refused)))
 
 
-def _analyse_by_command(name: str, machine: Machine, question: TopicRequest) -> ToolAnswer:
+def _analyse_by_command(name: str, machine: Machine, question: TopicRequest) -> ToolResult:
     """Answer a question about a design that is a separate command."""
     from ..designs.display_units import record_in
 
@@ -193,13 +193,13 @@ def _analyse_by_command(name: str, machine: Machine, question: TopicRequest) -> 
         machine.mechanism, machine.linkage, machine.problem, question.inputs
     )
     record = bound_question.numbers(lambda: False)
-    text = _answer_text(bound_question.blocks(record), bound_question.notes(record), question.units)
-    return ToolAnswer(record_in(record, question.units), text)
+    text = _plain_text(bound_question.blocks(record), bound_question.notes(record), question.units)
+    return ToolResult(record_in(record, question.units), text)
 
 
 def _ask_front_or_job(
     call: Call, subject: Design, question: TopicRequest, definition: FrontOrJobQuestion
-) -> ToolAnswer:
+) -> ToolResult:
     """Answer a question about the front of a run, several runs, or a job."""
     place, row, inputs = dict[str, Any](), None, question.inputs
     problem: Problem | None = None
@@ -213,11 +213,11 @@ def _ask_front_or_job(
         problem, place = target.problem, {"run": path_text(folder)}
     with nullcontext() if problem is None else ending_custom_functions(problem):
         result = definition.ask(target, inputs, row=row, listener=SearchListener(cancelled=call.cancelled))
-    text = _answer_text(result.blocks, result.notes, question.units)
-    return ToolAnswer(place | result.record(question.units), text, is_error=not result.is_satisfied)
+    text = _plain_text(result.blocks, result.notes, question.units)
+    return ToolResult(place | result.record(question.units), text, is_error=not result.is_satisfied)
 
 
-def _answer_text(blocks: Sequence[Block], notes: Sequence[str], units: System) -> str:
+def _plain_text(blocks: Sequence[Block], notes: Sequence[str], units: System) -> str:
     """Return the blocks of an answer as plain text, with its notes below."""
     from ..render.terminal import print_blocks
 

@@ -25,7 +25,7 @@ from ..runs.run_folder import write_file
 from ..text.design_options import Pick, Selection, SettingOptions
 from ..text.options import Run, Units
 from ..text.tables import show_design, show_front, show_result, spread_rows, usual_keys
-from .call import Call, ToolAnswer, tables_of, text_of
+from .call import Call, ToolResult, tables_of, text_of
 from .inputs import Files, FrontPart, Number, OptionalJob
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ class Search:
         return new_run(store, call.runs, problem, stated, [job_json(stated)])
 
 
-def optimise(call: Call, *, search: Search, settings: SettingOptions, part: FrontPart) -> ToolAnswer:
+def optimise(call: Call, *, search: Search, settings: SettingOptions, part: FrontPart) -> ToolResult:
     """Search the Pareto front of a job, and keep it as a run.
 
     Takes from a second to minutes; reports progress. Cancelled, it keeps what it found, and `resume` goes on with it
@@ -94,7 +94,7 @@ def optimise(call: Call, *, search: Search, settings: SettingOptions, part: Fron
         try:
             opened = entered.enter_context(search.open_run(call, entered.enter_context(call.store()), settings))
         except InfeasibleError as error:
-            return ToolAnswer(unsearched_result(error).record(), str(error), is_error=True)
+            return ToolResult(unsearched_result(error).record(), str(error), is_error=True)
         run, problem, claim = opened
         entered.enter_context(renewing_claim(claim, again=f"optimise with resume = {claim.job.run}"))
         budget = Budget(Limits(seconds=search.seconds), waited=lambda: claim.waited)
@@ -108,10 +108,10 @@ def optimise(call: Call, *, search: Search, settings: SettingOptions, part: Fron
     record = _record(
         result_in_units, spread_rows(result_in_units, range(len(result_in_units.designs)), part.rows), part
     )
-    return ToolAnswer(record, f"{text}\nRun: {run.path.name}{remedy}", is_error=result.status != "done")
+    return ToolResult(record, f"{text}\nRun: {run.path.name}{remedy}", is_error=result.status != "done")
 
 
-def front(call: Call, *, run: Run, selection: Selection, pick: Pick, part: FrontPart) -> ToolAnswer:
+def front(call: Call, *, run: Run, selection: Selection, pick: Pick, part: FrontPart) -> ToolResult:
     """Show the front of a run, part of it, or one chosen design with all its quantities and trade-offs.
 
     numbers are those of the designs; knee and extremes are their places in the answer.
@@ -126,14 +126,14 @@ def front(call: Call, *, run: Run, selection: Selection, pick: Pick, part: Front
     )
     if picked is None:
         rows = spread_rows(result_in_units, chosen, part.rows)
-        return ToolAnswer(
+        return ToolResult(
             _record(result_in_units, rows, part),
             text_of(lambda screen: show_front(screen, result_in_units, rows, limit=0)),
         )
     record = _record(result_in_units, [picked], replace(part, columns=part.columns or [ALL]))
     record["trade_offs"] = record["trade_offs"] or _trade_offs(call, folder, result, picked, part.units)
     text = text_of(lambda screen: show_design(screen, result_in_units.designs[picked]))
-    return ToolAnswer(record, "\n".join((f"design {picked + 1}", text, *record["trade_offs"])))
+    return ToolResult(record, "\n".join((f"design {picked + 1}", text, *record["trade_offs"])))
 
 
 def files(
@@ -148,7 +148,7 @@ def files(
     ],
     design: Number = None,
     units: Units = "metric",
-) -> ToolAnswer:
+) -> ToolResult:
     """Write files of a run into its folder, and say where they are.
 
     Of the run its designs as CSV or JSON, and figures of its front. Of one design, the knee if none is named: a report
@@ -185,7 +185,7 @@ def files(
         write_file(file, content)
         written[kind] = [path_text(file)]
     record = {"run": path_text(folder), "number": number, "files": written}
-    return ToolAnswer(record, "\n".join(f"{kind}: {', '.join(paths)}" for kind, paths in written.items()))
+    return ToolResult(record, "\n".join(f"{kind}: {', '.join(paths)}" for kind, paths in written.items()))
 
 
 def _record(result: Result, rows: Sequence[int], part: FrontPart) -> dict[str, Any]:

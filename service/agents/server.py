@@ -20,7 +20,7 @@ from ...optimise.search.fingerprint import version_of
 from ..resources.disk import full_places, is_full
 from ..runs.result import json_ready
 from . import questions, runs
-from .call import Call, ToolAnswer
+from .call import Call, ToolResult
 from .tool import Tool
 
 with NamingExtra("serving agents needs"):
@@ -83,10 +83,10 @@ async def _serve(place: Path, allowed: frozenset[str], interrupted: Callable[[],
 
     async def on_call_tool(ctx: ServerRequestContext, params: CallToolRequestParams) -> CallToolResult:
         limiter = searches if params.name == "optimise" else other_calls
-        tool_answer = await _answer_call(ctx.session, partial(Call, place, allowed), params, limiter, stopping)
-        content = [TextContent(type="text", text=tool_answer.text)]
-        record = json_ready(tool_answer.record) or None
-        return CallToolResult(content=[*content], structured_content=record, is_error=tool_answer.is_error)
+        tool_result = await _execute_call(ctx.session, partial(Call, place, allowed), params, limiter, stopping)
+        content = [TextContent(type="text", text=tool_result.text)]
+        record = json_ready(tool_result.record) or None
+        return CallToolResult(content=[*content], structured_content=record, is_error=tool_result.is_error)
 
     server: Server[Any] = Server(
         "slidercrank",
@@ -102,13 +102,13 @@ async def _serve(place: Path, allowed: frozenset[str], interrupted: Callable[[],
         group.cancel_scope.cancel()
 
 
-async def _answer_call(
+async def _execute_call(
     session: ServerSession,
     make: Callable[[Callable[[], bool], Callable[[Progress], None]], Call],
     params: CallToolRequestParams,
     limiter: anyio.CapacityLimiter,
     stopping: threading.Event,
-) -> ToolAnswer:
+) -> ToolResult:
     """Answer a call in a thread, which notices a cancellation and reports its progress.
 
     make: function that creates the call from its ways to notice a cancellation and to report. stopping: set when the
@@ -126,9 +126,9 @@ async def _answer_call(
 
             call = make(lambda: cancelled.is_set() or stopping.is_set(), report)
             run = partial(_run, params.name, params.arguments or {}, call)
-            tool_answer = await anyio.to_thread.run_sync(run, limiter=limiter)
+            tool_result = await anyio.to_thread.run_sync(run, limiter=limiter)
             group.cancel_scope.cancel()
-    return tool_answer
+    return tool_result
 
 
 async def _relay(progress: MemoryObjectReceiveStream[Progress], session: ServerSession) -> None:
@@ -144,28 +144,28 @@ async def _set_when_cancelled(cancelled: threading.Event) -> None:
         cancelled.set()
 
 
-def _run(name: str, arguments: Mapping[str, Any], call: Call) -> ToolAnswer:
+def _run(name: str, arguments: Mapping[str, Any], call: Call) -> ToolResult:
     """Return the answer of a tool, or one sentence on why there is none."""
     try:
         if name not in _BY_NAME:
-            return _error_answer(f"there is no tool {name[:60]!r}; choose from {', '.join(_BY_NAME)}")
+            return _error_result(f"there is no tool {name[:60]!r}; choose from {', '.join(_BY_NAME)}")
         return _BY_NAME[name].execute(call, arguments)
     except SlidercrankError as error:
-        return _error_answer(str(error))
+        return _error_result(str(error))
     except MemoryError:
-        return _error_answer("not enough memory for this request; close other programs, or ask for less")
+        return _error_result("not enough memory for this request; close other programs, or ask for less")
     except Exception as error:  # noqa: BLE001 - whatever it is, the call and not the server ends
         if isinstance(error, OSError) and is_full(error):
-            return _error_answer(f"Disk full: {full_places(error)}; free some space")
+            return _error_result(f"Disk full: {full_places(error)}; free some space")
         _log.exception("the tool %s failed", name)
-        return _error_answer(
+        return _error_result(
             f"unexpected {type(error).__name__}: {error}; this is a bug in slidercrank, not in the input; see its "
             "standard error for details"
         )
 
 
-def _error_answer(sentence: str) -> ToolAnswer:
-    return ToolAnswer({}, sentence, is_error=True)
+def _error_result(sentence: str) -> ToolResult:
+    return ToolResult({}, sentence, is_error=True)
 
 
 def _declaration(tool: Tool) -> Declared:

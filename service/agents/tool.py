@@ -15,7 +15,7 @@ from ...model.errors import InputError
 from ...objectives.units import closest, quote
 from ...optimise.job.messages import rule_of
 from ...optimise.job.schema import schema_of
-from .call import Call, ToolAnswer
+from .call import Call, ToolResult
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Tool:
     """
 
     name: str
-    run: Callable[..., ToolAnswer]
+    run: Callable[..., ToolResult]
     writes: bool = False
 
     @property
@@ -60,7 +60,7 @@ class Tool:
         """JSON Schema of the inputs."""
         return {key: value for key, value in schema_of(self.inputs).items() if key not in ("$schema", "title")}
 
-    def execute(self, call: Call, arguments: Mapping[str, Any]) -> ToolAnswer:
+    def execute(self, call: Call, arguments: Mapping[str, Any]) -> ToolResult:
         """Run the tool. Raises `InputError` for unknown inputs."""
         try:
             inputs = self.inputs.model_validate(dict(arguments))

@@ -17,9 +17,9 @@ from ...objectives.quantity import Quantity
 from ..designs.rotating_crank import require_rotating_crank
 from ..designs.trade_offs import trade_offs_of
 from ..designs.violations import violated_by
-from ..questions.answer_types import AnswerSchema
 from ..questions.design_analysis import analysis_of, quantities_of_design, quantities_of_swing
 from ..questions.discovery import ALL, TOPICS, chosen_topics
+from ..questions.record_types import RecordSchema
 from ..runs.result import json_ready
 from ..text.options import Dimensions, speed_option
 from .blocks import AnswerBlock, sentence_blocks
@@ -38,7 +38,7 @@ Show = Annotated[
     list[Annotated[str, Field(max_length=500)]],
     Query(max_length=20, description=f"add a topic, or several: {', '.join(TOPICS)}, or {ALL}; repeatable"),
 ]
-_TOPICS = AnswerSchema(lambda: [topic.answer_type for topic in TOPICS.values()], names=TOPICS)
+_TOPICS = RecordSchema(lambda: [topic.record_type for topic in TOPICS.values()], names=TOPICS)
 _ALONG = "Next to this design, along the front, with the requirements that are at their limit held:"
 _NOTHING_TO_GAIN = "At this design nothing can be gained in one objective for a loss in the others."
 

@@ -25,7 +25,7 @@ from .computing import Computing
 from .events import Feed
 from .health import Metrics, Timed
 from .job_requests import EXAMPLE, JSON, TOML, Submission
-from .problem_documents import Problem, answer_problems, problem_responses
+from .problem_documents import Problem, handle_expected_errors, problem_responses
 from .security import Guard
 from .settings import DEFAULT, Settings
 from .stored_fronts import StoredFronts
@@ -113,7 +113,7 @@ def create_app(store: Store, settings: Settings = DEFAULT, computing: Computing 
     app.state.feed = Feed(store)
     app.state.fronts = StoredFronts(store, allowed=settings.allowed_quantities)
     app.state.metrics = Metrics(store)
-    answer_problems(app)
+    handle_expected_errors(app)
     make_schema = app.openapi
 
     def described() -> dict[str, Any]:

@@ -66,7 +66,7 @@ class AnswerBlock(BaseModel):
     rows: list[list[Parts]] = Field([], examples=[[]])
 
 
-def answer_blocks(blocks: Sequence[Block], notes: Sequence[str] = ()) -> list[AnswerBlock]:
+def block_models(blocks: Sequence[Block], notes: Sequence[str] = ()) -> list[AnswerBlock]:
     """Return blocks as data. notes: sentences after them, as notes without a capital and a full stop."""
     note_blocks = (note(f"{text[:1].upper()}{text[1:]}.") for text in notes)
     return [_block(text) for text in (*blocks, *note_blocks)]
@@ -74,7 +74,7 @@ def answer_blocks(blocks: Sequence[Block], notes: Sequence[str] = ()) -> list[An
 
 def sentence_blocks(sentences: Sequence[str]) -> list[AnswerBlock]:
     """Return sentences as data, with unchanged numbers."""
-    return answer_blocks([sentence("{text}", text=text) for text in sentences])
+    return block_models([sentence("{text}", text=text) for text in sentences])
 
 
 def _block(block: Block) -> AnswerBlock:
@@ -84,7 +84,7 @@ def _block(block: Block) -> AnswerBlock:
     for column in block.columns:
         title = _parts(column.title)
         unit = [] if column.kind is None else [*([", "] if title else []), _unit(column.kind)]
-        columns.append(ColumnPart(title=[*title, *unit], right=column.right))
+        columns.append(ColumnPart(title=[*title, *unit], right=column.right_aligned))
     rows = [[_parts(cell, bare=isinstance(cell, Value)) for cell in row] for row in block.rows]
     return AnswerBlock(columns=columns, rows=rows)
 

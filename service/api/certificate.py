@@ -11,7 +11,7 @@ from pydantic_core import to_json
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..render.formatting import plain_blocks
 from ..runs.result import json_ready
-from .blocks import AnswerBlock, answer_blocks
+from .blocks import AnswerBlock, block_models
 from .computing import LongRoute
 from .input_parameters import inputs_in_address, parameter_of
 from .problem_documents import problem_responses
@@ -57,5 +57,5 @@ def _certificate_model(stored_front: StoredFront, inputs: dict[str, Any]) -> Cer
         proven=certificate.is_satisfied,
         sentences=sentences if stored_front.result.designs else [certificate.message],
         certificate=json_ready({"run": stored_front.result.run} | certificate.record("metric")),
-        blocks=answer_blocks(certificate.blocks),
+        blocks=block_models(certificate.blocks),
     )

@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field
 from ..questions.compare.runs import ComparedRun
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..runs.result import json_ready
-from .blocks import AnswerBlock, answer_blocks
+from .blocks import AnswerBlock, block_models
 from .computing import LongRoute
 from .input_parameters import inputs_in_address, parameter_of
 from .models import LARGEST, PLAIN_DIGITS, UnitsParameter
@@ -64,5 +64,5 @@ def compare_runs(
         differences=record["differences"],
         sentences=record["sentences"],
         comparison=record,
-        blocks=answer_blocks(answer.blocks),
+        blocks=block_models(answer.blocks),
     )

@@ -25,7 +25,7 @@ from ..resources.memory import size_text
 from ..store import Limits
 from ..workers.heartbeat import EXHAUSTED
 from ..workers.supervisor import reason_of
-from .computing_process import OUT_OF_TIME, ApplicationFactory, Question, answer_questions, is_last
+from .computing_process import OUT_OF_TIME, ApplicationFactory, Question, is_last, serve_requests
 from .throttle import TurnQueue
 
 MOST = Limits(seconds=60.0, memory=10**9)
@@ -150,7 +150,7 @@ class _Process:
         self._threads = threads
         self._connection, child_end = context.Pipe()
         # A daemon is ended with this process, which would wait for others.
-        self._process = context.Process(target=answer_questions, args=(child_end, make, limits), daemon=True)
+        self._process = context.Process(target=serve_requests, args=(child_end, make, limits), daemon=True)
         with child_end, block_interrupts():
             self._process.start()
 

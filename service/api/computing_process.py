@@ -28,7 +28,7 @@ OUT_OF_TIME = -27 if os.name == "nt" else -signal.SIGPROF
 _IDLE = 600.0  # s without a request after which it ends, and frees its memory
 
 
-def answer_questions(connection: Connection, make: ApplicationFactory, limits: Limits) -> None:
+def serve_requests(connection: Connection, make: ApplicationFactory, limits: Limits) -> None:
     """Answer one request after the other until no more come.
 
     Sends the messages of an answer, the last one when all is done, or an error if no application can be created.

@@ -13,12 +13,12 @@ from pydantic import BaseModel, Field, create_model
 from ..designs.display_units import record_in
 from ..designs.measured_file import read_measured
 from ..designs.rotating_crank import require_rotating_crank
-from ..questions.answer_types import AnswerSchema
 from ..questions.design_question import BoundQuestion, QuestionCommand
 from ..questions.discovery import DESIGN_QUESTIONS, QUESTION_COMMANDS
 from ..questions.measured import MEASURED
+from ..questions.record_types import RecordSchema
 from ..runs.result import json_ready
-from .blocks import AnswerBlock, answer_blocks
+from .blocks import AnswerBlock, block_models
 from .computing import LongRoute, QuickRoute
 from .exports import SEALED, file_responses
 from .figures import require_figures
@@ -36,21 +36,21 @@ router = APIRouter(
 def _add(name: str, says: QuestionCommand) -> None:
     """Add the endpoints of a question that is a command: its answer and its figure."""
     question = DESIGN_QUESTIONS[name]
-    answer_field: Any = (Annotated[dict[str, Any], AnswerSchema(lambda: [question.answer_type])], ...)
+    numbers_field: Any = (Annotated[dict[str, Any], RecordSchema(lambda: [question.record_type])], ...)
     description = (
         f"What `slidercrank {says.called or name} --json` prints of a design of a front. blocks: its text as data."
     )
-    fields: Any = {name: answer_field, "blocks": (list[AnswerBlock], ...)}
+    fields: Any = {name: numbers_field, "blocks": (list[AnswerBlock], ...)}
     model = create_model(f"{name.capitalize()}Model", __base__=OfDesign, __doc__=description, **fields)
 
     def bind(request: RequestedDesign, inputs: dict[str, str]) -> BoundQuestion:
         design, words = request.design, {item.name: item.key for item in question.inputs}
         return question.for_problem(design.mechanism, design.linkage, design.part, inputs, words)
 
-    def show_answer(request: RequestedDesignDep, given: Any, units: UnitsParameter = "metric") -> OfDesign:
+    def show_numbers(request: RequestedDesignDep, given: Any, units: UnitsParameter = "metric") -> OfDesign:
         bound_question = bind(request, given)
         numbers = bound_question.numbers()
-        blocks = answer_blocks(bound_question.blocks(numbers), bound_question.notes(numbers))
+        blocks = block_models(bound_question.blocks(numbers), bound_question.notes(numbers))
         record = {name: record_in(json_ready(numbers), units)}
         return model(job=request.stored_front.job.id, number=request.number, blocks=blocks, **record)
 
@@ -67,12 +67,12 @@ def _add(name: str, says: QuestionCommand) -> None:
         return Response(content, media_type="image/svg+xml", headers={"Content-Security-Policy": SEALED})
 
     route = LongRoute if says.sizes else QuickRoute
-    show_answer.__name__, show_answer.__doc__ = says.endpoint, says.help
+    show_numbers.__name__, show_numbers.__doc__ = says.endpoint, says.help
     draw.__name__, draw.__doc__ = f"draw_{name}", f"Draw the figure of what `slidercrank {says.called or name}` finds."
     inputs = inputs_in_address(question.inputs, map(parameter_of, question.inputs))
-    for endpoint in (show_answer, draw):
+    for endpoint in (show_numbers, draw):
         endpoint.__annotations__["given"] = Annotated[dict[str, str], inputs]
-    router.add_api_route(f"/{name}", show_answer, response_model=model, route_class_override=route)
+    router.add_api_route(f"/{name}", show_numbers, response_model=model, route_class_override=route)
     if says.figure:
         svg = file_responses("image/svg+xml")
         needs = [Depends(require_figures)]
@@ -99,7 +99,7 @@ class MeasuredModel(OfDesign):
     crank angles and values for the best fit is told, not applied.
     """
 
-    measured: Annotated[dict[str, Any], AnswerSchema(lambda: [MEASURED.answer_type])]
+    measured: Annotated[dict[str, Any], RecordSchema(lambda: [MEASURED.record_type])]
 
 
 @router.post("/measured")

@@ -15,7 +15,7 @@ from starlette.exceptions import HTTPException
 
 from ...model.errors import InputError, JobError
 from ...optimise.problem.problem import Problem
-from ..jobs.submission import LONGEST_ANSWER, bounded, parse_allowed
+from ..jobs.submission import LONGEST_WAIT, bounded, parse_allowed
 from ..store import NO_LIMITS, Artefact, Limits
 from .models import LARGEST
 from .settings import Settings
@@ -185,7 +185,7 @@ def problem_of_tables(
     job, by their paths. require_feasible: whether a job that no design can meet is rejected. Raises `JobError`, also
     for a job that names a missing file.
     """
-    return bounded(parse_allowed(tables, allowed, values, require_feasible=require_feasible), LONGEST_ANSWER)
+    return bounded(parse_allowed(tables, allowed, values, require_feasible=require_feasible), LONGEST_WAIT)
 
 
 def merge_patch(value: Any, changes: Any) -> Any:

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..runs.result import json_ready
-from .blocks import AnswerBlock, answer_blocks
+from .blocks import AnswerBlock, block_models
 from .computing import LongRoute
 from .fronts import OfDesign
 from .input_parameters import body_of
@@ -36,7 +36,7 @@ def find_like(stored_front: FrontDep, design: DesignNumber, given: Any, units: U
     """Find the design most like one of a front that also meets further conditions; nothing is saved."""
     stored_front.row(design)
     nearest = QUESTION.ask(stored_front.front, given.model_dump(), row=design - 1)
-    record, blocks = json_ready(nearest.record(units)), answer_blocks(nearest.blocks)
+    record, blocks = json_ready(nearest.record(units)), block_models(nearest.blocks)
     return LikeModel(job=stored_front.job.id, number=design, like=record, blocks=blocks)
 
 

@@ -81,7 +81,7 @@ def tagged_json(model: type[BaseModel], description: str) -> dict[str, Any]:
     return {"response_class": Response, "responses": {200: {"model": model, "description": description}, 304: same}}
 
 
-def answer_problems(app: FastAPI) -> None:
+def handle_expected_errors(app: FastAPI) -> None:
     """Let an application answer every expected exception with a problem document."""
     app.add_exception_handler(SlidercrankError, _refused)
     app.add_exception_handler(RequestValidationError, _not_valid)

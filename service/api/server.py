@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _WAITING = 2048
 """Connections that may wait to be accepted."""
-ANSWER_SECONDS = 60.0
+STALL_SECONDS = 60.0
 """Time that a client may take nothing of its answer; then the system breaks the connection off (Linux)."""
 _BUFFER = 16_384
 """Bytes that the system keeps for each direction of a connection, beside those on their way, instead of megabytes."""
@@ -57,7 +57,7 @@ def listen(host: str, port: int) -> socket.socket:
         ) from None
     # Connections inherit these. Without TCP_NODELAY the second answer on one waits 40 ms for a delayed acknowledgement;
     # asyncio sets it itself only if the listening socket was created with the protocol named.
-    options = {"TCP_NODELAY": 1, "TCP_USER_TIMEOUT": round(1e3 * ANSWER_SECONDS), "TCP_NOTSENT_LOWAT": _BUFFER}
+    options = {"TCP_NODELAY": 1, "TCP_USER_TIMEOUT": round(1e3 * STALL_SECONDS), "TCP_NOTSENT_LOWAT": _BUFFER}
     for name in filter(partial(hasattr, socket), options):
         listening.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), options[name])
     listening.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER)

@@ -23,7 +23,7 @@ from ..designs.changed_design import Variation, variation_of, with_numbers
 from ..designs.choice_options import minimised_values
 from ..designs.columns import Column, all_columns
 from ..designs.stored_designs import StoredDesign, front_of, stored_design
-from ..jobs.submission import LONGEST_ANSWER, bounded, parse_allowed
+from ..jobs.submission import LONGEST_WAIT, bounded, parse_allowed
 from ..runs.result import Result, Row
 from ..runs.run_folder import slug
 from ..store import Job, Store
@@ -131,7 +131,7 @@ class StoredFronts:
                 front = StoredFront(
                     job,
                     self._store.result(number),
-                    lambda: bounded(parse_allowed(self._store.tables(number), self._allowed), LONGEST_ANSWER),
+                    lambda: bounded(parse_allowed(self._store.tables(number), self._allowed), LONGEST_WAIT),
                 )
                 if job.finished is not None:
                     self._keep(key, front)

@@ -11,11 +11,11 @@ from pydantic_core import to_json
 
 from ...model.errors import NotFound
 from ...objectives.kinds import System
-from ..questions.answer_types import AnswerSchema
 from ..questions.design_question import BoundQuestion, DesignQuestion
 from ..questions.discovery import INPUTS, TOPIC_OF_INPUT, TOPICS
+from ..questions.record_types import RecordSchema
 from ..runs.result import json_ready
-from .blocks import AnswerBlock, answer_blocks
+from .blocks import AnswerBlock, block_models
 from .computing import LongRoute
 from .exports import SEALED, file_responses
 from .figures import require_figures
@@ -50,7 +50,7 @@ class TopicAnswer(OfDesign):
     """A topic of a design. numbers: what `analyse --json` has under its name. told: its text. blocks: that as data."""
 
     name: str = Field(examples=["balance"])
-    numbers: Annotated[dict[str, Any], AnswerSchema(lambda: [topic.answer_type for topic in TOPICS.values()])]
+    numbers: Annotated[dict[str, Any], RecordSchema(lambda: [topic.record_type for topic in TOPICS.values()])]
     told: list[BlockModel]
     blocks: list[AnswerBlock]
 
@@ -120,7 +120,7 @@ def show_topic(request: RequestedDesignDep, topic: Name, topic_request: TopicReq
             name=topic,
             numbers=bound_question.numbers_in(json_ready(numbers), topic_request.units),
             told=[BlockModel(**vars(block)) for block in plain_blocks(blocks, topic_request.units)],
-            blocks=answer_blocks(blocks),
+            blocks=block_models(blocks),
         )
         return (request.key,), to_json(topic_model)
 

@@ -119,7 +119,7 @@ def list_wishes(stored_front: FrontDep, store: StoreDep) -> WishesModel:
                 for name, wish in record.wishes.items()
             },
             design=record.design,
-            at=record.at,
+            at=record.time,
         )
         for record in wishes_of(store, stored_front.job.id)
     ]

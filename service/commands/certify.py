@@ -12,7 +12,7 @@ from ..render.terminal import print_blocks
 from ..runs.result import csv_text, json_text
 from ..runs.run_folder import write_file
 from ..text.options import Json, Run, Runs, Units
-from ..text.screen import print_answer
+from ..text.screen import print_record
 from .ending import INTERRUPTED, NOT_PROVEN, Interruption
 from .input_options import options_of, search_listener, with_question_help
 from .run_choice import front_of_run
@@ -53,7 +53,7 @@ def certify(
         for line in file_lines:
             screen.print(line, soft_wrap=True)
 
-    print_answer(json, place | certificate.record(units), show)
+    print_record(json, place | certificate.record(units), show)
     if interruption.requested() and len(front):
         raise typer.Exit(INTERRUPTED)
     raise typer.Exit(0 if certificate.is_satisfied else NOT_PROVEN)

@@ -17,7 +17,7 @@ from ..render.terminal import print_blocks
 from ..runs.result import Result
 from ..runs.run_folder import disk
 from ..text.options import Figures, Json, Runs, Units
-from ..text.screen import print_answer, print_message
+from ..text.screen import print_message, print_record
 from .ending import NoDesigns
 from .input_options import options_of, with_question_help
 from .run_choice import run_of
@@ -43,7 +43,7 @@ def compare(
     if not answer.is_satisfied:
         raise InputError(answer.message)
     picture = None if figures is None else _draw([(one, result_in(one.result, units)) for one in compared], figures)
-    print_answer(json, answer.record(units), lambda screen: print_blocks(screen, answer.blocks, units))
+    print_record(json, answer.record(units), lambda screen: print_blocks(screen, answer.blocks, units))
     if picture is not None:
         print_message(f"{picture}")
 

@@ -8,7 +8,7 @@ import typer
 
 from ...model.errors import InputError
 from ..text.options import Json
-from ..text.screen import print_answer
+from ..text.screen import print_record
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -36,7 +36,7 @@ def quantities(
             remedy = f"did you mean {near}?" if near else "list all with `slidercrank quantities`"
             raise InputError(f"no quantity is called {name!r}; {remedy}")
     chosen = [facts[name] for name in dict.fromkeys(names or facts)]
-    print_answer(json, {"quantities": chosen}, lambda screen: (_explain if names else _list)(screen, chosen))
+    print_record(json, {"quantities": chosen}, lambda screen: (_explain if names else _list)(screen, chosen))
 
 
 def _list(screen: Console, facts: list[dict[str, Any]]) -> None:

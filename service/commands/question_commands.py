@@ -16,7 +16,7 @@ from ..questions.discovery import DESIGN_QUESTIONS, QUESTION_COMMANDS
 from ..runs.result import csv_text
 from ..runs.run_folder import write_file
 from ..text.options import DesignOfRun, Dimensions, JobFile, JobOrRun, Json, Runs, Units, drawable, require_ending
-from ..text.screen import print_answer, print_message, show_activity, write_figure
+from ..text.screen import print_message, print_record, show_activity, write_figure
 from .input_options import option_of
 from .job_or_run import machine_of, turning_problem
 
@@ -42,7 +42,7 @@ def design_command(name: str) -> Callable[..., None]:
         mechanism, linkage, problem = machine_of(name, job, size, design, runs)
         words = {item.name: item.flag for item in question.inputs}
         bound_question = question.for_problem(mechanism, linkage, problem, inputs, words)
-        notes = _print_answer(bound_question, units, json)
+        notes = _print_numbers(bound_question, units, json)
         for note in () if json else notes:
             print_message(note)
         if curves is not None:
@@ -82,7 +82,7 @@ def sizing_command(name: str) -> Callable[..., None]:
         problem = turning_problem(job, says.called or name)
         words = {item.name: item.flag for item in question.inputs}
         bound_question = question.for_problem(problem.mechanism.nominal, size.linkage(problem), problem, inputs, words)
-        for note in _print_answer(bound_question, units, json):
+        for note in _print_numbers(bound_question, units, json):
             print_message(note)
         if curves is not None:
             write_file(curves, csv_text(bound_question.written("curves", units)))
@@ -103,13 +103,13 @@ def sizing_command(name: str) -> Callable[..., None]:
     return command
 
 
-def _print_answer(bound_question: BoundQuestion, units: System, json: bool) -> list[str]:
+def _print_numbers(bound_question: BoundQuestion, units: System, json: bool) -> list[str]:
     """Print the answer; return further messages."""
     from ..render.terminal import print_blocks
 
     with show_activity("computing"):
         record = bound_question.numbers()
-    print_answer(
+    print_record(
         json, record_in(record, units), lambda screen: print_blocks(screen, bound_question.blocks(record), units)
     )
     return bound_question.notes(record)

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..render.terminal import print_blocks
 from ..text.options import Figures, JobFile, Json, Units
-from ..text.screen import print_answer, print_message, write_figure
+from ..text.screen import print_message, print_record, write_figure
 from .input_options import options_of, with_question_help
 from .job_or_run import turning_problem
 
@@ -26,7 +26,7 @@ def sweep(
     """Answer the question, and draw the answer."""
     problem = turning_problem(job, "sweep")
     swept = QUESTION.ask(problem, inputs, words=QUESTION.flags)
-    print_answer(json, swept.record(units)["rows"], lambda screen: print_blocks(screen, swept.blocks, units))
+    print_record(json, swept.record(units)["rows"], lambda screen: print_blocks(screen, swept.blocks, units))
     for note in () if json else swept.notes:
         print_message(note)
     if figures is not None:

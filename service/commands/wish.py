@@ -87,7 +87,7 @@ def _list(folder: Path, front: ParetoFront, units: System, *, json: bool) -> Non
             assert solver is not None
             words = words_of(front, made_wish.wishes)
             row = None if made_wish.design is None else made_wish.design - 1
-            solved_wishes.append((made_wish.at, words, answered(solver.wish(words, row=row), words)))
+            solved_wishes.append((made_wish.time, words, answered(solver.wish(words, row=row), words)))
     if json:
         records = [{"at": at, "wishes": words} | solved.record(units) for at, words, solved in solved_wishes]
         print_output(json_text({"run": path_text(folder), "made": records}))

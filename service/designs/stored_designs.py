@@ -40,7 +40,7 @@ class StoredDesign:
     @cached_property
     def mechanism(self) -> Mechanism:
         """The machine, with the extra variables of the design."""
-        return self.part.mechanism.at(self.values[3:])
+        return self.part.mechanism.with_values(self.values[3:])
 
     @cached_property
     def linkage(self) -> Linkage:

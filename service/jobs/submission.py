@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 LONGEST_CALL = 300.0
 """s, that a call takes at most in a job of the service, whatever limit the job gives it."""
-LONGEST_ANSWER = 10.0
+LONGEST_WAIT = 10.0
 """s, that a call takes at most while a request waits for it."""
 
 

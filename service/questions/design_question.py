@@ -50,7 +50,7 @@ class QuestionCommand:
 class DesignQuestion:
     """A question, declared by its folder, whose module `analysis` has the functions `numbers`, `blocks` and `figure`.
 
-    The return type of `numbers` is the type of the answer (`answers`), from which its JSON Schema follows.
+    The return type of `numbers` is the type of the answer, see `record_types`, from which its JSON Schema follows.
 
     package: package of the folder; its last part is the name. place: position among the questions, in ascending order.
     shows: description for the help. needs_job: whether it needs masses, loads or tolerances. explained_columns: columns
@@ -77,8 +77,8 @@ class DesignQuestion:
         return import_module(f"{self.package}.analysis")
 
     @property
-    def answer_type(self) -> Any:
-        """Type of the numbers, a record of `answers`."""
+    def record_type(self) -> Any:
+        """Type of the numbers, see `record_types`."""
         return get_type_hints(self.analysis.numbers, include_extras=True)["return"]
 
     @property
@@ -161,8 +161,8 @@ class BoundQuestion:
 
     def blocks(self, numbers: dict[str, Any]) -> list[Block]:
         """Return metric numbers as blocks for people."""
-        answer_blocks: list[Block] = self._analysis.blocks(numbers)
-        return answer_blocks
+        result_blocks: list[Block] = self._analysis.blocks(numbers)
+        return result_blocks
 
     def notes(self, numbers: dict[str, Any]) -> list[str]:
         """Return notes on the numbers: undefined values, or an unproven optimum."""

@@ -41,11 +41,11 @@ class SearchListener:
 
 @dataclass(frozen=True, kw_only=True)
 class FrontOrJobQuestion:
-    """Declaration of a question to a front or a job. The module `analysis` of its folder has the function `answer`.
+    """Declaration of a question to a front or a job. The module `analysis` of its folder has the function `analyse`.
 
-    `answer` takes the subject, for a front also `row`, then `watch`, `words` (names of the inputs in the interface) and
-    the inputs by name; it returns an `Answer`. package: package of the folder; its last part is the name. subject: kind
-    of object that the question is about. help: description, with the first sentence in a separate paragraph. row:
+    `analyse` takes the subject, for a front also `row`, then `watch`, `words` (names of the inputs in the interface)
+    and the inputs by name; it returns an `Answer`. package: package of the folder; its last part is the name. subject:
+    kind of object that the question is about. help: description, with the first sentence in a separate paragraph. row:
     whether the question is about one design of the front. path: path of the endpoint, with names in braces. posted:
     whether the inputs are the body of the request instead of part of its address. key: key of the numbers in the
     answer, "" if they are the whole answer.
@@ -102,7 +102,7 @@ class FrontOrJobQuestion:
         values = self.read(inputs, row, words)
         options: dict[str, Any] = {"row": row} if self.row != "none" else {}
         labels = {item.name: item.name for item in self.inputs} | dict(words or {})
-        result: Answer = import_module(f"{self.package}.analysis").answer(
+        result: Answer = import_module(f"{self.package}.analysis").analyse(
             subject, **options, words=labels, watch=listener or SearchListener(), **values
         )
         return result

@@ -64,11 +64,11 @@ class Sentence:
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table. title: its head. kind: of its numbers, if the head has their unit. right: its alignment."""
+    """A column of a table. title: its head. kind: of its numbers, if the head has their unit."""
 
     title: Text = ""
     kind: Kind | None = None
-    right: bool = True
+    right_aligned: bool = True
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ def joined(texts: Sequence[Text], separator: str = ", ") -> Text:
 
 def column(title: Text = "", kind: Kind | None = None, *, left: bool = False) -> Column:
     """Return a column of numbers, or of words aligned to the left."""
-    return Column(title, kind, right=not left)
+    return Column(title, kind, right_aligned=not left)
 
 
 def recorded(record: Mapping[str, Any], key: str, **look: Any) -> Value:

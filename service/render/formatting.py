@@ -17,8 +17,8 @@ _LEAST_DIGITS = 4  # of a number in a unit of the inch system: 0.7 mm is 0.02756
 class PlainBlock:
     """A sentence, or a table if there are rows, as text in one system of units.
 
-    heading: whether the sentence is a heading. heads: heads of the columns, empty texts for columns without one. right:
-    whether each column is aligned to the right, as numbers are. rows: texts of the cells.
+    heading: whether the sentence is a heading. heads: heads of the columns, empty texts for columns without one.
+    right: whether each is aligned to the right, as numbers are. rows: texts of the cells.
     """
 
     sentence: str = ""
@@ -85,7 +85,7 @@ def plain_blocks(blocks: Sequence[Block], system: System = "metric") -> list[Pla
         if isinstance(block, Sentence)
         else PlainBlock(
             heads=tuple(" ".join(head.split()) for head in heads(block, system)),
-            right=tuple(column.right for column in block.columns),
+            right=tuple(column.right_aligned for column in block.columns),
             rows=tuple(tuple(cell.strip() for cell in row) for row in cells(block, system)),
         )
         for block in blocks

@@ -34,7 +34,7 @@ def _is_note(block: Block | None) -> bool:
 def _print_table(screen: Console, block: Table, system: System) -> None:
     titles = heads(block, system, separator=",\n" if block.ruled else ", ")
     rows = table(
-        *(f"{'>' if column.right else ''}{title}" for column, title in zip(block.columns, titles, strict=True)),
+        *(f"{'>' if column.right_aligned else ''}{title}" for column, title in zip(block.columns, titles, strict=True)),
         ruled=block.ruled,
         **({"padding": (0, 2, 0, 0), "pad_edge": True} if block.space_before else {}),
     )

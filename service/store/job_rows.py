@@ -100,11 +100,11 @@ def news_of(connection: Connection, after: Mapping[int, int], limit: int) -> dic
     for start in range(0, len(numbers), _TOGETHER):
         batch = numbers[start : start + _TOGETHER]
         for row in connection.execute(select(jobs.c.id, jobs.c.state, jobs.c.events).where(jobs.c.id.in_(batch))):
-            news[row.id] = News(state=row.state, last=row.events, events=[])
+            news[row.id] = News(state=row.state, last_number=row.events, events=[])
         fresh = [
             and_(events.c.job == job, events.c.number > after[job], events.c.number <= after[job] + limit)
             for job in batch
-            if job in news and news[job].last > after[job]
+            if job in news and news[job].last_number > after[job]
         ]
         if fresh:
             query = select(events).where(or_(*fresh)).order_by(events.c.job, events.c.number)

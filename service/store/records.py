@@ -167,16 +167,16 @@ class Event:
 
 @dataclass(frozen=True, kw_only=True)
 class News:
-    """News of a job. last: number of its last event, which may come after `events` if these are cut."""
+    """News of a job. last_number: that of its last event, which may come after `events` if these are cut."""
 
     state: State
-    last: int
+    last_number: int
     events: list[Event]
 
     @property
     def is_over(self) -> bool:
         """Whether the job has ended and these are all its remaining events."""
-        return self.state in ENDED and (not self.events or self.events[-1].number == self.last)
+        return self.state in ENDED and (not self.events or self.events[-1].number == self.last_number)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -21,12 +21,12 @@ Wished = Mapping[str, tuple[str, float | None]]
 
 @dataclass(frozen=True, kw_only=True)
 class MadeWish:
-    """A recorded wish. number: number within its job. design: design that classes refer to. at: s since 1970."""
+    """A recorded wish. number: number within its job. design: design that classes refer to. time: s since 1970, UTC."""
 
     number: int
     wishes: Wished
     design: int | None
-    at: float
+    time: float
 
 
 def wishes_of(store: Database, job: int) -> list[MadeWish]:
@@ -39,7 +39,7 @@ def wishes_of(store: Database, job: int) -> list[MadeWish]:
                 number=row.number,
                 wishes={name: (str(kind), value) for name, (kind, value) in json.loads(row.wishes).items()},
                 design=row.design,
-                at=row.at,
+                time=row.at,
             )
             for row in rows
         ]

@@ -51,7 +51,7 @@ def print_output(text: str) -> None:
     sys.stdout.flush()
 
 
-def print_answer(json: bool, record: Any, show: Callable[[Console], None]) -> None:
+def print_record(json: bool, record: Any, show: Callable[[Console], None]) -> None:
     """Write a result as JSON, or for people."""
     if json:
         print_output(json_text(record))

@@ -131,7 +131,7 @@ def test_numbers_that_vary_have_slopes_too() -> None:
             step = 1e-6 * np.eye(5)[column]
             sides = [QUANTITIES[name].evaluate(machine, end).values for end in (wide + step, wide - step)]
             assert found.gradients[:, column] == pytest.approx((sides[0] - sides[1]) / 2e-6, rel=1e-5, abs=1e-6)
-        one = QUANTITIES[name].evaluate(machine.at(wide[0, 3:].tolist()), wide[:1, :3]).values[0]
+        one = QUANTITIES[name].evaluate(machine.with_values(wide[0, 3:].tolist()), wide[:1, :3]).values[0]
         assert found.values[0] == pytest.approx(one, rel=1e-12)
 
 

@@ -62,7 +62,8 @@ def test_a_varied_design_has_the_values_of_the_machine_with_these_numbers(machin
     for quantity in QUANTITIES.values():
         found = quantity.evaluate(machine, designs).values
         alone = [
-            quantity.evaluate(machine.at(design[3:].tolist()), design[None, :3]).values[0].item() for design in designs
+            quantity.evaluate(machine.with_values(design[3:].tolist()), design[None, :3]).values[0].item()
+            for design in designs
         ]
         # Masses and speeds come out of the same products in another order: some roundings of difference.
         np.testing.assert_allclose(found, alone, rtol=1e-12, atol=1e-15)

@@ -119,7 +119,7 @@ def test_a_path_becomes_a_varying_number(path: str, ends: list[Any], sets: dict[
 def test_what_the_job_gives_stays_the_value_of_single_designs() -> None:
     machine = parse_job(job('mechanism.slider.mass = ["1 kg", "2 kg"]')).mechanism
     assert machine.nominal == parse_job(job()).mechanism
-    assert machine.at([1.5]).slider_mass == 1.5
+    assert machine.with_values([1.5]).slider_mass == 1.5
 
 
 @pytest.mark.parametrize(

@@ -153,7 +153,7 @@ def test_near_designs_follow_the_one_whose_round_numbers_keep_an_exact_stroke_at
     offset = np.sqrt((0.12**2 - crank**2) * (4.0 * rod**2 / 0.24**2 - 1.0))  # the stroke in closed form
     search = rounding(asked, np.array([crank, rod, offset]), np.array([0.5, 0.5]), 0.001, notes=())
     found = end_of(search)
-    assert found.met
+    assert found.is_met
     np.testing.assert_allclose(found.dimensions[0], (0.096, 0.37, 0.21))  # a Pythagorean triple
     assert found.misses(0) == []
     assert found.tightest(0) == "stroke"
@@ -184,13 +184,13 @@ def require_best(front: ParetoFront, row: int, steps: dict[str, float], allow: d
     designs, miss, losses = brute_force(front, row, steps, found.steps_tried, allow)
     assert len(designs) == found.judged
     kept = miss <= 1e-9
-    assert found.met == kept.any()
+    assert found.is_met == kept.any()
     assert found.feasible_count == kept.sum()
     for design in found.dimensions:  # each is one of the combinations
         assert np.abs(designs - design).max(axis=1).min() <= 1e-12
     require_misses(front, found, allow)
     own = found.losses.max(axis=1)
-    if not found.met:
+    if not found.is_met:
         expected = nearest(miss, losses.max(axis=1))[:4]
         for place, other in enumerate(expected):
             beyond = [(item.amount - item.allowed) / item.amount for item in found.misses(place)]
@@ -242,7 +242,7 @@ def require_misses(front: ParetoFront, found: Rounded, allow: dict[str, float]) 
             assert miss.side == ("below" if below > above else "above")
             assert (miss.kind, miss.unit) == (of.kind.plain, of.unit.symbol)
             assert miss.allowed == pytest.approx(allow.get(constraint.quantity, 0.0) * of.unit.factor)
-            if found.met:
+            if found.is_met:
                 assert miss.amount <= miss.allowed * (1.0 + 1e-6) + 2e-9 * abs(value) * of.unit.factor
         assert not misses  # no floor is missed here
 
@@ -311,7 +311,7 @@ def test_multiples_are_the_numbers_that_a_drawing_has() -> None:
 def test_a_design_that_is_round_already_is_its_own_best_neighbour() -> None:
     front = plain_front()
     first = front.rounded(3, 0.001, count=1)
-    assert first.met
+    assert first.is_met
     there = replace(front, dimensions=np.repeat(first.dimensions, len(front), axis=0))
     again = there.rounded(3, 0.001)
     assert again.dimensions[0].tolist() == first.dimensions[0].tolist() or again.losses[0].max() < 0.0
@@ -321,7 +321,7 @@ def test_a_design_that_is_round_already_is_its_own_best_neighbour() -> None:
 def test_an_equality_that_no_round_numbers_meet_gives_the_nearest_and_the_miss() -> None:
     front = solve(problem(PLAIN, {"stroke": 0.15, "rod_to_offset": 3.2}, offset=(0.01, 0.2), designs=6, samples=256))
     found = front.rounded(2, 0.0005)
-    assert not found.met
+    assert not found.is_met
     assert found.steps_tried == 32
     row = found.designs.iloc[0]
     miss = front.problem.evaluate(found.dimensions[0], ["stroke", "rod_to_offset"]) - [0.15, 3.2]
@@ -338,10 +338,10 @@ def test_an_equality_that_no_round_numbers_meet_gives_the_nearest_and_the_miss()
 def test_a_stroke_that_may_be_missed_a_little_is_met() -> None:
     front = solve(problem(PLAIN, {"stroke": 0.1503}, offset=(0.01, 0.2), designs=6, samples=256))
     exact = front.rounded(2, 0.0005)
-    assert not exact.met
+    assert not exact.is_met
     for allow in ({"stroke": "0.1 mm"}, {"stroke": 1e-4}, {"stroke_mm": "0.1 mm"}):
         found = front.rounded(2, 0.0005, allow=allow)
-        assert found.met
+        assert found.is_met
         assert found.allowed == {"stroke": 1e-4}
         assert "within 0.1 mm of stroke" in found.message
         strokes = front.problem.evaluate(found.dimensions, ["stroke"])[:, 0]
@@ -350,7 +350,7 @@ def test_a_stroke_that_may_be_missed_a_little_is_met() -> None:
             (1e3 * abs(strokes - 0.1503)).tolist(), rel=1e-6
         )
     little = front.rounded(2, 0.0005, allow={"stroke": 1e-12})
-    assert not little.met
+    assert not little.is_met
     assert "allow a greater miss of stroke" in little.message
 
 
@@ -433,11 +433,11 @@ def test_objectives_without_an_end_are_answered() -> None:
     )
     front = solve(asked)
     found = front.rounded(0, 0.001)
-    assert found.met
+    assert found.is_met
     assert not np.isnan(found.losses).any()
     away = replace(front, dimensions=front.dimensions * [1.0, 1.0, 0.0], values=front.values * [np.inf, 1.0])
     found = away.rounded(0, 0.001)
-    assert found.met
+    assert found.is_met
     assert not np.isnan(found.losses).any()
     assert np.isneginf(found.losses).any()  # better by more than any number
 
@@ -447,7 +447,7 @@ def test_nothing_that_turns_is_said() -> None:
     sizes: dict[str, Any] = {"crank": (0.099, 0.1), "rod": (0.11, 0.13), "offset": (0.015, 0.02)}
     front = solve(problem(PLAIN, {"transmission_angle": (0.02, None)}, **sizes, designs=4, samples=128))
     found = front.rounded(0, {"rod": 0.055, "offset": 0.018, "crank": 0.0332})
-    assert (found.judged, len(found), found.met) == (0, 0, False)
+    assert (found.judged, len(found), found.is_met) == (0, 0, False)
     assert "rotates fully; give smaller steps" in found.message
     assert len(found.designs) == 0
 
@@ -456,7 +456,7 @@ def test_robust_requirements_are_kept_by_the_rounded_designs() -> None:
     asked = robust(problem({"time_ratio": "maximise"}, HELD, designs=4, samples=128), Robust(kind="worst case"))
     front = solve(asked)
     found = front.rounded(0, 0.0005)
-    assert found.met
+    assert found.is_met
     values = asked.evaluate(found.dimensions, [item.quantity for item in asked.constraints])
     for column, item in enumerate(asked.constraints):
         assert item.lower is None or (values[:, column] >= item.lower * (1.0 - 1e-9)).all()

@@ -27,12 +27,12 @@ from typer.testing import CliRunner
 
 from slidercrank.model.errors import InputError
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.service.agents.call import ToolAnswer
+from slidercrank.service.agents.call import ToolResult
 from slidercrank.service.agents.server import TOOLS
 from slidercrank.service.agents.tool import Tool
 from slidercrank.service.cli import app
-from slidercrank.service.questions.answer_types import schema_of
 from slidercrank.service.questions.discovery import DESIGN_QUESTIONS, INPUTS, QUESTIONS, TOPICS
+from slidercrank.service.questions.record_types import schema_of
 from slidercrank.service.text.tables import ROWS
 from tests.faults.waits import Stopwatch
 from tests.service import fronts, sized
@@ -439,7 +439,7 @@ def test_every_name_of_the_lists_is_described(agent: Agent) -> None:
     for of in QUANTITIES.values():
         assert f"  {of.name}: {of.title}; such as {of.name} = {{ {'max' if of.better == 'low' else 'min'} = " in bounds
     for name, question in DESIGN_QUESTIONS.items():
-        assert agent.ask("describe", name=name)["topic"]["answer"] == schema_of(question.answer_type)
+        assert agent.ask("describe", name=name)["topic"]["answer"] == schema_of(question.record_type)
     assert "one of minimise, maximise" in text_of(agent.answer("describe", name="objectives.peak_torque"))
 
 
@@ -506,8 +506,8 @@ def test_a_server_that_ends_leaves_a_run_that_can_go_on(tmp_path: Path, code: in
 def test_a_fault_of_the_server_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     from slidercrank.service.agents import server
 
-    def broken(error: Exception) -> Callable[..., ToolAnswer]:
-        def run(_call: object) -> ToolAnswer:
+    def broken(error: Exception) -> Callable[..., ToolResult]:
+        def run(_call: object) -> ToolResult:
             raise error
 
         return run

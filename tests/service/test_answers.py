@@ -20,10 +20,10 @@ from slidercrank.objectives.kinds import DISPLAYED_KINDS, PRESSURE, unit_text
 from slidercrank.objectives.tables.curve_extremes import defined_curves
 from slidercrank.service.api.app import create_app
 from slidercrank.service.designs.measured_file import read_measured
-from slidercrank.service.questions.answer_types import schema_of
 from slidercrank.service.questions.design_question import BoundQuestion, DesignQuestion
 from slidercrank.service.questions.discovery import DESIGN_QUESTIONS, QUESTION_COMMANDS, TOPICS
 from slidercrank.service.questions.measured import MEASURED
+from slidercrank.service.questions.record_types import schema_of
 from slidercrank.service.render.blocks import Block, Sentence, Value
 from slidercrank.service.render.formatting import plain_blocks
 from slidercrank.service.runs.result import json_ready
@@ -84,7 +84,7 @@ def _some_value(name: str, words: Any, crank: float, random: Random) -> Any:
 
 
 def asked_of(question: DesignQuestion, problem: sc.Problem, design: Sequence[float], random: Random) -> BoundQuestion:
-    machine = problem.mechanism.at(list(design[3:]))
+    machine = problem.mechanism.with_values(list(design[3:]))
     return question.for_problem(
         machine, linkage_of(problem, design), problem, some_inputs(question, problem, design, random)
     )
@@ -105,10 +105,10 @@ def answers_of(name: str) -> Iterator[tuple[BoundQuestion, dict[str, Any]]]:
                 continue
 
 
-def assert_declared(answer_type: Any, record: Any) -> None:
+def assert_declared(record_type: Any, record: Any) -> None:
     """Compare a record of JSON with its schema, and what the schema says of its numbers with their keys."""
     judge = pytest.importorskip("jsonschema_rs")
-    errors = judge.Draft202012Validator(schema_of(answer_type)).iter_errors(record)
+    errors = judge.Draft202012Validator(schema_of(record_type)).iter_errors(record)
     assert [f"{error.instance_path}: {error.message}" for error in errors] == []
 
 
@@ -171,7 +171,7 @@ def test_answers_of_random_machines_are_as_declared_and_the_same_in_inches(name:
     for asked, numbers in answers_of(name):
         answers += 1
         inch = asked.numbers_in(numbers, "inch")
-        assert_declared(asked.question.answer_type, json_ready(numbers))
+        assert_declared(asked.question.record_type, json_ready(numbers))
         if name != "sensitivity":  # whose entries have units of their own: see test_topics_in_inches
             assert_in_inches(numbers, inch)
         near = 2e-5 if name == "counterweight" else 1e-12  # places of its mass are rounded to 0.001 mm
@@ -189,7 +189,7 @@ def test_impacts_in_a_loose_joint_are_as_declared_and_the_same_in_inches() -> No
     for run in (stopped, done, replace(done, discard=2)):
         numbers = analysis.numbers(asked.mechanism, asked.linkage, run=run)
         inch = asked.numbers_in(numbers, "inch")
-        assert_declared(asked.question.answer_type, json_ready(numbers))
+        assert_declared(asked.question.record_type, json_ready(numbers))
         assert_in_inches(numbers, inch)
         assert_shown_in_inches(asked.blocks(numbers), inch)
 
@@ -209,7 +209,7 @@ def test_deviations_of_measured_curves_are_as_declared_and_the_same_in_inches(so
     numbers = asked.numbers()
     assert len(numbers["curves"]) == len(curves)
     inch = asked.numbers_in(numbers, "inch")
-    assert_declared(MEASURED.answer_type, json_ready(numbers))
+    assert_declared(MEASURED.record_type, json_ready(numbers))
     assert_in_inches(numbers, inch)
     assert_shown_in_inches(asked.blocks(numbers)[:4], inch)  # below, what was read of the file is said in its units
 
@@ -219,7 +219,7 @@ ALL = {**DESIGN_QUESTIONS, "measured": MEASURED}
 
 @pytest.mark.parametrize("name", ALL)
 def test_a_schema_is_closed_says_its_units_and_why_a_number_may_be_null(name: str) -> None:
-    schema = schema_of(ALL[name].answer_type)
+    schema = schema_of(ALL[name].record_type)
     records = [schema, *schema.get("$defs", {}).values()]
     assert all(record["additionalProperties"] is False and record["description"] for record in records)
     for record in records:
@@ -239,7 +239,7 @@ def test_the_description_of_the_api_has_the_schema_of_every_answer(tmp_path: Pat
     def described(model: str, field: str) -> list[Any]:
         return [one.get("$ref", "").rpartition("/")[2] for one in schemas[model]["properties"][field]["anyOf"]]
 
-    topics = [schema_of(topic.answer_type)["title"] for topic in TOPICS.values()]
+    topics = [schema_of(topic.record_type)["title"] for topic in TOPICS.values()]
     assert described("TopicAnswer", "numbers") == [*topics, ""]
     for model in ("AnalysisModel", "StoredAnalysisModel"):
         places = schemas[model]["properties"]["analysis"]["properties"]
@@ -247,8 +247,8 @@ def test_the_description_of_the_api_has_the_schema_of_every_answer(tmp_path: Pat
             zip(TOPICS, topics, strict=True)
         )
     for name in (*QUESTION_COMMANDS, "measured"):
-        assert described(f"{name.capitalize()}Model", name) == [schema_of(ALL[name].answer_type)["title"], ""]
+        assert described(f"{name.capitalize()}Model", name) == [schema_of(ALL[name].record_type)["title"], ""]
     for name, question in ALL.items():
-        schema = schema_of(question.answer_type)
+        schema = schema_of(question.record_type)
         text = json.dumps(schemas[schema["title"]]).replace("#/components/schemas/", "#/$defs/")
         assert json.loads(text) == {key: value for key, value in schema.items() if key != "$defs"}, name

@@ -19,7 +19,7 @@ from typer.testing import CliRunner
 
 import slidercrank as sc
 from slidercrank.model.errors import InputError
-from slidercrank.service.agents.call import Call, ToolAnswer
+from slidercrank.service.agents.call import Call, ToolResult
 from slidercrank.service.agents.server import TOOLS
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.client import Client
@@ -60,7 +60,7 @@ class Doors:
         left = ("run", "wishes") if FRONT_OR_JOB_QUESTIONS[name].row != "must" else ("run", "number")
         return {key: value for key, value in json.loads(done.stdout).items() if key not in left}
 
-    def agent(self, name: str, row: int | None, given: Mapping[str, Any]) -> ToolAnswer:
+    def agent(self, name: str, row: int | None, given: Mapping[str, Any]) -> ToolResult:
         """Return the answer to an agent."""
         design = {} if row is None else {"design": row + 1}
         return ASK.execute(

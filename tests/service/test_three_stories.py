@@ -132,10 +132,10 @@ def in_python(story: Story, place: Path, _: Command, number: int) -> tuple[list[
     front = sc.solve(sc.problem(tables_of(story), folder=place))
     steps = {name: 1e-3 * step for name, step in story.steps.items()}
     found = front.rounded(number - 1, steps)
-    assert found.met == (not story.allow)
+    assert found.is_met == (not story.allow)
     if story.allow:
         found = front.rounded(number - 1, steps, allow={"stroke": 1e-3 * story.allow})
-        assert found.met
+        assert found.is_met
     rounded = [{key: values[row].item() for key, values in found.columns.items()} for row in range(len(found))]
     rows = [{key: values[row] for key, values in front.columns.items()} for row in range(len(front))]
     return rows, rounded

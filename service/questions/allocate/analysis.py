@@ -18,8 +18,8 @@ from ....optimise.problem.problem import Problem
 from ....optimise.sizing.input_words import Kind
 from ....optimise.sizing.tolerance_allocation import Allocation, allocate
 from ...render.blocks import Block, Table, Text, Unit, Value, column, heading, joined, recorded, sentence, words
-from ..answer_types import Note, Record
 from ..peaks import peak
+from ..record_types import Note, Record
 
 OfLength = Annotated[float | None, Note("null for the crank angle")]
 OfAngle = Annotated[float | None, Note("of the crank angle; null for lengths")]

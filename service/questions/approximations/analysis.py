@@ -16,7 +16,7 @@ from ....objectives.kinds import ACCELERATION, LENGTH, TORQUE, Kind
 from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import Block, Table, Text, Unit, column, dimensions, heading, joined, note, recorded, recorded_all
 from ...render.numerals import format_number
-from ..answer_types import Note, Record
+from ..record_types import Note, Record
 
 Share = Annotated[float | None, Note("null where the exact value is zero all over")]
 

@@ -20,8 +20,8 @@ from ....objectives.kinds import FORCE, TORQUE
 from ....objectives.machine_needs import MOTION
 from ...figures.panel_figure import Line, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, NamedNumber, compared, joined, named_number, number_list
-from ..answer_types import Note, PeakAngle, Record
 from ..peaks import Peak, peak, row_of
+from ..record_types import Note, PeakAngle, Record
 
 Bare = Annotated[float | None, Note("null without a counterweight")]
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _MOST_NOTES = 8
 
 
-def answer(
+def analyse(
     front: ParetoFront, *, watch: SearchListener, epsilon: float = EPSILON, seconds: float = SECONDS, **_: Any
 ) -> Answer:
     """Return the certificate, or the proof for a front without designs. Raises the errors of `certify_designs`."""
@@ -84,7 +84,7 @@ def _record(certificate: Certificate, problem: Problem) -> dict[str, Any]:
         "boxes": certificate.boxes,
         "open_boxes": certificate.open,
         "remaining_share": certificate.remaining,
-        "remaining_where": _by_number(certificate.where, problem),
+        "remaining_where": _by_number(certificate.worst_open_box, problem),
         "notes": list(certificate.notes),
         "seconds": certificate.seconds,
         "added": rows_of(certificate.table.to_dict("list")) if len(certificate.table) else [],
@@ -104,10 +104,10 @@ def _blocks(certificate: Certificate, front: ParetoFront) -> list[Block]:
         heading("{name}: {message}", name=front.problem.name, message=certificate.message),
         sentence(f"Design box: {certificate.boxes:,} boxes in {certificate.seconds:.1f} s{share}"),
     ]
-    if certificate.where is not None:
+    if certificate.worst_open_box is not None:
         ranges = [
             words("{name} {low} to {high}", name=name, low=Value(low, LENGTH, bare=True), high=Value(high, LENGTH))
-            for name, (low, high) in zip(DIMENSIONS, certificate.where[:3].tolist(), strict=True)
+            for name, (low, high) in zip(DIMENSIONS, certificate.worst_open_box[:3].tolist(), strict=True)
         ]
         blocks.append(sentence("Largest gap in the proof: {ranges}", ranges=joined(ranges)))
     if certificate.hole is not None:

@@ -16,7 +16,7 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.clearance import Joint, Law
 from ....model.machine.mechanism import Mechanism
 from ...render.blocks import Block, Table, Text, Unit, column, heading, note, recorded, sentence, words
-from ..answer_types import Keys, Note
+from ..record_types import Keys, Note
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 _SYSTEMS: tuple[System, ...] = ("metric", "inch")
 
 
-def answer(runs: Sequence[ComparedRun], *, tolerance: float = 1e-6, **_: Any) -> Answer:
+def analyse(runs: Sequence[ComparedRun], *, tolerance: float = 1e-6, **_: Any) -> Answer:
     """Return measures of the fronts, sentences, and differences between the jobs.
 
     Runs with other objectives, or with undefined ones, have no measures; other objectives do not satisfy the request.

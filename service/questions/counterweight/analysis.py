@@ -30,7 +30,7 @@ from ...render.blocks import (
     words,
 )
 from ...render.numerals import format_number
-from ..answer_types import Note, PeakAngle, Record
+from ..record_types import Note, PeakAngle, Record
 from . import QUESTION
 
 
@@ -137,11 +137,11 @@ def numbers(
         if rod is None
         else {
             "mass_kg": rod.mass,
-            "moment_along_kg_m": rod.along,
-            "moment_across_kg_m": rod.across,
+            "moment_along_kg_m": rod.moment_along,
+            "moment_across_kg_m": rod.moment_across,
             "inertia_kg_m2": rod.inertia,
-            "centre_along_mm": 1e3 * rod.along / rod.mass if weighs else None,
-            "centre_across_mm": 1e3 * rod.across / rod.mass if weighs else None,
+            "centre_along_mm": 1e3 * rod.moment_along / rod.mass if weighs else None,
+            "centre_across_mm": 1e3 * rod.moment_across / rod.mass if weighs else None,
         },
         "before": _shaking(optimum.shaking_before),
         "after": _shaking(optimum.shaking_after),

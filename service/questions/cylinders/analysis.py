@@ -17,8 +17,8 @@ from ....model.signals.signals import Signal
 from ....objectives.kinds import ANGLE, FORCE, LENGTH, TORQUE
 from ...figures.panel_figure import FAINT, Line, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, Table, Text, column, compared, named_number, number_list, recorded
-from ..answer_types import Note, NullIfLocked, PeakAngle, Record
 from ..peaks import peak
+from ..record_types import Note, NullIfLocked, PeakAngle, Record
 
 
 class Cylinder(Record):

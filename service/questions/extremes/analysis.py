@@ -33,7 +33,7 @@ from ...render.blocks import (
 from ...render.extremes_table import extremes_table
 from ...render.numerals import format_number
 from ...text.tables import finite_or_none
-from ..answer_types import Keys, Note, Record, keys_of_kinds
+from ..record_types import Keys, Note, Record, keys_of_kinds
 
 _PANELS = ("slider_position", "slider_velocity", "slider_acceleration", "torque", "crank_pin", "load")
 _STROKES = ("outward", "inward")
@@ -147,12 +147,12 @@ def _strokes(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | N
 
 def blocks(numbers: Extremes) -> list[Block]:
     """Return a line for each curve, and the strokes."""
-    answer_blocks: list[Block] = [
+    result_blocks: list[Block] = [
         heading("Extreme values over the turn, with continuous crank angles"),
         extremes_table(numbers["curves"]),
     ]
     if "undefined_because" in numbers:
-        answer_blocks.append(sentence("Undefined: {reason}", reason=numbers["undefined_because"]))
+        result_blocks.append(sentence("Undefined: {reason}", reason=numbers["undefined_because"]))
     strokes, lines = numbers["strokes"], list[NamedNumber]()
     for name in _STROKES:
         stroke = strokes[name]
@@ -171,7 +171,7 @@ def blocks(numbers: Extremes) -> list[Block]:
     ):
         if strokes.get(key) is not None:
             lines.append((title, Value(strokes[key], kind), "outward against inward"))
-    return [*answer_blocks, *number_list("Strokes", lines)]
+    return [*result_blocks, *number_list("Strokes", lines)]
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:

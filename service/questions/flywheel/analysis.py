@@ -16,7 +16,7 @@ from ....objectives.kinds import ANGULAR_SPEED, INERTIA
 from ...figures.panel_figure import FAINT, Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import Block, Table, Text, Value, column, recorded, sentence, words
 from ...render.numerals import format_number
-from ..answer_types import Note, Record
+from ..record_types import Note, Record
 from ..start_up.analysis import RPM, SteadyNumbers, in_order, steady_numbers
 from . import FLUCTUATION
 

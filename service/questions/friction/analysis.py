@@ -22,8 +22,8 @@ from ....objectives.kinds import ANGLE, FORCE, PERCENT, TORQUE, Kind
 from ...figures.panel_figure import CRANK_ANGLE, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, NamedNumber, Value, compared, joined, named_number, number_list, recorded, words
 from ...text.tables import finite_or_none
-from ..answer_types import Note, NullIfLocked, Record
 from ..peaks import peak, row_of
+from ..record_types import Note, NullIfLocked, Record
 
 Smooth = Annotated[float | None, Note("null where it is not determined")]
 Verdict = Literal["drives", "locks", "locks or may jam", "may jam"]

@@ -18,7 +18,7 @@ from ....model.machine.two_turns import cycle_turns
 from ....objectives.kinds import PRESSURE, VOLUME, display_unit
 from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, NamedNumber, number_list, recorded
-from ..answer_types import Note, Record
+from ..record_types import Note, Record
 
 _GAS_PRESSURE = replace(PRESSURE, metric=display_unit("bar", 1e-5))
 Event = Annotated[float | None, Note("null without such an event")]
@@ -84,7 +84,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Indicator:
 
 def blocks(numbers: Indicator) -> list[Block]:
     """Return the numbers for people."""
-    answer_blocks: list[Block] = []
+    result_blocks: list[Block] = []
     for cylinder in numbers["cylinders"]:
         lines: list[NamedNumber] = [
             ("least volume", recorded(cylinder, "least_volume_cm3"), ""),
@@ -97,8 +97,8 @@ def blocks(numbers: Indicator) -> list[Block]:
             angle = recorded(cylinder, f"{name}_ends_deg")
             if angle.number is not None:
                 lines.append((f"{name} ends", angle, event))
-        answer_blocks += number_list(f"Indicator diagram of load {cylinder['load']} (pressures are absolute)", lines)
-    return answer_blocks
+        result_blocks += number_list(f"Indicator diagram of load {cylinder['load']} (pressures are absolute)", lines)
+    return result_blocks
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:

@@ -18,7 +18,7 @@ from ....model.swing.swing import Swing, dead_points, placed, require_swing
 from ....objectives.column_keys import kind_of_key
 from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED
 from ...render.blocks import Block, Table, column, joined, recorded, sentence, words
-from ..answer_types import Note, Record
+from ..record_types import Note, Record
 
 _NEAR = 1e-9  # rad, beyond an end of a swing: rounding
 UNDEFINED = "at a dead centre the slider is at rest at any crank speed: crank speed and acceleration are undefined"

@@ -25,7 +25,7 @@ from ...figures.panel_figure import DASHED, Line, Panel, PanelFigure, crank_angl
 from ...render.blocks import Block, NamedNumber, compared, joined, named_number, note, number_list, sentence
 from ...render.numerals import format_number
 from ...runs.result import Row
-from ..answer_types import Note, Record
+from ..record_types import Note, Record
 
 _RPM = ANGULAR_SPEED.metric.factor
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 _EXAMPLE = f"{QUESTION.inputs[0].flag} {QUESTION.inputs[0].example}"
 
 
-def answer(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> Answer:
+def analyse(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> Answer:
     """Return the nearest design that meets the conditions. Raises the errors of `optimise.decisions.like.nearest`."""
     front.part(row)  # raises an error for an invalid row
     before = rows_of(front.columns)[row]

@@ -22,7 +22,7 @@ from ...figures.panel_figure import DASHED, SAMPLES, Array, Line, Panel, PanelFi
 from ...render.blocks import Block, Sentence, Table, Text, Unit, Value, column, dimensions, heading, recorded, words
 from ...render.numerals import format_number
 from ...text.tables import finite_or_none
-from ..answer_types import Keys, Note, Record, keys_of_kinds
+from ..record_types import Keys, Note, Record, keys_of_kinds
 
 _Fit = Annotated[float | None, Note("null where the samples do not determine a shift")]
 _CURVE = {

@@ -28,8 +28,8 @@ from ....objectives.machine_needs import SPEED
 from ...figures.panel_figure import Line, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, named_number, number_list
 from ...text.tables import finite_or_none
-from ..answer_types import Note, NullIfLocked, PeakAngle, Record
 from ..peaks import peak, row_of
+from ..record_types import Note, NullIfLocked, PeakAngle, Record
 
 Moving = Annotated[float | None, Note("null where friction locks or may jam the linkage, and without a crank speed")]
 

@@ -15,7 +15,7 @@ from ....objectives.kinds import ACCELERATION, LENGTH, SPEED
 from ...figures.panel_figure import Line, Panel, PanelFigure
 from ...render.blocks import Block, Table, Text, Unit, Value, column, dimensions, heading, joined, recorded
 from ...render.numerals import format_number
-from ..answer_types import Record
+from ..record_types import Record
 from . import AT
 
 

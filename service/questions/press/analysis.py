@@ -20,8 +20,8 @@ from ....objectives.kinds import ANGLE, FORCE, LENGTH, SPEED
 from ....objectives.peak_torque import PEAK_TORQUE
 from ...figures.panel_figure import Line, Panel, PanelFigure
 from ...render.blocks import Block, NamedNumber, Table, column, named_number, note, number_list, recorded_all
-from ..answer_types import Note, Record
 from ..peaks import row_of
+from ..record_types import Note, Record
 
 _ROWS = 10
 _SAMPLES = 200

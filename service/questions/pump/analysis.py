@@ -22,8 +22,8 @@ from ....objectives.peak_torque import PEAK_TORQUE
 from ....objectives.quantity import Quantity
 from ...figures.panel_figure import FAINT, Line, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, named_number, number_list
-from ..answer_types import Note, Record
 from ..peaks import row_of
+from ..record_types import Note, Record
 from ..static_forces.analysis import massless
 
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 _TO, _ALLOW = (one for one in QUESTION.inputs if isinstance(one, TypedInput) and one.example)
 
 
-def answer(front: ParetoFront, *, row: int, watch: SearchListener, words: Mapping[str, str], **inputs: Any) -> Answer:
+def analyse(front: ParetoFront, *, row: int, watch: SearchListener, words: Mapping[str, str], **inputs: Any) -> Answer:
     """Return the rounded neighbours of a design. Raises the errors of `search`."""
     for at in search(front, row, words, **inputs):
         if isinstance(at, Answer):
@@ -66,7 +66,7 @@ def _answered(rounded: Rounded, row: int) -> Answer:
     return Answer(
         record=lambda units: _record_in(units, record, rounded),
         blocks=_blocks(rounded, record, row) if len(rounded) else [],
-        is_satisfied=rounded.met,
+        is_satisfied=rounded.is_met,
         message=rounded.message,
         notes=rounded.notes,
         search_result=rounded,
@@ -132,7 +132,7 @@ def _record(rounded: Rounded) -> dict[str, Any]:
         for row in range(len(rounded))
     ]
     return {
-        "met": rounded.met,
+        "met": rounded.is_met,
         "message": rounded.message,
         "steps": {rounded.names[name][0]: rounded.names[name][1] * step for name, step in rounded.steps.items()},
         "allowed": {
@@ -194,7 +194,7 @@ def _blocks(rounded: Rounded, record: dict[str, Any], row: int) -> list[Block]:
             Sentence(words(f"{number}: {{requirements}}", requirements=_requirements(design, rounded)))
             for number, design in enumerate(designs, 1)
         ),
-        *([Sentence(Phrase(rounded.message, rounded.message_in("inch")), space_before=True)] if rounded.met else []),
+        *([Sentence(Phrase(rounded.message, rounded.message_in("inch")), space_before=True)] if rounded.is_met else []),
     ]
 
 

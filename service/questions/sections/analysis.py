@@ -11,7 +11,7 @@ from ....model.machine.mechanism import Mechanism
 from ....optimise.problem.problem import Problem
 from ....optimise.sizing.sections import size_sections
 from ...render.blocks import Block, Sentence, Table, Value, column, recorded, sentence, words
-from ..answer_types import Record
+from ..record_types import Record
 
 
 class Sections(Record):

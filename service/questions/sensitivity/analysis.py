@@ -15,8 +15,8 @@ from ....objectives.registry import QUANTITIES
 from ....objectives.tables.sensitivity import sensitivity
 from ...render.blocks import Block, Table, Text, Unit, Value, column, heading, note, words
 from ...runs.result import json_ready, rows_of
-from ..answer_types import Keys, Note, Record
 from ..peaks import row_of
+from ..record_types import Keys, Note, Record
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -102,17 +102,17 @@ def blocks(numbers: Sensitivity) -> list[Block]:
     heads = [head for name in DIMENSIONS for head in (column(name), column())]
     columns = column("quantity", left=True), column("value"), column("unit", left=True), *heads
     title = "Change of each quantity if a dimension grows by 1 {unit} (and in % if it grows by 1 %)"
-    answer_blocks: list[Block] = [heading(title, unit=Unit(LENGTH)), Table(columns, tuple(rows))]
+    result_blocks: list[Block] = [heading(title, unit=Unit(LENGTH)), Table(columns, tuple(rows))]
     if tolerance_rows:
         columns = column("quantity", left=True), *map(column, DIMENSIONS), column("unit", left=True)
-        answer_blocks += [
+        result_blocks += [
             heading("Change of each quantity for the tolerance of a dimension"),
             Table(columns, tuple(tolerance_rows)),
         ]
     return (
-        [*answer_blocks, note("a / b: at a kink, the derivative below and above the dimension")]
+        [*result_blocks, note("a / b: at a kink, the derivative below and above the dimension")]
         if kinks
-        else answer_blocks
+        else result_blocks
     )
 
 

@@ -17,7 +17,7 @@ from ....objectives.kinds import ANGULAR_SPEED, TIME, TORQUE
 from ...figures.panel_figure import FAINT, Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import Block, Table, Unit, column, recorded, sentence
 from ...render.numerals import format_number
-from ..answer_types import Note, Record
+from ..record_types import Note, Record
 
 
 class SteadyNumbers(Record):
@@ -155,13 +155,13 @@ def blocks(numbers: Start) -> list[Block]:
     if steady is not None:
         lines += [(title, recorded(steady, key, digits=4)) for key, title in steady_titles.items()]
     rows = tuple((title, value, Unit(value.kind)) for title, value in lines)
-    answer_blocks: list[Block] = [
+    result_blocks: list[Block] = [
         sentence("Start from rest: {message}.", message=numbers["message"]),
         Table((column(left=True), column(), column(left=True)), rows),
     ]
     if steady is None:
-        answer_blocks.append(sentence("No steady running: {reason}.", reason=numbers["why_not_steady"] or ""))
-    return answer_blocks
+        result_blocks.append(sentence("No steady running: {reason}.", reason=numbers["why_not_steady"] or ""))
+    return result_blocks
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, **options: Any) -> PanelFigure:

@@ -33,8 +33,8 @@ from ...render.blocks import (
     sentence,
     words,
 )
-from ..answer_types import Note, PeakAngle, Record
 from ..peaks import peak
+from ..record_types import Note, PeakAngle, Record
 
 
 class StaticForces(Record):
@@ -135,7 +135,7 @@ def blocks(numbers: StaticForces) -> list[Block]:
         "mechanical_advantage": column("mechanical\nadvantage"),
     }
     rows = zip(*(recorded_all(numbers, key, digits=4, missing="unbounded") for key in columns), strict=True)
-    answer_blocks: list[Block] = [
+    result_blocks: list[Block] = [
         heading("Static forces, without masses and friction ({load})", load=_load(numbers)),
         Table(tuple(columns.values()), tuple(rows), ruled=True),
     ]
@@ -145,13 +145,13 @@ def blocks(numbers: StaticForces) -> list[Block]:
         ("crank torque", "peak_crank_torque_Nm"),
     ):
         at = recorded(numbers, f"{key.rpartition('_')[0]}_angle_deg", decimals=2)
-        answer_blocks.append(sentence(f"greatest {force} {{value}} at {{at}}", value=recorded(numbers, key), at=at))
+        result_blocks.append(sentence(f"greatest {force} {{value}} at {{at}}", value=recorded(numbers, key), at=at))
     least = sentence(
         "least mechanical advantage {value} at {at} (slider load over tangential crank pin force)",
         value=recorded(numbers, "least_mechanical_advantage"),
         at=recorded(numbers, "least_mechanical_advantage_angle_deg", decimals=2),
     )
-    return [*answer_blocks, least]
+    return [*result_blocks, least]
 
 
 def _load(numbers: StaticForces) -> Text:

@@ -26,8 +26,8 @@ from ...designs.violations import violated_by
 from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import Block, Table, Text, Value, column, number_list, recorded, words
 from ...text.tables import finite_or_none
-from ..answer_types import Keys, Note, PossiblyInfinite
 from ..peaks import row_of
+from ..record_types import Keys, Note, PossiblyInfinite
 
 _SIGNS = ("tension", "compression")
 _OfEye = Annotated[float | None, Note("null where a pin as wide as the bar leaves nothing of it")]

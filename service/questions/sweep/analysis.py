@@ -32,7 +32,7 @@ _LIST = re.compile(r"\s*(\w+)\s*=\s*([^.:]*(?:\.\d[^.:]*)*)", re.ASCII | re.DOTA
 MOST_VALUES = 10_000
 
 
-def answer(
+def analyse(
     problem: Problem, *, words: Mapping[str, str], over: Sequence[str], of: Sequence[str], **given: Any
 ) -> Answer:
     """Return the rows of the sweep. given: lengths not swept, m.

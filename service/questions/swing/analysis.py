@@ -29,7 +29,7 @@ from ...designs.swing_curves import (
 from ...render.blocks import Block, NamedNumber, Text, heading, number_list, recorded, words
 from ...render.extremes_table import extremes_table
 from ...text.tables import finite_or_none
-from ..answer_types import Keys, Note, keys_of_kinds
+from ..record_types import Keys, Note, keys_of_kinds
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

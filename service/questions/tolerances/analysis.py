@@ -19,8 +19,8 @@ from ....model.tolerance.monte_carlo import simulate, summarise, variances, yiel
 from ....model.tolerance.sources import SOURCES, limits, source_influences
 from ....objectives.kinds import LENGTH, System
 from ...render.blocks import Block, Table, Text, Value, column, heading, joined, note, recorded, words
-from ..answer_types import Note, Record
 from ..peaks import row_of
+from ..record_types import Note, Record
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -202,18 +202,18 @@ def blocks(numbers: PositionError) -> list[Block]:
             "yield at {size} ({name})", size=recorded(yield_record, "limit_mm", digits=4), name=yield_record["limit"]
         )
         rows.append((limit, f"{share} at {yield_record['confidence_percent']:g} % confidence"))
-    answer_blocks: list[Block] = [
+    result_blocks: list[Block] = [
         heading("Position error from tolerances: greatest over the counted part of the cycle"),
         Table((column(left=True), column(left=True)), tuple(rows)),
     ]
     if any(row["source"].endswith("clearance") for row in numbers["contributions"]):
-        answer_blocks.append(
+        result_blocks.append(
             note(
                 "Root-sum-square treats a clearance as three standard deviations; pins pressed to either side scatter "
                 "more widely, as the random machines show."
             )
         )
-    return [*answer_blocks, _sources(numbers["contributions"])]
+    return [*result_blocks, _sources(numbers["contributions"])]
 
 
 def _sources(contributions: list[Contribution]) -> Table:

@@ -18,7 +18,7 @@ from ....model.transient.speed_profile_cycle import speed_profile_curves, speed_
 from ....objectives.kinds import ACCELERATION, ANGULAR_SPEED, FORCE, POWER, SPEED, TIME, TORQUE, Kind
 from ...figures.panel_figure import DASHED, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, Value, compared, joined, named_number, number_list
-from ..answer_types import Keys, Note, NullIfLocked, PeakAngle
+from ..record_types import Keys, Note, NullIfLocked, PeakAngle
 
 _RPM = 30.0 / math.pi
 _KINDS = {

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ....optimise.front.front import ParetoFront
 
 
-def answer(front: ParetoFront, *, row: int | None, at: Mapping[str, object], **_: Any) -> Answer:
+def analyse(front: ParetoFront, *, row: int | None, at: Mapping[str, object], **_: Any) -> Answer:
     """Return the answer to wishes by objective. row: row of the design that improve, keep and worsen refer to.
 
     Raises the errors of `optimise.decisions.wish.wish`.
@@ -101,6 +101,6 @@ def _outcome(outcome: Outcome, units: System) -> dict[str, Any]:
         "title": quantity.title,
         "unit": unit,
         "wish": outcome.kind,
-        "met": outcome.met,
+        "met": outcome.is_met,
         **converted,
     }

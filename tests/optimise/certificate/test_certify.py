@@ -211,8 +211,8 @@ def test_what_a_small_budget_leaves_open_is_told() -> None:
     assert found.epsilon > 0.002
     assert found.open > 0
     assert 0.0 < found.remaining <= 1.0
-    assert found.where is not None
-    assert (found.where[:, 0] <= found.where[:, 1]).all()
+    assert found.worst_open_box is not None
+    assert (found.worst_open_box[:, 0] <= found.worst_open_box[:, 1]).all()
     if np.isfinite(found.epsilon):
         values = feasible(front.problem, 10_000)
         assert beats(values, np.concatenate([front.values, found.added_values]), found.span) <= found.epsilon + ROUNDED

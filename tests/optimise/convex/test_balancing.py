@@ -105,8 +105,8 @@ def test_a_rod_balance_and_a_counterweight_balance_the_force_in_full() -> None:
     found = balance(machine, Linkage(0.05, 0.2, 0.02), rod=RodSpace(radius=0.08, mass=10.0))
     assert found.rod is not None
     along = 0.6 * 0.06 + 1.1 * 0.2
-    assert found.rod.along == pytest.approx(-along, rel=1e-7)
-    assert found.rod.across == pytest.approx(0.0, abs=1e-7 * along)
+    assert found.rod.moment_along == pytest.approx(-along, rel=1e-7)
+    assert found.rod.moment_across == pytest.approx(0.0, abs=1e-7 * along)
     assert found.rod.mass == pytest.approx(along / 0.08, rel=1e-7)  # all of it as far out as there is space
     assert found.moment == pytest.approx(0.4 * 0.02 + (0.6 + along / 0.08 + 1.1) * 0.05, rel=1e-7)
     assert found.shaking_after.peak_force <= 1e-7 * found.shaking_before.peak_force
@@ -128,14 +128,14 @@ def test_least_rms_is_the_solution_of_least_squares() -> None:
         best /= machine.speed**2
         found = balance(machine, linkage, measure="rms")
         np.testing.assert_allclose(along_and_across(found), best, rtol=0, atol=1e-7 * np.hypot(*best))
-        rest = shaking_curves(found.after, linkage, TURN)
+        rest = shaking_curves(found.balanced, linkage, TURN)
         rms = np.sqrt(np.mean(rest.force_x**2 + rest.force_y**2))
         assert found.objective == pytest.approx(rms, rel=1e-9)
 
 
 def by_scipy(machine: Mechanism, linkage: Linkage, found: Balance, arm: float | None, space: RodSpace | None) -> float:
     """Return the least of peaks on many angles by SLSQP, over all moments, mass and inertia, and over epigraphs."""
-    rest = shaking_curves(found.after, linkage, TURN)
+    rest = shaking_curves(found.balanced, linkage, TURN)
     sizes = (np.hypot(rest.force_x, rest.force_y), np.abs(rest.moment))
     tops = [TURN[(size >= np.roll(size, 1)) & (size >= np.roll(size, -1))] for size in sizes]
     near = np.concatenate([angle + np.linspace(-6e-3, 6e-3, 41) for angle in np.concatenate(tops)])
@@ -199,7 +199,7 @@ def test_peaks_are_exact_and_less_than_before() -> None:
             assert shaking.rms_force == pytest.approx(np.sqrt(np.mean(size**2)), rel=1e-6)
             assert shaking.peak_moment >= np.abs(curves.moment).max() * (1.0 - 1e-12)
         assert found.rod is not None
-        first = math.hypot(found.rod.along, found.rod.across)
+        first = math.hypot(found.rod.moment_along, found.rod.moment_across)
         # A body of that mass, moment and inertia fits into the space.
         assert first**2 <= found.rod.mass * found.rod.inertia * (1.0 + 1e-9)
         assert found.rod.inertia <= 0.05**2 * found.rod.mass * (1.0 + 1e-9)

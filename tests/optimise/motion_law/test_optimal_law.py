@@ -170,7 +170,7 @@ def test_no_random_law_is_better_than_the_bound() -> None:
         energy, peak = law.node_energies, float(np.abs(law.torque).max())
         if np.all((energy > low) & (energy < high)):
             tried += 1
-            reach = reachable.within(peak)
+            reach = reachable.laws_within(peak)
             assert reach.exists
             assert np.all(energy >= reach.slowest * (1.0 - 1e-9))
             assert np.all(energy <= reach.fastest * (1.0 + 1e-9))

@@ -18,7 +18,7 @@ from starlette.responses import PlainTextResponse, Response, StreamingResponse
 from starlette.routing import Route
 
 from slidercrank.service.api.computing import Computing, LongRoute, QuickRoute
-from slidercrank.service.api.problem_documents import answer_problems
+from slidercrank.service.api.problem_documents import handle_expected_errors
 from slidercrank.service.store import Limits
 from slidercrank.service.workers.heartbeat import EXHAUSTED, leave
 from tests.service.api.serving import serving
@@ -99,7 +99,7 @@ def client_of(computing: Computing) -> Iterator[httpx.Client]:
     """Serve the application by processes while entered; gives a client of it."""
     app = FastAPI(routes=[kind(f"/{name}/{{what}}", _answered_elsewhere) for name, kind in _ROUTES.items()])
     app.state.computing = computing
-    answer_problems(app)
+    handle_expected_errors(app)
     with (
         contextlib.closing(computing),
         serving(app) as address,

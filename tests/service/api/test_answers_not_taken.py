@@ -91,7 +91,7 @@ def test_the_rest_of_a_request_comes_after_the_answer_before_it(guarded: httpx.C
 def test_answers_that_nobody_takes_end_the_connection(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr(server, "ANSWER_SECONDS", 0.4)
+    monkeypatch.setattr(server, "STALL_SECONDS", 0.4)
     with Store(tmp_path / "store.db") as store, client_of(store) as client, connected(client, takes=1) as there:
         ask_until_nothing_is_read(there)
         with pytest.raises(ConnectionResetError):

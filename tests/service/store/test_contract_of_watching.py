@@ -18,7 +18,7 @@ def test_news_are_the_events_after_the_one_that_is_known(store: Store) -> None:
     news = store.news({one: 3, other: 1, third: 0})
     assert [event.number for event in news[one].events] == [4, 5, 6, 7]
     assert news[one].events == store.events(one, after=3)
-    assert (news[one].state, news[one].last, news[one].is_over) == ("running", 7, False)
+    assert (news[one].state, news[one].last_number, news[one].is_over) == ("running", 7, False)
     assert (news[other].state, news[other].events) == ("queued", [])
     assert news[third].events == store.events(third)
 

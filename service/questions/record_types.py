@@ -86,7 +86,7 @@ def keys_of_kinds(names: Iterable[str], kinds: Iterable[Kind]) -> dict[str, Any]
 
 
 @dataclass(frozen=True)
-class AnswerSchema:
+class RecordSchema:
     """Schema of a JSON record that answers one of several questions, in metric or inch units.
 
     types: function that returns the types of the answers. names: keys of the answers in a metric record with other
