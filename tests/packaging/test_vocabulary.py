@@ -30,9 +30,15 @@ OLD_WORDS = frozenset(
         ),
         *("worth", "room", "apart", "whole", "follow", "followed", "behind", "proof", "forth", "settled", "begun"),
         *("noted", "unsaid", "wanted", "uneven", "rubbed", "own", "outright"),
+        *("answer", "answers"),
     )
 )
 EXCEPTIONS = {
+    "Answer": "what a question returns, in its recipe",
+    "AnswerBlock": "a name in the API's schema",
+    "TopicAnswer": "a name in the API's schema",
+    "answer": "the documented method of a question",
+    "answer_of": "the documented method of a question about a front or a job",
     "own": "a field of Problem, an argument and a package that users name in their functions, and a field of the API",
     "OwnQuantity": "the documented class of a Python function as a quantity",
     "cancel_asked": "a column of the store and a field of the API",

@@ -269,12 +269,12 @@ export function wishingPanel(explorer) {
   let free = []; // columns of what makes a design
 
   function show() {
-    drawAnswer();
+    drawOutcome();
     drawBefore();
     explorer.update("all");
   }
 
-  function drawAnswer() {
+  function drawOutcome() {
     none.hidden = !chosen.wish;
     if (!answered) return fill(answer);
     const [head] = answered.sentences;
@@ -419,7 +419,7 @@ export function wishingPanel(explorer) {
   }
 
   showFields();
-  drawAnswer();
+  drawOutcome();
   if (chosen.wish) ask();
   else if (!place.hidden) askBefore();
   return { place, cells: () => answered?.design ?? null };
