@@ -15,7 +15,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import Kind
 from ...objectives.machine_needs import ONE_TIMING
-from ..designs.cycle_table import cycle_table
+from ..designs.design_curves import cycle_table
 from .computing import QuickRoute
 from .job_files import Understood, understood
 from .job_requests import Submission, problem_of_tables
