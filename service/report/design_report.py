@@ -18,8 +18,7 @@ from .decision_section import decision_section
 from .design_section import design_section, linkage_picture, numbers_section
 from .document import Facts, Report, Section
 from .evidence_section import sensitivity_section, tolerance_section
-from .front_section import front_section
-from .job_section import job_section, search_section
+from .job_and_front import front_section, job_section, search_section
 from .measured_section import measured_section
 from .subject import Subject
 from .swing_section import SwingOfSubject

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.service.report.document import Facts, Paragraph
-from slidercrank.service.report.job_section import job_section
+from slidercrank.service.report.job_and_front import job_section
 from slidercrank.service.report.subject import Subject
 from slidercrank.service.runs.result import result_of
 from tests.service import fronts

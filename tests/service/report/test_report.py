@@ -284,7 +284,7 @@ def test_no_word_of_a_table_is_broken() -> None:
 
 
 def test_a_large_front_is_drawn_as_points(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("slidercrank.service.report.front_section._MANY", 5)
+    monkeypatch.setattr("slidercrank.service.report.job_and_front._MANY", 5)
     large = design_report(subject())
     front = replace(large, sections=tuple(part for part in large.sections if part.title == "The front"))
     assert html_file(front).decode().count("data:image/png;base64,") == 2
