@@ -17,6 +17,7 @@ from ...objectives.own.quantity import require_name
 from ...objectives.registry import FACTS
 from ...objectives.units import quote, to_si
 from .quantities import SLOW_STROKE
+from .raw_tables import options_in, table_in
 from .values import Physical
 
 _MOST = 1e15
@@ -60,14 +61,8 @@ def kinds_of_amounts(options: Iterable[Mapping[str, Any]]) -> dict[str, Kind]:
 
 
 def amounts_in(tables: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
-    """Yield the amounts of options of a job, as far as they can be told."""
-    choices = tables.get("choice")
-    for choice in choices if isinstance(choices, list | tuple) else ():
-        options = choice.get("option") if isinstance(choice, Mapping) else None
-        for option in options if isinstance(options, list | tuple) else ():
-            amounts = option.get("amounts") if isinstance(option, Mapping) else None
-            if isinstance(amounts, Mapping):
-                yield amounts
+    """Return the amounts of options of a job, as far as they can be told."""
+    return (table_in(option, "amounts") for option in options_in(tables))
 
 
 def amounts_of(choices: Mapping[str, list[Mapping[str, Any]]], custom_names: Collection[str]) -> tuple[Amount, ...]:

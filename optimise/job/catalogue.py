@@ -21,6 +21,7 @@ from .catalogue_screening import screened
 from .messages import key_of
 from .named_files import Files, read_named_text
 from .paths import unknown_path, with_number
+from .raw_tables import table_in, tables_in
 from .table_file import TableFile, read_table
 from .table_layout import of_numbers
 
@@ -58,9 +59,7 @@ class Catalogue:
 
 def catalogues(data: Mapping[str, Any]) -> list[str]:
     """Return the files that choices of a job name."""
-    choices = data.get("choice")
-    parts = choices if isinstance(choices, list | tuple) else ()
-    return [part["file"] for part in parts if _names_file(part)]
+    return [part["file"] for part in tables_in(data, "choice") if _names_file(part)]
 
 
 def _names_file(part: Any) -> bool:
@@ -86,9 +85,7 @@ def with_options(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Catalogu
     Raises JobError for tables that cannot be read.
     """
     job, screened_catalogues = dict(data), list[Catalogue]()
-    quantity_tables = data.get("quantity")
-    names = frozenset(quantity_tables) if isinstance(quantity_tables, Mapping) else frozenset[str]()
-    choices = data.get("choice")
+    names, choices = frozenset(table_in(data, "quantity")), data.get("choice")
     parts = list(choices) if isinstance(choices, list | tuple) else []
     for place, part in enumerate(parts):
         if not isinstance(part, Mapping) or not isinstance(part.get("table"), str):
@@ -202,13 +199,9 @@ def _with_cells(table: TableFile, column: Column) -> Column | None:
 
 def _require_given(columns: Sequence[Column], name: str, tables: Mapping[str, Any]) -> None:
     """Refuse a column that sets, or seems to set, a number which the job does not give."""
-    machine = tables.get("mechanism")
+    machine = table_in(tables, "mechanism")
     for column in columns:
-        if (
-            column.is_amount
-            and isinstance(machine, Mapping)
-            and isinstance(machine.get(column.name), str | int | float)
-        ):
+        if column.is_amount and isinstance(machine.get(column.name), str | int | float):
             unit_text = f" ({column.unit})" if column.unit else ""
             raise JobError(
                 f"{name}, column {quote(column.header)}: it would be stored with designs but have no effect; did you "

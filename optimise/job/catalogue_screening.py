@@ -24,6 +24,7 @@ from ...objectives.units import to_si
 from ..problem.violation import FEASIBLE
 from .amounts import excluded_in_words
 from .catalogue_columns import Column
+from .raw_tables import table_in
 
 ORDER = ("price", "mass")
 """Amounts by which one row is less than another, before their limits."""
@@ -40,7 +41,7 @@ class _Request:
 def _requests(tables: Mapping[str, Any], columns: Sequence[Column]) -> dict[str, _Request]:
     """Return the requirements of a job on the amounts of a catalogue."""
     objectives, constraints, quantity_tables = (
-        _table_of(tables, name) for name in ("objectives", "constraints", "quantity")
+        table_in(tables, name) for name in ("objectives", "constraints", "quantity")
     )
     plain = {column.name for column in columns if column.is_amount}
     words: set[str] = set()  # in formulas, through which they may count either way
@@ -53,10 +54,9 @@ def _requests(tables: Mapping[str, Any], columns: Sequence[Column]) -> dict[str,
     for column in columns:
         if not column.is_amount or column.kind is None:
             continue
-        wish, bounds = objectives.get(column.name), constraints.get(column.name)
+        wish, stated_bounds = objectives.get(column.name), table_in(constraints, column.name)
         ways = {0} if column.name in words else set()
         ways |= set() if wish is None else {_WAYS.get(wish, 0) if isinstance(wish, str) else 0}
-        stated_bounds = bounds if isinstance(bounds, Mapping) else {}
         ways |= {_WAYS.get(word, 0) for word in stated_bounds}
         bound = None if wish is not None or len(stated_bounds) != 1 else _si(next(iter(stated_bounds.values())), column)
         if ways:
@@ -72,11 +72,6 @@ def _si(value: Any, column: Column) -> float | None:
         return None if column.kind is None else to_si(value, column.kind)
     except InputError:  # a formula, or wrong
         return None
-
-
-def _table_of(tables: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    table = tables.get(name)
-    return table if isinstance(table, Mapping) else {}
 
 
 @dataclass(frozen=True)
@@ -104,7 +99,7 @@ def screened(
     columns: with cells that are checked. rows: cells. tables: of the job, which say what is asked for. file_name: what
     messages begin with. Raises JobError if no row has all that is asked for.
     """
-    requests, constraints = _requests(tables, columns), _table_of(tables, "constraints")
+    requests, constraints = _requests(tables, columns), table_in(tables, "constraints")
     fixed, costs = list[Array](), list[Array]()
     compared = list[str]()
     blanks, exclusions = dict[int, str](), dict[int, str]()
@@ -119,12 +114,12 @@ def screened(
         if request is not None:
             blank_reason = f"no {column.name.replace('_', ' ')}, which the job requires"
             blanks |= dict.fromkeys(np.flatnonzero(blank).tolist(), blank_reason)
-            exclusions |= _exclusions(constraints.get(column.name), column, values, rows)
+            exclusions |= _exclusions(table_in(constraints, column.name), column, values, rows)
             floor = -math.inf if request.bound is None else request.way * request.bound
             (costs if request.way else fixed).append(np.maximum(request.way * values, floor) if request.way else values)
         elif column.word is not None and column.monotone:
             side = -1.0 if column.word == "max" else 1.0
-            floor = _limit_cost(constraints.get(column.name), column, side)
+            floor = _limit_cost(table_in(constraints, column.name), column, side)
             costs.append(np.maximum(np.where(blank, -math.inf, side * values), floor))
         else:
             fixed += [np.where(blank, 0.0, values), blank.astype(np.float64)]
@@ -157,13 +152,13 @@ def screened(
     )
 
 
-def _exclusions(bounds: object, column: Column, values: Array, rows: Sequence[list[str]]) -> dict[int, str]:
+def _exclusions(bounds: Mapping[str, Any], column: Column, values: Array, rows: Sequence[list[str]]) -> dict[int, str]:
     """Return which rows have an amount beyond the job's own constraints on it, each with the reason in words.
 
     values: of the amount, SI.
     """
     reasons: dict[int, str] = {}
-    for word, bound in bounds.items() if isinstance(bounds, Mapping) else ():
+    for word, bound in bounds.items():
         limit = _si(bound, column)
         if limit is None:
             continue
@@ -176,13 +171,12 @@ def _exclusions(bounds: object, column: Column, values: Array, rows: Sequence[li
     return reasons
 
 
-def _limit_cost(bounds: object, column: Column, side: float) -> float:
+def _limit_cost(bounds: Mapping[str, Any], column: Column, side: float) -> float:
     """Return the cost of the job's own limit on the quantity of a column, below which rows are equal.
 
     side: 1 of a least value, -1 of a greatest one.
     """
-    stated_bounds = bounds if isinstance(bounds, Mapping) else {}
-    limits = [_si(stated_bounds[word], column) for word in (column.word, "equals") if word in stated_bounds]
+    limits = [_si(bounds[word], column) for word in (column.word, "equals") if word in bounds]
     return max((side * bound for bound in limits if bound is not None), default=-math.inf)
 
 

@@ -30,6 +30,7 @@ from ...objectives.units import is_value, kind_for, per_si, quote
 from .amounts import amounts_in, kinds_of_amounts
 from .part_kinds import Kinds
 from .quantities import SLOW_STROKE, Stated
+from .raw_tables import options_in, table_in
 from .values import Part, Physical, optional, required
 
 
@@ -195,7 +196,8 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
         for name, kind in kinds_of_amounts(amounts_in(data)).items()
         if name not in FACTS and name != SLOW_STROKE and name.isidentifier() and not name.startswith("_")
     }
-    requested = [name for table in (data.get("objectives"), *_constraints(data)) for name in _names(table)]
+    limits = (table_in(part, "constraints") for part in (data, *options_in(data)))
+    requested = [name for table in (table_in(data, "objectives"), *limits) for name in _names(table)]
     requested += [word for name in names for word in words_of(parts[name]["formula"])]
     known_names = {*FACTS, *tables, *names, *DIMENSIONS, SLOW_STROKE}
     # Formulas stand among the names; looking for packages takes longer than reading a job.
@@ -221,19 +223,9 @@ def _stated(title: str, kind: Kind) -> Stated:
     return Stated(title, kind, kind.example if kind.unit else float(kind.example))
 
 
-def _constraints(data: Mapping[str, Any]) -> Iterator[object]:
-    """Yield the constraints of a job and those of its options, as far as these can be told."""
-    yield data.get("constraints")
-    choices = data.get("choice")
-    for choice in choices if isinstance(choices, list | tuple) else ():
-        options = choice.get("option") if isinstance(choice, Mapping) else None
-        for option in options if isinstance(options, list | tuple) else ():
-            yield option.get("constraints") if isinstance(option, Mapping) else None
-
-
-def _names(table: object) -> Iterator[str]:
+def _names(table: Mapping[str, Any]) -> Iterator[str]:
     """Yield the names in the keys and the bounds of a table, those in formulas too."""
-    for key, value in table.items() if isinstance(table, Mapping) else ():
+    for key, value in table.items():
         yield from words_of(key)
         for bound in value.values() if isinstance(value, Mapping) else ():
             if not (isinstance(bound, str) and is_value(bound)):  # the words of a value are units

@@ -22,6 +22,7 @@ from .amounts import amounts_in, kinds_of_amounts
 from .catalogue import with_options
 from .messages import key_of
 from .quantities import SLOW_STROKE, WORDS
+from .raw_tables import table_in
 from .variables import varying_in
 
 _MOST = 200
@@ -78,8 +79,7 @@ def _formulas(tables: Mapping[str, Any], kinds: _Kinds) -> Iterator[tuple[str, s
         if isinstance(part.get("formula"), str):
             yield key_of(["quantity", name, "formula"]), part["formula"]
     for table in ("constraints", "objectives"):
-        entries = tables.get(table)
-        for name, bounds in entries.items() if isinstance(entries, Mapping) else ():
+        for name, bounds in table_in(tables, table).items():
             if not isinstance(name, str) or name == SLOW_STROKE:
                 continue
             if name not in FACTS:
@@ -102,11 +102,8 @@ class _Kinds:
         with suppress(InputError):  # a table that is wrong, which the job says
             tables = with_options(tables)[0]
         self.amounts = kinds_of_amounts(amounts_in(tables))
-        quantity_tables = tables.get("quantity")
-        entries = quantity_tables.items() if isinstance(quantity_tables, Mapping) else ()
-        self.stated = {
-            name: part for name, part in islice(entries, _MOST) if isinstance(name, str) and isinstance(part, Mapping)
-        }
+        entries = islice(table_in(tables, "quantity").items(), _MOST)
+        self.stated = {name: part for name, part in entries if isinstance(name, str) and isinstance(part, Mapping)}
         self.varying = [(path, _kind_of(value)) for path, value in islice(varying_in(tables).items(), _MOST)]
         self._known: dict[str, Kind | None] = dict.fromkeys(DIMENSIONS, LENGTH)
         self._known |= dict(self.varying) | {name: fact.kind for name, fact in FACTS.items()} | self.amounts

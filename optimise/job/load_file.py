@@ -14,14 +14,13 @@ from . import values
 from .curve_file import curve_in, of_cycle, over_angle, thinned
 from .messages import key_of
 from .named_files import SOURCE, Files, read_named_table, require_point_count
+from .raw_tables import tables_in
 from .stated_speed import stated_speed
 
 
 def load_files(data: Mapping[str, Any]) -> list[str]:
     """Return the files that loads of a job name."""
-    loads = data.get("load")
-    parts = loads if isinstance(loads, list | tuple) else ()
-    return [part["file"] for part in parts if isinstance(part, Mapping) and isinstance(part.get("file"), str)]
+    return [part["file"] for part in tables_in(data, "load") if isinstance(part.get("file"), str)]
 
 
 def with_loads(data: Mapping[str, Any], files: Files) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from ...objectives.kinds import ANGLE, ANGULAR_SPEED, TIME
 from ...objectives.units import per_si
 from .curve_file import Curve, curve_in, opened
 from .named_files import MOST_POINTS, SOURCE, Files, read_named_table, require_point_count, unread_file_error
+from .raw_tables import table_in
 from .values import Angle, AngularSpeed, Checked, Number, Source, optional, source
 
 _TOLERANCE = 1e-3  # relative, for the mean of a table against the speed and the end of a turn against 360 deg
@@ -74,9 +75,8 @@ class SpeedProfilePart(Checked[Profile]):
 
 def speeds_file(data: Mapping[str, Any]) -> str | None:
     """Return the file that a job's speed profile names alone; None if it names none."""
-    mechanism = data.get("mechanism")
-    part = mechanism.get("speed_profile") if isinstance(mechanism, Mapping) else None
-    file = part.get("file") if isinstance(part, Mapping) and len(part) == 1 else None
+    part = table_in(table_in(data, "mechanism"), "speed_profile")
+    file = part.get("file") if len(part) == 1 else None
     return file if isinstance(file, str) else None
 
 

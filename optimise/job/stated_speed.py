@@ -9,6 +9,7 @@ from pydantic import ValidationError
 
 from ...model.errors import InputError
 from .crank_speed import SPEED_KEYS, CrankSpeedPart
+from .raw_tables import table_in, tables_in
 from .variables import set_by_options, varying_in
 
 
@@ -17,8 +18,7 @@ def stated_speed(data: Mapping[str, Any], name: str) -> float:
 
     name: of the file, for messages.
     """
-    mechanism, loads = data.get("mechanism"), data.get("load")
-    stated_mechanism = mechanism if isinstance(mechanism, Mapping) else {}
+    stated_mechanism = table_in(data, "mechanism")
     varies = {f"mechanism.{key}" for key in SPEED_KEYS} & (set(varying_in(data)) | set_by_options(data))
     if "speed_profile" in stated_mechanism or stated_mechanism.get("acceleration") or varies:
         raise InputError(f"{name} is given over time, which needs a constant crank speed; give crank angles instead")
@@ -29,5 +29,4 @@ def stated_speed(data: Mapping[str, Any], name: str) -> float:
         stated = {}
     if not stated:
         raise InputError(f"{name} is given over time, which needs the crank speed; got none; give speed in [mechanism]")
-    long = [load for load in loads or () if isinstance(load, Mapping) and load.get("cycle") == "720 deg"]
-    return part.crank_speed(2 if long else 1)
+    return part.crank_speed(2 if any(load.get("cycle") == "720 deg" for load in tables_in(data, "load")) else 1)

@@ -14,6 +14,7 @@ from ...objectives.motion_deviation import DEVIATIONS
 from .curve_file import curve_in, opened, over_angle
 from .loads import increasing
 from .named_files import MOST_POINTS, SOURCE, Files, read_named_table, require_point_count, unread_file_error
+from .raw_tables import table_in
 from .stated_speed import stated_speed
 from .values import Angle, Checked, Length, Part, Source, optional, source
 
@@ -70,8 +71,7 @@ def require_target(target: TargetMotionPart | None, objectives: Part, constraint
 
 def points_file(data: Mapping[str, Any]) -> str | None:
     """Return the file that a job's target motion names; None if it names none."""
-    part = data.get("target_motion")
-    file = part.get("file") if isinstance(part, Mapping) else None
+    file = table_in(data, "target_motion").get("file")
     return file if isinstance(file, str) else None
 
 

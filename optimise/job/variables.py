@@ -21,6 +21,7 @@ from .grids import says_values
 from .messages import DEEPEST
 from .named_files import LARGEST, unread_file_error
 from .quantities import ConstraintsPart
+from .raw_tables import options_in, table_in
 from .values import AnyRange, Part, PositiveRange, optional, required, retyped
 
 Table = dict[str, Any]
@@ -162,9 +163,8 @@ def choice_with(constraints: type[ConstraintsPart]) -> type[ChoicePart]:
 
 def varying_in(tables: Mapping[str, Any]) -> dict[str, Any]:
     """Return the numbers that an incomplete job lets vary besides the dimensions: path and what is given for it."""
-    variables = tables.get("variables")
     varying: dict[str, Any] = {}
-    for key, value in variables.items() if isinstance(variables, Mapping) else ():
+    for key, value in table_in(tables, "variables").items():
         if isinstance(key, str) and key.partition(".")[0] in ROOTS:
             varying |= dict(leaves_of({key: value}, ""))
     return varying
@@ -172,10 +172,7 @@ def varying_in(tables: Mapping[str, Any]) -> dict[str, Any]:
 
 def set_by_options(tables: Mapping[str, Any]) -> set[str]:
     """Return the paths of numbers that options of an incomplete job's choices set."""
-    choices = tables.get("choice")
-    parts = [part for part in choices or () if isinstance(part, Mapping)] if isinstance(choices, list | tuple) else []
-    options = [option for part in parts for option in part.get("option") or () if isinstance(option, Mapping)]
-    return {path for option in options if isinstance(option.get("values"), Mapping) for path in option["values"]}
+    return {path for option in options_in(tables) for path in table_in(option, "values")}
 
 
 def _place(table: dict[str, Any], steps: list[str], value: Any, key: str) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
@@ -13,8 +13,10 @@ from ...model.cycle.stroke_times import massless_machine
 from ...model.errors import InputError
 from ...model.machine.mechanism import Branch, Mechanism
 from ...objectives.registry import QUANTITIES
+from ...objectives.units import Sign
 from ...optimise.job.crank_speed import SPEED_KEYS, CrankSpeedPart
 from ...optimise.job.quantities import ConstraintsPart, constraints_of
+from ...optimise.job.raw_tables import table_in
 from ...optimise.job.values import RangeOf
 from ...optimise.job.varying import ends_of
 from ...optimise.problem.problem import Problem
@@ -33,10 +35,11 @@ def geometry(tables: Mapping[str, Any], full_problem: Problem | None) -> Problem
     full_problem: problem of the whole job, if it is valid; the first of several options counts. Requirements that need
     the machine are omitted without it; those that only a search can afford are always omitted.
     """
-    ranges, motion = ranges_of(tables.get("variables")), tables.get("motion")
-    if ranges is None or (isinstance(motion, Mapping) and motion.get("kind") == "swing"):
+    ranges, requirements = ranges_of(tables), table_in(tables, "constraints")
+    if ranges is None or table_in(tables, "motion").get("kind") == "swing":
         return None
-    machine = _turning(tables.get("mechanism")) if full_problem is None else full_problem.part(0).mechanism.nominal
+    stated = table_in(tables, "mechanism")
+    machine = _turning(stated) if full_problem is None else full_problem.part(0).mechanism.nominal
     with_machine = full_problem is not None and sum(len(load.knots()[0]) for load in machine.loads) <= _MOST_POINTS
     problem = Problem(
         name="preview",
@@ -46,23 +49,25 @@ def geometry(tables: Mapping[str, Any], full_problem: Problem | None) -> Problem
         offset=ranges["offset"],
         objectives=(Objective(quantity="stroke", sense="minimise"),),
     )
-    readable = _constraints(tables.get("constraints"), with_machine=with_machine)
+    readable = _constraints(requirements, with_machine=with_machine)
     constraints = tuple(c for c in readable if not problem.quantity(c.quantity).undefined_because([machine]))
     if not with_machine:
         problem = replace(problem, mechanism=massless_machine(machine))
-    return _with_slow_stroke(replace(problem, constraints=constraints), tables.get("constraints"))
+    return _with_slow_stroke(replace(problem, constraints=constraints), requirements.get("slow_stroke"))
 
 
 def left_out(tables: Mapping[str, Any], problem: Problem) -> list[str]:
     """Return the names of a job's requirements that its geometry does not have."""
-    stated = tables.get("constraints")
-    used = {constraint.quantity for constraint in problem.constraints} | {"slow_stroke"}
-    return [str(name)[:60] for name in stated if name not in used][:40] if isinstance(stated, Mapping) else []
+    return requirement_names(tables, {constraint.quantity for constraint in problem.constraints} | {"slow_stroke"})
 
 
-def _with_slow_stroke(problem: Problem, part: object) -> Problem:
+def requirement_names(tables: Mapping[str, Any], without: Collection[str] = ()) -> list[str]:
+    """Return at most 40 names of a job's requirements, shortened. without: those to omit."""
+    return [str(name)[:60] for name in table_in(tables, "constraints") if name not in without][:40]
+
+
+def _with_slow_stroke(problem: Problem, stroke: Any) -> Problem:
     """Return the problem with the slow stroke that a job requires, if its ranges allow one."""
-    stroke = part.get("slow_stroke") if isinstance(part, Mapping) else None
     if stroke not in ("outward", "inward"):
         return problem
     try:
@@ -78,9 +83,8 @@ def is_closed(name: str) -> bool:
     return name in QUANTITIES and QUANTITIES[name].of_dimensions
 
 
-def _turning(part: object) -> Mechanism:
+def _turning(mechanism: Mapping[str, Any]) -> Mechanism:
     """Return a massless machine with the crank speed that a job states, else 1 rad/s."""
-    mechanism = part if isinstance(part, Mapping) else {}
     branch: Branch = "crossed" if mechanism.get("branch") == "crossed" else "open"
     for keys in ((*SPEED_KEYS, "direction", "speed_profile"), (*SPEED_KEYS, "direction")):
         with suppress(InputError, ValidationError):
@@ -90,23 +94,19 @@ def _turning(part: object) -> Mechanism:
     return Mechanism(speed=1.0, branch=branch)
 
 
-def ranges_of(part: object) -> dict[str, Range] | None:
-    """Return the ranges of the dimensions in a table of variables; None while one of them cannot be read."""
-    if not isinstance(part, Mapping):
+def ranges_of(tables: Mapping[str, Any]) -> dict[str, Range] | None:
+    """Return the ranges of the dimensions of a job; None while one of them cannot be read."""
+    stated = table_in(tables, "variables")
+    signs: dict[str, Sign] = {"crank": "positive", "rod": "positive", "offset": "any"}
+    try:
+        return {name: ends_of(RangeOf(sign).read(stated.get(name))) for name, sign in signs.items()}
+    except InputError:
         return None
-    ranges = {}
-    for name in ("crank", "rod", "offset"):
-        try:
-            range_ = RangeOf("any" if name == "offset" else "positive").read(part.get(name))
-        except InputError:
-            return None
-        ranges[name] = ends_of(range_)
-    return ranges
 
 
-def _constraints(part: object, *, with_machine: bool) -> Iterator[Constraint]:
+def _constraints(stated: Mapping[str, Any], *, with_machine: bool) -> Iterator[Constraint]:
     """Yield the requirements that can be read and checked within a moment."""
-    for name, bounds in part.items() if isinstance(part, Mapping) else ():
+    for name, bounds in stated.items():
         if name not in QUANTITIES or not (with_machine or is_closed(name)):
             continue
         try:

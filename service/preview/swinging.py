@@ -19,11 +19,12 @@ from ...model.swing.swing import STARTS, Swing
 from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE, SWING_TRANSMISSION_ANGLE
 from ...objectives.tables.swinging import swing_quantities
 from ...optimise.job.motion import MotionPart, with_margin
+from ...optimise.job.raw_tables import table_in
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Objective
 from ...optimise.problem.violation import FEASIBLE
 from .feasibility import PATIENCE, Ends, designs_of, example_of, lengths_of, run_within, screened
-from .partial_job import ranges_of
+from .partial_job import ranges_of, requirement_names
 
 Array = NDArray[np.float64]
 _SAMPLES = 512
@@ -58,14 +59,13 @@ def possible_swing(tables: Mapping[str, Any], full_problem: Problem | None) -> P
     """
     try:
         part = MotionPart.model_validate(tables.get("motion", {}))
-        swing, ranges = part.build(), ranges_of(tables.get("variables"))
+        swing, ranges = part.build(), ranges_of(tables)
         margin = with_margin((), part.requested_margin)
     except (InputError, ValidationError):
         return None
     if swing is None or ranges is None:
         return None
-    mechanism = tables.get("mechanism")
-    crossed = isinstance(mechanism, Mapping) and mechanism.get("branch") == "crossed"
+    crossed = table_in(tables, "mechanism").get("branch") == "crossed"
     cheap = ACTUATOR_TRAVEL if swing.stated_for == "crank" else SWING_ANGLE
     objectives = (Objective(quantity=cheap.name, sense="minimise"),)
     free = (
@@ -86,7 +86,7 @@ def possible_swing(tables: Mapping[str, Any], full_problem: Problem | None) -> P
     )
     full = None if full_problem is None else replace(full_problem.part(0), objectives=objectives)
     screening = None if full is None else run_within(PATIENCE, lambda: screened(full))
-    named = _names(tables)
+    named = requirement_names(tables)
     unchecked = () if screening is not None else tuple(name for name in named if name != SWING_TRANSMISSION_ANGLE.name)
     designs, violation = screened(light) if screening is None else screening
     return _possible(swing, light, designs, violation, unchecked)
@@ -130,8 +130,3 @@ def positions(angle: float | Array, sign: float, designs: Array) -> Array:
     with np.errstate(invalid="ignore", divide="ignore"):
         closes = np.abs(e - r * np.sin(angle)) < l
         return np.where(closes, motion(np.sin(angle), np.cos(angle), r, l, e, sign).x, np.nan)
-
-
-def _names(tables: Mapping[str, Any]) -> list[str]:
-    stated = tables.get("constraints")
-    return [str(name)[:60] for name in stated][:40] if isinstance(stated, Mapping) else []
