@@ -11,8 +11,8 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.forces import SwingCurves
 from ...model.swing.swing import Swing
-from ...objectives.kinds import ANGLE, LENGTH, POWER, Kind, System
-from ..designs.swing_curves import curves_of_both_strokes, drive_kind, error_kind
+from ...objectives.kinds import System
+from ..designs.swing_curves import SwingCurve, curves_of_both_strokes, has_position_error, motion_and_drive
 from ..drawings.swing_parts import swing_look, swing_moving, swing_scenery
 from ..render.blocks import dimensions, joined
 from .drawing import scale_bar
@@ -23,6 +23,8 @@ from .style import add_axes
 
 _TALLEST = 3.2  # inches, of the drawing
 _ASIDE, _BELOW = 0.4, 0.3
+_DRAWN = ("drive", "slider_position", "driven_angle", "power", "driven_error")
+"""Curves of the panels, by their names in `SwingCurves`."""
 
 
 def swing_figure(
@@ -58,18 +60,12 @@ def swing_figure(
 def swing_panels(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> PanelFigure:
     """Return the curves of both strokes over the crank angle; the return stroke is drawn if it differs."""
     ways = curves_of_both_strokes(mechanism, linkage, swing)
-    drive = "force on the slider" if swing.driver == "slider" else "torque on the crank"
-    driven = "slider position error" if swing.driver == "crank" else "crank angle error"
-    angle_title = "transmission angle" if swing.driver == "crank" else "angle between rod and crank"
+    curves = {curve.attribute: curve for curve in motion_and_drive(swing)}
+    if not has_position_error(mechanism, swing):
+        del curves["driven_error"]
     panels = [
-        _panel(drive, "drive", drive_kind(swing), ways),
-        _panel("slider position", "slider_position", LENGTH, ways[:1]),
-        _panel(angle_title, "driven_angle", ANGLE, ways[:1]),
+        _panel(curves[name], ways if name in ("drive", "power") else ways[:1]) for name in _DRAWN if name in curves
     ]
-    if swing.duration is not None:
-        panels.append(_panel("power of the drive", "power", POWER, ways))
-    if mechanism.tolerances.are_stated or swing.actuator_tolerance:
-        panels.append(_panel(driven, "driven_error", error_kind(swing), ways[:1]))
     return PanelFigure(
         f"Swing driven at the {swing.driver}",
         dimensions(linkage),
@@ -79,9 +75,12 @@ def swing_panels(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> PanelF
     )
 
 
-def _panel(title: str, name: str, kind: Kind, ways: tuple[SwingCurves, ...]) -> Panel:
-    lines = []
-    differ = len(ways) > 1 and not np.allclose(getattr(ways[0], name), getattr(ways[1], name)[::-1], equal_nan=True)
-    for style, (label, curves) in enumerate(zip(("forth", "back"), ways if differ else ways[:1], strict=False)):
-        lines.append(Line(label if differ else "", np.degrees(curves.crank_angle), getattr(curves, name), style))
-    return Panel(title, CRANK_ANGLE, tuple(lines), kind)
+def _panel(curve: SwingCurve, ways: tuple[SwingCurves, ...]) -> Panel:
+    values = [getattr(way, curve.attribute) for way in ways]
+    differ = len(ways) > 1 and not np.allclose(values[0], values[1][::-1], equal_nan=True)
+    lines = tuple(
+        Line(label if differ else "", np.degrees(way.crank_angle), heights, style)
+        for style, (label, way, heights) in enumerate(zip(("forth", "back"), ways, values, strict=False))
+        if differ or not style
+    )
+    return Panel(curve.title, CRANK_ANGLE, lines, curve.kind)
