@@ -47,6 +47,7 @@ _COMMANDS = (
 )
 _MODULES = {"check": "job", "schema": "job", "front": "runs", "watch": "submit"}
 _MODULES |= dict.fromkeys(("inverse", "swing", "allocate", "balance", "law", "sections"), "question_commands")
+_MODULES |= dict.fromkeys(("like", "round", "certify", "compare", "sweep"), "front_or_job_commands")
 _MODULES |= dict.fromkeys(("serve", "worker"), "serving")
 _MODULES |= dict.fromkeys(("jobs", "cancel", "resume", "delete"), "queue")
 """Modules of the commands that have none of their own name."""

@@ -34,22 +34,9 @@ from .throttle import RateLimit
 
 PREFIX = "/api/v1"
 _PARTS = (
-    *("jobs", "submissions", "job_files", "preview", "events", "fronts", "active_limits", "comparison", "what_if"),
-    *(
-        "analysis",
-        "design_questions",
-        "like",
-        "rounding",
-        "topics",
-        "certificate",
-        "wish",
-        "bookmarks",
-        "design_files",
-        "figures",
-        "exports",
-        "quantities",
-        "health",
-    ),
+    *("jobs", "submissions", "job_files", "preview", "events", "fronts", "active_limits", "what_if", "analysis"),
+    *("design_questions", "front_questions", "rounding", "wish", "bookmarks", "design_files", "figures", "exports"),
+    *("quantities", "health"),
 )
 """Modules of the endpoints, in the order of their description."""
 MODULES = (

@@ -1,36 +1,143 @@
-"""Questions about a design of a front that are also commands, and measured curves.
+"""Questions about a design of a front: topics, as in `analyse --show`, commands of their own, and measured curves.
 
 Each answer equals the output of the command of the same name with --json.
 """
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from fastapi import APIRouter, Depends, Response
+from fastapi import APIRouter, Depends, Path, Response
 from pydantic import BaseModel, Field, create_model
+from pydantic_core import to_json
 
+from ...model.errors import NotFound
+from ...objectives.kinds import System
 from ..designs.display_units import record_in
 from ..designs.measured_file import read_measured
 from ..designs.rotating_crank import require_rotating_crank
 from ..questions.design_question import BoundQuestion, QuestionCommand
-from ..questions.discovery import DESIGN_QUESTIONS, QUESTION_COMMANDS
+from ..questions.discovery import DESIGN_QUESTIONS, INPUTS, QUESTION_COMMANDS, TOPIC_OF_INPUT, TOPICS
 from ..questions.measured import MEASURED
 from ..questions.record_types import RecordSchema
+from ..render.formatting import plain_blocks
 from ..runs.result import json_ready
 from .blocks import AnswerBlock, block_models
 from .computing import LongRoute, QuickRoute
-from .exports import SEALED, file_responses
-from .figures import require_figures
+from .exports import file_responses
+from .figures import figure_response, require_figures
 from .fronts import OfDesign
 from .input_parameters import inputs_in_address, parameter_of
 from .models import UnitsParameter
 from .problem_documents import problem_responses
 from .stored_fronts import DesignNumber, FrontDep, RequestedDesign, RequestedDesignDep
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 router = APIRouter(
-    route_class=QuickRoute, prefix="/jobs/{number}/designs/{design}", tags=["designs"], responses=problem_responses(409)
+    route_class=LongRoute, prefix="/jobs/{number}/designs/{design}", tags=["designs"], responses=problem_responses(409)
 )
+
+
+def _drawn(request: RequestedDesign, key: str, kind: Literal["png", "svg"], draw: Callable[[], Figure]) -> Response:
+    """Return a figure of a question about a design. key: name in the cache."""
+
+    def make() -> tuple[tuple[str], bytes]:
+        from ..figures.style import figure_bytes
+
+        return (request.key,), figure_bytes(draw(), kind)
+
+    return figure_response(request.stored_front.cached(request.key, key, make), kind)
+
+
+TopicName = Annotated[
+    str, Path(pattern=r"^[a-z_]+$", max_length=100, description="of the list of topics", examples=["balance"])
+]
+
+
+class BlockModel(BaseModel):
+    """A sentence, or a table where there are rows.
+
+    heading: whether the sentence heads what follows. heads: of the columns, empty where they have none. right: whether
+    a column is aligned to the right. rows: the texts of the cells.
+    """
+
+    sentence: str = Field(examples=["Motor"])
+    heading: bool = Field(examples=[True])
+    heads: list[str] = Field(examples=[[]])
+    right: list[bool] = Field(examples=[[]])
+    rows: list[list[str]] = Field(examples=[[]])
+
+
+class TopicAnswer(OfDesign):
+    """A topic of a design. numbers: what `analyse --json` has under its name. told: its text. blocks: that as data."""
+
+    name: str = Field(examples=["balance"])
+    numbers: Annotated[dict[str, Any], RecordSchema(lambda: [topic.record_type for topic in TOPICS.values()])]
+    told: list[BlockModel]
+    blocks: list[AnswerBlock]
+
+
+_PARAMETERS = (parameter_of(one, f"for the topic {TOPIC_OF_INPUT[name]}: ") for name, one in INPUTS.items())
+TopicInputsDep = Annotated[dict[str, str], inputs_in_address(INPUTS.values(), _PARAMETERS)]
+
+
+@router.get("/topics/{topic}.svg", dependencies=[Depends(require_figures)], **file_responses("image/svg+xml"))
+def draw_topic_svg(
+    request: RequestedDesignDep, topic: TopicName, inputs: TopicInputsDep, units: UnitsParameter = "metric"
+) -> Response:
+    """Draw the figure of one topic of a design, as found or with other numbers."""
+    return _topic_figure(request, topic, inputs, units, "svg")
+
+
+@router.get("/topics/{topic}.png", dependencies=[Depends(require_figures)], **file_responses("image/png"))
+def draw_topic_png(
+    request: RequestedDesignDep, topic: TopicName, inputs: TopicInputsDep, units: UnitsParameter = "metric"
+) -> Response:
+    """Draw the figure of one topic of a design, as found or with other numbers."""
+    return _topic_figure(request, topic, inputs, units, "png")
+
+
+@router.get("/topics/{topic}", response_model=TopicAnswer)
+def show_topic(
+    request: RequestedDesignDep, topic: TopicName, inputs: TopicInputsDep, units: UnitsParameter = "metric"
+) -> Response:
+    """Give the numbers of one topic of a design, as found or with other numbers, and its text."""
+    bound_question = _bind(request, topic, inputs)
+
+    def make() -> tuple[tuple[str], bytes]:
+        numbers = bound_question.numbers()
+        blocks = bound_question.blocks(numbers)
+        topic_model = TopicAnswer(
+            job=request.stored_front.job.id,
+            number=request.number,
+            name=topic,
+            numbers=bound_question.numbers_in(json_ready(numbers), units),
+            told=[BlockModel(**vars(block)) for block in plain_blocks(blocks, units)],
+            blocks=block_models(blocks),
+        )
+        return (request.key,), to_json(topic_model)
+
+    content = request.stored_front.cached(request.key, f"topic {topic} told {units} {sorted(inputs.items())}", make)
+    return Response(content, media_type="application/json")
+
+
+def _topic_figure(
+    request: RequestedDesign, topic: str, inputs: dict[str, str], units: System, kind: Literal["png", "svg"]
+) -> Response:
+    bound_question = _bind(request, topic, inputs)
+    key = f"topic {topic} {kind} {units} {sorted(inputs.items())}"
+    return _drawn(request, key, kind, lambda: bound_question.figure(lambda: False, units))
+
+
+def _bind(request: RequestedDesign, topic: str, inputs: dict[str, str]) -> BoundQuestion:
+    """Return a topic of a design. Raises `NotFound` for an unknown name, and the errors of `for_problem`."""
+    if topic not in TOPICS:
+        raise NotFound(f"there is no topic {topic!r}; choose from {', '.join(TOPICS)}")
+    design = request.design
+    return TOPICS[topic].for_problem(design.mechanism, design.linkage, design.part, inputs)
 
 
 def _add(name: str, says: QuestionCommand) -> None:
@@ -55,16 +162,14 @@ def _add(name: str, says: QuestionCommand) -> None:
         return model(job=request.stored_front.job.id, number=request.number, blocks=blocks, **record)
 
     def draw(request: RequestedDesignDep, given: Any, units: UnitsParameter = "metric") -> Response:
-        from ..figures.panels import figure_of
-        from ..figures.style import figure_bytes
+        def figure() -> Figure:
+            from ..figures.panels import figure_of
 
-        def make() -> tuple[tuple[str], bytes]:
             bound_question = bind(request, given)
             bound_question.numbers()
-            return (request.key,), figure_bytes(figure_of(bound_question.written("figure", units), units), "svg")
+            return figure_of(bound_question.written("figure", units), units)
 
-        content = request.stored_front.cached(request.key, f"{name} svg {units} {sorted(given.items())}", make)
-        return Response(content, media_type="image/svg+xml", headers={"Content-Security-Policy": SEALED})
+        return _drawn(request, f"{name} svg {units} {sorted(given.items())}", "svg", figure)
 
     route = LongRoute if says.sizes else QuickRoute
     show_numbers.__name__, show_numbers.__doc__ = says.endpoint, says.help
@@ -102,7 +207,6 @@ class MeasuredModel(OfDesign):
     measured: Annotated[dict[str, Any], RecordSchema(lambda: [MEASURED.record_type])]
 
 
-@router.post("/measured")
 def compare_measured(
     stored_front: FrontDep, design: DesignNumber, measured_curves: MeasuredCurves, units: UnitsParameter = "metric"
 ) -> MeasuredModel:
@@ -113,3 +217,6 @@ def compare_measured(
     topic = MEASURED.for_design(stored.mechanism, stored.linkage, {"measured": samples})
     record = json_ready(topic.numbers())
     return MeasuredModel(job=stored_front.job.id, number=design, measured=record_in(record, units))
+
+
+router.add_api_route("/measured", compare_measured, methods=["POST"], route_class_override=QuickRoute)

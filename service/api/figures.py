@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from fastapi import APIRouter, Depends, Path, Response
@@ -106,7 +107,6 @@ def _image(
     if single is None and numbers is not None:
         rule = "other lengths and values only apply to a single design"
         raise InputError(f"{rule}; got figure {name!r}; ask for design_1 and so on")
-    headers: dict[str, str] = {"Content-Security-Policy": SEALED} if kind == "svg" else {}
     cache_kind = f"{kind} {units}"
 
     def draw() -> tuple[Sequence[str], bytes]:
@@ -114,13 +114,17 @@ def _image(
         return figure.names, figure_bytes(figure.draw(), kind)
 
     if single is None:
-        drawn = stored_front.cached(name, cache_kind, draw)
-    else:
-        request = requested_design(stored_front, int(single[1]), numbers, bookmarks)
-        drawn = request.cached_file(cache_kind, lambda: figure_bytes(_datasheet(request, units), kind))
-        file = f"{slug(stored_front.result.name)}-{stored_front.job.id}-{request.stem}-sheet.{kind}"
-        headers["Content-Disposition"] = f'inline; filename="{file}"'
-    return Response(drawn, media_type=_MEDIA[kind], headers=headers)
+        return figure_response(stored_front.cached(name, cache_kind, draw), kind)
+    request = requested_design(stored_front, int(single[1]), numbers, bookmarks)
+    drawn = request.cached_file(cache_kind, lambda: figure_bytes(_datasheet(request, units), kind))
+    file = f"{slug(stored_front.result.name)}-{stored_front.job.id}-{request.stem}-sheet.{kind}"
+    return figure_response(drawn, kind, {"Content-Disposition": f'inline; filename="{file}"'})
+
+
+def figure_response(content: bytes, kind: Kind, headers: Mapping[str, str] = MappingProxyType({})) -> Response:
+    """Return a drawn figure; as SVG it may neither run nor fetch anything."""
+    sealed = {"Content-Security-Policy": SEALED} if kind == "svg" else {}
+    return Response(content, media_type=_MEDIA[kind], headers={**sealed, **headers})
 
 
 def _front_figure(stored_front: StoredFront, name: str, units: System) -> FrontFigure:

@@ -41,11 +41,8 @@ BEFORE = "87b2afbe"
 FORMS = {"round": "rounded", "certify": "certificate", "compare": "comparison"}
 """Names in the API and its client, where they are not those of the commands."""
 BESIDE = {
-    "certify": "service/commands/certify.py service/api/certificate.py",
-    "compare": "service/commands/compare.py service/api/comparison.py service/designs/front_comparison.py",
-    "like": "service/commands/like.py service/api/like.py",
-    "round": "service/commands/round.py service/api/rounding.py",
-    "sweep": "service/commands/sweep.py",
+    "compare": "service/designs/front_comparison.py",
+    "round": "service/api/rounding.py",
     "wish": "service/commands/wish.py service/api/wish.py service/jobs/front_wish_history.py",
 }
 """Modules that serve a single question, beside its folder. What serves several ones is in the row of the service."""

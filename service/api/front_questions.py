@@ -1,0 +1,136 @@
+"""Questions about a front or several, as the commands `like`, `certify` and `compare` answer them with --json."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Response
+from pydantic import BaseModel, Field
+from pydantic_core import to_json
+
+from ..questions.compare.runs import ComparedRun
+from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
+from ..render.formatting import plain_blocks
+from ..runs.result import json_ready
+from .blocks import AnswerBlock, block_models
+from .computing import LongRoute
+from .fronts import OfDesign
+from .input_parameters import body_of, inputs_in_address, parameter_of
+from .models import LARGEST, PLAIN_DIGITS, UnitsParameter
+from .problem_documents import problem_responses
+from .settings import StoreDep
+from .stored_fronts import DesignNumber, FrontDep, FrontsDep, StoredFront
+
+router = APIRouter(route_class=LongRoute, responses=problem_responses(409))
+LIKE, CERTIFY, COMPARE = (FRONT_OR_JOB_QUESTIONS[name] for name in ("like", "certify", "compare"))
+MOST = 6
+"""Runs in a comparison."""
+_LIKE_EXAMPLE = {"status": "done", "message": "1 design, 4120 evaluated", "distance": 0.21, "moved": {"rod_mm": -12.5}}
+
+
+class LikeModel(OfDesign):
+    """Design like one of a front. like: what `slidercrank like --json` prints; without a design status and message.
+
+    blocks: the answer as sentences and tables.
+    """
+
+    like: dict[str, Any] = Field(examples=[_LIKE_EXAMPLE])
+    blocks: list[AnswerBlock]
+
+
+def find_like(stored_front: FrontDep, design: DesignNumber, given: Any, units: UnitsParameter = "metric") -> LikeModel:
+    """Find the design most like one of a front that also meets further conditions; nothing is saved."""
+    stored_front.row(design)
+    nearest = LIKE.ask(stored_front.front, given.model_dump(), row=design - 1)
+    record, blocks = json_ready(nearest.record(units)), block_models(nearest.blocks)
+    return LikeModel(job=stored_front.job.id, number=design, like=record, blocks=blocks)
+
+
+find_like.__annotations__["given"] = body_of(LIKE, "LikeWhere")
+router.add_api_route("/jobs/{number}/designs/{design}/like", find_like, methods=["POST"], tags=["designs"])
+
+CertificateInputs = Annotated[dict[str, Any], inputs_in_address(CERTIFY.inputs, map(parameter_of, CERTIFY.inputs))]
+_CERTIFY_EXAMPLE = {"status": "proven", "epsilon_asked": 0.01, "epsilon": 0.0098, "boxes": 41_210, "open_boxes": 0}
+
+
+class CertificateModel(BaseModel):
+    """A proof of how far a front can be from the true one.
+
+    proven: whether that which was asked for is proven. sentences: the proof in words, in metric units. certificate:
+    what `slidercrank certify --json` prints. blocks: the sentences as data.
+    """
+
+    job: int = Field(examples=[7])
+    proven: bool
+    sentences: list[str] = Field(examples=[["proven: for every feasible design, one of the 100 designs is worse ..."]])
+    certificate: dict[str, Any] = Field(examples=[_CERTIFY_EXAMPLE])
+    blocks: list[AnswerBlock]
+
+
+@router.get("/jobs/{number}/certificate", tags=["fronts"], response_model=CertificateModel)
+def certify_front(stored_front: FrontDep, given: CertificateInputs) -> Response:
+    """Prove how far a front can be from the true one; without designs, that nothing is feasible."""
+    name = " ".join(map(repr, given.values()))
+
+    def make() -> tuple[tuple[str], bytes]:
+        return (name,), to_json(_certificate_model(stored_front, given))
+
+    return Response(stored_front.cached(name, "certificate", make), media_type="application/json")
+
+
+def _certificate_model(stored_front: StoredFront, inputs: dict[str, Any]) -> CertificateModel:
+    certificate = CERTIFY.ask(stored_front.front, inputs)
+    sentences = [block.sentence for block in plain_blocks(certificate.blocks)]
+    return CertificateModel(
+        job=stored_front.job.id,
+        proven=certificate.is_satisfied,
+        sentences=sentences if stored_front.result.designs else [certificate.message],
+        certificate=json_ready({"run": stored_front.result.run} | certificate.record("metric")),
+        blocks=block_models(certificate.blocks),
+    )
+
+
+ComparisonInputs = Annotated[dict[str, Any], inputs_in_address(COMPARE.inputs, map(parameter_of, COMPARE.inputs))]
+_Number = Annotated[int, Query(ge=1, le=LARGEST), PLAIN_DIGITS]
+_COMPARE_EXAMPLE = {"tolerance": 1e-6, "union_hypervolume": 0.71, "coverage": [[1.0, 0.4], [0.1, 1.0]]}
+
+
+class DifferenceModel(BaseModel):
+    """A place at which jobs differ. values: what each job has there, null for nothing."""
+
+    place: str = Field(examples=["variables.rod"])
+    values: list[str | None] = Field(examples=[["50 mm to 250 mm", "50 mm to 300 mm"]])
+
+
+class ComparisonModel(BaseModel):
+    """Runs against each other. sentences: who is better where; only of runs with designs. blocks: all of it.
+
+    comparison: what `slidercrank compare --json` prints; without measures unless the objectives are the same.
+    """
+
+    jobs: list[int] = Field(examples=[[1, 2]])
+    differences: list[DifferenceModel]
+    sentences: list[str] = Field(examples=[["run 2 matches or beats every design of run 1, to 2 % of each range"]])
+    comparison: dict[str, Any] = Field(examples=[_COMPARE_EXAMPLE])
+    blocks: list[AnswerBlock]
+
+
+@router.get("/comparison", tags=["fronts"])
+def compare_runs(
+    job: Annotated[list[_Number], Query(min_length=2, max_length=MOST, description="its number; repeatable")],
+    store: StoreDep,
+    fronts: FrontsDep,
+    given: ComparisonInputs,
+    units: UnitsParameter = "metric",
+) -> ComparisonModel:
+    """Say what differs between the jobs of runs, and which of their fronts is better where."""
+    runs = [ComparedRun(f"run {number}", number, fronts.get(number).result, store.tables(number)) for number in job]
+    answer = COMPARE.ask(runs, given)
+    record = json_ready(answer.record(units))
+    return ComparisonModel(
+        jobs=job,
+        differences=record["differences"],
+        sentences=record["sentences"],
+        comparison=record,
+        blocks=block_models(answer.blocks),
+    )
