@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ..arrays import Array
 from ..errors import InputError
 from ..machine.drive import ConstantTorque, Drive, LinearMotor, speed_range
 from .turn import PeriodicTurn, Torque
@@ -27,8 +28,8 @@ def balanced_speed(turn: PeriodicTurn, drive: Drive, motor: Torque, near: float)
     static, drag = way * turn.mean(turn.terms.static), turn.mean(turn.terms.drag)
     square = way * turn.mean(turn.terms.square)
 
-    def motor_surplus(speed: float) -> float:
-        return way * float(motor(np.array(way * speed))[0]) - static - (drag + square * speed) * speed
+    def motor_surplus(speed: Array | float) -> Array:
+        return way * motor(np.multiply(way, speed))[0] - static - (drag + square * speed) * speed
 
     if isinstance(drive.motor, ConstantTorque) and drag <= 0.0 and square <= 0.0:
         top = _speed_where_friction_balances(turn, motor_surplus, near)
@@ -39,20 +40,22 @@ def balanced_speed(turn: PeriodicTurn, drive: Drive, motor: Torque, near: float)
                 "every speed; give the motor a no-load speed, or add a viscous load or drag"
             )
     elif isinstance(drive.motor, ConstantTorque | LinearMotor):  # a straight line or falling faster: beyond its zero
-        top = max(1.0, 1.01 * motor_surplus(0.0) / (motor_surplus(0.0) - motor_surplus(1.0)))
+        top = max(1.0, 1.01 * float(motor_surplus(0.0) / (motor_surplus(0.0) - motor_surplus(1.0))))
     else:
         top = speed_range(drive)[1]
     friction = _friction(turn, top)
 
-    def surplus(speed: float) -> float:
+    def surplus(speed: Array | float) -> Array:
         return motor_surplus(speed) - friction(speed)
 
     speeds = np.linspace(0.0, top, _TRIED)
-    values = np.array([surplus(speed) for speed in speeds])
+    values = surplus(speeds)
     falls = np.flatnonzero((values[:-1] > 0.0) & (values[1:] <= 0.0))
     if not len(falls):
         weak = values.max() <= 0.0
-        loads, static_torque = ("load and friction", static + friction(0.0)) if turn.equation.rubs else ("load", static)
+        loads, static_torque = (
+            ("load and friction", static + float(friction(0.0))) if turn.equation.rubs else ("load", static)
+        )
         raise InputError(
             "steady running needs a speed at which motor and loads balance; got a motor that is "
             + (
@@ -72,7 +75,7 @@ def _mean_friction(turn: PeriodicTurn, speed: float) -> float:
     return turn.way * turn.mean(turn.friction(np.array(turn.way * speed), 0.0))
 
 
-def _friction(turn: PeriodicTurn, top: float) -> Callable[[float], float]:
+def _friction(turn: PeriodicTurn, top: float) -> Callable[[Array | float], Array | float]:
     """Return the mean friction torque, N m, at speeds up to the greatest, rad/s."""
     if not turn.equation.rubs:
         return lambda speed: 0.0
@@ -80,11 +83,11 @@ def _friction(turn: PeriodicTurn, top: float) -> Callable[[float], float]:
 
     speeds = np.linspace(0.0, top, _KNOTS)
     spline = CubicSpline(speeds, [_mean_friction(turn, speed) for speed in speeds])
-    return lambda speed: float(spline(speed))
+    return lambda speed: np.asarray(spline(speed))
 
 
 def _speed_where_friction_balances(
-    turn: PeriodicTurn, motor_surplus: Callable[[float], float], near: float
+    turn: PeriodicTurn, motor_surplus: Callable[[float], Array], near: float
 ) -> float | None:
     """Return a speed, rad/s, at which friction, growing with inertia forces, absorbs the motor's remaining torque."""
     top = max(1.0, near)

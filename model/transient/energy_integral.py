@@ -72,21 +72,9 @@ def coasting(turn: PeriodicTurn, inertia: float, speed: float) -> Coasting:
 
 def cut_at_energy_minima(turn: PeriodicTurn, load: Array) -> PeriodicTurn:
     """Return the turn with panels that end where W is least; load: on the nodes, N m."""
-    from scipy.optimize import brentq
-
     surplus = turn.way * (turn.mean(load) - load)
-    nodes = np.concatenate([[-1.0], turn.nodes, [1.0]])
-
-    def surplus_at(x: float, panel: int) -> float:
-        return turn.value_and_integral(surplus, panel, x)[0]
-
-    angles = []
-    for panel in range(len(turn.width)):
-        values = np.concatenate([[surplus_at(-1.0, panel)], surplus[panel], [surplus_at(1.0, panel)]])
-        for i in np.flatnonzero((values[:-1] < 0.0) & (values[1:] > 0.0)):
-            x = float(brentq(surplus_at, nodes[i], nodes[i + 1], args=(panel,), xtol=1e-15))
-            angles.append(turn.low[panel] + 0.5 * (1.0 + x) * turn.width[panel])
-    return turn.cut(np.array(angles))
+    least = [turn.low[p] + 0.5 * (1.0 + x) * turn.width[p] for p, x, rises in turn.zeros(surplus) if rises]
+    return turn.cut(np.array(least))
 
 
 def refine_at_energy_minima(turn: PeriodicTurn, load: Array) -> PeriodicTurn:

@@ -175,11 +175,8 @@ def _no_motor(speed: Array) -> tuple[Array, Array]:
 def _result(turn: PeriodicTurn, profile: Profile, motor: Torque, inertia: float) -> SteadyRunning:
     cycle_angle = turn.equation.period
     time_per_angle = turn.way / np.sqrt(2.0 * profile.energy)
-    times, _ = turn.integral(time_per_angle)
-    panels = [_points(turn, profile, time_per_angle, float(times[p]), p) for p in range(len(times))]
     period = float(turn.width @ (time_per_angle @ turn.weights))
-    end = panels[0][:1] + np.array([[turn.way * cycle_angle, period, 0.0, 0.0]])
-    angle, time, energy, acceleration = np.concatenate([*panels, end]).T
+    angle, time, energy, acceleration = _points(turn, profile, time_per_angle, period)
     speed = turn.way * np.sqrt(2.0 * energy)
     torque = motor(speed)[0] + profile.added
     at_nodes = motor(turn.way * np.sqrt(2.0 * profile.energy))[0] + profile.added
@@ -198,25 +195,30 @@ def _result(turn: PeriodicTurn, profile: Profile, motor: Torque, inertia: float)
     )
 
 
-def _points(turn: PeriodicTurn, profile: Profile, pace: Array, time: float, p: int) -> Array:
-    """Return angle, time, E and its derivative at start, nodes and extremes of a panel, (count, 4), in order."""
-    from scipy.optimize import brentq
+def _points(turn: PeriodicTurn, profile: Profile, pace: Array, period: float) -> Array:
+    """Return angle, time, E and its derivative at starts, nodes and extremes of all panels, (4, count), in order.
 
-    def rate(x: float) -> float:
-        return turn.value_and_integral(profile.rate, p, x)[0]
-
-    at = np.concatenate([[-1.0], turn.nodes, [1.0]])
-    rates = np.concatenate([[rate(-1.0)], profile.rate[p], [rate(1.0)]])
-    turning = np.flatnonzero(rates[:-1] * rates[1:] < 0.0)
-    extremes = [float(brentq(rate, at[i], at[i + 1], xtol=1e-14)) for i in turning]
-    angles, times = turn.angle[p], time + turn.width[p] * (turn.sums @ pace[p])
-    rows = np.stack([angles, times, profile.energy[p], profile.rate[p]], axis=1)
-    for x in extremes:
-        angle = turn.low[p] + 0.5 * (1.0 + x) * turn.width[p]
-        gain = turn.value_and_integral(profile.rate, p, x)[1]
-        row = [angle, time + turn.value_and_integral(pace, p, x)[1], profile.start[p] + gain, 0.0]
-        rows = np.insert(rows, np.searchsorted(rows[:, 1], row[1]), row, axis=0)
-    return np.insert(rows, 0, [turn.low[p], time, profile.start[p], rates[0]], axis=0)
+    The first point comes again at the end, a cycle later.
+    """
+    times, node_times = turn.integral(pace)
+    first_rates = turn.at_edges(profile.rate)[:, 0]
+    starts = np.stack([turn.low, times, profile.start, first_rates])
+    nodes = np.stack([part.ravel() for part in (turn.angle, node_times, profile.energy, profile.rate)])
+    extremes = np.array(
+        [
+            (
+                turn.low[p] + 0.5 * (1.0 + x) * turn.width[p],
+                times[p] + turn.value_and_integral(pace, p, x)[1],
+                profile.start[p] + turn.value_and_integral(profile.rate, p, x)[1],
+                0.0,
+            )
+            for p, x, _ in turn.zeros(profile.rate)
+        ]
+    ).reshape(-1, 4)
+    points = np.concatenate([starts, nodes, extremes.T], axis=1)
+    points = points[:, np.argsort(points[1], kind="stable")]
+    end = points[:, :1] + np.array([[turn.way * turn.equation.period], [period], [0.0], [0.0]])
+    return np.concatenate([points, end], axis=1)
 
 
 def steady_running(mechanism: Mechanism, linkage: Linkage, drive: Drive | None = None) -> SteadyRunning:

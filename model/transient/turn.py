@@ -21,7 +21,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -138,6 +138,23 @@ class PeriodicTurn:
         panels = self.width * (values @ self.weights)
         starts = np.concatenate([[0.0], np.cumsum(panels)[:-1]])
         return starts, starts[:, None] + self.width[:, None] * (values @ self.sums.T)
+
+    def zeros(self, values: Array) -> list[tuple[int, float, bool]]:
+        """Return where values on the nodes cross zero: panel, x from -1 to 1, and whether they rise with x."""
+        from scipy.optimize import brentq
+
+        first, last = self.at_edges(values).T
+        at, known = np.concatenate([[-1.0], self.nodes, [1.0]]), np.column_stack([first, values, last])
+        found = []
+        for p, i in np.argwhere(known[:, :-1] * known[:, 1:] < 0.0).tolist():
+            x = brentq(partial(_sum, self._series @ values[p]), at[i], at[i + 1], xtol=1e-15)
+            found.append((p, float(x), bool(known[p, i] < 0.0)))
+        return found
+
+    def at_edges(self, values: Array) -> Array:
+        """Return values on the nodes continued to start and end of each panel, (panels, 2)."""
+        edges: Array = values @ self._series.T @ legendre.legvander([-1.0, 1.0], _NODES - 1).T
+        return edges
 
     def value_and_integral(self, values: Array, panel: int, x: float) -> tuple[float, float]:
         """Return values within a panel, at x from -1 to 1, and their integral from its start."""
