@@ -57,8 +57,12 @@ NODES, WEIGHTS = gauss(DEGREE + 1)
 """Nodes of a panel on [0, 1], and their weights."""
 FIT = legendre_fit(DEGREE + 1)
 """Matrix from values at the nodes to the coefficients of a panel's polynomial."""
+INTEGRATED = 0.5 * legendre.legint(np.eye(DEGREE + 1), lbnd=-1.0, axis=0)
+"""Matrix from these coefficients to those of the polynomial's integral from the panel's start, on [0, 1]."""
+INTEGRALS = np.asarray(legendre.legval(2.0 * NODES - 1.0, INTEGRATED).T @ FIT)
+"""Matrix from values at the nodes to integrals from the panel's start to each node."""
 TAIL = np.ascontiguousarray(FIT[-_TAIL:])
-"""Its last rows."""
+"""Last rows of `FIT`."""
 
 
 def resolved_tail(values: Array) -> Array:

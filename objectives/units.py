@@ -380,20 +380,27 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
     except InputError as error:
         raise InputError(f"{rule}; got {quote(text)}: {error}; {write}") from None
     if dimension != _unit(kind.unit)[1]:
-        kinds = [item for item in (*KINDS, *_OTHERS) if _unit(item.unit)[1] == dimension]
-        energies = [item for item in kinds if ("J" in item.unit) == bool(re.search(r"J\b", unit))]
-        note = f", which is {(energies or kinds)[0].name}" if kinds else ""
-        force = _WEIGHT.sub(r"\1f", unit)
-        if force != unit and _unit(force)[1] == _unit(kind.unit)[1]:
-            newtons = f"{float(number * _unit(force)[0]):.4g} {kind.unit}"
-            write = f'a weight is a force: write "{match[1]} {force}" or "{newtons}"'
-        elif kinds and kind.plain == "mass" and _unit("N")[1] == dimension:
-            write = f"write the mass in {kind.unit}"
-        raise InputError(f"{rule}; got {quote(text)}{note}; {write}")
+        note, remedy = _other_kind(match[1], unit, kind)
+        raise InputError(f"{rule}; got {quote(text)}{note}; {remedy or write}")
     for unit_of_kind, symbols, item in _AMBIGUOUS_SYMBOLS:
         if kind.unit == unit_of_kind and re.search(symbols, unit):
             raise InputError(f"{rule}; got {quote(text)}, which is {item}; {write}")
     return number * factor
+
+
+def _other_kind(number: str, unit: str, kind: Kind) -> tuple[str, str]:
+    """Return in words which kind a unit is of, and what to write instead; each empty if unknown."""
+    dimension = _unit(unit)[1]
+    kinds = [item for item in (*KINDS, *_OTHERS) if _unit(item.unit)[1] == dimension]
+    energies = [item for item in kinds if ("J" in item.unit) == bool(re.search(r"J\b", unit))]
+    note = f", which is {(energies or kinds)[0].name}" if kinds else ""
+    force = _WEIGHT.sub(r"\1f", unit)
+    if force != unit and _unit(force)[1] == _unit(kind.unit)[1]:
+        newtons = f"{float(Fraction(number) * _unit(force)[0]):.4g} {kind.unit}"
+        return note, f'a weight is a force: write "{number} {force}" or "{newtons}"'
+    return note, f"write the mass in {kind.unit}" if kinds and kind.plain == "mass" and _unit("N")[
+        1
+    ] == dimension else ""
 
 
 @functools.lru_cache(maxsize=256)

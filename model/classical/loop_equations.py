@@ -86,14 +86,7 @@ def solve_loop(
             f"the iteration must end within {iteration_limit} steps; got none at crank angle "
             f"{_first_degrees(moving, theta):.6g} deg; start nearer to the solution or allow more steps"
         )
-    jacobian = _jacobian(l, phi)
-    everywhere = np.ones(theta.shape, dtype=np.bool_)
-    turned = np.stack([-pin[1], pin[0]], axis=-1)  # d(pin)/dtheta
-    first = _solve(jacobian, -turned * w[..., None], everywhere, theta)
-    # Differentiated again: J (x_tt, phi_tt) = w^2 pin + phi_t^2 rod - alpha d(pin)/dtheta.
-    bent = np.stack([pin[0], pin[1]], axis=-1) * (w * w)[..., None]
-    rod = np.stack([l * np.cos(phi), l * np.sin(phi)], axis=-1) * (first[..., 1] ** 2)[..., None]
-    second = _solve(jacobian, bent + rod - turned * alpha[..., None], everywhere, theta)
+    first, second = _derivatives(theta, pin, l, phi, w, alpha)
     return LoopSolution(
         theta,
         x,
@@ -104,6 +97,18 @@ def solve_loop(
         second[..., 1],
         iterations,
     )
+
+
+def _derivatives(theta: Array, pin: Array, l: Array, phi: Array, w: Array, alpha: Array) -> tuple[Array, Array]:
+    """Return the first and second derivatives by time of slider position and rod angle, (..., 2) each."""
+    jacobian = _jacobian(l, phi)
+    everywhere = np.ones(theta.shape, dtype=np.bool_)
+    turned = np.stack([-pin[1], pin[0]], axis=-1)  # d(pin)/dtheta
+    first = _solve(jacobian, -turned * w[..., None], everywhere, theta)
+    # Differentiated again: J (x_tt, phi_tt) = w^2 pin + phi_t^2 rod - alpha d(pin)/dtheta.
+    bent = np.stack([pin[0], pin[1]], axis=-1) * (w * w)[..., None]
+    rod = np.stack([l * np.cos(phi), l * np.sin(phi)], axis=-1) * (first[..., 1] ** 2)[..., None]
+    return first, _solve(jacobian, bent + rod - turned * alpha[..., None], everywhere, theta)
 
 
 def _jacobian(l: Array, phi: Array) -> Array:

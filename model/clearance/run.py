@@ -113,16 +113,7 @@ def simulate(
     as `system.build` does, `InputError` for a crank at rest or if no turns remain, and
     `SlidercrankError` for a contact that is too soft to hold the journal.
     """
-    if not mechanism.speed:
-        raise InputError("a joint with clearance is simulated over turns of the crank; got none; give a crank speed")
-    require_plain(mechanism, "the simulation of a loose joint")
-    require_frictionless(mechanism.friction, "the simulation of a loose joint (with its own friction)")
-    if not 0 <= discard < cycles:
-        raise InputError(
-            f"cycles must be more than discard, and discard zero or more; got {cycles} and {discard}; add cycles"
-        )
-    if not 1e-13 <= tolerance <= 1e-3:
-        raise InputError(f"tolerance must be from 1e-13 to 1e-3; got {tolerance:g}; 1e-7 is usual")
+    _require_simulable(mechanism, cycles, discard, tolerance)
     began = time.perf_counter()
     linkage = single(mechanism, linkage)
     # At the motion of the ideal linkage: zero gap and zero gap velocity.
@@ -153,6 +144,19 @@ def simulate(
         if turns_made < cycles and cancelled is not None and cancelled():
             break
     return _collect(mechanism, linkage, clearance, integrator, turns_made, cycles, discard)
+
+
+def _require_simulable(mechanism: Mechanism, cycles: int, discard: int, tolerance: float) -> None:
+    if not mechanism.speed:
+        raise InputError("a joint with clearance is simulated over turns of the crank; got none; give a crank speed")
+    require_plain(mechanism, "the simulation of a loose joint")
+    require_frictionless(mechanism.friction, "the simulation of a loose joint (with its own friction)")
+    if not 0 <= discard < cycles:
+        raise InputError(
+            f"cycles must be more than discard, and discard zero or more; got {cycles} and {discard}; add cycles"
+        )
+    if not 1e-13 <= tolerance <= 1e-3:
+        raise InputError(f"tolerance must be from 1e-13 to 1e-3; got {tolerance:g}; 1e-7 is usual")
 
 
 def _outward(linkage: Linkage, speed: float, before: float, after: float) -> bool:

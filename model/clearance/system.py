@@ -24,26 +24,8 @@ def build(
     Raises `InputError` for a crank that accelerates, for masses that leave the motion undetermined, and for a clearance
     that would let the linkage fold over to its other branch; `AssemblyError` unless the linkage rotates fully.
     """
-    linkage.require_full_rotation()
-    if mechanism.acceleration:
-        raise InputError(
-            "a joint with clearance needs a crank that turns steadily; "
-            f"got an acceleration of {mechanism.acceleration:g} rad/s^2; set it to zero"
-        )
-    require_no_crank_load(mechanism, "a simulation of clearance")
-    for load in mechanism.loads:
-        if load.inertial:
-            raise InputError(
-                f"a simulation of clearance takes forces on the slider; got {load.size}; "
-                "add that mass to the slider's, or leave that load out"
-            )
+    _require_simulable(mechanism, linkage, clearance)
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
-    rod_margin = l - r - abs(e)
-    if clearance.radius >= 0.5 * rod_margin:
-        raise InputError(
-            "a clearance must be less than half of rod - crank - |offset|, or the rod could fold over; "
-            f"got {1e3 * clearance.radius:g} mm and {1e3 * rod_margin:g} mm; lengthen the rod or reduce the clearance"
-        )
     raw = raw_vector(mechanism)
     raw[:3] = r, l, e
     # Loads use the slider's velocity as velocity per radian times speed; unit speed lets them use it directly.
@@ -94,3 +76,26 @@ def build(
             f"got a rod of {d.rod_mass:g} kg and a slider of {d.slider_mass:g} kg; give both a mass"
         )
     return system, block, loads
+
+
+def _require_simulable(mechanism: Mechanism, linkage: Linkage, clearance: Clearance) -> None:
+    """Raise as `build` does, except for masses."""
+    linkage.require_full_rotation()
+    if mechanism.acceleration:
+        raise InputError(
+            "a joint with clearance needs a crank that turns steadily; "
+            f"got an acceleration of {mechanism.acceleration:g} rad/s^2; set it to zero"
+        )
+    require_no_crank_load(mechanism, "a simulation of clearance")
+    for load in mechanism.loads:
+        if load.inertial:
+            raise InputError(
+                f"a simulation of clearance takes forces on the slider; got {load.size}; "
+                "add that mass to the slider's, or leave that load out"
+            )
+    rod_margin = float(linkage.rod - linkage.crank - abs(linkage.offset))
+    if clearance.radius >= 0.5 * rod_margin:
+        raise InputError(
+            "a clearance must be less than half of rod - crank - |offset|, or the rod could fold over; "
+            f"got {1e3 * clearance.radius:g} mm and {1e3 * rod_margin:g} mm; lengthen the rod or reduce the clearance"
+        )

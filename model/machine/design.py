@@ -188,6 +188,50 @@ def _derive_offset(raw: Any, out: Any) -> None:
 
 
 @analytic
+def _derive_load(raw: Any, kind: Any, datum: Any, p: Any, q: Any, j: Any, out: Any) -> None:
+    """Fill the rows from q of a load, whose numbers begin at row p, and add its part to the design's sums."""
+    if datum == 0:
+        sign, origin = 1.0, 0.0 * raw[_CRANK, j]  # not from a dead centre, which a swing need not have
+    elif datum == 1:
+        sign, origin = 1.0, 1.0 * out[21, j]
+    else:
+        sign, origin = -1.0, 1.0 * out[22, j]
+    if kind == _ANGLE_TABLE and datum > 0:
+        crank, rod, offset = raw[_CRANK, j], raw[_ROD, j], raw[_OFFSET, j]
+        at = inner_crank_angle(crank, rod, offset) if datum == 1 else outer_crank_angle(crank, rod, offset)
+        # The crossed branch is the mirror image about the y axis.
+        sign, origin = 1.0, at if raw[_BRANCH, j].real > 0.0 else math.pi - at
+    out[q, j] = sign
+    out[q + 1, j] = origin
+    if kind == _STROKE_FORCE:
+        out[_OUTWARD, j] += raw[p, j]
+        out[_OUTWARD + 1, j] += raw[p + 1, j]
+    elif kind == _SPRING:
+        out[_OUTWARD + 2, j] += raw[p + 2, j]
+        out[_OUTWARD + 3, j] += raw[p + 2, j] * (origin + sign * raw[p + 3, j])
+    elif kind == _VISCOUS:
+        out[_OUTWARD + 4, j] += raw[p + 2, j]
+    elif kind == _ADDED_MASS:
+        out[_MOVING_MASS, j] += raw[p + 2, j]
+    elif kind in (_CYLINDER, _BURNING_CYLINDER):
+        bore, rod = raw[p + 2, j], raw[p + 3, j]
+        area = (math.pi / 4.0) * (bore * bore - rod * rod)
+        out[q + AREA, j] = area
+        out[q + AREA + 1, j] = raw[p + 4, j] * (out[22, j] - out[21, j]) + raw[p + 5, j] * inverse(area)
+        for i in range(5):
+            out[q + AREA + 2 + i, j] = raw[p + 6 + i, j]
+        if kind == _BURNING_CYLINDER:
+            clearance, low, high, exponent = raw[p + 4, j], raw[p + 6, j], raw[p + 7, j], raw[p + 8, j]
+            share = burning_share(clearance, low, high, exponent, raw[p + 11, j], raw[p + 12, j])
+            out[q + AREA + 7, j] = share * (out[22, j] - out[21, j])
+    elif kind == _CRANK_TORQUE:
+        for i in range(4):
+            out[q + AREA + i, j] = raw[p + 2 + i, j]
+    elif kind >= _FORMULA:
+        out[q, j], out[q + 1, j] = raw[p + 2, j], raw[p + 3, j]
+
+
+@analytic
 def derive(raw: Any, kind: Any, datum: Any, out: Any, moved: Any = -1) -> None:
     """Fill `out` (DESIGN + LOAD_ROWS k, n) from raw numbers (END + LOAD_SLOTS k, n), real or complex.
 
@@ -222,42 +266,4 @@ def derive(raw: Any, kind: Any, datum: Any, out: Any, moved: Any = -1) -> None:
         p = _END + LOAD_SLOTS * k
         q = DESIGN + LOAD_ROWS * k
         for j in range(raw.shape[1]):
-            if datum[k] == 0:
-                sign, origin = 1.0, 0.0 * raw[_CRANK, j]  # not from a dead centre, which a swing need not have
-            elif datum[k] == 1:
-                sign, origin = 1.0, 1.0 * out[21, j]
-            else:
-                sign, origin = -1.0, 1.0 * out[22, j]
-            if kind[k] == _ANGLE_TABLE and datum[k] > 0:
-                crank, rod, offset = raw[_CRANK, j], raw[_ROD, j], raw[_OFFSET, j]
-                at = inner_crank_angle(crank, rod, offset) if datum[k] == 1 else outer_crank_angle(crank, rod, offset)
-                # The crossed branch is the mirror image about the y axis.
-                sign, origin = 1.0, at if raw[_BRANCH, j].real > 0.0 else math.pi - at
-            out[q, j] = sign
-            out[q + 1, j] = origin
-            if kind[k] == _STROKE_FORCE:
-                out[_OUTWARD, j] += raw[p, j]
-                out[_OUTWARD + 1, j] += raw[p + 1, j]
-            elif kind[k] == _SPRING:
-                out[_OUTWARD + 2, j] += raw[p + 2, j]
-                out[_OUTWARD + 3, j] += raw[p + 2, j] * (origin + sign * raw[p + 3, j])
-            elif kind[k] == _VISCOUS:
-                out[_OUTWARD + 4, j] += raw[p + 2, j]
-            elif kind[k] == _ADDED_MASS:
-                out[_MOVING_MASS, j] += raw[p + 2, j]
-            elif kind[k] == _CYLINDER or kind[k] == _BURNING_CYLINDER:
-                bore, rod = raw[p + 2, j], raw[p + 3, j]
-                area = (math.pi / 4.0) * (bore * bore - rod * rod)
-                out[q + AREA, j] = area
-                out[q + AREA + 1, j] = raw[p + 4, j] * (out[22, j] - out[21, j]) + raw[p + 5, j] * inverse(area)
-                for i in range(5):
-                    out[q + AREA + 2 + i, j] = raw[p + 6 + i, j]
-                if kind[k] == _BURNING_CYLINDER:
-                    clearance, low, high, exponent = raw[p + 4, j], raw[p + 6, j], raw[p + 7, j], raw[p + 8, j]
-                    share = burning_share(clearance, low, high, exponent, raw[p + 11, j], raw[p + 12, j])
-                    out[q + AREA + 7, j] = share * (out[22, j] - out[21, j])
-            elif kind[k] == _CRANK_TORQUE:
-                for i in range(4):
-                    out[q + AREA + i, j] = raw[p + 2 + i, j]
-            elif kind[k] >= _FORMULA:
-                out[q, j], out[q + 1, j] = raw[p + 2, j], raw[p + 3, j]
+            _derive_load(raw, kind[k], datum[k], p, q, j, out)

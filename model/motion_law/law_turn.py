@@ -23,11 +23,9 @@ from ..linkage.single_linkage import single
 from ..machine.arrangement import require_one_cylinder
 from ..machine.mechanism import Mechanism
 from ..machine.two_turns import cycle_turns
-from ..quadrature import legendre_fit
+from ..quadrature import DEGREE, FIT, INTEGRALS, INTEGRATED, WEIGHTS
 from ..transient.equation import TURN, CrankEquation
 from ..transient.turn import PeriodicTurn
-
-_NODES = 16
 
 
 def with_drive_inertia(mechanism: Mechanism) -> Mechanism:
@@ -77,7 +75,7 @@ class LawTurn:
             )
 
     def _take(self, turn: PeriodicTurn) -> None:
-        self._turn, self.way, self.nodes = turn, turn.way, turn.nodes
+        self._turn, self.way = turn, turn.way
         self.start, self.width = float(turn.low[0]), np.abs(turn.width)
         self.passed = np.concatenate([[0.0], np.cumsum(self.width)[:-1]])
         self.angle = turn.angle
@@ -101,7 +99,7 @@ class LawTurn:
     @property
     def weights(self) -> Array:
         """Weights (n, 16) of an integral over phi."""
-        return np.asarray(self.width[:, None] * self._turn.weights)
+        return np.asarray(self.width[:, None] * WEIGHTS)
 
     @property
     def low(self) -> Array:
@@ -130,7 +128,7 @@ class LawTurn:
 
     def integrals(self, values: Array) -> Array:
         """Return integrals over phi (n, 16) from the start of each cell to its nodes of values there."""
-        return np.asarray(self.width[:, None] * (values @ self._turn.sums.T))
+        return np.asarray(self.width[:, None] * (values @ INTEGRALS.T))
 
     def integral_of(self, values: Array, cell: IntArray, place: Array) -> Array:
         """Return integrals over phi from the start of cells (n,) to places in them of values at all nodes."""
@@ -139,17 +137,13 @@ class LawTurn:
 
 def values_at(values: Array, cell: IntArray, place: Array) -> Array:
     """Return values (n,) at places from 0 to 1 in cells, from those at all nodes (cells, 16)."""
-    basis = legendre.legvander(2.0 * place - 1.0, _NODES - 1) @ legendre_fit(_NODES)
+    basis = legendre.legvander(2.0 * place - 1.0, DEGREE) @ FIT
     return np.asarray(np.einsum("ni,ni->n", basis, values[cell]))
 
 
 def integrals_to(place: Array) -> Array:
     """Return weights (n, 16) of integrals over a unit cell, from its start to places from 0 to 1."""
-    x = 2.0 * place - 1.0
-    return np.asarray(0.5 * legendre.legvander(x, _NODES) @ _INTEGRALS)
-
-
-_INTEGRALS = np.asarray(legendre.legint(np.eye(_NODES), lbnd=-1.0, axis=0)) @ legendre_fit(_NODES)
+    return np.asarray(legendre.legvander(2.0 * place - 1.0, DEGREE + 1) @ INTEGRATED @ FIT)
 
 
 def _require_simple(mechanism: Mechanism) -> None:

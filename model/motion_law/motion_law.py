@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from ..arrays import Array, IntArray
+from ..quadrature import NODES
 from ..transient.equation import TURN
 from ..transient.speed_profile_cycle import CrankMotion
 from .law_turn import LawTurn, values_at
@@ -49,13 +50,13 @@ class MotionLaw:
     def node_energies(self) -> Array:
         """K at the nodes, J, (n, 16)."""
         cell = np.repeat(np.arange(len(self.torque)), self.turn.angle.shape[1])
-        place = np.tile(_places(self.turn), len(self.torque))
+        place = np.tile(NODES, len(self.torque))
         return self._energy(cell, place).reshape(self.turn.angle.shape)
 
     @property
     def node_torques(self) -> Array:
         """T at the nodes, N m, (n, 16)."""
-        return np.asarray(self.torque[:, None] + (np.roll(self.torque, -1) - self.torque)[:, None] * _places(self.turn))
+        return np.asarray(self.torque[:, None] + (np.roll(self.torque, -1) - self.torque)[:, None] * NODES)
 
     @cached_property
     def node_slowness(self) -> Array:
@@ -140,8 +141,3 @@ class MotionLaw:
         first, rise = self.torque[cell], (np.roll(self.torque, -1) - self.torque)[cell]
         gain = self.turn.width[cell] * place * (first + 0.5 * rise * place)
         return np.asarray(self.energies[cell] + gain - self.turn.integral_of(self.turn.terms.load, cell, place))
-
-
-def _places(turn: LawTurn) -> Array:
-    """Return the places of the nodes within a cell, from 0 to 1."""
-    return np.asarray(0.5 * (1.0 + turn.nodes))

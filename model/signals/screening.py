@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -56,6 +56,46 @@ class Screened:
     angles: Array
     still: Array
     gradients: Array | None
+
+
+class Screening(NamedTuple):
+    """What is screened: signals, angles per turn, whether these are crowded, and the machine's numbers.
+
+    columns: slots of the raw numbers that designs set.
+    """
+
+    kinds: Integers
+    angles: int
+    crowd: bool
+    raw: Row
+    columns: Integers
+    load_kind: Integers
+    load_datum: Integers
+
+
+class ScreenedArrays(NamedTuple):
+    """Fields of `Screened` for all signals, first axis; without rows if not requested."""
+
+    values: Table
+    angles: Table
+    still: Row
+    gradients: Cube
+
+
+class _Lanes(NamedTuple):
+    """Derived designs of a block, one a lane, with kappa of the crowded angle, and the sense of rotation."""
+
+    block: Any
+    kappa: Any
+    direction: Any
+
+
+class _Tops(NamedTuple):
+    """Values of maxima and their place: at the crowded angle, or at the crank angle."""
+
+    value: Any
+    sine: Any
+    cosine: Any
 
 
 @memoise_by_machine
@@ -111,8 +151,9 @@ def _step(kind: Any, sine: Any, cosine: Any, kappa: Any, d: Any, direction: Any)
 
 
 @analytic
-def _slopes(kind: Any, sine: Any, cosine: Any, kappa: Any, block: Any, direction: Any, value: Any, slope: Any) -> Any:
+def _slopes(kind: Any, sine: Any, cosine: Any, lanes: _Lanes, value: Any, slope: Any) -> Any:
     """Value and slope of every lane at its own angle."""
+    block, kappa, direction = lanes
     if kind == _TORQUE:
         for j in range(LANES):
             value[j], slope[j] = _step(_TORQUE, sine[j], cosine[j], kappa[j], design_at(block, j), direction)
@@ -131,8 +172,9 @@ def _partial(kind: Any, sine: Any, cosine: Any, d: Any, direction: Any) -> Any:
 
 
 @analytic
-def _partials(kind: Any, sine: Any, cosine: Any, block: Any, direction: Any, slope: Any) -> Any:
-    """Derivatives of all lanes, each at its own crank angle."""
+def _partials(kind: Any, tops: _Tops, block: Any, direction: Any, slope: Any) -> Any:
+    """Derivatives of all lanes, each at the crank angle of its maximum."""
+    sine, cosine = tops.sine, tops.cosine
     if kind == _TORQUE:
         for j in range(LANES):
             slope[j] = _partial(_TORQUE, sine[j], cosine[j], design_at(block, j), direction)
@@ -145,24 +187,14 @@ def _partials(kind: Any, sine: Any, cosine: Any, block: Any, direction: Any, slo
 
 
 @analytic
-def _refine(
-    kind: Any,
-    tau: Any,
-    h: Any,
-    top: Any,
-    kappa: Any,
-    block: Any,
-    direction: Any,
-    work: Any,
-    best: Any,
-    sines: Any,
-    cosines: Any,
-) -> Any:
+def _refine(kind: Any, tau: Any, top: Any, lanes: _Lanes, work: Any, tops: _Tops) -> Any:
     """Move every lane to its local maximum within one angle on either side, from the vertex of the parabola.
 
-    top: place, vertex and curvature of `coarse_peaks.two_highest`. work: room (12, lanes). A lane that has settled
+    top: place, vertex and curvature of `coarse_peaks.two_highest`. work: workspace (12, lanes). A lane that has settled
     stays where it is while others take more steps, so its result does not depend on them.
     """
+    best, sines, cosines = tops
+    h = 2.0 * math.pi / tau.shape[1]
     share = 0.5 if kind == _RSS else 1.0  # `coarse_peaks` samples its square, which curves twice as much
     for j in range(LANES):
         at = max(int(top[0, j]), 0)
@@ -180,7 +212,7 @@ def _refine(
             )
             work[0, j] = work[4, j] * c + work[5, j] * s
             work[1, j] = work[5, j] * c - work[4, j] * s
-        _slopes(kind, work[0], work[1], kappa, block, direction, work[2], work[3])
+        _slopes(kind, work[0], work[1], lanes, work[2], work[3])
         moving = 0.0
         for j in range(LANES):
             t, value_here, rise, peak = work[6, j], work[2, j], work[3, j], best[j]
@@ -221,91 +253,93 @@ def _still(d: Any) -> Any:
     return max(abs(at_outer), abs(at_inner))
 
 
-@kernel
-def _screen(
-    kinds: Integers,
-    raw: Row,
-    columns: Integers,
-    designs: Table,
-    load_kind: Integers,
-    load_datum: Integers,
-    angles: int,
-    crowd: bool,
-    first: int,
-    values: Table,
-    peak_angles: Table,
-    still: Row,
-    gradients: Cube,
-) -> None:
-    n, signals = designs.shape[0], kinds.shape[0]
-    rows = DESIGN + LOAD_ROWS * load_kind.shape[0]
-    lanes, stepped = np.empty((raw.shape[0], LANES)), np.empty((raw.shape[0], LANES), np.complex128)
-    block, complex_block = np.empty((rows, LANES)), np.empty((rows, LANES), np.complex128)
+@analytic
+def _higher(kind: Any, tau: Any, tops: Any, rivals: Any, lanes: _Lanes, work: Any, found: Any, peak: _Tops) -> None:
+    """Fill the higher of each lane's two refined maxima.
+
+    tops: `top` of `coarse_peaks.two_highest`; rivals: whether any lane has a second. found: workspace (2, 3, lanes).
+    """
+    kappa = lanes.kappa
+    for i in range(2 if rivals else 1):
+        _refine(kind, tau, tops[3 * i : 3 * i + 3], lanes, work, _Tops(found[i, 0], found[i, 1], found[i, 2]))
+    for j in range(LANES):
+        first, second = found[0, 0, j], (found[1, 0, j] if rivals else -1.0)
+        x, x_2, y, y_2 = found[0, 2, j], found[1, 2, j], found[0, 1, j], found[1, 1, j]
+        peak.value[j] = max(first, second)
+        x = x_2 if second > first else x
+        y = kappa[j] * (y_2 if second > first else y)
+        scale = 1.0 / math.sqrt(x * x + y * y)
+        peak.sine[j], peak.cosine[j] = x * scale, -y * scale
+
+
+@analytic
+def _fill_gradients(task: Screening, lanes: _Lanes, raw: Any, peaks: Any, workspace: Any, out: Any) -> None:
+    """Fill the derivatives (signals, designs, columns) of peaks (signals, 3, lanes).
+
+    raw: numbers of all lanes. workspace: complex raw numbers and derived designs, and derivatives of the lanes.
+    """
+    stepped, block, slope = workspace
     for i in range(raw.shape[0]):
-        lanes[i, :] = raw[i]
-    h = 2.0 * math.pi / angles
+        for j in range(LANES):
+            stepped[i, j] = raw[i, j]
+    for v in range(task.columns.shape[0]):
+        column = task.columns[v]
+        for j in range(LANES):
+            stepped[column, j] += complex(0.0, STEP)
+        for i in range(block.shape[0]):
+            for j in range(LANES):
+                block[i, j] = lanes.block[i, j]
+        derive(stepped, task.load_kind, task.load_datum, block, column)
+        for q in range(task.kinds.shape[0]):
+            _partials(task.kinds[q], _Tops(peaks[q, 0], peaks[q, 1], peaks[q, 2]), block, lanes.direction, slope)
+            for j in range(out.shape[1]):
+                out[q, j, v] = slope[j]
+        for j in range(LANES):
+            stepped[column, j] = raw[column, j]
+
+
+@kernel
+def _screen(task: Screening, designs: Table, first: int, out: ScreenedArrays) -> None:
+    n, signals, angles = designs.shape[0], task.kinds.shape[0], task.angles
+    rows = DESIGN + LOAD_ROWS * task.load_kind.shape[0]
+    raw = np.empty((task.raw.shape[0], LANES))
+    for i in range(raw.shape[0]):
+        raw[i, :] = task.raw[i]
     tau = np.empty((2, angles))
     for k in range(angles):
-        tau[0, k], tau[1, k] = math.sin(k * h), math.cos(k * h)
-    direction = 1.0 if raw[4] >= 0.0 else -1.0
-    kappa = np.ones(LANES)
+        tau[0, k], tau[1, k] = math.sin(k * (2.0 * math.pi / angles)), math.cos(k * (2.0 * math.pi / angles))
+    lanes = _Lanes(np.empty((rows, LANES)), np.ones(LANES), 1.0 if task.raw[4] >= 0.0 else -1.0)
     coarse = tau.astype(np.float32)
     scaled, mark = np.empty((ROWS, LANES), np.float32), np.empty((7, LANES), np.float32)
-    samples, top, slope = np.empty((3, angles + 2, LANES), np.float32), np.empty((6, LANES)), np.empty(LANES)
-    value, peak_sines = np.empty((2, LANES)), np.empty((2, signals, LANES))
-    sines, cosines = np.empty((2, LANES)), np.empty((2, LANES))
+    samples, tops, slope = np.empty((3, angles + 2, LANES), np.float32), np.empty((6, LANES)), np.empty(LANES)
+    found, peaks = np.empty((2, 3, LANES)), np.empty((signals, 3, LANES))
     work = np.empty((12, LANES))  # in one array, so that the compiler sees that the rows do not overlap
+    workspace = np.empty(raw.shape, np.complex128), np.empty((rows, LANES), np.complex128), slope
     for begin in range(0, n, LANES):
-        for i in range(columns.shape[0]):
+        for i in range(task.columns.shape[0]):
             for j in range(LANES):
-                lanes[columns[i], j] = designs[min(begin + j, n - 1), i]
-        derive(lanes, load_kind, load_datum, block)
-        if crowd:
-            for j in range(LANES):
-                kappa[j] = crowding(lanes[0, j], lanes[1, j], lanes[2, j])
-        prepare(block, kappa, direction, scaled)
-        sweep(kinds, coarse, crowd, scaled, samples)
-        last = min(LANES, n - begin)
-        if still.shape[0]:
-            for j in range(LANES):
-                slope[j] = _still(design_at(block, j))
-            for j in range(last):
-                still[first + begin + j] = slope[j]
-        for i in range(raw.shape[0] if gradients.shape[0] else 0):
-            for j in range(LANES):
-                stepped[i, j] = lanes[i, j]
+                raw[task.columns[i], j] = designs[min(begin + j, n - 1), i]
+        derive(raw, task.load_kind, task.load_datum, lanes.block)
+        for j in range(LANES if task.crowd else 0):
+            lanes.kappa[j] = crowding(raw[0, j], raw[1, j], raw[2, j])
+        prepare(lanes.block, lanes.kappa, lanes.direction, scaled)
+        sweep(task.kinds, coarse, task.crowd, scaled, samples)
+        last, here = min(LANES, n - begin), first + begin
+        for j in range(LANES if out.still.shape[0] else 0):
+            slope[j] = _still(design_at(lanes.block, j))
+        for j in range(last if out.still.shape[0] else 0):
+            out.still[here + j] = slope[j]
         for q in range(signals):
-            rivals = two_highest(samples[row_of(kinds[q])], scaled, mark, top)
-            for i in range(2 if rivals else 1):
-                part = top[3 * i : 3 * i + 3]
-                _refine(kinds[q], tau, h, part, kappa, block, direction, work, value[i], sines[i], cosines[i])
-            for j in range(LANES):
-                first_value, second_value = value[0, j], (value[1, j] if rivals else -1.0)
-                x, x_2, y, y_2 = cosines[0, j], cosines[1, j], sines[0, j], sines[1, j]
-                value[0, j] = max(first_value, second_value)
-                x = x_2 if second_value > first_value else x
-                y = kappa[j] * (y_2 if second_value > first_value else y)
-                scale = 1.0 / math.sqrt(x * x + y * y)
-                peak_sines[0, q, j], peak_sines[1, q, j] = x * scale, -y * scale
+            rivals = two_highest(samples[row_of(task.kinds[q])], scaled, mark, tops)
+            peak = _Tops(peaks[q, 0], peaks[q, 1], peaks[q, 2])
+            _higher(task.kinds[q], tau, tops, rivals, lanes, work, found, peak)
             for j in range(last):
-                values[q, first + begin + j] = value[0, j]
-            for j in range(last if peak_angles.shape[1] else 0):
-                angle = math.atan2(peak_sines[0, q, j], peak_sines[1, q, j])
-                peak_angles[q, first + begin + j] = angle if angle >= 0.0 else angle + 2.0 * math.pi
-        if gradients.shape[0]:
-            for v in range(columns.shape[0]):
-                for j in range(LANES):
-                    stepped[columns[v], j] += complex(0.0, STEP)
-                for i in range(rows):
-                    for j in range(LANES):
-                        complex_block[i, j] = block[i, j]
-                derive(stepped, load_kind, load_datum, complex_block, columns[v])
-                for q in range(signals):
-                    _partials(kinds[q], peak_sines[0, q], peak_sines[1, q], complex_block, direction, slope)
-                    for j in range(last):
-                        gradients[q, first + begin + j, v] = slope[j]
-                for j in range(LANES):
-                    stepped[columns[v], j] = lanes[columns[v], j]
+                out.values[q, here + j] = peak.value[j]
+            for j in range(last if out.angles.shape[1] else 0):
+                angle = math.atan2(peak.sine[j], peak.cosine[j])
+                out.angles[q, here + j] = angle if angle >= 0.0 else angle + 2.0 * math.pi
+        if out.gradients.shape[0]:
+            _fill_gradients(task, lanes, raw, peaks, workspace, out.gradients[:, here : here + last])
 
 
 def screen(
@@ -336,24 +370,11 @@ def screen(
     columns, designs = numbers.columns, numbers.values
     slopes = np.empty((signals if gradients else 0, n, len(columns)))
     codes = np.array([int(kind) for kind in kinds])
+    task = Screening(codes, angles, crowd, raw, columns, loads.kind, loads.datum)
+    out = ScreenedArrays(values, peak_angles, standing, slopes)
 
     def work(begin: int, end: int) -> None:
-        # Pass whole tables: slices have another array type, for which the kernel would be compiled again.
-        _screen(
-            codes,
-            raw,
-            columns,
-            designs[begin:end],
-            loads.kind,
-            loads.datum,
-            angles,
-            crowd,
-            begin,
-            values,
-            peak_angles,
-            standing,
-            slopes,
-        )
+        _screen(task, designs[begin:end], begin, out)
 
     in_chunks(n, work, size=16 * LANES)
     return tuple(

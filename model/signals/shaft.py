@@ -147,61 +147,45 @@ class Shaft:
         Value, slope over the crank angle and, if requested, derivatives. rate: (p, v), derivatives of the angles by the
         design.
         """
-        return self._evaluate(self.kind, self.members, row, probe, angle, rate, gradients)[:2]
+        evaluated = self._evaluate(self._curve, self._items(row, probe, angle, rate), gradients)
+        return evaluated.curve, evaluated.size
 
     def outward(self, segments: Segments) -> Mask:
         """Return whether the slider of the first cylinder moves outward in the segments."""
-        probe = segments.probe
-        evaluated = self._evaluate(self.kind, self.members, segments.row, probe, probe[:, None], None, False)
-        return np.asarray(evaluated[2][:, 0] == 1)
+        items = self._items(segments.row, segments.probe, segments.probe[:, None])
+        return np.asarray(self._evaluate(self._curve, items).outward[:, 0] == 1)
 
-    def _evaluate(
-        self,
-        kind: int,
-        members: IntArray,
-        row: IntArray,
-        probe: Array,
-        angle: Array,
-        rate: Array | None,
-        gradients: bool,
-    ) -> tuple[Array, Array, IntArray]:
-        """Return curve, sizes and strokes; where all forces vanish together, those beside that angle."""
-        curve = self._run_kernel(kind, members, row, probe, angle, rate, gradients)
-        lost = np.asarray(~np.isfinite(curve[0]).all(axis=(1, 2)))
-        if lost.any():
-            nearby = angle[lost] + np.copysign(_SIDE_STEP, probe[lost, None] - angle[lost])
-            lost_rate = None if rate is None else rate[lost]
-            substitute = self._run_kernel(kind, members, row[lost], probe[lost], nearby, lost_rate, gradients)
-            is_finite = np.asarray(np.isfinite(curve[0][lost]).all(axis=2))
-            curve[0][lost] = np.where(is_finite[:, :, None], curve[0][lost], substitute[0])
-            curve[1][lost] = np.where(is_finite, curve[1][lost], substitute[1])
-        return curve
+    @property
+    def _curve(self) -> ShaftCurve:
+        return ShaftCurve(self.kind, self.members, self.vector, self.rubbing)
 
-    def _run_kernel(
-        self,
-        kind: int,
-        members: IntArray,
-        row: IntArray,
-        probe: Array,
-        angle: Array,
-        rate: Array | None,
-        gradients: bool,
-    ) -> tuple[Array, Array, IntArray]:
+    def _touch(self, member: int) -> ShaftCurve:
+        """Return the curve with the sign of the force on a cylinder's guide."""
+        return ShaftCurve(TOUCH, np.array([member]), False, self.rubbing)
+
+    def _items(self, row: IntArray, probe: Array, angle: Array, rate: Array | None = None) -> Evaluations:
         rate = np.zeros((len(row), self.numbers)) if rate is None else rate
-        items = Evaluations(
-            np.ascontiguousarray(row),
-            np.ascontiguousarray(probe),
-            np.ascontiguousarray(angle),
-            np.ascontiguousarray(rate),
-            np.ascontiguousarray(self.half(probe, row)),
-        )
-        width = 2 + (self.numbers if gradients else 0)
-        out = CurveArrays(
-            np.empty((*angle.shape, width)), np.empty(angle.shape), np.empty((len(row), len(members)), np.int64)
-        )
-        is_vector = self.vector and kind == self.kind
-        fill_curves(ShaftCurve(kind, members, is_vector, self.rubbing), self._crankshaft, items, out)
-        return out.curve, out.size, out.outward
+        return Evaluations(*map(np.ascontiguousarray, (row, probe, angle, rate, self.half(probe, row))))
+
+    def _evaluate(self, curve: ShaftCurve, items: Evaluations, gradients: bool = False) -> CurveArrays:
+        """Return a curve; where all forces vanish together, that beside that angle."""
+        evaluated = self._run_kernel(curve, items, gradients)
+        lost = np.asarray(~np.isfinite(evaluated.curve).all(axis=(1, 2)))
+        if lost.any():
+            of_lost = Evaluations(*(column[lost] for column in items))
+            nearby = of_lost.angle + np.copysign(_SIDE_STEP, of_lost.probe[:, None] - of_lost.angle)
+            substitute = self._run_kernel(curve, of_lost._replace(angle=nearby), gradients)
+            is_finite = np.asarray(np.isfinite(evaluated.curve[lost]).all(axis=2))
+            evaluated.curve[lost] = np.where(is_finite[:, :, None], evaluated.curve[lost], substitute.curve)
+            evaluated.size[lost] = np.where(is_finite, evaluated.size[lost], substitute.size)
+        return evaluated
+
+    def _run_kernel(self, curve: ShaftCurve, items: Evaluations, gradients: bool) -> CurveArrays:
+        shape = items.angle.shape
+        values = np.empty((*shape, 2 + (self.numbers if gradients else 0)))
+        out = CurveArrays(values, np.empty(shape), np.empty((len(items.row), len(curve.members)), np.int64))
+        fill_curves(curve, self._crankshaft, items, out)
+        return out
 
     @cached_property
     def breaks(self) -> Breaks:
@@ -251,15 +235,13 @@ class Shaft:
         angle = low[:, None] + width[:, None] * np.linspace(0.0, 1.0, 17)
         parts = []
         for member in self.members:
-            only_member = np.array([member])
-            value = self._evaluate(TOUCH, only_member, row, probe, angle, None, False)[0][:, :, 0]
+            touch = self._touch(member)
+            value = self._evaluate(touch, self._items(row, probe, angle)).curve[:, :, 0]
             panel, place = np.nonzero(value[:, :-1] * value[:, 1:] < 0.0)
             left, right, before = angle[panel, place], angle[panel, place + 1], value[panel, place]
             for _ in range(_HALVINGS):
                 middle = 0.5 * (left + right)
-                now = self._evaluate(TOUCH, only_member, row[panel], probe[panel], middle[:, None], None, False)[0][
-                    :, 0, 0
-                ]
+                now = self._evaluate(touch, self._items(row[panel], probe[panel], middle[:, None])).curve[:, 0, 0]
                 same = now * before > 0.0
                 left, right = np.where(same, middle, left), np.where(same, right, middle)
             zeros = np.zeros(len(panel), dtype=np.int64)
@@ -290,7 +272,7 @@ class Shaft:
             out[rows] = member_rates
         for member in self.members:
             rows = np.flatnonzero((code == CONTACT) & (breaks.member[cuts] == member))
-            at = breaks.angle[cuts[rows], None]
-            member_rates = self._evaluate(TOUCH, np.array([member]), row[rows], probe[rows], at, None, True)[0][:, 0]
+            items = self._items(row[rows], probe[rows], breaks.angle[cuts[rows], None])
+            member_rates = self._evaluate(self._touch(member), items, gradients=True).curve[:, 0]
             out[rows] = -member_rates[:, 2:] / member_rates[:, 1:2]
         return out

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array
+from ..quadrature import WEIGHTS
 
 if TYPE_CHECKING:
     from .turn import Guess, PeriodicTurn
@@ -73,7 +74,7 @@ def coasting(turn: PeriodicTurn, inertia: float, speed: float) -> Coasting:
 def cut_at_energy_minima(turn: PeriodicTurn, load: Array) -> PeriodicTurn:
     """Return the turn with panels that end where W is least; load: on the nodes, N m."""
     surplus = turn.way * (turn.mean(load) - load)
-    least = [turn.low[p] + 0.5 * (1.0 + x) * turn.width[p] for p, x, rises in turn.zeros(surplus) if rises]
+    least = [turn.low[p] + place * turn.width[p] for p, place, rises in turn.zeros(surplus) if rises]
     return turn.cut(np.array(least))
 
 
@@ -95,7 +96,7 @@ def _running(turn: PeriodicTurn, load: Array, inertia: float, speed: float) -> t
     starts, nodes = turn.integral(turn.mean(load) - load)
     least = min(float(starts.min()), float(nodes.min()))
     starts, nodes, total = starts - least, nodes - least, turn.terms.inertia + inertia
-    weights = np.abs(turn.width)[:, None] * turn.weights
+    weights = np.abs(turn.width)[:, None] * WEIGHTS
 
     def late(log: float) -> float:
         period = float(np.sum(weights * np.sqrt(0.5 * total / (math.exp(log) + nodes))))

@@ -12,6 +12,7 @@ from ..linkage.linkage import Linkage
 from ..machine.dissipation import works_over_a_turn
 from ..machine.drive import Drive, speed_range
 from ..machine.mechanism import Mechanism
+from ..quadrature import WEIGHTS
 from .balanced import balanced_speed
 from .energy_integral import coasting, cut_at_energy_minima, refine_at_energy_minima
 from .equation import TURN
@@ -175,7 +176,7 @@ def _no_motor(speed: Array) -> tuple[Array, Array]:
 def _result(turn: PeriodicTurn, profile: Profile, motor: Torque, inertia: float) -> SteadyRunning:
     cycle_angle = turn.equation.period
     time_per_angle = turn.way / np.sqrt(2.0 * profile.energy)
-    period = float(turn.width @ (time_per_angle @ turn.weights))
+    period = float(turn.width @ (time_per_angle @ WEIGHTS))
     angle, time, energy, acceleration = _points(turn, profile, time_per_angle, period)
     speed = turn.way * np.sqrt(2.0 * energy)
     torque = motor(speed)[0] + profile.added
@@ -188,7 +189,7 @@ def _result(turn: PeriodicTurn, profile: Profile, motor: Torque, inertia: float)
         motor_torque=torque,
         torque=torque - inertia * acceleration,
         mean_speed=turn.way * cycle_angle / period,
-        work=float(turn.width @ (at_nodes @ turn.weights)) * (TURN / cycle_angle),
+        work=float(turn.width @ (at_nodes @ WEIGHTS)) * (TURN / cycle_angle),
         inertia=inertia,
         memory=profile.memory,
         turns=round(cycle_angle / TURN),
@@ -207,12 +208,12 @@ def _points(turn: PeriodicTurn, profile: Profile, pace: Array, period: float) ->
     extremes = np.array(
         [
             (
-                turn.low[p] + 0.5 * (1.0 + x) * turn.width[p],
-                times[p] + turn.value_and_integral(pace, p, x)[1],
-                profile.start[p] + turn.value_and_integral(profile.rate, p, x)[1],
+                turn.low[p] + place * turn.width[p],
+                times[p] + turn.value_and_integral(pace, p, place)[1],
+                profile.start[p] + turn.value_and_integral(profile.rate, p, place)[1],
                 0.0,
             )
-            for p, x, _ in turn.zeros(profile.rate)
+            for p, place, _ in turn.zeros(profile.rate)
         ]
     ).reshape(-1, 4)
     points = np.concatenate([starts, nodes, extremes.T], axis=1)

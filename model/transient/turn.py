@@ -21,7 +21,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -29,15 +29,14 @@ from numpy.polynomial import legendre
 from ..arrays import Array, Mask
 from ..dynamics.segments import crowded, crowding, uncrowded
 from ..errors import InputError
+from ..quadrature import DEGREE, FIT, INTEGRALS, INTEGRATED, NODES, WEIGHTS, resolved_tail
 from .contacts import contacts
 from .equation import TURN, Equation, Span, Terms
 
-_NODES = 16
 _PANELS = 40
 _STEPS = 60
 _EXACT = 1e-13
-_TAIL = 3  # Legendre coefficients that show whether a panel is resolved ...
-_RESOLVED = 1e-11  # ... and their remaining size then, relative to the greatest value over the turn
+_RESOLVED = 1e-11  # greatest size of the last coefficients on a resolved panel, relative to the greatest value
 _NEGLIGIBLE = 1e-13  # error of one panel as a fraction of the integral over the turn: a smaller one is rounding
 _MOST = 4_000  # panels that halving may add: each needs a few matrices of 2 kB
 _HALVINGS = 24  # a panel of 1e-8 rad: a crank that comes to less than 1e-8 of its greatest speed stops
@@ -63,16 +62,6 @@ class Profile:
     rate: Array
     added: float
     memory: float
-
-
-@cache
-def _collocation() -> tuple[Array, Array, Array, Array, Array]:
-    """Return nodes, weights of means, and the matrices of integrals to the nodes, of series and of their integrals."""
-    nodes, weights = legendre.leggauss(_NODES)
-    series: Array = np.asarray(np.linalg.inv(legendre.legvander(nodes, _NODES - 1)), np.float64)
-    integral: Array = np.asarray(legendre.legint(np.eye(_NODES), lbnd=-1.0, axis=0) * 0.5, np.float64)
-    sums: Array = legendre.legval(nodes, integral).T @ series
-    return nodes, 0.5 * weights, sums, series, integral
 
 
 def _sum(series: Array, x: float) -> float:
@@ -102,8 +91,6 @@ class PeriodicTurn:
     ) -> None:
         self.equation, self.dimensions, self.cuts, self.contacts = equation, dimensions, cuts, contacts
         self.way = equation.direction
-        self.nodes, self.weights, self.sums, self._series, self._integral = _collocation()
-        nodes = self.nodes
         kappa = crowding(*dimensions) if equation.crowds else 1.0
         low, width, angle, terms = [], [], [], []
         self.spans: list[tuple[Span, slice]] = []
@@ -118,7 +105,7 @@ class PeriodicTurn:
                 if np.abs(ends - contact).min() > _MOVED and stretch.low < contact < stretch.high:
                     ends = np.union1d(ends, contact)
             ends = ends if self.way > 0.0 else ends[::-1]
-            at = ends[:-1, None] + np.diff(ends)[:, None] * 0.5 * (1.0 + nodes)
+            at = ends[:-1, None] + np.diff(ends)[:, None] * NODES
             low.append(ends[:-1])
             width.append(np.diff(ends))
             angle.append(at)
@@ -131,36 +118,35 @@ class PeriodicTurn:
 
     def mean(self, values: Array) -> float:
         """Return the mean over crank angle of values on the nodes."""
-        return float(np.abs(self.width) @ (values @ self.weights)) / self.equation.period
+        return float(np.abs(self.width) @ (values @ WEIGHTS)) / self.equation.period
 
     def integral(self, values: Array) -> tuple[Array, Array]:
         """Return the integral over crank angle from the start of the turn: at the panels' starts and on the nodes."""
-        panels = self.width * (values @ self.weights)
+        panels = self.width * (values @ WEIGHTS)
         starts = np.concatenate([[0.0], np.cumsum(panels)[:-1]])
-        return starts, starts[:, None] + self.width[:, None] * (values @ self.sums.T)
+        return starts, starts[:, None] + self.width[:, None] * (values @ INTEGRALS.T)
 
     def zeros(self, values: Array) -> list[tuple[int, float, bool]]:
-        """Return where values on the nodes cross zero: panel, x from -1 to 1, and whether they rise with x."""
+        """Return where values on the nodes cross zero: panel, place from 0 to 1, and whether they rise."""
         from scipy.optimize import brentq
 
         first, last = self.at_edges(values).T
-        at, known = np.concatenate([[-1.0], self.nodes, [1.0]]), np.column_stack([first, values, last])
+        at, known = np.concatenate([[-1.0], 2.0 * NODES - 1.0, [1.0]]), np.column_stack([first, values, last])
         found = []
         for p, i in np.argwhere(known[:, :-1] * known[:, 1:] < 0.0).tolist():
-            x = brentq(partial(_sum, self._series @ values[p]), at[i], at[i + 1], xtol=1e-15)
-            found.append((p, float(x), bool(known[p, i] < 0.0)))
+            x = brentq(partial(_sum, FIT @ values[p]), at[i], at[i + 1], xtol=1e-15)
+            found.append((p, 0.5 * (1.0 + float(x)), bool(known[p, i] < 0.0)))
         return found
 
     def at_edges(self, values: Array) -> Array:
         """Return values on the nodes continued to start and end of each panel, (panels, 2)."""
-        edges: Array = values @ self._series.T @ legendre.legvander([-1.0, 1.0], _NODES - 1).T
+        edges: Array = values @ FIT.T @ legendre.legvander([-1.0, 1.0], DEGREE).T
         return edges
 
-    def value_and_integral(self, values: Array, panel: int, x: float) -> tuple[float, float]:
-        """Return values within a panel, at x from -1 to 1, and their integral from its start."""
-        series = self._series @ values[panel]
-        x = float(x)
-        integral = float(self.width[panel]) * _sum(self._integral @ series, x)
+    def value_and_integral(self, values: Array, panel: int, place: float) -> tuple[float, float]:
+        """Return values within a panel, at a place from 0 to 1, and their integral from its start."""
+        series, x = FIT @ values[panel], 2.0 * float(place) - 1.0
+        integral = float(self.width[panel]) * _sum(INTEGRATED @ series, x)
         return _sum(series, x), integral
 
     def rate(self, energy: Array, motor: Torque, inertia: float) -> tuple[Array, Array]:
@@ -266,7 +252,7 @@ class PeriodicTurn:
 
             def motion(angle: float, panels: slice = panels) -> tuple[float, float]:
                 p = panels.start + int(np.searchsorted(self.way * ends[panels][:-1], self.way * angle))
-                value, gain = self.value_and_integral(rate, p, 2.0 * (angle - self.low[p]) / self.width[p] - 1.0)
+                value, gain = self.value_and_integral(rate, p, (angle - self.low[p]) / self.width[p])
                 return self.way * math.sqrt(2.0 * (start[p] + gain)), value
 
             edges = float(self.low[panels.start]), float(ends[panels.stop - 1])
@@ -286,8 +272,8 @@ class PeriodicTurn:
 
     def _rough(self, values: Array) -> Mask:
         """Return the panels (panels,) on which neither the values nor their integral are resolved."""
-        tail, size, width = np.abs(values @ self._series[-_TAIL:].T).max(axis=1), np.abs(values), np.abs(self.width)
-        negligible = tail * width <= _NEGLIGIBLE * float(width @ (size @ self.weights))
+        tail, size, width = resolved_tail(values), np.abs(values), np.abs(self.width)
+        negligible = tail * width <= _NEGLIGIBLE * float(width @ (size @ WEIGHTS))
         return np.asarray(~((tail <= _RESOLVED * size.max()) | negligible))
 
     def solve(self, motor: Torque, inertia: float, guess: Guess, *, mean_speed: float | None = None) -> Profile | None:
@@ -300,22 +286,22 @@ class PeriodicTurn:
         last = math.inf
         for _ in range(_STEPS):
             rate, by_energy, by_torque = self.rates(energy, motor, inertia, added)
-            system = np.eye(_NODES) - self.width[:, None, None] * self.sums * by_energy[:, None, :]
-            integrals = self.width[:, None] * (np.stack([rate, by_torque]) @ self.sums.T)
+            system = np.eye(DEGREE + 1) - self.width[:, None, None] * INTEGRALS * by_energy[:, None, :]
+            integrals = self.width[:, None] * (np.stack([rate, by_torque]) @ INTEGRALS.T)
             sides = np.stack([start[:, None] + integrals[0] - energy, np.ones(energy.shape), integrals[1]], axis=-1)
             moved = np.linalg.solve(system, sides)  # E on the nodes: residual, by E at the start, by the torque
-            passed = self.width[:, None] * np.einsum("n,pn,pnk->pk", self.weights, by_energy, moved)
-            jump = start + self.width * (rate @ self.weights) - np.roll(start, -1) + passed[:, 0]
-            chain = _chain(jump, 1.0 + passed[:, 1], passed[:, 2] + self.width * (by_torque @ self.weights))
+            passed = self.width[:, None] * np.einsum("n,pn,pnk->pk", WEIGHTS, by_energy, moved)
+            jump = start + self.width * (rate @ WEIGHTS) - np.roll(start, -1) + passed[:, 0]
+            chain = _chain(jump, 1.0 + passed[:, 1], passed[:, 2] + self.width * (by_torque @ WEIGHTS))
             (offset, by_start, by_added), memory = chain[-1], chain[-1][1]
             if mean_speed is None:
                 change, torque_change = (offset / (1.0 - by_start) if by_start != 1.0 else math.inf), 0.0
             else:
-                flow = np.abs(self.width)[:, None] * self.weights * (2.0 * energy) ** -1.5
+                flow = np.abs(self.width)[:, None] * WEIGHTS * (2.0 * energy) ** -1.5
                 maps = chain[:-1]
                 nodes = moved[..., 0] + moved[..., 1] * maps[:, 0, None], moved[..., 1] * maps[:, 1, None]
                 by_torque_too = moved[..., 2] + moved[..., 1] * maps[:, 2, None]
-                period = float(np.sum(np.abs(self.width)[:, None] * self.weights / np.sqrt(2.0 * energy)))
+                period = float(np.sum(np.abs(self.width)[:, None] * WEIGHTS / np.sqrt(2.0 * energy)))
                 matrix = [[1.0 - by_start, -by_added], [np.sum(flow * nodes[1]), np.sum(flow * by_torque_too)]]
                 side = [offset, period - self.equation.period / abs(mean_speed) - np.sum(flow * nodes[0])]
                 change, torque_change = (float(value) for value in np.linalg.solve(matrix, side))

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.kernel.arithmetic import analytic
-from ...model.kernel.kernel import Row, Table, kernel
+from ...model.kernel.kernel import Integers, Row, Table, kernel
 
 _STEPS = 50
 """Changes of the active set at most, for each column."""
@@ -41,6 +41,27 @@ def _reflect(mirror: Row, pivot: int, up: float, column: Row) -> None:
     column[pivot] += share * up
     for row in range(pivot + 1, len(column)):
         column[row] += share * mirror[row]
+
+
+@analytic
+def _leave(columns: Table, target: Row, order: Integers, free: int, leaving: int) -> None:
+    """Fix the column at place `leaving` of the `free` ones; rotations of pairs of rows restore the triangle."""
+    column = order[leaving]
+    for place in range(leaving + 1, free):
+        moved = order[place]
+        order[place - 1] = moved
+        head, tail = columns[moved, place - 1], columns[moved, place]
+        length = np.hypot(head, tail)
+        if length > 0.0:
+            cosine, sine = head / length, tail / length
+            for row_of_pair in range(columns.shape[0]):
+                head, tail = columns[row_of_pair, place - 1], columns[row_of_pair, place]
+                columns[row_of_pair, place - 1] = cosine * head + sine * tail
+                columns[row_of_pair, place] = cosine * tail - sine * head
+            head, tail = target[place - 1], target[place]
+            target[place - 1], target[place] = cosine * head + sine * tail, cosine * tail - sine * head
+            columns[moved, place] = 0.0
+    order[free - 1] = column
 
 
 @kernel
@@ -118,24 +139,9 @@ def _solve(columns: Table, target: Row, max_steps: int, solution: Row) -> bool:
                 column = order[place]
                 solution[column] += share * (unconstrained[place] - solution[column])
             while leaving >= 0:
-                column = order[leaving]
-                solution[column] = 0.0
-                for place in range(leaving + 1, free):
-                    moved = order[place]
-                    order[place - 1] = moved
-                    head, tail = columns[moved, place - 1], columns[moved, place]
-                    length = np.hypot(head, tail)
-                    if length > 0.0:
-                        cosine, sine = head / length, tail / length
-                        for row_of_pair in range(n):
-                            head, tail = columns[row_of_pair, place - 1], columns[row_of_pair, place]
-                            columns[row_of_pair, place - 1] = cosine * head + sine * tail
-                            columns[row_of_pair, place] = cosine * tail - sine * head
-                        head, tail = target[place - 1], target[place]
-                        target[place - 1], target[place] = cosine * head + sine * tail, cosine * tail - sine * head
-                        columns[moved, place] = 0.0
+                solution[order[leaving]] = 0.0
+                _leave(columns, target, order, free, leaving)
                 free -= 1
-                order[free] = column
                 leaving = -1
                 for place in range(free):
                     if solution[order[place]] <= 0.0:

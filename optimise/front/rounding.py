@@ -65,20 +65,7 @@ def rounding(
     if isinstance(count, bool) or not isinstance(count, Integral) or count < 1:
         raise InputError(f"count must be a whole number of 1 or more; got {count!r}")
     allowed = _allowed(part, allow or {})
-    ranges = part.ranges
-    steps = _steps(to, part)
-    moved = {name: step for name, step in steps.items() if not ranges[name].fixed}
-    all_notes = [*notes, *_stays(given, ranges, steps)]
-    discrete_rules = {item.name: item.rule for item in part.discrete if item.name in moved}
-    moved = {name: step for name, step in moved.items() if name not in discrete_rules}
-    all_notes += [
-        f"{name} has discrete values in the job, {rule}, and stays as it is" for name, rule in discrete_rules.items()
-    ]
-    if not moved:
-        raise InputError(
-            f"a step may only be given for a number that varies over a range; got {', '.join(steps)}, fixed or with "
-            "discrete values in this job; name another"
-        )
+    moved, remarks = _moved(part, given, _steps(to, part))
     search = RoundingSearch(part, given, span, moved, allowed)
     best = yield from search.best(int(count))
     return Rounded(
@@ -95,8 +82,28 @@ def rounding(
         steps_tried=search.window,
         judged=search.judged,
         feasible_count=search.feasible_count,
-        notes=tuple(all_notes),
+        notes=(*notes, *remarks),
     )
+
+
+def _moved(part: Problem, given: Array, steps: Mapping[str, float]) -> tuple[dict[str, float], list[str]]:
+    """Return the steps of numbers that vary over a range, and why others stay. Raises `InputError` if all stay."""
+    ranges = part.ranges
+    moved = {name: step for name, step in steps.items() if not ranges[name].fixed}
+    discrete_rules = {item.name: item.rule for item in part.discrete if item.name in moved}
+    moved = {name: step for name, step in moved.items() if name not in discrete_rules}
+    if not moved:
+        raise InputError(
+            f"a step may only be given for a number that varies over a range; got {', '.join(steps)}, fixed or with "
+            "discrete values in this job; name another"
+        )
+    return moved, [
+        *_stays(given, ranges, steps),
+        *(
+            f"{name} has discrete values in the job, {rule}, and stays as it is"
+            for name, rule in discrete_rules.items()
+        ),
+    ]
 
 
 def ranges_or_sizes(values: Array, reference: Array, sizes: Sequence[float]) -> Array:

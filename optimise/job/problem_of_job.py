@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from ...model.errors import InfeasibleError, InputError, JobError
+from ...model.machine.mechanism import Mechanism
+from ...model.swing.swing import Swing
 from ...objectives.formula.formulas import Formulas
 from ...objectives.motion_deviation import motion_deviations
 from ...objectives.quantity import Quantity
@@ -46,17 +48,8 @@ def problem_of(
     folder: where the modules of its functions lie. installed: quantities of packages that it names. require_feasible:
     whether `InfeasibleError` is raised if no design can meet the job; a search needs that, a given design does not.
     """
-    variables = job.variables
-    require_target(job.target_motion, job.objectives, job.constraints)
-    motion = job.motion.build()
-    chosen = {path for part in job.choice for option in part.option for path in option.paths}
-    if motion is not None:
-        require_no_speed({*variables.paths, *chosen})
-    chosen |= {path for path, stated_value in variables.paths.items() if is_choice(stated_value)}
-    require_start({path: path in chosen for path in {**variables.paths, **dict.fromkeys(chosen)}})
-    require_swing_motion(motion, job.objectives, job.constraints)
-    machine = varying_machine(job)
-    require_one_sided_starts(motion, machine.varying)
+    variables, motion = job.variables, job.motion.build()
+    machine = _machine_of(job, motion)
     amounts = amounts_of({part.name: [option.amounts for option in part.option] for part in job.choice}, job.quantity)
     custom = (
         *amounts,
@@ -120,6 +113,21 @@ def problem_of(
             raise
     require_fit(problem)
     return robustly(problem, job.robust)
+
+
+def _machine_of(job: Job, motion: Swing | None) -> Mechanism:
+    """Return the machine of a job; raise an error for a target, numbers or quantities that its motion does not take."""
+    paths = job.variables.paths
+    require_target(job.target_motion, job.objectives, job.constraints)
+    chosen = {path for part in job.choice for option in part.option for path in option.paths}
+    if motion is not None:
+        require_no_speed({*paths, *chosen})
+    chosen |= {path for path, stated_value in paths.items() if is_choice(stated_value)}
+    require_start({path: path in chosen for path in {**paths, **dict.fromkeys(chosen)}})
+    require_swing_motion(motion, job.objectives, job.constraints)
+    machine = varying_machine(job)
+    require_one_sided_starts(motion, machine.varying)
+    return machine
 
 
 def _require_shorter(problem: Problem) -> None:

@@ -23,6 +23,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.motion_law.law_turn import LawTurn
+from ...model.quadrature import NODES
 from ...model.transient.equation import TURN
 from .law_limits import LawLimits
 from .programme import Aim, Multipliers, Requirement
@@ -69,7 +70,7 @@ def _coefficients(turn: LawTurn, limits: LawLimits, multipliers: Multipliers) ->
     p is continuous. Near a limit of acceleration it changes as the limit's multipliers demand, so that K, whose range
     may be wide, has a coefficient there of almost zero.
     """
-    p, place, width = multipliers.momentum, 0.5 * (1.0 + turn.nodes), turn.width
+    p, place, width = multipliers.momentum, NODES, turn.width
     by_torque, by_energy, constant = np.zeros((3, *turn.angle.shape))
     gains = np.zeros((2, len(p)))  # of p by the limit, near the start and the end of a cell
     limit, ends = limits.acceleration(turn.terms), limits.acceleration(turn.end_terms)

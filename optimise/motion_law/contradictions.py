@@ -15,8 +15,6 @@ from .reachable import Reachable
 
 _AMPLE = 1e3  # times the greatest torque of the loads: as good as any
 _ROUNDING = 1e-9
-_NARROWING = ("least_speed", "greatest_speed", "slider_speed", "window_speed", "crank_acceleration", "torque_limit")
-"""Limits that may leave almost no law, as fields of a request."""
 
 
 def require_consistent_limits(turn: LawTurn, limits: LawLimits) -> None:
@@ -70,7 +68,7 @@ def unreachable(turn: LawTurn, limits: LawLimits) -> InputError:
                 f"a law within these limits needs a torque of at least {least:.6g} N m; {name} is "
                 f"{request.torque_limit:.6g} N m{slower}"
             )
-    narrow = [limits.name(field) for field in _NARROWING if getattr(request, field) is not None]
+    narrow = [limits.name(field) for field in request.narrowing]
     return InputError(
         "a motion law must be resolved between the limits of speed; got a machine whose kinetic energy is too small "
         "beside the work of its loads, or limits that leave almost no room; state the inertia of the motor in [drive] "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +20,7 @@ from .words import RANGE, LawObjective, Timing
 
 _EDGE = 1e-9  # rad
 _ONLY_CONSTANT = 1e-5  # share between a limit and the mean speed below which no law but constant speed is left
+_NARROWS = {"narrows": True}  # a limit that may leave almost no law
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,19 +35,26 @@ class LawRequest:
     objective: LawObjective = "peak torque"
     cycle_time: float | None = None
     timing: Timing = "equal"
-    torque_limit: float | None = None
-    least_speed: float | None = None
-    greatest_speed: float | None = None
-    slider_speed: float | None = None
+    torque_limit: float | None = field(default=None, metadata=_NARROWS)
+    least_speed: float | None = field(default=None, metadata=_NARROWS)
+    greatest_speed: float | None = field(default=None, metadata=_NARROWS)
+    slider_speed: float | None = field(default=None, metadata=_NARROWS)
     window: float | None = None
-    window_speed: float | None = None
-    crank_acceleration: float | None = None
+    window_speed: float | None = field(default=None, metadata=_NARROWS)
+    crank_acceleration: float | None = field(default=None, metadata=_NARROWS)
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
+        for item in fields(self):
+            value = getattr(self, item.name)
             if isinstance(value, int | float) and not (math.isfinite(value) and value > 0.0):
-                raise InputError(f"{field.name} of a motion law must be positive and finite; got {value:g}")
+                raise InputError(f"{item.name} of a motion law must be positive and finite; got {value:g}")
+
+    @property
+    def narrowing(self) -> list[str]:
+        """Fields with a limit that may leave almost no law."""
+        return [
+            item.name for item in fields(self) if item.metadata == _NARROWS and getattr(self, item.name) is not None
+        ]
 
 
 class AccelerationLimit(NamedTuple):

@@ -19,6 +19,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.motion_law.law_turn import LawTurn
+from ...model.quadrature import NODES
 from ...model.transient.equation import TURN
 from .law_limits import LawLimits
 
@@ -47,7 +48,7 @@ class Reachable:
         self.turn = turn
         self.low, self.high = limits.energies(turn.angle, turn.terms.inertia, turn.terms.travel)
         cell, node = np.divmod(np.arange(turn.angle.size), turn.angle.shape[1])
-        place = 0.5 * (1.0 + turn.nodes)[node]
+        place = NODES[node]
         before = np.concatenate([[0.0], np.cumsum(np.sum(turn.weights * turn.terms.load, axis=1))[:-1]])
         self.taken = before[cell] + turn.integral_of(turn.terms.load, cell, place)
         self.passed = turn.passed[cell] + place * turn.width[cell]

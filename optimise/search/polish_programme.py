@@ -62,16 +62,7 @@ class Aim(NamedTuple):
     hold: bool
 
 
-def solve_step(
-    u: Array,
-    goals: Rows,
-    limits: Rows,
-    root: Array,
-    *,
-    radius: float,
-    violation: float,
-    aim: Aim,
-) -> Step:
+def solve_step(u: Array, goals: Rows, limits: Rows, root: Array, *, radius: float, violation: float, aim: Aim) -> Step:
     """Return the step from u (k,) with one design's rows; a zero step if the programme cannot be solved.
 
     root: transposed inverse of L with B = L L', see `roots`. violation: C.
