@@ -20,8 +20,7 @@ from ..model.signals.signals import Signal
 from ..model.strength.section_forces import CRANK, ROD
 from ..model.strength.stress_cycle import CLASSES, LABEL_STEP, stress_peaks
 from ..model.strength.stress_locations import Eye, StressLocation
-from .quantity import Array, Group, Pieces, Quantity, Values, fact, undefined
-from .quantity import Formula as Formula
+from .quantity import Array, Formula, Group, Pieces, Quantity, Values, fact, undefined
 
 
 class Link(NamedTuple):
@@ -47,6 +46,11 @@ FORCE = {
     "crank_pin": Signal.CRANK_PIN_FORCE,
     "slider_pin": Signal.SLIDER_PIN_FORCE,
 }
+
+
+Criteria = tuple[tuple[float, float], ...]
+STATIC: Criteria = ((1.0, 0.0), (0.0, 1.0))
+"""Greatest tension and greatest compression."""
 
 
 class Part(NamedTuple):
@@ -137,6 +141,53 @@ class OfBars(Quantity):
         )
 
 
+class Demand(NamedTuple):
+    """A greatest stress at a location or force of a pin, and the section that bears it.
+
+    section: formula of an area or a width, None for 1. scale: see `BarPeak`. eye: link and pin, of an eye.
+    """
+
+    peak: StressLocation | str
+    section: Formula | None
+    scale: float = 1.0
+    eye: tuple[str, str] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class BarPeak(OfBars):
+    """The greatest of scale peak / section or, if `least`, the least of scale section / peak over its demands."""
+
+    @abstractmethod
+    def demands(self, mechanism: Mechanism) -> list[Demand]:
+        """Return what loads the bars."""
+
+    def criteria(self, mechanism: Mechanism) -> Criteria:
+        """Return p and q of the greatest p sigma - q sigma: by default greatest tension and greatest compression."""
+        return STATIC
+
+    def locations(self, mechanism: Mechanism) -> tuple[StressLocation, ...]:
+        """Return the locations whose stresses are searched together."""
+        return tuple(demand.peak for demand in self.demands(mechanism) if not isinstance(demand.peak, str))
+
+    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
+        """Return a part for each demand; see `OfBars`."""
+        locations = self.locations(mechanism)
+        found: dict[StressLocation | str, Part] = {}
+        if locations:
+            searched = stresses(mechanism, designs, locations, self.criteria(mechanism), piece_count, gradients)
+            found.update(zip(locations, searched, strict=True))
+        parts = []
+        for peak, section, scale, _ in self.demands(mechanism):
+            part = pin_force(mechanism, designs, peak, piece_count, gradients) if isinstance(peak, str) else found[peak]
+            size = (
+                (np.ones(len(designs)), np.zeros(designs.shape) if gradients else None)
+                if section is None
+                else formula_of_numbers(mechanism, designs, section, gradients=gradients)
+            )
+            parts.append(part.dividing(_scaled(size, scale)) if self.least else force_over_area(part, size, scale))
+        return parts
+
+
 def strength_of(mechanism: Mechanism) -> Strength:
     """Return material and pins of a machine that has them."""
     assert mechanism.strength is not None
@@ -148,7 +199,7 @@ def stresses(
     mechanism: Mechanism,
     designs: Array,
     places: tuple[StressLocation, ...],
-    criteria: tuple[tuple[float, float], ...],
+    criteria: Criteria,
     piece_count: int,
     gradients: bool,
 ) -> list[Part]:
@@ -175,15 +226,9 @@ def eyes_of(link: str, pin: str) -> list[Eye]:
     return [Eye(sizes.part, pin != NEAR, sizes.width, PINS[pin], bent, outer) for outer in edges]
 
 
-def stress_divisor(
-    mechanism: Mechanism, designs: Array, place: StressLocation, gradients: bool
-) -> tuple[Array, Array | None]:
-    """Return the divisor of the stress at a place: w - D in an eye, m; 1 along a link."""
-    if not isinstance(place, Eye):
-        return constant(1.0, designs, gradients)
-    return formula_of_numbers(
-        mechanism, designs, lambda number: number(place.width) - number(place.pin), gradients=gradients
-    )
+def net_width(eye: Eye) -> Formula:
+    """Return the formula of the net width of an eye, w - D, m."""
+    return lambda number: number(eye.width) - number(eye.pin)
 
 
 def net_section(link: str, pin: str) -> Formula:
@@ -192,9 +237,9 @@ def net_section(link: str, pin: str) -> Formula:
     return lambda number: (number(sizes.width) - number(PINS[pin])) * number(sizes.depth)
 
 
-def constant(value: float, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
-    """Return a number as a closed form of designs (n, 3 + k)."""
-    return np.full(len(designs), value), np.zeros(designs.shape) if gradients else None
+def _scaled(factor: tuple[Array, Array | None], scale: float) -> tuple[Array, Array | None]:
+    values, slopes = factor
+    return scale * values, None if slopes is None else scale * slopes
 
 
 def force_over_area(force: Part, area: tuple[Array, Array | None], factor: float = 1.0) -> Part:

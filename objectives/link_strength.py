@@ -3,76 +3,49 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 
+from ..model.kernel.arithmetic import magnitude
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.numbers import formula_of_numbers
 from ..model.strength.stress_cycle import stress_peaks
-from ..model.strength.stress_locations import LinkBody, StressLocation
-from .bars import (
-    LINKS,
-    NEAR,
-    Formula,
-    OfBars,
-    Part,
-    eyes_of,
-    force_over_area,
-    net_section,
-    pin_force,
-    strength_of,
-    stress_divisor,
-    stresses,
-)
+from ..model.strength.stress_locations import Eye, LinkBody, StressLocation
+from .bars import LINKS, NEAR, STATIC, BarPeak, Criteria, Demand, eyes_of, net_section, net_width, strength_of
 from .kinds import PRESSURE, RATIO
 from .machine_needs import A_BAR, CRANK_BAR, EVEN_SPEED, LOADED, ONE_TURN, ROD_BAR, STRENGTH
-from .quantity import Array
+from .quantity import Array, Formula
 
-STATIC = ((1.0, 0.0), (0.0, 1.0))
-"""Greatest tension and greatest compression."""
-_COMPRESSION = ((0.0, 1.0),)
 CRANK = "crank"
 
 
-class LinkStress(OfBars):
+class LinkStress(BarPeak):
     """The greatest stress along links and in the net sections of their eyes, or the yield strength divided by it."""
 
-    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
-        """Return the stresses along the bars and in their eyes; see `OfBars`."""
-        return [part for _, _, part in self.reported_parts(mechanism, designs, piece_count, gradients)]
+    def locations(self, mechanism: Mechanism) -> tuple[StressLocation, ...]:
+        """Return those of both links, whichever is asked for."""
+        return tuple(location for _, location in _locations(mechanism))
 
-    def reported_parts(
-        self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool
-    ) -> Iterator[tuple[str, str, Part]]:
-        """Yield link, pin ("" along the link) and part, in the order of `parts`; an eye may have several."""
-        strength = strength_of(mechanism)
-        yield_strength = strength.material.yield_strength
-        bars = self.bars(mechanism)
-        places = _places(mechanism)  # of both links at once, whichever is asked for
-        peak_stresses = stresses(
-            mechanism, designs, tuple(place for *_, place in places), STATIC, piece_count, gradients
-        )
-        for (name, pin, place), part in zip(places, peak_stresses, strict=True):
-            if name not in bars:
-                continue
-            divisor = stress_divisor(mechanism, designs, place, gradients)
-            yield (
-                name,
-                pin,
-                part.dividing(_scaled(divisor, yield_strength)) if self.least else force_over_area(part, divisor),
-            )
-        for name in bars:
-            for pin in (NEAR, LINKS[name].far):
-                force = pin_force(mechanism, designs, pin, piece_count, gradients)
-                area = formula_of_numbers(mechanism, designs, net_section(name, pin), gradients=gradients)
-                if self.least:
-                    yield name, pin, force.dividing(_scaled(area, yield_strength / strength.eye_concentration))
-                else:
-                    yield name, pin, force_over_area(force, area, strength.eye_concentration)
+    def demands(self, mechanism: Mechanism) -> list[Demand]:
+        """Return the stress along the bars and in the eye at the pivot, and the force on all eyes; see `BarPeak`."""
+        strength, bars = strength_of(mechanism), self.bars(mechanism)
+        limit = strength.material.yield_strength if self.least else 1.0
+        raised = strength.eye_concentration
+        pivot = CRANK, LINKS[CRANK].far
+        bent = [
+            Demand(location, net_width(location), limit, pivot)
+            if isinstance(location, Eye)
+            else Demand(location, None, limit)
+            for name, location in _locations(mechanism)
+            if name in bars
+        ]
+        return bent + [
+            Demand(pin, net_section(name, pin), limit / raised if self.least else raised, (name, pin))
+            for name in bars
+            for pin in (NEAR, LINKS[name].far)
+        ]
 
 
 def eye_stresses(mechanism: Mechanism, design: Array) -> dict[str, dict[str, tuple[float, float]]]:
@@ -83,13 +56,17 @@ def eye_stresses(mechanism: Mechanism, design: Array) -> dict[str, dict[str, tup
     The angle is NaN where the stress is not finite.
     """
     stresses_by_link: dict[str, dict[str, tuple[float, float]]] = {}
-    angles = iter([_angle_of(mechanism, place, design) for _, pin, place in _places(mechanism) if pin])
-    for name, pin, part in replace(ROD_STRESS, links=tuple(LINKS)).reported_parts(mechanism, design, 1, False):
-        if pin:  # those that are bent come first; the label of a force is its angle
-            value, angle = float(part.values[0, 0]), next(angles, float(part.labels[0, 0]))
-            stress = (value, angle if math.isfinite(value) else math.nan)
-            eyes = stresses_by_link.setdefault(name, {})
-            eyes[pin] = max(eyes.get(pin, stress), stress, key=lambda one: one[0])
+    quantity = replace(ROD_STRESS, links=tuple(LINKS))
+    for demand, part in zip(quantity.demands(mechanism), quantity.parts(mechanism, design, 1, False), strict=True):
+        if demand.eye is None:
+            continue
+        name, pin = demand.eye
+        value = float(part.values[0, 0])
+        # The label of a force is its angle.
+        angle = _angle_of(mechanism, demand.peak, design) if isinstance(demand.peak, Eye) else float(part.labels[0, 0])
+        stress = (value, angle if math.isfinite(value) else math.nan)
+        eyes = stresses_by_link.setdefault(name, {})
+        eyes[pin] = max(eyes.get(pin, stress), stress, key=lambda one: one[0])
     return stresses_by_link
 
 
@@ -102,70 +79,69 @@ def _angle_of(mechanism: Mechanism, place: StressLocation, design: Array) -> flo
     return max(ends)[1]
 
 
-def _places(mechanism: Mechanism) -> list[tuple[str, str, StressLocation]]:
-    """Return the places with stress over a whole section: along the bars, and in the eye at the pivot."""
+def _locations(mechanism: Mechanism) -> list[tuple[str, StressLocation]]:
+    """Return links and locations with stress over a whole section: along the bars, and in the eye at the pivot."""
     bars, pivot = STATIC_SAFETY.bars(mechanism), LINKS[CRANK].far
-    places: list[tuple[str, str, StressLocation]] = [(name, "", LinkBody(LINKS[name].part)) for name in bars]
-    return places + [(CRANK, pivot, eye) for eye in (eyes_of(CRANK, pivot) if CRANK in bars else [])]
+    bodies: list[tuple[str, StressLocation]] = [(name, LinkBody(LINKS[name].part)) for name in bars]
+    return bodies + [(CRANK, eye) for eye in (eyes_of(CRANK, pivot) if CRANK in bars else [])]
 
 
-def _scaled(factor: tuple[Array, Array | None], scale: float) -> tuple[Array, Array | None]:
-    values, slopes = factor
-    return scale * values, None if slopes is None else scale * slopes
-
-
-class FatigueSafety(OfBars):
+class FatigueSafety(BarPeak):
     """Least 1 / (amplitude / S_e + mean / S_m) over all points of the bars and their eyes."""
 
-    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
-        """Return the safety of each bar and of each eye; see `OfBars`."""
+    def criteria(self, mechanism: Mechanism) -> Criteria:
+        """Return those of amplitude and mean in terms of greatest and least stress, and of the amplitude alone."""
         strength = strength_of(mechanism)
         worn, steady = 0.5 / strength.material.endurance, 0.5 / strength.steady
-        # Of amplitude and mean in terms of greatest and least stress; and of the amplitude alone.
-        criteria = ((worn + steady, worn - steady), (worn, worn))
+        return ((worn + steady, worn - steady), (worn, worn))
+
+    def demands(self, mechanism: Mechanism) -> list[Demand]:
+        """Return the stress of each bar and of each eye; see `BarPeak`."""
         bars = self.bars(mechanism)
         eyes = [eye for name in bars for pin in (NEAR, LINKS[name].far) for eye in eyes_of(name, pin)]
-        places: tuple[StressLocation, ...] = (*(LinkBody(LINKS[name].part) for name in bars), *eyes)
-        peak_stresses = stresses(mechanism, designs, places, criteria, piece_count, gradients)
-        return [
-            part.dividing(stress_divisor(mechanism, designs, place, gradients))
-            for place, part in zip(places, peak_stresses, strict=True)
-        ]
+        bodies = [Demand(LinkBody(LINKS[name].part), None) for name in bars]
+        return [*bodies, *(Demand(eye, net_width(eye)) for eye in eyes)]
 
 
-class BucklingSafety(OfBars):
+class BucklingSafety(BarPeak):
     """Critical stress divided by the greatest compression, least value over bars and planes."""
 
-    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
-        """Return the safety of each bar in the plane of motion and out of it; see `OfBars`."""
+    def criteria(self, mechanism: Mechanism) -> Criteria:
+        """Return that of the greatest compression."""
+        return ((0.0, 1.0),)
+
+    def locations(self, mechanism: Mechanism) -> tuple[StressLocation, ...]:
+        """Return each bar, which both planes share."""
+        return tuple(LinkBody(LINKS[name].part, bent=False) for name in self.bars(mechanism))
+
+    def demands(self, mechanism: Mechanism) -> list[Demand]:
+        """Return the compression of each bar in the plane of motion and out of it; see `BarPeak`."""
         material = strength_of(mechanism).material
-        safeties = []
-        bars = [LINKS[name] for name in self.bars(mechanism)]
-        places = tuple(LinkBody(own.part, bent=False) for own in bars)
-        squeezed = stresses(mechanism, designs, places, _COMPRESSION, piece_count, gradients)
-        for own, pressed in zip(bars, squeezed, strict=True):
-            for side in (own.width, own.depth):
-                critical = critical_stress(
-                    own.length, side, own.end_condition, material.elasticity, material.yield_strength
-                )
-                safeties.append(pressed.dividing(formula_of_numbers(mechanism, designs, critical, gradients=gradients)))
-        return safeties
+        return [
+            Demand(
+                LinkBody(own.part, bent=False),
+                critical_stress(own.length, side, own.end_condition, material.elasticity, material.yield_strength),
+            )
+            for own in (LINKS[name] for name in self.bars(mechanism))
+            for side in (own.width, own.depth)
+        ]
 
 
 def critical_stress(length: int, side: int, end_condition: float, elasticity: float, strength: float) -> Formula:
     """Return the formula of the mean stress at which a bar of rectangular section buckles, Pa.
 
-    With the slenderness s = L sqrt(12) / side: Euler's C pi^2 E / s^2 beyond s_1 = sqrt(2 pi^2 C E / S_y), Johnson's
-    parabola S_y - (S_y s / 2 pi)^2 / (C E) up to it; value and slope agree there, at S_y / 2. length, side: slots of
-    the raw numbers. end_condition: the end condition C.
+    With the slenderness s = L sqrt(12) / side and s_1 = sqrt(2 pi^2 C E / S_y): Euler's C pi^2 E / s^2 beyond s_1,
+    Johnson's parabola S_y - (S_y s / 2 pi)^2 / (C E) up to it; value and slope agree there, at S_y / 2. So it is
+    C pi^2 E / max(s, s_1)^2 plus the rise of the parabola from s_1 to min(s, s_1). length, side: slots of the raw
+    numbers. end_condition: the end condition C.
     """
-    limit = math.sqrt(2.0 * math.pi**2 * end_condition * elasticity / strength)
+    euler = end_condition * math.pi**2 * elasticity
+    limit = 2.0 * euler / strength
 
     def formula(number: Any) -> Any:
-        slender = number(length) * math.sqrt(12.0) / number(side)
-        euler = end_condition * math.pi**2 * elasticity / slender**2
-        johnson = strength - (strength * slender / (2.0 * math.pi)) ** 2 / (end_condition * elasticity)
-        return np.where(np.real(slender) > limit, euler, johnson)
+        square = (number(length) * math.sqrt(12.0) / number(side)) ** 2
+        beyond = 0.5 * (square - limit + magnitude(square - limit))
+        return euler / (limit + beyond) + (strength**2 / (4.0 * euler)) * (limit + beyond - square)
 
     return formula
 

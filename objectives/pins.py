@@ -16,28 +16,24 @@ from ..model.machine.numbers import PINS, formula_of_numbers
 from ..model.machine.raw import Raw
 from ..model.machine.two_turns import cycle_turns
 from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, SLIDER_PIN, turn_work
-from .bars import LINKS, NEAR, Formula, OfBars, Part, force_over_area, pin_force, strength_of
+from .bars import LINKS, NEAR, BarPeak, Demand, OfBars, Part, strength_of
 from .kinds import LENGTH, PRESSURE, PRESSURE_SPEED
 from .machine_needs import A_BAR, CRANK_BAR, EVEN_SPEED, LOADED, PIVOT_LOADED, ROD_BAR, SPEED, STRENGTH, WEARS, Need
-from .quantity import Array
+from .quantity import Array, Formula
 
 _CYCLES = 1e6
 _RUBS = {"crank_pivot": CRANK_PIVOT, "crank_pin": CRANK_PIN, "slider_pin": SLIDER_PIN}
 
 
 @dataclass(frozen=True, kw_only=True)
-class PinPressure(OfBars):
+class PinPressure(BarPeak):
     """The greatest pressure of a pin on the projected area D d of its bearing in a bar."""
 
     pin: str
 
-    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
-        """Return the pressure in each bar that bears on the pin; see `OfBars`."""
-        force = pin_force(mechanism, designs, self.pin, piece_count, gradients)
-        areas = [projected(self.pin, name) for name in self.bars(mechanism)]
-        return [
-            force_over_area(force, formula_of_numbers(mechanism, designs, area, gradients=gradients)) for area in areas
-        ]
+    def demands(self, mechanism: Mechanism) -> list[Demand]:
+        """Return the force on each bar that bears on the pin; see `BarPeak`."""
+        return [Demand(self.pin, projected(self.pin, name)) for name in self.bars(mechanism)]
 
     def allowable(self, mechanism: Mechanism) -> float:
         """Return the bearing pressure of the material, Pa."""
@@ -45,19 +41,14 @@ class PinPressure(OfBars):
 
 
 @dataclass(frozen=True, kw_only=True)
-class PinShear(OfBars):
+class PinShear(BarPeak):
     """The greatest mean shear stress of a pin in single shear."""
 
     pin: str
 
-    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
-        """Return the stress; see `OfBars`."""
-        slot = PINS[self.pin]
-        force = pin_force(mechanism, designs, self.pin, piece_count, gradients)
-        area = formula_of_numbers(
-            mechanism, designs, lambda number: 0.25 * math.pi * number(slot) ** 2, gradients=gradients
-        )
-        return [force_over_area(force, area)]
+    def demands(self, mechanism: Mechanism) -> list[Demand]:
+        """Return the force on the pin; see `BarPeak`."""
+        return [Demand(self.pin, lambda number: 0.25 * math.pi * number(PINS[self.pin]) ** 2)]
 
     def allowable(self, mechanism: Mechanism) -> float:
         """Return the shear yield strength by distortion energy, S_y / sqrt(3), Pa; pins have the bars' material.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +16,7 @@ from ..model.machine.numbers import formula_of_numbers, require_width
 from ..model.machine.raw import Raw
 from .kinds import RATIO, TIME
 from .machine_needs import ONE_TIMING, REPEATS, SPEED
-from .quantity import Array, Group, Pieces, Quantity, Values, undefined
+from .quantity import Array, Formula, Group, Pieces, Quantity, Values, undefined
 
 _SECTION = "2. Closed forms"
 _NEEDS = (SPEED, REPEATS, ONE_TIMING)
@@ -53,20 +53,35 @@ class StrokeTime(Quantity):
 
     outward: bool
 
+    def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
+        """Return the formula at constant speed; see `Quantity`."""
+        return _even_formulas(mechanism, self._angle, _per_speed(mechanism))
+
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         dimensions = np.asarray(dimensions, dtype=np.float64)
         if self.undefined_because([mechanism]):
             return undefined(dimensions, gradients)
+        angles = Values(*evaluate_stroke_times(mechanism, dimensions, self._angle, gradients))
+        per_speed = formula_of_numbers(mechanism, dimensions, _per_speed(mechanism), gradients=gradients)
+        return angles.times(Values(*per_speed))
 
-        def angle(times: ScaledStrokeTimes) -> Any:
-            return times.outward if self.outward else times.inward
+    def _angle(self, times: ScaledStrokeTimes) -> Any:
+        return times.outward if self.outward else times.inward
 
-        def per_speed(number: Callable[[int], Any]) -> Any:
-            return 1.0 / (mechanism.direction * number(Raw.SPEED))
 
-        angles = Values(*evaluate_stroke_times(mechanism, dimensions, angle, gradients))
-        return angles.times(Values(*formula_of_numbers(mechanism, dimensions, per_speed, gradients=gradients)))
+def _per_speed(mechanism: Mechanism) -> Formula:
+    return lambda number: 1.0 / (mechanism.direction * number(Raw.SPEED))
+
+
+def _even_formulas(
+    mechanism: Mechanism, function: Callable[[ScaledStrokeTimes], Any], factor: Formula = lambda number: 1.0
+) -> Sequence[Formula]:
+    """Return a function of stroke times, times a factor, as a formula of a machine's numbers; none along a profile."""
+    if mechanism.speed_profile is not None:
+        return ()
+    slots = (Raw.CRANK, Raw.ROD, Raw.OFFSET)
+    return [lambda number: function(scaled_stroke_times(mechanism, *map(number, slots))) * factor(number)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,6 +99,10 @@ class StrokeTimeRatio(Quantity):
         """True."""
         return True
 
+    def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
+        """Return the formula at constant speed; see `Quantity`."""
+        return _even_formulas(mechanism, self._ratio)
+
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         values, slopes = self._cylinder_ratios(mechanism, dimensions, gradients)
@@ -99,14 +118,13 @@ class StrokeTimeRatio(Quantity):
 
     def _cylinder_ratios(self, mechanism: Mechanism, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
         """Return the ratios (c, n) of the cylinders that differ, and their derivatives (c, n, 3 + k)."""
-
-        def ratio(times: ScaledStrokeTimes) -> Any:
-            return times.outward / times.inward if self.outward else times.inward / times.outward
-
         count = 1 if mechanism.speed_profile is None else cylinder_count(mechanism)
-        parts = [evaluate_stroke_times(mechanism, designs, ratio, gradients, cylinder=k) for k in range(count)]
+        parts = [evaluate_stroke_times(mechanism, designs, self._ratio, gradients, cylinder=k) for k in range(count)]
         slopes = [ratio_slopes for _, ratio_slopes in parts if ratio_slopes is not None]
         return np.stack([values for values, _ in parts]), np.stack(slopes) if slopes else None
+
+    def _ratio(self, times: ScaledStrokeTimes) -> Any:
+        return times.outward / times.inward if self.outward else times.inward / times.outward
 
 
 OUTWARD_STROKE_TIME = StrokeTime(

@@ -51,6 +51,8 @@ class Eye(NamedTuple):
 
 
 StressLocation = LinkBody | Eye
+Formula = Callable[[Callable[[int], Any]], Any]
+"""A number by the raw numbers of a machine."""
 
 
 @dataclass(frozen=True)
@@ -185,8 +187,8 @@ def stress_at_locations(
     return StressLocations(field, tuple(places), samples, factors, rates)
 
 
-def _factors(mechanism: Mechanism, designs: Array, eye: Eye) -> tuple[Array, Array]:
-    """Return the factors of axial stress and bending of the whole section, (n, 2), and their derivatives."""
+def eye_factors(mechanism: Mechanism, eye: Eye) -> tuple[Formula, Formula]:
+    """Return the formulas of the factors of axial stress and bending of the whole section."""
     assert mechanism.strength is not None
     raised = mechanism.strength.eye_concentration
 
@@ -197,7 +199,12 @@ def _factors(mechanism: Mechanism, designs: Array, eye: Eye) -> tuple[Array, Arr
         w, hole = number(eye.width), number(eye.pin)
         return (w if eye.outer else min(raised, 2.0) * hole) * w**2 / (w**2 + w * hole + hole**2)
 
+    return axial, bending
+
+
+def _factors(mechanism: Mechanism, designs: Array, eye: Eye) -> tuple[Array, Array]:
+    """Return the factors of axial stress and bending of the whole section, (n, 2), and their derivatives."""
     factors, rates = np.empty((len(designs), 2)), np.empty((*designs.shape, 2))
-    for number, formula in enumerate((axial, bending)):
+    for number, formula in enumerate(eye_factors(mechanism, eye)):
         factors[:, number], rates[:, :, number] = formula_of_numbers(mechanism, designs, formula, gradients=True)
     return factors, rates

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TypeGuard
 
 from ...model.swing.swing_states import ERROR
+from ...objectives.bars import BarPeak
 from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.cycle_peak import CyclePeak
 from ...objectives.quantity import Quantity
@@ -28,7 +29,7 @@ def _unbounded(problem: Problem, objective: Objective) -> str:
     quantity, mechanism = problem.quantity(objective.quantity), problem.mechanism
     if quantity.formulas(mechanism) or is_swing_form(quantity):
         return ""
-    if not isinstance(quantity, CyclePeak | SwingPeak | SwingLeast | SwingForm):
+    if not isinstance(quantity, BarPeak | CyclePeak | SwingPeak | SwingLeast | SwingForm):
         profile = " along a speed profile" if isinstance(quantity, ClosedFormQuantity) else ""
         return f"{quantity.title}{profile} has no bound over a range of designs"
     has_forces = _has_forces(quantity)
@@ -36,7 +37,7 @@ def _unbounded(problem: Problem, objective: Objective) -> str:
         return f"{quantity.title} has no bound over a range of designs with friction"
     if has_forces and (load := unbounded_load(mechanism)):
         return f"{quantity.title} has no bound over a range of designs: {load}"
-    least = isinstance(quantity, SwingLeast | SwingForm)
+    least = isinstance(quantity, SwingLeast | SwingForm) or (isinstance(quantity, BarPeak) and quantity.least)
     if objective.sense != ("maximise" if least else "minimise"):
         side, sense = ("an upper", "maximised") if least else ("a lower", "minimised")
         return f"{quantity.title} only has {side} bound, so it can only be certified if it is {sense}"
@@ -51,15 +52,23 @@ def is_swing_form(quantity: Quantity) -> TypeGuard[SwingForm]:
 def _has_forces(quantity: Quantity) -> bool:
     if isinstance(quantity, CyclePeak):
         return quantity.signal.needs_forces
-    return isinstance(quantity, SwingLeast) or (isinstance(quantity, SwingPeak) and quantity.state != ERROR)
+    return isinstance(quantity, BarPeak | SwingLeast) or (isinstance(quantity, SwingPeak) and quantity.state != ERROR)
 
 
 def is_usable(problem: Problem, constraint: Constraint) -> bool:
     """Whether a constraint helps to rule out boxes; one that does not still holds for every design that is counted."""
-    if problem.quantity(constraint.quantity).formulas(problem.mechanism):
-        return True
-    sides: tuple[tuple[float | None, Sense], ...] = ((constraint.upper, "minimise"), (constraint.lower, "maximise"))
-    return any(
-        bound is not None and not unbounded_reason(problem, Objective(quantity=constraint.quantity, sense=sense))
-        for bound, sense in sides
+    stated = [bound for bound in (constraint.lower, constraint.upper) if bound is not None]
+    return len(ignored_sides(problem, constraint)) < len(stated)
+
+
+def ignored_sides(problem: Problem, constraint: Constraint) -> list[str]:
+    """Return in words which sides of a constraint do not rule out boxes."""
+    sides: tuple[tuple[str, float | None, Sense], ...] = (
+        ("minimum", constraint.lower, "maximise"),
+        ("maximum", constraint.upper, "minimise"),
     )
+    return [
+        word
+        for word, bound, sense in sides
+        if bound is not None and unbounded_reason(problem, Objective(quantity=constraint.quantity, sense=sense))
+    ]

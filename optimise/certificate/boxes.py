@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import reduce
-from typing import Any
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from ...model.errors import InputError
 from ...model.kernel.arithmetic import magnitude
 from ...model.kinematics.closed_forms import closed_form
 from ...model.linkage.dimensions import DIMENSIONS
-from ...model.machine.numbers import nominal_number
+from ...objectives.bars import BarPeak
 from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.cycle_peak import CyclePeak
 from ...objectives.swing_quantity import SwingForm, SwingLeast, SwingPeak
@@ -26,11 +26,13 @@ from ..search.candidates import Table
 from ..search.evaluation import Evaluator
 from .boundable import is_swing_form, is_usable, unbounded_reason
 from .cycle import CycleCurve, machines_of
+from .demands import DemandCurve, demand_curves
 from .enclosure import Enclosure, coordinate, side_by_side
 from .limits import Limits
-from .machine import Numbers, numbers_over_boxes
+from .machine import Numbers, numbers_over_boxes, raw_number
 from .swing import SwingBoxes, SwingCurve, swing_form
 
+Curve = CycleCurve | SwingCurve | DemandCurve
 _ROUNDED = 1e-9  # relative: more than a closed form may be off where a linkage is close to locking
 _SLACK = 1e-6  # relative, by how much computed dimensions may miss their range here: more than requirements may
 
@@ -79,11 +81,14 @@ class Boxes:
         self.curves = {name: curves for name in names if (curves := self._curves_of(name))}
         self.swing = None if problem.motion is None else SwingBoxes(self.mechanism, problem.motion, slow=True)
 
-    def _curves_of(self, name: str) -> list[CycleCurve | SwingCurve]:
+    def _curves_of(self, name: str) -> Sequence[Curve]:
         """Return the curves of which a quantity is the greatest or the least value; none of a closed form."""
         quantity = self.problem.quantity(name)
         if isinstance(quantity, CyclePeak):
-            return [CycleCurve(machine, quantity) for machine in machines_of(self.mechanism, quantity.signal)]
+            machines = machines_of(self.mechanism, quantity.signal)
+            return [CycleCurve(machine, quantity.signal, during=quantity.during) for machine in machines]
+        if isinstance(quantity, BarPeak):
+            return demand_curves(self.mechanism, quantity)
         if isinstance(quantity, SwingPeak | SwingLeast | SwingForm) and not is_swing_form(quantity):
             return [SwingCurve(self.mechanism, quantity)]
         return []
@@ -170,10 +175,7 @@ class Boxes:
         if is_swing_form(quantity):
             return swing_form(self.mechanism, quantity, numbers), None, None
         r, l, e = (numbers[slot] for slot in range(3))
-
-        def number(slot: int) -> Any:
-            return numbers[slot] if slot in numbers else nominal_number(self.mechanism, slot)
-
+        number = raw_number(self.mechanism, numbers)
         forms = [formula(number) for formula in quantity.formulas(self.mechanism)]
         value = reduce(side_by_side, [form if isinstance(form, Enclosure) else 0.0 * r + form for form in forms])
         greatest = value.ends()[1].max(axis=1)
@@ -202,7 +204,7 @@ class Boxes:
         moves = moving(self.mechanism, self.problem.motion, middle)
         places_by_name = {}
         for name, curves in self.curves.items():
-            places_by_name[name] = [np.full(len(rows), curve.anywhere) for curve in curves]
+            places_by_name[name] = [np.tile(curve.anywhere, (len(rows), 1)) for curve in curves]
             for places, curve in zip(places_by_name[name], curves, strict=True):
                 if moves.any():
                     places[moves] = curve.places(middle[moves])
@@ -215,9 +217,7 @@ def _curve_bound(value: Enclosure, low: Array, high: Array, *, least: bool) -> A
     return np.asarray(-highest.min(axis=1) if least else lowest.max(axis=1))
 
 
-def _enclose_curves(
-    curves: list[CycleCurve | SwingCurve], part: Numbers, places: list[Array], middle: Array
-) -> Enclosure:
+def _enclose_curves(curves: Sequence[Curve], part: Numbers, places: list[Array], middle: Array) -> Enclosure:
     """Return the curves of a quantity side by side, of which the greatest or least bounds its own."""
     enclosures = [curve.enclose(part, at, middle) for curve, at in zip(curves, places, strict=True)]
     return reduce(side_by_side, enclosures)

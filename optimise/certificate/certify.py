@@ -21,12 +21,16 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ...model.arrays import Array
+from ...model.arrays import Array, IntArray
 from ...model.errors import InputError
+from ..discrete.combinations import Axes, with_values
 from ..problem.problem import Problem
 from .certificate import Certificate, Step
 from .defaults import EPSILON, SECONDS
 from .search import Search
+
+MOST_COMBINATIONS = 1_000
+"""Combinations of listed values, each of which has boxes of its own."""
 
 
 def certify_designs(
@@ -44,15 +48,10 @@ def certify_designs(
     dimensions: (n, 3 + v), crank, rod, offset, m, and the extra variables, SI, of designs that meet the job's
     requirements. variants: the variant of each in a problem with choices. epsilon: requested epsilon, a fraction of the
     objectives' ranges over these designs. seconds: time limit, s; returns what is proven so far. progress: called
-    between rounds. cancelled: called between rounds. Raises `InputError` without designs, for variables with a list of
-    values, and for objectives that cannot be bounded over a range of designs (`boundable.unbounded_reason`).
+    between rounds. cancelled: called between rounds. Each combination of listed values is a variant of its own. Raises
+    `InputError` without designs, for too many combinations, and for objectives that cannot be bounded over a range of
+    designs (`boundable.unbounded_reason`).
     """
-    if problem.discrete:
-        listed = ", ".join(f"the values of {item.name}" for item in problem.discrete)
-        raise InputError(
-            f"a certificate is about ranges of variables; got {listed}, which are listed; give ranges in the job and "
-            "certify that"
-        )
     if not len(dimensions):
         raise InputError("a certificate needs a front with designs; this one is empty; its message says why")
     if not 0.0 < epsilon < 1.0:
@@ -60,6 +59,24 @@ def certify_designs(
     if not seconds > 0.0:
         raise InputError(f"the budget must be longer than zero; got {seconds:g} s")
     chosen = np.array(variants if len(variants) else [0] * len(dimensions), dtype=np.int64)
+    if problem.discrete:
+        problem, chosen = _enumerated(problem, chosen)
     search = Search(problem, dimensions, chosen, epsilon, seconds, cancelled)
     search.run(progress)
     return search.certificate()
+
+
+def _enumerated(problem: Problem, variants: IntArray) -> tuple[Problem, IntArray]:
+    """Return a problem with a variant for each combination of listed values, and variants for designs of the old ones.
+
+    A design's variant is any combination of its choices: its values come from the design itself.
+    """
+    axes = [Axes.of_problem(part) for part in problem.parts()]
+    counts = [axis.count for axis in axes]
+    if sum(counts) > MOST_COMBINATIONS:
+        raise InputError(
+            f"a certificate takes at most {MOST_COMBINATIONS:,} combinations of listed values; got {sum(counts):,} of "
+            f"{', '.join(item.name for item in problem.discrete)}; list fewer, or certify the job with ranges"
+        )
+    rows = [(index, row) for index, axis in enumerate(axes) for row in axis.designs(0, axis.count)]
+    return with_values(problem, rows), np.cumsum([0, *counts[:-1]])[variants]

@@ -12,6 +12,7 @@ Cylinders of a crankshaft add up at one angle of the shaft. Along a speed profil
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from functools import reduce
 from typing import Any
@@ -20,9 +21,9 @@ import numpy as np
 
 from ...model.arrays import Array, Mask
 from ...model.dynamics.speed_ratio import speed_ratio_at, speed_ratio_of
-from ...model.dynamics.torque import forces
+from ...model.dynamics.torque import Forces, forces
 from ...model.kernel.arithmetic import magnitude
-from ...model.kinematics.position import motion
+from ...model.kinematics.position import Motion, motion
 from ...model.machine.arrangement import Arrangement
 from ...model.machine.design import Design
 from ...model.machine.mechanism import Mechanism
@@ -34,7 +35,6 @@ from ...model.signals.shaft_curves import VECTORS, vector_of_force, vector_of_mo
 from ...model.signals.shaft_statistics import SUMS, equivalent_single_cranks
 from ...model.signals.signal_inputs import cycle_window, signal_inputs
 from ...model.signals.signals import Signal, design_motion, signal_of_motion
-from ...objectives.cycle_peak import CyclePeak
 from .crank_angles import at_dead_centre, at_share, dead_centre_angle
 from .enclosure import Enclosure, interval, select, side_by_side
 from .machine import BoxMachine, Numbers
@@ -64,15 +64,19 @@ def machines_of(mechanism: Mechanism, kind: Signal) -> tuple[Mechanism, ...]:
     return tuple(part for one in apart for part in machines_of(replace(mechanism, arrangement=one), kind))
 
 
+Read = Callable[[Forces, Any, Any, Motion, Design], tuple[Any, Any]]
+"""Two components from the joint forces, sine and cosine of the crank angle, the motion and the design."""
+
+
 class CycleCurve:
     """One signal of a machine over boxes of designs. Without friction: its forces are no plain formula."""
 
     least = False
-    anywhere = 0.5 * math.pi
+    anywhere: tuple[float, ...] = (0.5 * math.pi,)
     """A place for boxes whose middle design does not turn."""
 
-    def __init__(self, mechanism: Mechanism, peak: CyclePeak) -> None:
-        self.kind, self.peak, self.mechanism = peak.signal, peak, mechanism
+    def __init__(self, mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> None:
+        self.kind, self.during, self.mechanism = kind, during, mechanism
         single = single_cylinder(mechanism)
         self.turns = cycle_turns(single) if self.kind.needs_forces else 1
         self.machines = [
@@ -80,7 +84,7 @@ class CycleCurve:
             for half in (halves(single) if self.turns > 1 else (single,))
         ]
         self.members = cylinders_of(mechanism) if is_shaft(mechanism) else (Member(single, 0.0, 0.0, 0.0),)
-        self.watch = cycle_window(self.machines[0].mechanism, self.kind, during=peak.during)
+        self.watch = cycle_window(self.machines[0].mechanism, self.kind, during=during)
         self.pace = speed_ratio_of(mechanism)
         self.partial = self.watch.strokes != 0 or self.watch.start > 0.0 or self.watch.end < 1.0
         self.jumps = self.watch.split and self.kind not in (Signal.TORQUE, Signal.POWER)
@@ -88,47 +92,60 @@ class CycleCurve:
         self.shares = self.partial and self.kind in _ERRORS
 
     def places(self, designs: Array) -> Array:
-        """Return the crank angle, rad, of each design's peak (n,), that of the shaft for a shaft."""
-        if screens(self.mechanism, self.kind, during=self.peak.during):
-            return screen(self.mechanism, (self.kind,), designs, places=True)[0].angles
-        angles = find_peaks(self.mechanism, self.kind, designs, during=self.peak.during, limit=1).angles[:, 0]
+        """Return the crank angle, rad, of each design's peak (n, 1), that of the shaft for a shaft."""
+        if screens(self.mechanism, self.kind, during=self.during):
+            return screen(self.mechanism, (self.kind,), designs, places=True)[0].angles[:, None]
+        angles = find_peaks(self.mechanism, self.kind, designs, during=self.during, limit=1).angles
         return np.where(np.isfinite(angles), angles, 0.0)
 
     def enclose(self, numbers: Numbers, places: Array, middle: Array) -> Enclosure:
-        """Return the signal (n, p) at crank angles (n,) for numbers (n, 1) and middle designs (n, 3 + k).
+        """Return the signal (n, p) at crank angles (n, 1) for numbers (n, 1) and middle designs (n, 3 + k).
 
         It has two parts where it may jump at the angle, and three where a table steps. The rest is not a number where
         the angle does not count in all of the box.
         """
-        angles = places[:, None]
-        enclosure = self._enclose_at(numbers, angles, middle)
-        if self.steps:
-            # A peak on a step moves with the design: beside it all designs of the box are on one side of the step.
-            r, l, e = middle[:, :3].T
-            pace = np.abs(motion(np.sin(places), np.cos(places), r, l, e, self.mechanism.sign).x_1)
-            ends = [numbers[slot].ends() for slot in range(3)]
-            width = np.sum([high[:, 0] - low[:, 0] for low, high in ends], axis=0)
-            away = np.minimum(width / np.maximum(pace, 1e-3 * r) + width / r + _SIDE_STEP, _FARTHEST)[:, None]
-            for side in (-away, away):
-                enclosure = side_by_side(enclosure, self._enclose_at(numbers, angles + side, middle))
-        return enclosure
+        sums = [
+            pair
+            for angles in self.angles_at_steps(numbers, places, middle)
+            for pair in self.sums(numbers, angles, middle)
+        ]
+        return reduce(side_by_side, [np.sqrt(x * x + y * y) if self.kind in VECTORS else magnitude(x) for x, y in sums])
 
-    def _enclose_at(self, numbers: Numbers, angles: Array, middle: Array) -> Enclosure:
-        """Return the signal as `enclose` does, at these angles (n, p) alone."""
+    def angles_at_steps(self, numbers: Numbers, angles: Array, middle: Array) -> list[Array]:
+        """Return angles (n, 1) and, if loads step, angles on both sides of them.
+
+        A peak on a step moves with the design: beside it all designs of the box are on one side of the step.
+        """
+        if not self.steps:
+            return [angles]
+        r, l, e = middle[:, :3].T[:, :, None]
+        pace = np.abs(motion(np.sin(angles), np.cos(angles), r, l, e, self.mechanism.sign).x_1)
+        width = np.sum([np.subtract(*numbers[slot].ends()[::-1]) for slot in range(3)], axis=0)
+        away = np.minimum(width / np.maximum(pace, 1e-3 * r) + width / r + _SIDE_STEP, _FARTHEST)
+        return [angles, angles - away, angles + away]
+
+    def sums(
+        self, numbers: Numbers, angles: Array, middle: Array, read: Read | None = None
+    ) -> list[tuple[Enclosure, Enclosure]]:
+        """Return the two components of the signal, or what is read from the joint forces instead, over all cylinders.
+
+        There are two pairs where it jumps at the angle, which only a single cylinder does, at its dead centre.
+        """
         designs = [machine.design(numbers) for machine in self.machines]
-        parts = [self._member_parts(member, designs, angles, middle) for member in self.members]
-        # Only a single cylinder has two: a jump at its dead centre.
-        return reduce(side_by_side, [self._size(sums) for sums in zip(*parts, strict=True)])
+        read = read or self._component
+        parts = [self._member_parts(member, designs, angles, middle, read) for member in self.members]
+        sums = []
+        for pairs in zip(*parts, strict=True):
+            xs, ys = zip(*pairs, strict=True)
+            sums.append((sum(xs[1:], xs[0]), sum(ys[1:], ys[0])))
+        return sums
 
-    def _size(self, sums: tuple[tuple[Enclosure, Enclosure], ...]) -> Enclosure:
-        xs, ys = zip(*sums, strict=True)
-        x: Any = sum(xs[1:], xs[0])
-        y: Any = sum(ys[1:], ys[0])
-        size: Enclosure = np.sqrt(x * x + y * y) if self.kind in VECTORS else magnitude(x)
-        return size
+    def _component(self, f: Forces, sine: Any, cosine: Any, m: Motion, d: Design) -> tuple[Any, Any]:
+        x, y = vector_of_force(int(self.kind), f, m, d)
+        return x, y
 
     def _member_parts(
-        self, member: Member, designs: list[tuple[Design, Any]], angles: Array, middle: Array
+        self, member: Member, designs: list[tuple[Design, Any]], angles: Array, middle: Array, read: Read
     ) -> list[tuple[Enclosure, Enclosure]]:
         """Return a cylinder's components at angles of the shaft: of both strokes where it jumps at the angle."""
         d = self._moving(designs[0][0], member, angles)
@@ -150,8 +167,8 @@ class CycleCurve:
             sides = [
                 select(jump, interval(side, side, len(outward.slopes)), outward) for side in (jump + 0.0, -1.0 * jump)
             ]
-            return [self._components(member, designs, d, place, side) for side in sides]
-        x, y = self._components(member, designs, d, place, outward)
+            return [self._components(member, designs, d, place, side, read) for side in sides]
+        x, y = self._components(member, designs, d, place, outward, read)
         if self.partial and not self.shares:
             low, high = outward.ends()
             counts = low > 0.0 if self.watch.strokes == 1 else high < 0.0
@@ -171,7 +188,7 @@ class CycleCurve:
         return d._replace(speed=d.speed * ratio, acceleration=d.acceleration + square * (ratio * slope))
 
     def _components(
-        self, member: Member, designs: list[tuple[Design, Any]], d: Design, place: Any, outward: Enclosure
+        self, member: Member, designs: list[tuple[Design, Any]], d: Design, place: Any, outward: Enclosure, read: Read
     ) -> tuple[Enclosure, Enclosure]:
         """Return the components of one cylinder, in the axes of the shaft if it shakes."""
         sine, cosine, local, m = place
@@ -180,7 +197,7 @@ class CycleCurve:
             return signal_of_motion(int(kind), sine, cosine, m, d), nothing
         if kind.needs_forces:
             vectors = [
-                self._forces(machine, d, block, place, outward)
+                self._forces(machine, d, block, place, outward, read)
                 for machine, (_, block) in zip(self.machines, designs, strict=True)
             ]
             if self.turns == 1 or len(vectors) == 1:
@@ -200,13 +217,13 @@ class CycleCurve:
         return (-member.place * y, member.place * x) if kind is Signal.ROCKING_COUPLE else (x, y)
 
     def _forces(
-        self, machine: BoxMachine, d: Design, block: Any, place: Any, outward: Enclosure
+        self, machine: BoxMachine, d: Design, block: Any, place: Any, outward: Enclosure, read: Read
     ) -> tuple[Enclosure, Enclosure]:
         sine, cosine, local, m = place
         load = machine.load(m, d, block, local, outward)
         f = forces(sine, cosine, m, d, load)
         if self.kind not in (Signal.TORQUE, Signal.POWER):
-            x, y = vector_of_force(int(self.kind), f, m, d)
+            x, y = read(f, sine, cosine, m, d)
             return x, 0.0 * outward + y
         torque = f.torque - machine.on_crank(m, d, block, local, outward, self.mechanism.direction)
         return (torque * d.speed if self.kind is Signal.POWER else torque), 0.0 * outward

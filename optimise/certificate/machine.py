@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, cast
 
 import numpy as np
@@ -14,7 +14,7 @@ from ...model.machine.loads.cylinder import Cylinder
 from ...model.machine.loads.load import Enters
 from ...model.machine.loads.registry import force_of
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.numbers import raw_numbers
+from ...model.machine.numbers import nominal_number, raw_numbers
 from ...model.machine.raw import Loads
 from .enclosure import UNIT, Enclosure, interval, select
 from .gas import gas_force
@@ -31,6 +31,11 @@ def numbers_over_boxes(mechanism: Mechanism, columns: list[Enclosure]) -> Number
     design = np.empty((1, len(columns)), dtype=object)
     design[0, :] = columns
     return {slot: value[0] for slot, value in raw_numbers(mechanism, design).items()}
+
+
+def raw_number(mechanism: Mechanism, numbers: Numbers) -> Callable[[int], Any]:
+    """Return the function that gives the raw number of a slot: over boxes if designs set it."""
+    return lambda slot: numbers[slot] if slot in numbers else nominal_number(mechanism, slot)
 
 
 def unbounded_load(mechanism: Mechanism) -> str:

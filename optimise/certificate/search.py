@@ -10,7 +10,6 @@ import numpy as np
 import pandas as pd
 
 from ...model.arrays import Array, IntArray, distinct
-from ...objectives.cycle_peak import CyclePeak
 from ..problem.problem import Problem
 from ..problem.violation import FEASIBLE, minimised, restated_constraints
 from ..search.assemble import columns_of, span_of
@@ -18,7 +17,7 @@ from ..search.candidates import Candidates
 from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
 from ..search.recorded_polish import polish
-from .boundable import is_usable
+from .boundable import ignored_sides, is_usable
 from .boxes import Boxes
 from .certificate import Certificate, Status, Step, message_of
 from .cover import choose_covering, excess, greedy_cover, hypervolume_gap_bound
@@ -229,11 +228,11 @@ class Search:
         notes = []
         constraints = ((part, item) for part in self.problem.parts() for item in restated_constraints(part))
         for part, constraint in constraints:
-            quantity = part.quantity(constraint.quantity)
+            title = part.quantity(constraint.quantity).title
             if not is_usable(part, constraint):
-                notes.append(f"the bounds ignore the requirement on {quantity.title}")
-            elif isinstance(quantity, CyclePeak) and constraint.lower is not None:
-                notes.append(f"the bounds ignore the minimum of {quantity.title}")
+                notes.append(f"the bounds ignore the requirement on {title}")
+                continue
+            notes += [f"the bounds ignore the {word} of {title}" for word in ignored_sides(part, constraint)]
         return tuple(dict.fromkeys(notes))
 
     def _drop_redundant(self, needy: Array) -> None:

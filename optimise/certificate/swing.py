@@ -178,9 +178,9 @@ class SwingCurve:
         self.boxes = SwingBoxes(mechanism, quantity.swing, slow=self.at_ends or isinstance(quantity, SwingLeast))
 
     @property
-    def anywhere(self) -> float:
+    def anywhere(self) -> tuple[float, ...]:
         """A place for boxes whose middle design does not swing."""
-        return self._range[0]
+        return self._range[:1]
 
     @property
     def _range(self) -> tuple[float, float]:
@@ -190,31 +190,31 @@ class SwingCurve:
         return 0.0, 2.0 if isinstance(self.quantity, SwingPeak) else 1.0
 
     def places(self, designs: Array) -> Array:
-        """Return the place (n,) of each design's greatest value, or with `least` of its least, see `enclose`."""
+        """Return the place (n, 1) of each design's greatest value, or with `least` of its least, see `enclose`."""
         mechanism, swing, quantity = self.boxes.mechanism, self.quantity.swing, self.quantity
         assert swing is not None
         if isinstance(quantity, SwingForm):
-            return _place_of_least_angle(mechanism, swing, designs)
+            return _place_of_least_angle(mechanism, swing, designs)[:, None]
         if isinstance(quantity, SwingLeast):
-            found = least_drives(mechanism, swing, designs, back=quantity.back, limit=1).places[:, 0]
+            found = least_drives(mechanism, swing, designs, back=quantity.back, limit=1).places
         elif quantity.state is None:
-            return np.full(len(designs), self.anywhere)
+            return np.full((len(designs), 1), self.anywhere)
         else:
-            found = swing_peaks(mechanism, swing, quantity.state, designs, limit=1).places[:, 0]
+            found = swing_peaks(mechanism, swing, quantity.state, designs, limit=1).places
         return np.where(np.isfinite(found), np.clip(found, *self._range), self.anywhere)
 
     def enclose(self, numbers: Numbers, places: Array, middle: Array) -> Enclosure:
-        """Return the quantity's curve (n, p) at places (n,), and at both ends.
+        """Return the quantity's curve (n, p) at places (n, 1), and at both ends.
 
         A place is a fraction of the time, plus 1 on the return stroke; of an angle, a fraction of the travel.
         """
-        at, (first, last) = places[:, None], self._range
+        at, (first, last) = places, self._range
         columns = [at, np.full_like(at, first), np.full_like(at, last)]
         if last - first > 1.0:
             columns += [np.full_like(at, 1.0), np.full_like(at, 1.0 + _SIDE_STEP)]
         if self.boxes.steps and not self.at_ends:
             # A peak on a step moves with the design: beside it all designs of the box are on one side of the step.
-            width = sum(np.ptp(numbers[slot].ends(), axis=0) / numbers[slot].size for slot in (0, 1))
+            width: Any = sum(np.ptp(numbers[slot].ends(), axis=0) / numbers[slot].size for slot in (0, 1))
             away = np.minimum(4.0 * width, _FARTHEST)
             columns += [np.clip(at - away, first, last), np.clip(at + away, first, last)]
         return self._enclose_at(numbers, np.concatenate(columns, axis=1))

@@ -16,9 +16,9 @@ from ....model.signals.first_greatest import angle_in_cycle
 from ....model.strength.bar_stress import bar_stress
 from ....model.strength.stress_cycle import stress_peaks
 from ....model.strength.stress_locations import LinkBody
-from ....objectives.bars import LINKS, NEAR
+from ....objectives.bars import LINKS, NEAR, STATIC
 from ....objectives.kinds import ANGLE, LENGTH, PRESSURE
-from ....objectives.link_strength import STATIC, STATIC_SAFETY, eye_stresses
+from ....objectives.link_strength import STATIC_SAFETY, eye_stresses
 from ....objectives.quantity import Group
 from ....objectives.registry import QUANTITIES
 from ....objectives.tables.missing_values import missing_value_reason

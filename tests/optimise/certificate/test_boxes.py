@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -104,6 +105,8 @@ MACHINES: dict[str, Mechanism] = {
     "outer dead centre": replace(MACHINE, slider=SliderDistances(touch=0.01, dwell=0.004)),
     "outer part": replace(MACHINE, tolerances=replace(MACHINE.tolerances, window=Window(start=0.4))),
 }
+SAFETIES = ("static_safety", "fatigue_safety", "buckling_safety")
+STRESSES = ("rod_stress", "crank_stress", "pin_pressure_crank_pin", "pin_pressure_slider_pin", "pin_shear_crank_pivot")
 FREE: dict[str, Bounds] = {"transmission_angle": (degrees(25.0), None)}
 
 
@@ -159,6 +162,31 @@ def check(given: Problem, width: float, **options: int) -> int:
 @pytest.mark.parametrize("width", [0.2, 0.01])
 def test_no_feasible_sample_of_a_shipped_job_is_better_than_its_box(job: str, width: float) -> None:
     assert check(shipped(job), width, count=400) > 100
+
+
+def of_press(names: Sequence[str]) -> Problem:
+    """Return the shipped press, whose sections and pins vary, with these objectives and room for more designs."""
+    part = shipped("press").part(0)
+    objectives = tuple(Objective(quantity=name, sense="maximise" if name in SAFETIES else "minimise") for name in names)
+    constraints = tuple(item for item in part.constraints if item.quantity in ("stroke", "transmission_angle"))
+    return replace(part, objectives=objectives, constraints=constraints)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("width", [0.3, 0.05, 0.004])
+def test_no_sample_of_the_press_is_less_stressed_or_safer_than_its_box(width: float) -> None:
+    """The widest boxes hold eyes whose pin is wider than the bar: no safety is positive there."""
+    assert check(of_press(SAFETIES + STRESSES), width, count=200, inside=100) > 15_000
+
+
+@pytest.mark.parametrize("machine", ["all loads", "cylinders", "two turns", "crossed, clockwise"])
+@pytest.mark.parametrize("width", [0.1, 0.004])
+def test_no_sample_of_bars_under_any_load_is_less_stressed_or_safer_than_its_box(machine: str, width: float) -> None:
+    loaded = replace(MACHINES[machine], rod=MACHINE.rod, strength=STRENGTH)
+    names = [name for name in SAFETIES + STRESSES if not QUANTITIES[name].undefined_because([loaded])]
+    assert ("fatigue_safety" in names) == (machine != "two turns")
+    senses: Any = {name: "maximise" if name in SAFETIES else "minimise" for name in names}
+    assert check(problem(senses, FREE, offset=(-0.1, 0.15), mechanism=loaded), width, count=50, inside=20) > 100
 
 
 @pytest.mark.parametrize("machine", MACHINES)

@@ -19,6 +19,7 @@ from slidercrank.model.machine.varying import Varying
 from slidercrank.optimise.certificate.certificate import Certificate, Step
 from slidercrank.optimise.certificate.certify import certify_designs
 from slidercrank.optimise.certificate.cover import choose_covering, excess, greedy_cover, hypervolume_gap_bound
+from slidercrank.optimise.discrete.combinations import judge
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.hypervolume import hypervolume
 from slidercrank.optimise.job import parse_job
@@ -149,11 +150,29 @@ def test_a_choice_is_proven_over_all_of_its_options() -> None:
     assert beats(values, np.concatenate([front.values, found.added_values]), found.span) <= found.epsilon + ROUNDED
 
 
-def test_listed_values_are_refused() -> None:
+def test_listed_values_are_proven_over_every_combination() -> None:
     job = tomllib.loads(Path("runs/sieve.toml").read_text(encoding="utf-8"))
-    job["variables"]["crank"] = {"values": ["100 mm", "120 mm"]}
+    job["constraints"] = {"transmission_angle": {"min": "40 deg"}}
+    listed = {"crank": {"values": ["80 mm", "120 mm", "150 mm"]}, "offset": {"values": ["0 mm", "40 mm", "100 mm"]}}
+    job["variables"] |= listed
+    job["objectives"] = {"peak_torque": "minimise", "stroke": "maximise"}
+    job["optimiser"] = {"designs": 12, "samples": 256, "seed": 1}
+    front = solve(parse_job(job))
+    found = certify_designs(front.problem, front.dimensions, epsilon=0.05, seconds=60.0)
+    assert found.proven, found.message
+    assert set(np.round(1e3 * found.added[:, 0], 9)) <= {80.0, 120.0, 150.0}
+    random, (cranks, offsets) = np.random.default_rng(3), front.problem.discrete
+    columns = random.choice(cranks.values, 3000), random.uniform(0.2, 0.6, 3000), random.choice(offsets.values, 3000)
+    values = judge(front.problem, np.stack(columns, axis=1)).values
+    assert len(values) > 1000
+    assert beats(values, np.concatenate([front.values, found.added_values]), found.span) <= found.epsilon + ROUNDED
+
+
+def test_too_many_combinations_of_listed_values_are_refused() -> None:
+    job = tomllib.loads(Path("runs/sieve.toml").read_text(encoding="utf-8"))
+    job["variables"] |= {name: {"min": "80 mm", "max": "300 mm", "step": "1 mm"} for name in ("crank", "rod")}
     given = parse_job(job, require_feasible=False)
-    with pytest.raises(InputError, match="got the values of crank, which are listed; give ranges"):
+    with pytest.raises(InputError, match=r"at most 1,000 combinations of listed values; got [\d,]+ of crank, rod"):
         certify_designs(given, np.zeros((1, 3)))
 
 

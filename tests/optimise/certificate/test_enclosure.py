@@ -18,7 +18,6 @@ from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
-from slidercrank.objectives.peak_torque import PEAK_TORQUE
 from slidercrank.optimise.certificate.cycle import CycleCurve
 from slidercrank.optimise.certificate.enclosure import Enclosure, coordinate
 from slidercrank.optimise.certificate.machine import interpolated
@@ -118,13 +117,13 @@ def test_the_torque_of_a_table_that_steps_at_its_seam_is_enclosed_for_every_desi
     """Just before, at and after the seam, where the force jumps from -200 N to 500 N."""
     table = AngleTable(angles=(0.4, 2.0, 0.4 + 2.0 * np.pi), forces=(500.0, -300.0, -200.0), datum=datum)
     machine = Mechanism(speed=20.0, slider_mass=0.5, loads=(table,))
-    curve = CycleCurve(machine, PEAK_TORQUE)
+    curve = CycleCurve(machine, Signal.TORQUE)
     random = np.random.default_rng(5)
     low = np.array([0.04, 0.15, 0.01]) * random.uniform(0.9, 1.1, (40, 3))
     high = low * 1.02
     angles = 0.4 + random.uniform(-0.4, 0.4, 40)
     sides = {k: coordinate(low[:, k], high[:, k], k, 3) for k in range(3)}
-    found = curve.enclose(sides, angles, 0.5 * (low + high))
+    found = curve.enclose(sides, angles[:, None], 0.5 * (low + high))
     least, most = (end.reshape(40, -1) for end in found.ends())
     for design, angle, lower, upper in zip(low, angles, least, most, strict=True):
         for share in random.random((20, 3)):
@@ -144,6 +143,6 @@ def test_a_peak_on_a_step_is_bounded_the_better_the_smaller_the_box() -> None:
     for width in (1e-3, 1e-4, 1e-5):
         low, high = middle * (1.0 - width), middle * (1.0 + width)
         sides = {k: coordinate(low[:, k], high[:, k], k, 3) for k in range(3)}
-        least = CycleCurve(machine, PEAK_TORQUE).enclose(sides, peak.angles[:, 0], middle).ends()[0]
+        least = CycleCurve(machine, Signal.TORQUE).enclose(sides, peak.angles, middle).ends()[0]
         assert least.max() <= peak.values[0, 0]
         assert least.max() >= peak.values[0, 0] * (1.0 - 100.0 * width)

@@ -1,0 +1,117 @@
+"""Loads of bars and pins over what bears them, enclosed over boxes of designs.
+
+The greatest stress over the cycle is at least that at one place and angle, and the greatest force of a pin at least
+that at one angle. So a stress or a pressure is bounded from below, and a safety from above. The place is a fraction of
+the bar's length, so it moves with the design. Where the section may vanish in a box, max(section, 0) takes its place in
+a safety: designs without section have no positive one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import reduce
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from ...model.arrays import Array
+from ...model.dynamics.torque import Forces
+from ...model.kernel.arithmetic import magnitude
+from ...model.kinematics.position import Motion
+from ...model.machine.design import Design
+from ...model.machine.mechanism import Mechanism
+from ...model.machine.members import single_cylinder
+from ...model.machine.raw import Raw
+from ...model.machine.two_turns import cycle_turns, halves
+from ...model.signals.signals import Signal
+from ...model.strength.section_forces import ROD, at_share, stress_along
+from ...model.strength.stress_cycle import stress_peaks
+from ...model.strength.stress_locations import Eye, StressLocation, eye_factors
+from ...objectives.bars import FORCE, BarPeak, Criteria, Demand
+from .cycle import CycleCurve, machines_of
+from .enclosure import Enclosure, side_by_side
+from .machine import Numbers, raw_number
+
+
+class StressCurve(CycleCurve):
+    """The greatest p sigma - q sigma at a location of one turn of a machine; `stress_cycle` defines it."""
+
+    anywhere = (1.0, 1.0, np.pi / 2.0, np.pi / 2.0)
+
+    def __init__(self, mechanism: Mechanism, location: StressLocation, criteria: Criteria) -> None:
+        super().__init__(mechanism, Signal.CRANK_PIN_FORCE)
+        self.location, self.criteria = location, criteria
+
+    def places(self, designs: Array) -> Array:
+        """Return fraction of the length, side and both crank angles, rad, of each design's greatest value (n, 4)."""
+        (peaks,) = stress_peaks(self.mechanism, (self.location,), designs, np.array(self.criteria), limit=1)
+        return np.where(np.isfinite(peaks.places[:, 0]), peaks.places[:, 0], self.anywhere)
+
+    def enclose(self, numbers: Numbers, places: Array, middle: Array) -> Enclosure:
+        """Return the value (n, p) of each criterion at places (n, 4); see `CycleCurve.enclose`."""
+        share, side, first, second = (places[:, column : column + 1] for column in range(4))
+
+        def read(f: Forces, sine: Any, cosine: Any, m: Motion, d: Design) -> tuple[Any, Any]:
+            return self._stress((sine, cosine, m, d, f), raw_number(self.mechanism, numbers), share, side), 0.0
+
+        def stresses(angles: Array) -> list[Enclosure]:
+            near_steps = self.angles_at_steps(numbers, angles, middle)
+            return [stress for at in near_steps for stress, _ in self.sums(numbers, at, middle, read)]
+
+        highs = stresses(first)
+        if not any(p and q for p, q in self.criteria):  # then both angles are the same
+            return reduce(side_by_side, (high * (p - q) for p, q in self.criteria for high in highs))
+        pairs = list(product(highs, stresses(second)))
+        return reduce(side_by_side, (high * p - low * q for p, q in self.criteria for high, low in pairs))
+
+    def _stress(self, state: tuple[Any, ...], number: Callable[[int], Any], share: Array, side: Array) -> Any:
+        """Return the stress at the location, in an eye times w - D. state: arguments of `stress_along` up to forces."""
+        location = self.location
+        slot = Raw.ROD_WIDTH if location.part == ROD else Raw.CRANK_WIDTH
+        c = stress_along(location.part, *state, 0.0, (number(slot), number(slot + 1), number(slot + 2)))
+        if not isinstance(location, Eye):
+            return at_share(c, side if location.bent else 0.0, share)
+        axial, bending = eye_factors(self.mechanism, location)
+        end = 1.0 if location.far else 0.0
+        stress = at_share(c, 0.0, end) * axial(number)
+        if location.bent:
+            stress = stress + at_share(c._replace(n0=0.0, n1=0.0, n2=0.0), 1.0, end) * bending(number) * side
+        return stress
+
+
+class DemandCurve:
+    """A demand of a quantity: the greatest scale peak / section or, with `least`, the least scale section / peak."""
+
+    def __init__(self, peak: CycleCurve, demand: Demand, *, least: bool) -> None:
+        self.peak, self.demand, self.least, self.anywhere = peak, demand, least, peak.anywhere
+
+    def places(self, designs: Array) -> Array:
+        """Return the place of each design's peak."""
+        return self.peak.places(designs)
+
+    def enclose(self, numbers: Numbers, places: Array, middle: Array) -> Enclosure:
+        """Return the value (n, p) at the places of peaks; not a number where the peak may not be positive."""
+        peak, (_, section, scale, _) = self.peak.enclose(numbers, places, middle), self.demand
+        size: Any = 1.0 if section is None else section(raw_number(self.peak.mechanism, numbers))
+        if not self.least:
+            return peak * scale / size
+        size = 0.5 * (size + magnitude(size))
+        rest = np.where(peak.ends()[0] > 0.0, peak.rest, np.nan)
+        return size * scale / Enclosure(peak.centre, peak.slopes, rest, peak.empty)
+
+
+def demand_curves(mechanism: Mechanism, quantity: BarPeak) -> list[DemandCurve]:
+    """Return the curves of which a quantity is the greatest or the least value."""
+    single = single_cylinder(mechanism)
+    turns = halves(single) if cycle_turns(single) > 1 else (single,)
+    curves = []
+    for demand in quantity.demands(mechanism):
+        peaks: list[CycleCurve]
+        if isinstance(demand.peak, str):
+            signal = FORCE[demand.peak]
+            peaks = [CycleCurve(machine, signal) for machine in machines_of(mechanism, signal)]
+        else:
+            peaks = [StressCurve(turn, demand.peak, quantity.criteria(mechanism)) for turn in turns]
+        curves += [DemandCurve(peak, demand, least=quantity.least) for peak in peaks]
+    return curves
