@@ -112,4 +112,5 @@ class Cylinder:
         if self.rod is None:
             return None
         load = math.pi**2 * self.modulus * (math.pi * self.rod**4 / 64.0) / length**2
-        return np.divide(load, push, out=np.full(np.shape(push), np.inf), where=push > 0.0)
+        margin: Array = np.divide(load, push, out=np.full(np.shape(push), np.inf), where=push > 0.0)
+        return margin

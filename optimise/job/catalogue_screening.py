@@ -176,7 +176,7 @@ def _limit_cost(bounds: Mapping[str, Any], column: Column, side: float) -> float
 
     side: 1 of a least value, -1 of a greatest one.
     """
-    limits = [_si(bounds[word], column) for word in (column.word, "equals") if word in bounds]
+    limits = [_si(bounds[word], column) for word in (column.word, "equals") if word and word in bounds]
     return max((side * bound for bound in limits if bound is not None), default=-math.inf)
 
 

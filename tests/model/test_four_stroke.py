@@ -124,7 +124,7 @@ def test_peaks_are_those_of_a_sweep_over_both_turns_and_gradients_those_of_diffe
     )
     free = replace(machine, varying=varying)
     at = np.hstack([design, [[0.09, 57e5, 1.15e5, 0.92e5]]])
-    plain = free.at(at[0, 3:].tolist())
+    plain = free.with_values(at[0, 3:].tolist())
     for name in ("indicated_work", "mean_effective_pressure", "delivered_work", "peak_torque"):
         of = QUANTITIES[name]
         found = of.evaluate(free, at, gradients=True)

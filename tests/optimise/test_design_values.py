@@ -115,7 +115,7 @@ def test_a_varying_number_has_a_column_of_the_jacobian() -> None:
     values, jacobian = sc.evaluate(of, some, FOUR, gradients=True)
     assert jacobian.shape == (20, 4, 4)
     for row, design in enumerate(some):
-        alone = sc.evaluate(of.at([design[3]]), design[:3], FOUR)
+        alone = sc.evaluate(of.with_values([design[3]]), design[:3], FOUR)
         np.testing.assert_allclose(values[row], alone, rtol=1e-12)
 
 

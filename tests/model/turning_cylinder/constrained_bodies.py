@@ -78,7 +78,7 @@ class Bodies:
 
     def joint_forces(self, guess: Numbers, length: float, speed: float, acceleration: float) -> JointForces:
         """Return the forces for the motion of the cylinder's length, from a guess of the coordinates."""
-        q = guess.astype(np.complex128)
+        q: NDArray[np.complex128] = guess.astype(np.complex128)
         driver = np.eye(9)[8]
         for _ in range(60):
             values, rows = self.constraints(q)

@@ -37,7 +37,8 @@ def some_ends(sizes: TurningCylinder, random: np.random.Generator) -> tuple[floa
 def some_machine(random: np.random.Generator) -> tuple[LeverMachine, LeverSwing]:
     """Return a random machine with gravity in any direction, and a swing of it by any law."""
     sizes = some_sizes(random)
-    mass, along, across, barrel, rod, lengths = *random.uniform(0.5, 90.0, 5).tolist(), random.uniform(0.1, 1.0, 2)
+    mass, along, across, barrel, rod = random.uniform(0.5, 90.0, 5).tolist()
+    lengths = random.uniform(0.1, 1.0, 2)
     lever = LeverBody(inertia=float(random.uniform(0.0, 5.0))).carrying(mass, 0.01 * along, 0.01 * across - 0.4)
     gravity = random.normal(0.0, 7.0, 2).tolist()
     machine = LeverMachine(
