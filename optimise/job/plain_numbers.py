@@ -15,6 +15,7 @@ from ...objectives.kinds import Kind
 from ...objectives.registry import FACTS
 from ...objectives.units import quote
 from ..problem.problem import Problem
+from ..problem.remark import Change, Remark
 from .messages import key_of, keys_of, toml
 from .paths import with_number
 from .values import PLAIN, Part, Table, plain_in, values_in
@@ -57,13 +58,18 @@ class PlainNumbers:
         if self.kind.believed is not None and abs(number) < self.kind.believed[0]:
             return f"{sentence}; write it with its unit"
         if usual == read[1:-1]:
-            return f"{sentence}; write {read}"
+            return Remark(f"{sentence}; write {read}", self._writing(number, read[1:-1]))
         if every and len(text) <= _LONGEST:
             in_usual, in_si = (
                 toml([f"{plain:g} {unit}" for plain in numbers]) for unit in (self.kind.metric.symbol, self.kind.unit)
             )
             return f"{sentence}; if you mean {self.kind.metric.symbol}, write {in_usual}, otherwise {in_si}"
-        return f'{sentence}; if you mean {usual}, write "{usual}", otherwise {read}'
+        sentence = f'{sentence}; if you mean {usual}, write "{usual}", otherwise {read}'
+        return Remark(sentence, self._writing(number, usual))
+
+    def _writing(self, number: float, text: str) -> Change | None:
+        """Return the change that writes the value as a text, if it is that number alone."""
+        return Change(self.key, text, f"Write {text}") if self.value == number else None
 
     def concerns(self, key: str) -> bool:
         """Return whether the value stands at a key of the job, in it, or in the table of it."""

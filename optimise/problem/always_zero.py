@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ...model.errors import InfeasibleError, InputError
 from .problem import Problem
+from .remark import Change, Remark
 
 
 def require_ranking(problem: Problem) -> None:
@@ -36,7 +37,10 @@ def idle_rules(problem: Problem) -> list[str]:
         for sentence in problem.constraints
     }
     return [
-        f"constraints.{name} excludes no design: it is zero for every design of this job; {reason}"
+        Remark(
+            f"constraints.{name} excludes no design: it is zero for every design of this job; {reason}",
+            Change(f"constraints.{name}", None, "Remove the requirement"),
+        )
         for name, reason in reasons.items()
         if reason
     ]

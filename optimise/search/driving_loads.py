@@ -25,6 +25,7 @@ from ...model.signals.averages import average_torque
 from ...model.swing.work import work_of_loads
 from ...objectives.energy import DELIVERED_WORK
 from ..problem.problem import Problem
+from ..problem.remark import Change, Remark
 from .samples import samples
 
 if TYPE_CHECKING:
@@ -115,11 +116,15 @@ def _warning(parts: Iterable[tuple[Problem, Array]], design: str) -> list[str]:
     extent = f"in every {design}" if len(works) == count else f"in some {design}s"
     ends = " to ".join(dict.fromkeys(f"{end:.4g}" for end in (min(works), max(works))))
     required = "" if part.motion is not None else f", or require a {DELIVERED_WORK.short} of at least 0 J"
-    return [
+    sentence = (
         f"{extent} {subject} do more work on the machine than they absorb, by {ends} J per cycle: {named}; if the load "
         "should resist, reverse its sign or define it as a force that opposes a stroke; if it should drive, define "
         f"it as one that helps a stroke{required}"
-    ]
+    )
+    if not required:
+        return [sentence]
+    change = Change(f"constraints.{DELIVERED_WORK.name}", {"min": "0 J"}, f"Require a {DELIVERED_WORK.short} of 0 J")
+    return [Remark(sentence, change)]
 
 
 def _name_driving_loads(part: Problem, design: Array) -> str:

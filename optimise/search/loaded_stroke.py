@@ -13,6 +13,7 @@ from ...model.cycle.stroke_times import slow_stroke
 from ...model.linkage.linkage import Linkage, SlowStroke
 from ...model.linkage.loaded_stroke import loaded_stroke
 from ..problem.problem import Problem
+from ..problem.remark import Change, Remark
 from .elimination import signs
 from .samples import samples
 
@@ -76,11 +77,15 @@ def _offset_warnings(problem: Problem) -> list[str]:
             turning, opposite = "counter-clockwise", "clockwise"
             if part.mechanism.direction < 0.0:
                 turning, opposite = opposite, turning
-            return [
+            left = [f"{1e3 * end:.10g} mm" for end in (low, high)]
+            sentence = (
                 f'slow_stroke = "{part.slow_stroke}" leaves only offsets from {1e3 * low:.6g} to {1e3 * high:.6g} mm '
                 f"of the range from {1e3 * lower:.6g} to {1e3 * upper:.6g} mm, because the crank turns {turning}; if "
                 f"you mean the others, let it turn {opposite}"
-            ]
+            )
+            if any(item.name == "offset" for item in problem.discrete):
+                return [sentence]
+            return [Remark(sentence, Change("variables.offset", left, f"Search offsets from {left[0]} to {left[1]}"))]
     return []
 
 
@@ -97,8 +102,10 @@ def _fast_stroke_warning(problem: Problem, extent: str, loaded: list[str]) -> st
     has = any(signs(replace(part, slow_stroke=stroke)) for part in problem.parts())
     turn = "" if has else ", with the opposite sign of the offset or direction of rotation"
     opposite = "inward" if stroke == "outward" else "outward"
-    return (
+    required = stroke if has else opposite
+    return Remark(
         f"{extent} the loaded stroke (the {stroke} one, against the load) is the faster one; for a slow loaded stroke "
         f'require slow_stroke = "{stroke}" among the constraints{turn}; if it should be fast, require '
-        f'slow_stroke = "{opposite}"'
+        f'slow_stroke = "{opposite}"',
+        Change("constraints.slow_stroke", required, f"Require a slow {required} stroke"),
     )

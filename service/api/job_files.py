@@ -88,6 +88,15 @@ class FloorModel(BaseModel):
     is_default: bool = Field(description="whether this is the default, used because the job sets none", examples=[True])
 
 
+class ChangeModel(BaseModel):
+    """A change of a job that settles a sentence on it. path: key in its tables. value: null takes the key away."""
+
+    sentence: str = Field(examples=["no crank within these ranges rotates fully: ..."])
+    path: str = Field(examples=["variables.rod"])
+    value: Any = Field(examples=[["60 mm", "125 mm"]])
+    label: str = Field(examples=["Allow rods up to 125 mm"])
+
+
 class Understood(BaseModel):
     """A job in words, as it was understood."""
 
@@ -108,6 +117,7 @@ class Understood(BaseModel):
     degrees_of_freedom: int = Field(examples=[2])
     eliminated: list[str] = Field(examples=[["rod_to_offset"]])
     warnings: list[str] = Field(description="about possible mistakes", examples=[[]])
+    changes: list[ChangeModel] = Field(description="that settle warnings", examples=[[]])
     notes: list[str] = Field(description="on what is often forgotten", examples=[[]])
     search: str = Field(examples=["auto, at most 100 designs, seed 1"])
 

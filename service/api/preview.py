@@ -15,9 +15,10 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import Kind
 from ...objectives.machine_needs import ONE_TIMING
+from ...optimise.problem.remark import changes_of
 from ..designs.design_curves import cycle_table
 from .computing import QuickRoute
-from .job_files import Understood, understood
+from .job_files import ChangeModel, Understood, understood
 from .job_requests import Submission, problem_of_tables
 from .problem_documents import rule_and_value
 from .settings import SettingsDep
@@ -83,6 +84,7 @@ class AllowedModel(BaseModel):
     hardest_share: float | None = Field(examples=[0.6])
     unchecked: list[str] = Field(examples=[["position_error"]])
     said: list[str] = Field(description="requirements that cannot be met, in words", examples=[[]])
+    changes: list[ChangeModel] = Field(description="that settle them", examples=[[]])
 
 
 class MotionModel(BaseModel):
@@ -242,6 +244,7 @@ def _allowed(look: Look) -> AllowedModel | None:
         hardest_share=possible.hardest[1] if possible.hardest else None,
         unchecked=look.unchecked,
         said=look.sentences,
+        changes=[ChangeModel(**change) for change in changes_of(look.sentences)],
     )
 
 

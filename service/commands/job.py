@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from typing import Annotated
+from typing import Annotated, Any
 
 from ...model.errors import InputWarning
 from ..runs.result import json_text
@@ -33,6 +33,7 @@ def check(
     screen = console()
     screen.print(f"{job} is a valid job: {summary['name']}", style="bold", soft_wrap=True)
     parts: dict[str, list[str]] = {
+        "change": [_in_words(**change) for change in summary["changes"]],
         **{name: summary[name] for name in ("given", "files", "tolerances", "costs", "variables")},
         "requirements": summary["rules"],
         "objectives": summary["objectives"],
@@ -45,6 +46,13 @@ def check(
     for title, lines in parts.items():
         for index, line in enumerate(lines):
             screen.print(f"  {title if index == 0 else '':<14}{line}", soft_wrap=True)
+
+
+def _in_words(sentence: str, path: str, value: Any, label: str) -> str:
+    """Return a change that settles a warning, as a line of a job file."""
+    from ...optimise.job.messages import toml
+
+    return label if value is None else f"{label}: {path} = {toml(value)}"
 
 
 def schema() -> None:

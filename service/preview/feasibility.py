@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 import threading
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -21,7 +20,6 @@ from numpy.typing import NDArray
 from ...model.cycle.stroke_times import massless_machine, slow_stroke
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
-from ...model.swing.ends import start_column
 from ...objectives.registry import QUANTITIES
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective
@@ -31,14 +29,12 @@ from ...optimise.search.evaluation import Evaluator
 from ...optimise.search.polish import polish
 from ...optimise.search.sampling import first_samples, generator
 from .partial_job import is_closed
+from .samples import BATCH, SAMPLES, designs_of, screened
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
 Ends = tuple[float, float]
 
-_SAMPLES = 512
-_BATCH = 64
-_MOMENT = 0.06  # s, for the designs of quantities that take a cycle
 PATIENCE = 0.12  # s, until these are left out
 _WIDTHS = (0.1, 0.05, 0.025, 0.012, 0.006, 0.003, 0.0015)
 _ON_EDGE = 128
@@ -82,7 +78,7 @@ class Possible:
 def possible(problem: Problem) -> Possible:
     """Return the values that the ranges of a problem of `partial_job.geometry` allow."""
     free = replace(problem, constraints=())
-    box = designs_of(free, _SAMPLES)
+    box = designs_of(free, SAMPLES)
     turning = _turns(box)
     light, costly = _light(problem)
     screening = run_within(PATIENCE, lambda: screened(problem)) if costly else None
@@ -91,7 +87,7 @@ def possible(problem: Problem) -> Possible:
     if screening is None:
         hardest = _hardest(light, box[turning])
     else:
-        hardest = run_within(PATIENCE, lambda: _hardest(problem, box[turning][:_BATCH]))
+        hardest = run_within(PATIENCE, lambda: _hardest(problem, box[turning][:BATCH]))
     return Possible(
         turning=float(turning.mean()),
         stroke=_possible_ends(light, "stroke"),
@@ -115,23 +111,6 @@ def _light(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
     return replace(problem, mechanism=machine, constraints=closed), costly
 
 
-def designs_of(problem: Problem, count: int) -> Array:
-    """Return designs (n, 3) in the box that meet the eliminable equalities; some may not be linkages.
-
-    Designs of a swing with a variable start have the start as a fourth number.
-    """
-    parts = []
-    for index, branch in enumerate(elimination_branches(problem)):
-        parts.append(branch.dimensions(first_samples(count, len(branch.free), 1, index))[:, _length_columns(problem)])
-    return np.concatenate(parts)
-
-
-def _length_columns(problem: Problem) -> list[int]:
-    """Return the shown columns of designs: the three lengths, and the start of a swing if it varies."""
-    column = start_column(problem.mechanism)
-    return [0, 1, 2, *([] if column is None else [column])]
-
-
 def _slow_strokes(problem: Problem, designs: Array) -> tuple[str, ...]:
     """Return the slow strokes that occur among fully rotating designs (n, 3); "equal" only if no others do."""
     if not len(designs):
@@ -148,23 +127,6 @@ def _turns(designs: Array) -> NDArray[np.bool_]:
         return np.asarray((crank > 0.0) & (rod > crank + np.abs(offset)))
 
 
-def screened(problem: Problem) -> tuple[Array, Array]:
-    """Return designs as in `designs_of` and their greatest relative violation (n,), as many as a short time allows."""
-    end = time.monotonic() + _MOMENT
-    columns = _length_columns(problem)
-    designs, violations = [np.zeros((0, len(columns)))], [np.zeros(0)]
-    for index, branch in enumerate(elimination_branches(problem)):
-        evaluator = Evaluator(problem, branch)
-        points = first_samples(_SAMPLES, evaluator.dimension, 1, index)
-        for begin in range(0, len(points), _BATCH):
-            screened_designs, _, violation = evaluator.screen(points[begin : begin + _BATCH])
-            designs.append(screened_designs[:, columns])
-            violations.append(violation)
-            if time.monotonic() > end:
-                break
-    return np.concatenate(designs), np.concatenate(violations)
-
-
 @lru_cache(maxsize=48)  # most edits between previews leave ranges and requirements unchanged
 def _possible_ends(problem: Problem, name: str) -> Ends | None:
     """Return the ends of the range of a closed-form quantity while the other requirements on the dimensions hold."""
@@ -179,7 +141,7 @@ def _possible_ends(problem: Problem, name: str) -> Ends | None:
 
 def _ends(problem: Problem, name: str, branch: EliminationBranch, index: int) -> Ends | None:
     """Return the least and the greatest value on a branch, sampled ever more closely around the best."""
-    points = np.concatenate([first_samples(_SAMPLES, len(branch.free), 1, index), *_on_edges(problem, branch)])
+    points = np.concatenate([first_samples(SAMPLES, len(branch.free), 1, index), *_on_edges(problem, branch)])
     values = _values(problem, name, branch.dimensions(points)[:, :3])
     if not np.isfinite(values).any():
         return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -9,7 +10,7 @@ from typing import Any
 
 from ...model.errors import InfeasibleError, InputError
 from ...objectives.count_text import counted
-from ...optimise.feasibility.relaxation import missed
+from ...optimise.feasibility.relaxation import Relaxation, missed
 from ...optimise.front.constant_numbers import is_constant
 from ...optimise.job import Job
 from ...optimise.job.file import require_few
@@ -18,13 +19,15 @@ from ...optimise.job.messages import place_of
 from ...optimise.job.possible_values import STROKE_RATIOS, beyond_both
 from ...optimise.job.schema import schema_of
 from ...optimise.problem.problem import Problem
-from ...optimise.problem.requirements import Constraint
+from ...optimise.problem.remark import Change, Remark
+from ...optimise.problem.requirements import Constraint, Word
 from .feasibility import Ends, Possible, possible
 from .partial_job import geometry, left_out
 from .swinging import PossibleSwing, possible_swing
 
 _COUNT = re.compile(r"\d+ problems|very many problems")
 _PLACE = re.compile(r'((?:[a-z_]\w*|"[^"\n]*")(?: #\d+)?(?:\.(?:\w+|"[^"\n]*")(?: #\d+)?)*): (.+)', re.DOTALL)
+_LONGER = 1.25  # a rod so much longer than it must be at least is far from locking
 _REST = "all other requirements on the dimensions"
 
 
@@ -126,7 +129,7 @@ def _findings(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Pro
         stated,
         possible_values,
         [*left_out(tables, stated), *possible_values.unchecked],
-        infeasibility_sentences(stated, possible_values, fixed_names),
+        infeasibility_sentences(stated, possible_values, fixed_names, tables),
     )
 
 
@@ -143,10 +146,13 @@ def _places(error: InputError) -> list[Wrong]:
     return mistakes
 
 
-def infeasibility_sentences(problem: Problem, possible_values: Possible, fixed_names: Sequence[str]) -> list[str]:
+def infeasibility_sentences(
+    problem: Problem, possible_values: Possible, fixed_names: Sequence[str], tables: Mapping[str, Any]
+) -> list[str]:
     """Return a sentence for each requirement that is out of reach, and one if no sample meets everything.
 
-    fixed_names: names of the extra variables, which have one value in the samples.
+    Some are a `Remark`, with the change that settles it. fixed_names: names of the extra variables, which have one
+    value in the samples. tables: those of the job.
     """
     sentences = []
     constraints = {constraint.quantity: constraint for constraint in problem.constraints}
@@ -155,7 +161,7 @@ def infeasibility_sentences(problem: Problem, possible_values: Possible, fixed_n
         if name in constraints and ends is not None:
             sentences += _nearest_possible(problem, constraints[name], ends)
     if possible_values.turning == 0.0:
-        sentences.append(_locking(problem))
+        sentences.append(_locking(problem, tables))
     elif possible_values.sampled and possible_values.feasible == 0.0 and not sentences:
         hardest = ""
         if possible_values.hardest is not None and possible_values.hardest[1] < 1.0:
@@ -170,7 +176,7 @@ def infeasibility_sentences(problem: Problem, possible_values: Possible, fixed_n
     return sentences
 
 
-def _locking(problem: Problem) -> str:
+def _locking(problem: Problem, tables: Mapping[str, Any]) -> str:
     """Return a sentence on ranges in which no crank rotates fully: the rod that is missing, and the remedy."""
     crank, rod, offset = problem.crank, problem.rod, problem.offset
     nearest_line = 0.0 if offset.lower <= 0.0 <= offset.upper else min(abs(offset.lower), abs(offset.upper))
@@ -182,10 +188,19 @@ def _locking(problem: Problem) -> str:
         return f"{rule}; hardly any of these are: allow longer rods"
     at_least, at_most = ("", "") if fixed else ("at least ", "at most ")
     longer = f" by more than {1e3 * (needed - rod.upper):.6g} mm" if needed > rod.upper else ""
-    return (
+    sentence = (
         f"{rule}, which take {at_least}{1e3 * needed:.6g} mm; got {at_most}{1e3 * rod.upper:.6g} mm; "
         f"lengthen the rod{longer}"
     )
+    longest = f"{math.ceil(100.0 * _LONGER * 1e3 * needed) / 100.0:.10g} mm"
+    stated = tables["variables"]["rod"]
+    if isinstance(stated, list) and len(stated) == 2:
+        change = Change("variables.rod", [stated[0], longest], f"Allow rods up to {longest}")
+    elif isinstance(stated, str | float | int):
+        change = Change("variables.rod", longest, f"Lengthen the rod to {longest}")
+    else:
+        return sentence
+    return Remark(sentence, change)
 
 
 def _nearest_possible(problem: Problem, constraint: Constraint, ends: Ends) -> list[str]:
@@ -196,5 +211,15 @@ def _nearest_possible(problem: Problem, constraint: Constraint, ends: Ends) -> l
         is_beyond = {"min": bound > nearest, "max": bound < nearest, "equals": True}[word]
         item = missed(problem, constraint, word, bound, nearest) if is_beyond else None
         if item is not None:
-            sentences.append(replace(item, alone=bool(is_constant(ends))).sentence(other_requirements=_REST))
+            item = replace(item, alone=bool(is_constant(ends)))
+            label = f"Ask for {item.relation} {item.with_unit}"
+            change = Change(f"constraints.{constraint.quantity}", _restated(problem, constraint, word, item), label)
+            sentences.append(Remark(item.sentence(other_requirements=_REST), change))
     return sentences
+
+
+def _restated(problem: Problem, constraint: Constraint, word: Word, item: Relaxation) -> dict[str, str | float]:
+    """Return a requirement as a job writes it, with the reachable value on one of its sides."""
+    unit = problem.quantity(constraint.quantity).unit
+    bounds = {side: bound * unit.factor for side, bound in constraint.sides} | {word: item.number}
+    return {side: f"{bound:.10g} {unit.symbol}" if unit.symbol else bound for side, bound in bounds.items()}

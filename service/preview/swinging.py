@@ -23,11 +23,11 @@ from ...optimise.job.raw_tables import table_in
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Objective
 from ...optimise.problem.violation import FEASIBLE
-from .feasibility import PATIENCE, Ends, designs_of, example_of, lengths_of, run_within, screened
+from .feasibility import PATIENCE, Ends, example_of, lengths_of, run_within
 from .partial_job import ranges_of, requirement_names
+from .samples import SAMPLES, designs_of, screened
 
 Array = NDArray[np.float64]
-_SAMPLES = 512
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,7 +96,7 @@ def _possible(
     swing: Swing, light: Problem, designs: Array, violation: Array, unchecked: tuple[str, ...]
 ) -> PossibleSwing:
     sign = -1.0 if light.mechanism.nominal.branch == "crossed" else 1.0
-    box = designs_of(replace(light, constraints=()), _SAMPLES)
+    box = designs_of(replace(light, constraints=()), SAMPLES)
     turning = passes(light.mechanism, swing, box)
     closes = np.isfinite(violation)
     good = violation <= FEASIBLE

@@ -25,6 +25,7 @@ from ...optimise.problem.always_zero import idle_rules
 from ...optimise.problem.costs import Cost
 from ...optimise.problem.discrete import Discrete
 from ...optimise.problem.problem import Problem
+from ...optimise.problem.remark import changes_of
 from ...optimise.problem.requirements import Constraint, Objective, Range
 from ...optimise.problem.restatement import restate
 from ...optimise.problem.violation import constraints_of
@@ -38,11 +39,19 @@ _MOST_VALUES = 6  # values of a variable that are all shown
 def summarise(problem: Problem) -> dict[str, Any]:
     """Return a job in words: name, given, loads, tolerances, costs, variables, rules, objectives, warnings, search.
 
-    Each is a list of lines except name, search, the degrees of freedom, and the floors, see `_floors`.
+    Each is a list of lines except name, search, the degrees of freedom, the floors, see `_floors`, and the changes that
+    settle warnings, see `changes_of`.
     """
     branch = elimination_branches(problem)[0]
     settings = problem.settings
     samples = f", {counted(settings.samples, 'sample')} a round" if settings.samples else ""
+    warnings = [
+        *problem.warnings,
+        *driven_by_loads(problem),
+        *expected_warnings(problem),
+        *idle_rules(problem),
+        *idle_options(problem),
+    ]
     return {
         "name": problem.name,
         "given": [*_motion(problem), *_machine(problem), *_custom_lines(problem)],
@@ -65,13 +74,8 @@ def summarise(problem: Problem) -> dict[str, Any]:
         "unknowns": 3 + len(problem.mechanism.varying),
         "degrees_of_freedom": _degrees_of_freedom(branch),
         "eliminated": list(branch.eliminated),
-        "warnings": [
-            *problem.warnings,
-            *driven_by_loads(problem),
-            *expected_warnings(problem),
-            *idle_rules(problem),
-            *idle_options(problem),
-        ],
+        "warnings": warnings,
+        "changes": changes_of(warnings),
         "search": f"{settings.method}, at most {counted(settings.designs, 'design')}, seed {settings.seed}{samples}",
     }
 

@@ -42,6 +42,7 @@ declare global {
     // A column that the page makes itself has no group.
     type Column = Omit<Schemas["ColumnModel"], "group" | "group_place"> & Partial<Schemas["ColumnModel"]>;
     type Columns = Schemas["ColumnsModel"];
+    type Change = Schemas["ChangeModel"];
     type Certificate = Schemas["CertificateModel"];
     type Cycle = Schemas["CycleModel"];
     type Outlines = Schemas["OutlinesModel"];

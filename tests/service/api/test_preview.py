@@ -117,6 +117,45 @@ def test_curves_of_three_fixed_lengths_are_those_of_the_linkage_and_rest_at_its_
     assert example["slider_ends_mm"] == pytest.approx([1e3 * math.sqrt(d) for d in (0.0084, 0.0384)], rel=1e-12)
 
 
+WIDE: Job = {"crank": ["20 mm", "100 mm"], "rod": ["60 mm", "400 mm"], "offset": ["0 mm", "100 mm"]}
+NOT_MET = {
+    "too short a rod": {"variables": WIDE | {"crank": "50 mm", "rod": ["30 mm", "45 mm"]}},
+    "one short rod": {"variables": {"crank": "50 mm", "rod": "80 mm", "offset": "40 mm"}},
+    "two against each other": {
+        "variables": WIDE,
+        "constraints": {"time_ratio": {"min": 2, "max": 3}, "transmission_angle": {"min": "40 deg"}},
+    },
+    "beyond the ranges": {"variables": WIDE, "constraints": {"stroke": {"equals": "400 mm"}}},
+}
+
+
+@pytest.mark.parametrize("name", NOT_MET)
+def test_the_change_beside_a_sentence_settles_it(shared: httpx.Client, name: str) -> None:
+    job = deepcopy(NOT_MET[name])
+    allowed = preview(shared, job)["allowed"]
+    assert allowed["feasible_share"] == 0.0
+    assert [change["sentence"] for change in allowed["changes"]] == allowed["said"] != []
+    for change in allowed["changes"]:
+        table, key = change["path"].split(".")
+        changed = preview(shared, job | {table: job[table] | {key: change["value"]}})["allowed"]
+        assert change["sentence"] not in changed["said"]
+        assert changed["said"] == [] or all("designs tried" in sentence for sentence in changed["said"]), changed[
+            "said"
+        ]
+
+
+@pytest.mark.parametrize("more", [{}, {"time_ratio": {"min": 1.1, "max": 1.12}}, {"rod_to_offset": {"equals": 3.2}}])
+def test_as_many_designs_meet_an_exact_value_as_a_thin_band_around_it(shared: httpx.Client, more: Job) -> None:
+    def share(stroke: Job) -> float:
+        constraints = {"stroke": stroke, "transmission_angle": {"min": "40 deg"}, **more}
+        return float(preview(shared, {"variables": WIDE, "constraints": constraints})["allowed"]["feasible_share"])
+
+    exact = share({"equals": "100 mm"})
+    assert exact > 0.3
+    for half in (0.01, 1.0, 5.0):
+        assert share({"min": f"{100 - half} mm", "max": f"{100 + half} mm"}) == pytest.approx(exact, abs=0.06)
+
+
 def test_a_crank_that_locks_is_told_how_much_longer_a_rod_it_needs(shared: httpx.Client) -> None:
     lengths = {"crank": "50 mm", "rod": "80 mm", "offset": "-40 mm"}
     (said,) = preview(shared, {"variables": lengths})["allowed"]["said"]

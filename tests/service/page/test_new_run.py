@@ -574,6 +574,9 @@ def test_a_number_without_its_unit_is_warned_of_first_and_apart_from_notes(form:
     warning = facts.locator(".warning").first
     expect(warning).to_contain_text("is read as 120 rad/s (1145.92 rpm)", timeout=30_000)
     assert warning.evaluate("node => node.previousElementSibling === null")
+    warning.get_by_role("button", name="Write 120 rpm").click()
+    expect(facts).to_contain_text("crank speed 120 rpm", timeout=30_000)
+    expect(facts.locator(".warning")).to_have_count(0)
     expect(facts.locator(".note")).to_contain_text("Masses are given but no gravity")
     job["mechanism"]["speed"] = "120 U/min"
     job["variables"]["offset"] = "10 mm +- 2 mm"
@@ -593,10 +596,11 @@ def test_the_slow_stroke_is_asked_for_and_a_loaded_fast_one_is_warned_of(form: O
     page.get_by_label("offset, from").fill("-80")
     page.get_by_label("offset, to").fill("-15")
     expect(beside).to_contain_text("the loaded stroke (the outward one, against the load) is the faster one")
-    page.get_by_label("slow stroke", exact=True).select_option("inward")
+    beside.get_by_role("button", name="Require a slow inward stroke").press("Enter")
     expect(beside).not_to_contain_text("is the faster one")
     ready(page)
     assert text_of(page)["constraints"]["slow_stroke"] == "inward"
+    expect(page.get_by_label("slow stroke", exact=True)).to_have_value("inward")
     page.get_by_label("slow stroke", exact=True).select_option("outward")
     expect(page.locator("main")).to_contain_text("let the offset go above 0")
     page.get_by_label("slow stroke", exact=True).select_option("")

@@ -5,12 +5,25 @@ import { fill, h } from "../lib/dom.js";
 import { capital, inWords } from "../lib/words.js";
 import { inDisplayUnits, limitText, unitOf, withUnit } from "../lib/numbers.js";
 
-/** Fill a place with what a preview says. @param {HTMLElement} place @param {Api.Preview} preview */
-export function showFacts(place, { allowed, understood, swing }) {
+/**
+ * Fill a place with what a preview says. apply(change): the reader chose a change that settles a warning.
+ * @param {HTMLElement} place @param {Api.Preview} preview @param {(change: Api.Change) => void} apply
+ */
+export function showFacts(place, { allowed, understood, swing }, apply) {
   const open = place.querySelector("details")?.open; // as the reader left it
-  const warnings = (understood?.warnings ?? []).map((sentence) =>
-    h("p", { class: "warning" }, `${capital(inWords(sentence))}.`),
-  );
+  const changes = [...(understood?.changes ?? []), ...(allowed?.changes ?? [])];
+  /** @param {string} sentence */
+  const warning = (sentence) => {
+    const change = changes.find((one) => one.sentence === sentence);
+    return h(
+      "div",
+      { class: "warning" },
+      h("p", {}, `${capital(inWords(sentence))}.`),
+      change &&
+        h("button", { type: "button", onclick: () => apply(change) }, inDisplayUnits(change.label)),
+    );
+  };
+  const warnings = (understood?.warnings ?? []).map(warning);
   if (swing) {
     fill(
       place,
@@ -46,7 +59,7 @@ export function showFacts(place, { allowed, understood, swing }) {
       row("meets everything", share(allowed.feasible_share), `of ${allowed.sampled} tried`),
       allowed.slow_strokes.length ? row("slow stroke", allowed.slow_strokes.join(" or ")) : null,
     ),
-    notesOf(allowed.unchecked, understood, { said: allowed.said, open }),
+    notesOf(allowed.unchecked, understood, { said: allowed.said.map(warning), open }),
   );
 }
 
@@ -58,7 +71,7 @@ function row(title, value, note = null) {
   ];
 }
 
-/** @param {string[]} unchecked @param {Api.Understood | null} understood @param {{ said?: string[], open?: boolean }} options */
+/** @param {string[]} unchecked @param {Api.Understood | null} understood @param {{ said?: HTMLElement[], open?: boolean }} options */
 function notesOf(unchecked, understood, { said = [], open }) {
   return [
     unchecked.length
@@ -71,7 +84,7 @@ function notesOf(unchecked, understood, { said = [], open }) {
     (understood?.notes ?? []).map((sentence) =>
       h("p", { class: "note" }, `${capital(inWords(sentence))}.`),
     ),
-    said.map((sentence) => h("p", { class: "warning" }, `${capital(inWords(sentence))}.`)),
+    said,
     understood
       ? h(
           "details",

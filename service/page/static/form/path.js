@@ -49,6 +49,13 @@ export function written(path) {
     .join("");
 }
 
+/** Return the path that the service writes so. @param {string} text @returns {Form.Path} */
+export function parted(text) {
+  return [...text.matchAll(/ #(\d+)|"(?:[^"\\]|\\.)*"|[A-Za-z_]\w*/g)].map(([part, number]) =>
+    number ? Number(number) - 1 : part.startsWith('"') ? JSON.parse(part) : part,
+  );
+}
+
 /** @param {string} key */
 function quoted(key) {
   if (/^[A-Za-z_]\w*$/.test(key) && key.length <= LONGEST) return key;

@@ -163,7 +163,7 @@ export async function show(place, { query, signal }) {
         wrong: mistakes,
       } = await post("preview", { job: jobOf(stated) }, { signal });
       if (!again)
-        showAnswer(example, [
+        update(example, [
           ...(allowed?.said ?? []),
           ...mistakes
             .filter(({ path }) => /^(variables|mechanism)/.test(path))
@@ -179,7 +179,7 @@ export async function show(place, { query, signal }) {
   }
 
   /** Show what the service says. @param {Api.Example | null} example @param {string[]} faults */
-  function showAnswer(example, faults) {
+  function update(example, faults) {
     wrong.textContent =
       unread() || (example ? "" : faults.map((one) => `${capital(inWords(one))}.`).join(" "));
     next.hidden = facts.hidden = !example;

@@ -5,7 +5,7 @@ import { keepDraft, kept, newKey } from "../form/draft.js";
 import { showFacts } from "../form/facts.js";
 import { showWrong } from "../form/field.js";
 import { jobFile, presets } from "../form/job_file.js";
-import { at, put, renamed, valueOf, written } from "../form/path.js";
+import { at, parted, put, renamed, valueOf, written } from "../form/path.js";
 import { reader } from "../form/schema.js";
 import { sections } from "../form/sections.js";
 import { readyKinds } from "../lib/units.js";
@@ -97,7 +97,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
   let undone = before; // what was typed elsewhere, when the address asks for something else
   const drawn = sketch(signal);
   const facts = h("div", {});
-  const status = h("p", { role: "status", class: "status" });
+  const status = h("p", { role: "status", class: "status", tabindex: -1 });
   const general = h("ul", { class: "error", hidden: true });
   const refusal = h("p", { class: "error", role: "alert", hidden: true });
   const start = h("button", { type: "submit", class: "primary" }, "Start the search");
@@ -231,7 +231,11 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     if (count) say(count === 1 ? "One thing to correct." : `${count} things to correct.`);
     else say(answer.wrong.length ? IMPOSSIBLE : "Ready to start.");
     start.ariaDisabled = answer.wrong.length && !count ? "true" : null; // not disabled: Enter still says what to change
-    showFacts(facts, answer);
+    showFacts(facts, answer, ({ path, value }) => {
+      form.put(parted(path), value ?? undefined);
+      redraw();
+      status.focus();
+    });
     if (answer.swing) drawn.swing(answer.swing);
     else drawn.show(answer.example);
   }

@@ -5,6 +5,7 @@ import {
   at,
   idOf,
   isTable,
+  parted,
   put,
   renamed,
   valueOf,
@@ -32,6 +33,8 @@ test("a path is written as the service writes it, places counted from 1", () => 
     assert.deepEqual(read, one);
   }
   assert.equal(written(["load", 0, "force"]), "load #1.force");
+  for (const one of [["load", 2, "force"], ["constraints", 'rod "a" + 2'], ["name"]])
+    assert.deepEqual(parted(written(one)), one);
   assert.equal(written([]), "");
 });
 
