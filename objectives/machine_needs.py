@@ -131,6 +131,32 @@ COMPRESSOR = _defining(
     '[[load]] bore = "70 mm", suction = "1 bar", discharge = "8 bar", clearance = 0.05',
 )
 
+
+def _rotates_unevenly(mechanism: Mechanism) -> bool:
+    """Return whether flywheel or rotor change their speed within the cycle."""
+    machine = mechanism.fullest
+    turns = machine.drive is not None and machine.drive.inertia > 0.0
+    return turns and (machine.speed_profile is not None or machine.acceleration != 0.0)
+
+
+def motor_limit(key: str, example: str) -> Need:
+    """Return the need of a limit of the motor. key: of [drive]. example: its value as in a job."""
+    return _defining(
+        lambda machine: machine.drive is not None and getattr(machine.drive, key) is not None,
+        f'it needs the {key.replace("_", " ")} of the motor; got none; add for example [drive] {key} = "{example}"',
+    )
+
+
+DRIVE_TRAIN = _defining(
+    lambda machine: machine.drive is not None,
+    "it is of a motor; got none; add for example [drive] gear_ratio = 5",
+)
+MOTOR_LOADED = Need(lambda machine: drive_loaded(machine.fullest) or _rotates_unevenly(machine), _LOADS)
+"""Loads on the motor: those of the drive torque, or the inertia of flywheel and rotor."""
+ROTOR = _defining(
+    lambda machine: machine.drive is not None and machine.drive.motor_inertia > 0.0,
+    'an inertia ratio needs the inertia of the rotor; got none; add for example [drive] motor_inertia = "5 kg cm^2"',
+)
 SHAKES = Need(
     has_shaking_force,
     "the shaking forces of these cylinders cancel for every design; got cranks and banks that stand against each other "

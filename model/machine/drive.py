@@ -1,4 +1,4 @@
-"""Drive of the crank: the torque law of a motor over speed, a gear, and the inertias turning with it.
+"""Drive of the crank: a motor with its torque over speed and its limits, a gear, and the inertias turning with it.
 
 Motor speed and motor torque are positive in the motor's intended direction. A `Drive` converts this to the crank's
 direction, which is that of the mechanism's speed.
@@ -125,28 +125,70 @@ Motor = ConstantTorque | LinearMotor | TorqueTable
 
 @dataclass(frozen=True, kw_only=True)
 class Drive:
-    """A motor, a lossless gear, and the parts that turn with them.
+    """A motor, a gear, and the parts that turn with them.
 
-    flywheel: inertia on the crankshaft, kg m^2. motor_inertia: inertia of the rotor and all parts at motor speed, kg
-    m^2. gear_ratio: turns of the motor per crank turn; at the crank the motor's torque is multiplied by the ratio, its
-    inertia by the square of the ratio.
+    motor: torque over speed; None where only the loads on the motor matter. flywheel: inertia on the crankshaft, kg
+    m^2. motor_inertia: inertia of the rotor and all parts at motor speed, kg m^2. gear_ratio: turns of the motor per
+    crank turn; at the crank the motor's torque is multiplied by the ratio, its inertia by the square of the ratio.
+
+    gear_efficiency: output over input power of the gear while the motor drives. braking_efficiency: likewise while the
+    crank drives the motor; None for the same. greatest_torque, rated_torque: what the motor can give briefly and
+    continuously, N m. greatest_speed: of the motor, rad/s. copper_loss: heat in the winding at the rated torque, W.
+    recovery: fraction of the braking energy that the supply takes back.
     """
 
-    motor: Motor
+    motor: Motor | None = None
     flywheel: float = 0.0
     motor_inertia: float = 0.0
     gear_ratio: float = 1.0
+    gear_efficiency: float = 1.0
+    braking_efficiency: float | None = None
+    greatest_torque: float | None = None
+    rated_torque: float | None = None
+    greatest_speed: float | None = None
+    copper_loss: float | None = None
+    recovery: float = 0.0
 
     def __post_init__(self) -> None:
-        if not isinstance(self.motor, Motor):
+        if not isinstance(self.motor, Motor | None):
             raise InputError(f"motor must be a ConstantTorque, LinearMotor or TorqueTable; got {self.motor!r}")
-        require_numbers(self, "flywheel", "motor_inertia", least=0.0)
-        require_numbers(self, "gear_ratio", above=0.0)
+        require_numbers(self, "flywheel", "motor_inertia", "copper_loss", "recovery", least=0.0)
+        positive = ("gear_ratio", "gear_efficiency", "braking_efficiency", "greatest_torque", "rated_torque")
+        require_numbers(self, *positive, "greatest_speed", above=0.0)
+        for name in ("gear_efficiency", "braking_efficiency", "recovery"):
+            value = getattr(self, name)
+            if value is not None and value > 1.0:
+                raise InputError(f"{name} of a Drive must be at most 1; got {value:g}; no drive train returns more")
+        if self.copper_loss is not None and self.rated_torque is None:
+            raise InputError(
+                "copper_loss is the heat at the rated torque of the motor; got no rated_torque; add it, or leave out "
+                "copper_loss"
+            )
 
     @property
     def inertia(self) -> float:
         """Inertia of flywheel and motor, reflected to the crank: flywheel + ratio^2 motor, kg m^2."""
         return self.flywheel + self.gear_ratio**2 * self.motor_inertia
+
+    @property
+    def is_lossy(self) -> bool:
+        """Whether the gear takes a part of the power, in either direction."""
+        return self.gear_efficiency < 1.0 or (self.braking_efficiency or 1.0) < 1.0
+
+    @property
+    def torque_law(self) -> Motor:
+        """The motor's torque over its speed. Raises `InputError` without one, and for a gear with losses."""
+        if self.motor is None:
+            raise InputError(
+                "a machine that runs under its motor needs the motor's torque; got a drive without one; add for "
+                'example [drive] motor = { stall_torque = "60 N m", no_load_speed = "400 rpm" }'
+            )
+        if self.is_lossy:
+            raise InputError(
+                "a machine that runs under its motor takes a gear without losses; got a gear efficiency below 1; leave "
+                "it out, and reduce the torque of the motor instead"
+            )
+        return self.motor
 
     def torque(self, crank_speed: ArrayLike, direction: float) -> Array:
         """Return the torque on the crank, N m, counter-clockwise, at crank speeds, rad/s.
@@ -154,11 +196,12 @@ class Drive:
         direction: +1 or -1, direction in which the motor is meant to turn the crank.
         """
         speed = direction * self.gear_ratio * np.asarray(crank_speed)
-        return np.asarray(direction * self.gear_ratio * self.motor.torque_at(speed))
+        return np.asarray(direction * self.gear_ratio * self.torque_law.torque_at(speed))
 
 
 def speed_range(drive: Drive) -> tuple[float, float]:
     """Return the least and the greatest crank speed, rad/s in the motor's direction, at which its torque is known."""
-    if not isinstance(drive.motor, TorqueTable):
+    law = drive.torque_law
+    if not isinstance(law, TorqueTable):
         return -math.inf, math.inf
-    return drive.motor.speeds[0] / drive.gear_ratio, drive.motor.speeds[-1] / drive.gear_ratio
+    return law.speeds[0] / drive.gear_ratio, law.speeds[-1] / drive.gear_ratio

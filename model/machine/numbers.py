@@ -63,6 +63,21 @@ _SLOTS |= {f"strength.{name}": (slot, "m") for name, slot in PINS.items()}
 START = {"crank": 10**8 + 3, "slider": 10**8 + 4}
 """Slots of the start of a swing, which reads its own, by the link for which its ends are stated."""
 _SLOTS |= {"start.angle": (START["crank"], "rad"), "start.place": (START["slider"], "m")}
+_DRIVE = {
+    "flywheel": "kg m^2",
+    "motor_inertia": "kg m^2",
+    "gear_ratio": "",
+    "gear_efficiency": "",
+    "braking_efficiency": "",
+    "greatest_torque": "N m",
+    "rated_torque": "N m",
+    "greatest_speed": "rad/s",
+    "copper_loss": "W",
+    "recovery": "",
+}
+DRIVE = {name: 10**8 + 5 + place for place, name in enumerate(_DRIVE)}
+"""Slots of the drive train, which no kernel needs either."""
+_SLOTS |= {f"drive.{name}": (slot, _DRIVE[name]) for name, slot in DRIVE.items()}
 _POLAR = {"counterweight.radius": "m", "counterweight.angle": "rad"}
 
 
@@ -148,7 +163,7 @@ def formula_of_numbers(
     """Return a formula of designs (n, 3 + k), (n,), and its derivatives (n, 3 + k) by complex steps.
 
     formula: smooth formula, for real or complex numbers. Its argument is a function that returns the raw number of a
-    slot (`Raw`, `PINS`), (n,) or one for all designs.
+    slot (`Raw`, `PINS`, `DRIVE`), (n,) or one for all designs.
     """
     numbers = numbers_of(mechanism, designs, limit=10**9, gradients=gradients)
     set_numbers: dict[int, Any] = dict(zip(numbers.columns.tolist(), numbers.values.T, strict=True))
@@ -171,9 +186,12 @@ def formula_of_numbers(
 
 
 def nominal_number(mechanism: Mechanism, slot: int) -> float:
-    """Return the raw number of a slot (`Raw`, `PINS`) that designs do not set."""
-    names = {place: name for name, place in PINS.items()}
-    return float(getattr(mechanism.strength, names[slot]) if slot in names else _nominal(mechanism)[slot])
+    """Return the raw number of a slot (`Raw`, `PINS`, `DRIVE`) that designs do not set."""
+    for owner, slots in ((mechanism.strength, PINS), (mechanism.drive, DRIVE)):
+        for name, place in slots.items():
+            if place == slot:
+                return float(getattr(owner, name))
+    return float(_nominal(mechanism)[slot])
 
 
 @memoise_by_machine

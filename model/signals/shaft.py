@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from copy import copy
 from functools import cached_property
 
@@ -40,7 +41,7 @@ from .signal_inputs import cycle_window, signal_inputs
 from .signals import Signal
 
 _NEAR = 1e-9  # rad: a breakpoint this near to the start of one of two turns may belong to either
-_CONTACTS = 24  # panels of a turn in which the guide's force may change sides, of 16 samples each
+_CROSSED = 24  # panels of a turn in which a curve may change its sign, of 16 samples each
 _HALVINGS = 60
 _SIDE_STEP = 1e-12  # rad
 
@@ -197,8 +198,19 @@ class Shaft:
         row, angle = np.repeat(rows, len(fixed)), np.tile(fixed, len(rows))
         zeros = np.zeros(len(row), dtype=np.int64)
         parts.append(Breaks(row, angle, zeros, zeros, zeros + FIXED, np.zeros(len(row)), zeros))
-        smooth = joined(parts)
-        return joined([smooth, self._contacts(smooth)]) if self.rubbing else smooth
+        return self._cut_at_kinks(joined(parts))
+
+    def _cut_at_kinks(self, breaks: Breaks) -> Breaks:
+        """Return breakpoints with those where friction changes sides, between which the curve is smooth."""
+        parts = [breaks]
+        for member in self.members if self.rubbing else ():
+            touch = self._touch(member)
+
+            def contact(row: IntArray, probe: Array, angle: Array, touch: ShaftCurve = touch) -> Array:
+                return self._evaluate(touch, self._items(row, probe, angle)).curve[:, :, 0]
+
+            parts.append(self.crossings(breaks, contact, CONTACT, int(member)))
+        return joined(parts)
 
     def _breaks_of_half(self, half: int) -> Breaks:
         """Return the breakpoints of every cylinder in a turn of two."""
@@ -228,27 +240,26 @@ class Shaft:
                 )
         return joined(parts)
 
-    def _contacts(self, breaks: Breaks) -> Breaks:
-        """Return the angles between neighbouring samples at which a guide's force changes sides."""
+    def crossings(
+        self, breaks: Breaks, curve: Callable[[IntArray, Array, Array], Array], code: int, member: int = 0
+    ) -> Breaks:
+        """Return the angles between neighbouring samples at which a curve of designs changes its sign.
+
+        curve: function of designs (p,), angles in their segments (p,) and angles (p, k), rad; returns (p, k).
+        """
         segments = segments_of(breaks, self.period)
-        row, probe, low, width, _ = segments.panels(np.full(len(self.drives), _CONTACTS))
+        row, probe, low, width, _ = segments.panels(np.full(len(self.drives), _CROSSED))
         angle = low[:, None] + width[:, None] * np.linspace(0.0, 1.0, 17)
-        parts = []
-        for member in self.members:
-            touch = self._touch(member)
-            value = self._evaluate(touch, self._items(row, probe, angle)).curve[:, :, 0]
-            panel, place = np.nonzero(value[:, :-1] * value[:, 1:] < 0.0)
-            left, right, before = angle[panel, place], angle[panel, place + 1], value[panel, place]
-            for _ in range(_HALVINGS):
-                middle = 0.5 * (left + right)
-                now = self._evaluate(touch, self._items(row[panel], probe[panel], middle[:, None])).curve[:, 0, 0]
-                same = now * before > 0.0
-                left, right = np.where(same, middle, left), np.where(same, right, middle)
-            zeros = np.zeros(len(panel), dtype=np.int64)
-            at = np.mod(0.5 * (left + right), self.period)
-            members = np.full(len(panel), member)
-            parts.append(Breaks(row[panel], at, members, zeros, zeros + CONTACT, np.zeros(len(panel)), zeros))
-        return joined(parts)
+        value = curve(row, probe, angle)
+        panel, place = np.nonzero((value[:, :-1] < 0.0) != (value[:, 1:] < 0.0))
+        left, right, is_negative = angle[panel, place], angle[panel, place + 1], value[panel, place] < 0.0
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (left + right)
+            same = (curve(row[panel], probe[panel], middle[:, None])[:, 0] < 0.0) == is_negative
+            left, right = np.where(same, middle, left), np.where(same, right, middle)
+        zeros = np.zeros(len(panel), dtype=np.int64)
+        at = np.mod(0.5 * (left + right), self.period)
+        return Breaks(row[panel], at, zeros + member, zeros, zeros + code, np.zeros(len(panel)), zeros)
 
     def rates(self, cuts: IntArray, probe: Array) -> Array:
         """Return the derivatives (c, v) of breakpoint angles by the design; probe: angles in the segments behind."""

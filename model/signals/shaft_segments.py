@@ -10,8 +10,9 @@ from ..arrays import Array, IntArray
 from ..machine.two_turns import TURN
 from .cycle_segments import Segments
 
-FIXED, CONTACT = -1, -2
-"""Codes of a breakpoint that no design moves, and of one where a guide's force changes sides."""
+FIXED, CONTACT, GEAR, SUPPLY = -1, -2, -3, -4
+"""Codes of a breakpoint that no design moves, and of those where a sign changes: that of a guide's force, of the torque
+through the gear, and of the power from the supply."""
 _SHORTEST = 1e-13  # rad: breakpoints closer than this are one
 
 
@@ -19,7 +20,7 @@ _SHORTEST = 1e-13  # rad: breakpoints closer than this are one
 class Breaks:
     """Breakpoints, c in total: design, angle, cylinder, half, and kind, as in `segments.Cuts`.
 
-    code: `FIXED` for a breakpoint that no design moves, `CONTACT` where a guide's force changes sides.
+    code: also `FIXED`, `CONTACT`, `GEAR` or `SUPPLY`.
     """
 
     row: IntArray

@@ -16,7 +16,10 @@ from ..kernel.batches import in_chunks
 from ..machine.dissipation import works_over_a_turn
 from ..machine.mechanism import Mechanism
 from ..machine.members import cylinder_count, cylinders_of, single_cylinder
+from ..machine.memoise import memoise_by_machine
 from ..machine.raw import knot_count
+from ..machine.two_turns import TURN
+from .panels import panels_of
 from .shaft import Shaft
 from .shaft_averages import MEAN, SQUARE, shaft_means
 from .shaft_curves import CURVES, WORK
@@ -163,3 +166,13 @@ def shaft_turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool) ->
 def mean_speed_ratio(mechanism: Mechanism) -> float:
     """Return the mean speed over time divided by that over the crank angle; 1 without a profile."""
     return 1.0 if mechanism.speed_profile is None else mechanism.speed_profile.over_time
+
+
+@memoise_by_machine
+def greatest_speed_ratio(mechanism: Mechanism) -> float:
+    """Return the greatest speed over the crank angle divided by its mean; 1 without a profile."""
+    profile = mechanism.speed_profile
+    if profile is None:
+        return 1.0
+    ends = np.union1d(np.linspace(0.0, TURN, 9), np.mod(profile.knots, TURN))
+    return panels_of(lambda angle: profile.ratio(angle)[None], ends, np.ones(1)).extremes(0)[1].value

@@ -31,15 +31,16 @@ def balanced_speed(turn: PeriodicTurn, drive: Drive, motor: Torque, near: float)
     def motor_surplus(speed: Array | float) -> Array:
         return way * motor(np.multiply(way, speed))[0] - static - (drag + square * speed) * speed
 
-    if isinstance(drive.motor, ConstantTorque) and drag <= 0.0 and square <= 0.0:
+    law = drive.torque_law
+    if isinstance(law, ConstantTorque) and drag <= 0.0 and square <= 0.0:
         top = _speed_where_friction_balances(turn, motor_surplus, near)
         if top is None:
             raise InputError(
                 "steady running needs a torque or a load that changes with speed; got a constant motor torque of "
-                f"{drive.gear_ratio * drive.motor.torque:g} N m on the crank against {static:.6g} N m on average at "
+                f"{drive.gear_ratio * law.torque:g} N m on the crank against {static:.6g} N m on average at "
                 "every speed; give the motor a no-load speed, or add a viscous load or drag"
             )
-    elif isinstance(drive.motor, ConstantTorque | LinearMotor):  # a straight line or falling faster: beyond its zero
+    elif isinstance(law, ConstantTorque | LinearMotor):  # a straight line or falling faster: beyond its zero
         top = max(1.0, 1.01 * float(motor_surplus(0.0) / (motor_surplus(0.0) - motor_surplus(1.0))))
     else:
         top = speed_range(drive)[1]

@@ -163,7 +163,7 @@ class Runner:
 
         def motor(speed: Array) -> tuple[Array, Array]:
             speed_in_range = way * np.clip(way * speed, slowest, fastest)
-            slope = drive.gear_ratio**2 * drive.motor.slope(drive.gear_ratio * way * speed_in_range)
+            slope = drive.gear_ratio**2 * drive.torque_law.slope(drive.gear_ratio * way * speed_in_range)
             return drive.torque(speed_in_range, way), np.where(speed_in_range == speed, slope, 0.0)
 
         return motor

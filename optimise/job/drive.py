@@ -13,10 +13,13 @@ from .values import (
     Built,
     Checked,
     DrivingTorque,
+    Efficiency,
     Inertia,
+    Loss,
     PositiveAngularSpeed,
     PositiveRatio,
     PositiveTorque,
+    Recovery,
     Torque,
     optional,
     required,
@@ -89,13 +92,13 @@ AnyMotor = Annotated[
 ]
 
 
-class DrivePart(Built[model.Drive]):
+class DrivePart(Checked[model.Drive]):
     """The motor and what turns with it; it turns the crank the way the sign of mechanism.speed says."""
 
     makes = model.Drive
 
-    motor: AnyMotor = required(
-        "motor torque over motor speed",
+    motor: AnyMotor | None = optional(
+        "motor torque over motor speed, for a machine that runs under its motor",
         {"stall_torque": "60 N m", "no_load_speed": "400 rpm"},
         {"torque": "20 N m"},
     )
@@ -104,3 +107,12 @@ class DrivePart(Built[model.Drive]):
         "of the rotor and everything that turns at motor speed", "0.004 kg m^2", default=0.0
     )
     gear_ratio: PositiveRatio = optional("motor turns per crank turn", 5.0, default=1.0)
+    gear_efficiency: Efficiency = optional("of the gear while the motor drives", 0.94, default=1.0)
+    braking_efficiency: Efficiency | None = optional(
+        "of the gear while the crank drives the motor; gear_efficiency if left out", 0.9
+    )
+    greatest_torque: PositiveTorque | None = optional("that the motor can give briefly", "15 N m")
+    rated_torque: PositiveTorque | None = optional("that the motor can give continuously", "5 N m")
+    greatest_speed: PositiveAngularSpeed | None = optional("of the motor", "4000 rpm")
+    copper_loss: Loss | None = optional("heat in the winding at the rated torque", "120 W")
+    recovery: Recovery = optional("fraction of the braking energy that the supply takes back", 0.8, default=0.0)

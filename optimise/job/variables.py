@@ -49,6 +49,7 @@ class VariablesPart(Part):
     mechanism: Table = _variable_table("[mechanism]", {"slider": {"mass": ["0.5 kg", "2 kg"]}})
     load: Table = _variable_table("a [[load]], by its position, 1 for the first,", {"1": {"force": ["100 N", "200 N"]}})
     friction: Table = _variable_table("[friction]", {"guide": [0.05, 0.15]})
+    drive: Table = _variable_table("[drive]", {"gear_ratio": [10, 40]})
     tolerances: Table = _variable_table("[tolerances]", {"crank": ["0.02 mm", "0.1 mm"]})
     motion: Table = _variable_table("[motion]: where a swing starts", {"from": ["0 deg", "40 deg"]})
     sections: Table = _variable_table("[sections]", {"pins": {"crank_pin": ["10 mm", "20 mm"]}})

@@ -11,6 +11,7 @@ import pytest
 
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.objectives.drive_train import MotorSpeed
 from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.units import to_si
@@ -55,7 +56,7 @@ def test_values_and_gradients_have_the_shape_of_the_batch(quantity: Quantity, ma
     assert np.all(np.isfinite(full.gradients))
     # Closed forms share other products when gradients are wanted too: an ulp, amplified near locking.
     np.testing.assert_allclose(full.values, plain.values, rtol=1e-13)
-    assert np.any(full.gradients != 0.0)
+    assert np.any(full.gradients != 0.0) or isinstance(quantity, MotorSpeed)  # which no length changes
 
 
 @pytest.mark.parametrize(("quantity", "machine"), CASES)

@@ -68,6 +68,9 @@ def test_every_average_says_over_what_it_is_taken() -> None:
         found = QUANTITIES[name]
         (over,) = (over for over in ("over time", "over the crank angle") if over in found.title)
         of_angle = isinstance(found, CycleAverage) and found.statistic == "mean" and not found.times_speed
-        assert over == ("over the crank angle" if of_angle else "over time") or name == "torque_fluctuation"
+        assert over == ("over the crank angle" if of_angle else "over time") or name in (
+            "torque_fluctuation",
+            "mean_inertia_ratio",
+        )
         assert over in re.sub("over the time of a (cycle|turn)", "over time", found.sentence), name
         assert over in found.formula, name

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import slidercrank as sc
+from slidercrank.model.machine.drive import Drive
+from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.strength import Material, Strength
 from slidercrank.objectives.registry import FACTS
 from slidercrank.objectives.tables.violations import violations
@@ -98,6 +100,7 @@ def test_a_machine_without_material_violates_nothing_and_a_quantity_without_allo
     assert {name for name, of in FACTS.items() if of.allowed_by} == {
         *(f"pin_{what}_{pin}" for what in ("pressure", "shear") for pin in PINS),
         *("static_safety", "fatigue_safety", "buckling_safety"),
+        *("motor_peak_torque", "motor_rms_torque", "motor_speed"),
     }
     with pytest.raises(NotImplementedError, match="stroke has no allowable value"):
         FACTS["stroke"].allowable(machine)
@@ -107,3 +110,11 @@ def test_the_good_side_of_safeties_is_high_and_python_says_it() -> None:
     better = sc.quantities()["better"]
     assert (better[["static_safety", "fatigue_safety", "transmission_angle", "rod_to_offset"]] == "high").all()
     assert (better[["peak_torque", "pin_shear_crank_pin", "footprint"]] == "low").all()
+
+
+def test_what_a_motor_cannot_give_is_violated_and_only_what_its_drive_states() -> None:
+    drive = Drive(gear_ratio=4.0, greatest_torque=0.5)
+    machine = Mechanism(speed=30.0, slider_mass=2.0, drive=drive)
+    found = sc.analyse(machine, [0.05, 0.2, 0.02])
+    assert found.violated == {"motor_peak_torque": pytest.approx(found["motor_peak_torque"] - 0.5)}
+    assert sc.analyse(replace(machine, drive=replace(drive, greatest_torque=None)), [0.05, 0.2, 0.02]).violated == {}

@@ -58,7 +58,6 @@ GOOD = {"torque": "20 N m"}
 @pytest.mark.parametrize(
     ("drive", "words"),
     [
-        ({}, ["drive.motor: is missing", "add for example motor ="]),
         ({"motor": GOOD, "flywheal": 1}, ["drive.flywheal: unknown key", "did you mean flywheel?"]),
         ({"motor": "20 N m"}, ["drive.motor: must be a table such as { torque }", '"20 N m"']),
         ({"motor": {}}, ["drive.motor: must be one of", "got no keys"]),

@@ -42,7 +42,14 @@ BASE: dict[str, Any] = {
         {"force": "60 N", "opposes": "motion"},
         {"bore": "30 mm", "suction": "1 bar", "discharge": "4 bar", "clearance": 0.1},
     ],
-    "drive": {"motor": {"stall_torque": "60 N m", "no_load_speed": "330 rpm"}, "flywheel": "0.5 kg m^2"},
+    "drive": {
+        "motor": {"stall_torque": "60 N m", "no_load_speed": "330 rpm"},
+        "flywheel": "0.5 kg m^2",
+        "motor_inertia": "5 kg cm^2",
+        "greatest_torque": "90 N m",
+        "rated_torque": "30 N m",
+        "greatest_speed": "600 rpm",
+    },
     "target_motion": {
         "crank_angles": ["0 deg", "90 deg", "180 deg", "270 deg"],
         "positions": ["180 mm", "140 mm", "100 mm", "140 mm"],

@@ -115,7 +115,7 @@ export function sections(form) {
       ),
       turning(form, "drive", () =>
         more(
-          ["Motor and flywheel, for start-up and steady running", has(form, "drive")],
+          ["Motor and flywheel: limits of the motor, losses, start-up", has(form, "drive")],
           byschema(form, ["drive"], { label: "drive" }),
         ),
       ),

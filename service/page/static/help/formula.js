@@ -10,6 +10,7 @@ import { h, mathml } from "../lib/dom.js";
 const GREEK = new Map(
   Object.entries({
     alpha: "α",
+    eta: "η",
     mu: "μ",
     omega: "ω",
     phi: "φ",
@@ -43,6 +44,14 @@ const SYMBOLS = {
   l: ["rod", "rod"],
   e: ["offset", "offset"],
   T: ["drive torque", null],
+  T_m: ["motor torque", null],
+  T_g: ["torque through the gear, at the crank", null],
+  T_r: ["rated torque of the motor", null],
+  J_f: ["inertia of the flywheel", null],
+  J_m: ["inertia of the rotor", null],
+  i: ["gear ratio", null],
+  eta: ["efficiency of the gear", null],
+  eta_b: ["efficiency of the gear while the motor brakes", null],
   theta: ["crank angle", null],
   phi: ["angle of the rod", null],
   omega: ["crank speed", null],

@@ -1,0 +1,234 @@
+"""Curves of a motor over the cycle: torque, power and the energy that it draws, behind a gear with losses.
+
+In the direction of rotation, with T the crank's torque, J_f the flywheel, J_m the rotor, i the gear ratio, and w and a
+the crank's speed and acceleration:
+
+    T_g = T + J_f a,        T_m = i J_m a + max(T_g / eta, eta_b T_g) / i.
+
+The efficiency acts on the torque through the gear, not on the rotor's own. The supply gives T_m i + c T_m^2 / w per
+crank angle, with c the copper loss over the square of the torque; of what comes back it keeps a fraction. Where T_g or
+the supply's power change sign the curves have kinks, which are breakpoints.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum, auto
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array, IntArray
+from ..errors import InputError
+from ..kernel.arithmetic import STEP
+from ..kernel.batches import in_chunks, turning
+from ..machine.drive import Drive
+from ..machine.mechanism import Mechanism
+from ..machine.members import cylinder_count
+from ..machine.memoise import memoise_by_batch
+from ..machine.numbers import DRIVE, number_of
+from ..machine.raw import Raw, knot_count
+from .peaks import Peaks
+from .shaft import Shaft
+from .shaft_averages import MEAN, SQUARE_OVER_TIME, shaft_means
+from .shaft_peaks import shaft_peaks
+from .shaft_segments import GEAR, SUPPLY, Breaks, joined
+from .signals import Signal
+
+_CHUNK = 128  # designs
+_Stepped = NDArray[np.complex128]
+
+
+class MotorCurve(IntEnum):
+    """A curve of the motor in the direction of rotation.
+
+    Torque, N m; power at its shaft, W; energy drawn from the supply per crank angle, J, net of what it takes back. The
+    last two have the kinks: torque at the crank through the gear, N m, and energy per crank angle in either direction.
+    """
+
+    TORQUE = auto()
+    POWER = auto()
+    DRAWN = auto()
+    THROUGH_GEAR = auto()
+    SUPPLIED = auto()
+
+
+_EFFICIENCIES = {"drive.gear_efficiency", "drive.braking_efficiency"}
+_KINKS = {GEAR: MotorCurve.THROUGH_GEAR, SUPPLY: MotorCurve.SUPPLIED}
+
+
+class _Numbers(NamedTuple):
+    """Numbers of the drive train, (n, 1 + v): complex, stepped in the place and in each number of the design."""
+
+    speed: _Stepped
+    acceleration: _Stepped
+    flywheel: _Stepped
+    motor_inertia: _Stepped
+    gear_ratio: _Stepped
+    gear_efficiency: _Stepped
+    braking_efficiency: _Stepped
+    recovery: _Stepped
+    resistance: _Stepped
+
+
+class MotorShaft(Shaft):
+    """Designs (n, 3 + k) of a machine with a drive, followed by one curve of its motor."""
+
+    def __init__(self, mechanism: Mechanism, curve: MotorCurve, designs: Array, *, gradients: bool = False) -> None:
+        members = tuple(range(cylinder_count(mechanism)))
+        super().__init__(mechanism, int(Signal.TORQUE), designs, members=members, gradients=gradients)
+        self.curve, self._direction = curve, mechanism.direction
+        drive = _drive_of(mechanism)
+        self._lossy = drive.is_lossy or any(_EFFICIENCIES & {*item.paths} for item in mechanism.varying)
+        self._train = _numbers_of(mechanism, drive, designs)
+
+    def evaluate(
+        self, row: IntArray, probe: Array, angle: Array, *, rate: Array | None = None, gradients: bool = False
+    ) -> tuple[Array, Array]:
+        """Return the curve (p, k, 2 + v) and its sizes (p, k), as `Shaft.evaluate` does."""
+        return self._motor_curve(self.curve, row, probe, angle, rate, gradients)
+
+    def rates(self, cuts: IntArray, probe: Array) -> Array:
+        """Return the derivatives (c, v) of breakpoint angles by the design; probe: angles in the segments behind."""
+        out = super().rates(cuts, probe)
+        for code, curve in _KINKS.items():
+            rows = np.flatnonzero(self.breaks.code[cuts] == code)
+            row, angle = self.breaks.row[cuts[rows]], self.breaks.angle[cuts[rows], None]
+            slopes = self._motor_curve(curve, row, probe[rows], angle, None, True)[0][:, 0]
+            out[rows] = -slopes[:, 2:] / slopes[:, 1:2]
+        return out
+
+    def _cut_at_kinks(self, breaks: Breaks) -> Breaks:
+        """Return breakpoints with those of gear and supply."""
+        breaks = super()._cut_at_kinks(breaks)
+        codes = ([GEAR] if self._lossy else []) + ([SUPPLY] if self.curve is MotorCurve.DRAWN else [])
+        for code in codes:
+            breaks = joined([breaks, self.crossings(breaks, partial(self._values, _KINKS[code]), code)])
+        return breaks
+
+    def _values(self, curve: MotorCurve, row: IntArray, probe: Array, angle: Array) -> Array:
+        return self._motor_curve(curve, row, probe, angle, None, False)[0][:, :, 0]
+
+    def _motor_curve(
+        self, curve: MotorCurve, row: IntArray, probe: Array, angle: Array, rate: Array | None, gradients: bool
+    ) -> tuple[Array, Array]:
+        """Return a curve and its sizes, as `evaluate` does; the probe says which sides of the kinks count."""
+        angle = np.concatenate([angle, probe[:, None]], axis=1)
+        torque, size = super().evaluate(row, probe, angle, rate=rate, gradients=gradients)
+        steps: _Stepped = 1j * STEP * torque[:, :, 1:]
+        train = _Numbers(*(part[row, None, : steps.shape[2]] for part in self._train))
+        moves = np.ones((len(angle), steps.shape[2]))
+        if gradients:
+            moves[:, 1:] = 0.0 if rate is None else rate
+        speed, acceleration = self._motion(train, angle, 1j * STEP * moves[:, None])
+        through_gear = self._direction * (torque[:, :, :1] + steps) + train.flywheel * acceleration
+        drives = through_gear[:, -1:, :1].real >= 0.0
+        share = np.where(drives, 1.0 / train.gear_efficiency, train.braking_efficiency)
+        at_motor = train.gear_ratio * train.motor_inertia * acceleration + share * through_gear / train.gear_ratio
+        greatest = size[:, :, None] + np.abs(train.flywheel * acceleration)[:, :, :1]
+        sizes = np.abs(share / train.gear_ratio)[:, :, :1] * greatest
+        sizes = sizes + np.abs(train.gear_ratio * train.motor_inertia * acceleration)[:, :, :1]
+        if curve is MotorCurve.THROUGH_GEAR:
+            values, sizes = through_gear, greatest
+        elif curve is MotorCurve.TORQUE:
+            values = at_motor
+        elif curve is MotorCurve.POWER:
+            values, sizes = train.gear_ratio * speed * at_motor, np.abs(train.gear_ratio * speed)[:, :, :1] * sizes
+        else:
+            values = train.gear_ratio * at_motor + train.resistance * at_motor * at_motor / speed
+            sizes = np.abs(train.gear_ratio)[:, :, :1] * sizes
+            if curve is MotorCurve.DRAWN:
+                values = values * np.where(values[:, -1:, :1].real >= 0.0, 1.0, train.recovery)
+        out = np.concatenate([values[:, :-1, :1].real, values[:, :-1].imag / STEP], axis=2)
+        return out, np.asarray(sizes[:, :-1, 0])
+
+    def _motion(self, train: _Numbers, angle: Array, step: _Stepped) -> tuple[_Stepped, _Stepped]:
+        """Return speed and acceleration of the crank in its direction of rotation, stepped, (p, k, c)."""
+        speed = self._direction * train.speed
+        if self.profile is None:
+            ones = np.ones((*angle.shape, 1))
+            return speed * ones, self._direction * train.acceleration * ones
+        ratio, slope, bend = (
+            derivative(angle)[:, :, None]
+            for derivative in (self.profile.ratio, self.profile.slope, self.profile.curvature)
+        )
+        stepped_ratio, stepped_slope = ratio + step * slope, slope + step * bend
+        return speed * stepped_ratio, self._direction * train.speed * train.speed * stepped_ratio * stepped_slope
+
+
+def _drive_of(mechanism: Mechanism) -> Drive:
+    if mechanism.drive is None:
+        raise InputError("a curve of the motor needs a drive; got none; add for example [drive] gear_ratio = 5")
+    return mechanism.drive
+
+
+def _numbers_of(mechanism: Mechanism, drive: Drive, designs: Array) -> _Numbers:
+    """Return the numbers of the drive train for designs (n, 3 + k)."""
+
+    def stepped(slot: int, otherwise: float | None) -> _Stepped:
+        values, slopes = number_of(mechanism, slot, designs, otherwise=0.0 if otherwise is None else otherwise)
+        return np.concatenate([values[:, None] + 0j, values[:, None] + 1j * STEP * slopes], axis=1)
+
+    numbers = {name: stepped(slot, getattr(drive, name)) for name, slot in DRIVE.items()}
+    if drive.braking_efficiency is None:
+        numbers["braking_efficiency"] = numbers["gear_efficiency"]
+    rated = numbers["rated_torque"]
+    resistance = 0.0 * rated if drive.copper_loss is None else numbers["copper_loss"] / (rated * rated)
+    kept = {name: numbers[name] for name in _Numbers._fields if name in numbers}
+    motion = stepped(Raw.SPEED, mechanism.speed), stepped(Raw.ACCELERATION, mechanism.acceleration)
+    return _Numbers(*motion, **kept, resistance=resistance)
+
+
+@memoise_by_batch
+def motor_peaks(mechanism: Mechanism, designs: Array, curve: MotorCurve, gradients: bool, limit: int) -> Peaks:
+    """Return the highest local peaks of the size of a motor's curve for designs (n, 3 + k); see `Peaks`."""
+    designs = turning(designs)
+    values, angles = np.empty((len(designs), limit)), np.empty((len(designs), limit))
+    slopes = np.empty((len(designs), limit, designs.shape[1])) if gradients else None
+
+    def work(begin: int, end: int) -> None:
+        peaks = shaft_peaks(MotorShaft(mechanism, curve, designs[begin:end], gradients=gradients), limit=limit)
+        values[begin:end], angles[begin:end] = peaks[:2]
+        if slopes is not None:
+            slopes[begin:end] = peaks[2]
+
+    in_chunks(len(designs), work, size=_CHUNK, knots=knot_count(mechanism))
+    return Peaks(values, angles, slopes)
+
+
+@dataclass(frozen=True)
+class MotorAverages:
+    """Averages of a motor's curve over the cycle, (n,), and their derivatives (n, 3 + k) or None.
+
+    integral: over the crank angle. rms: root mean square over time. Both are infinite where friction locks a design.
+    """
+
+    integral: Array
+    rms: Array
+    integral_gradients: Array | None
+    rms_gradients: Array | None
+
+
+@memoise_by_batch
+def motor_averages(mechanism: Mechanism, designs: Array, curve: MotorCurve, gradients: bool) -> MotorAverages:
+    """Return the averages of a motor's curve for designs (n, 3 + k)."""
+    designs = turning(designs)
+    values, slopes = np.empty((2, len(designs))), np.zeros((2, *designs.shape))
+
+    def work(begin: int, end: int) -> None:
+        shaft = MotorShaft(mechanism, curve, designs[begin:end], gradients=gradients)
+        means = shaft_means(shaft, end - begin)
+        integral, rms = shaft.period * means.values[MEAN], np.sqrt(means.values[SQUARE_OVER_TIME])
+        values[:, begin:end] = np.where(means.nothing, 0.0, np.where(shaft.drives, np.stack([integral, rms]), np.inf))
+        if means.gradients is not None:
+            positive = (rms > 0.0) & ~means.nothing & shaft.drives
+            half = np.where(positive, 0.5 / np.where(positive, rms, 1.0), 0.0)
+            slopes[0, begin:end] = np.where(
+                (means.nothing | ~shaft.drives)[:, None], 0.0, shaft.period * means.gradients[MEAN]
+            )
+            slopes[1, begin:end] = half[:, None] * means.gradients[SQUARE_OVER_TIME]
+
+    in_chunks(len(designs), work, size=_CHUNK, knots=knot_count(mechanism))
+    return MotorAverages(values[0], values[1], slopes[0] if gradients else None, slopes[1] if gradients else None)

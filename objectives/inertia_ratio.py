@@ -1,0 +1,101 @@
+"""Inertia ratio of a motor: the inertia that it drives over that of its rotor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ..model.machine.mechanism import Mechanism
+from ..model.machine.numbers import DRIVE, formula_of_numbers
+from ..model.signals.averages import average
+from ..model.signals.peaks import find_peaks
+from ..model.signals.signals import Signal
+from .kinds import RATIO
+from .machine_needs import DRIVE_TRAIN, ROTOR
+from .quantity import Array, Group, Number, Pieces, Quantity, Values, undefined
+
+
+def _per_inertia(number: Number) -> Any:
+    return 1.0 / (number(DRIVE["gear_ratio"]) ** 2 * number(DRIVE["motor_inertia"]))
+
+
+def _of_flywheel(number: Number) -> Any:
+    return number(DRIVE["flywheel"]) * _per_inertia(number)
+
+
+@dataclass(frozen=True, kw_only=True)
+class InertiaRatio(Quantity):
+    """(J + J_f) / (i^2 J_m), for the greatest or the mean inertia J of the linkage at the crank.
+
+    mean: whether for the mean over the crank angle.
+    """
+
+    mean: bool
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        if self.lacks(mechanism, "undefined"):
+            return undefined(dimensions, gradients)
+        if self.mean:
+            averages = average(mechanism, Signal.REFLECTED_INERTIA, dimensions, gradients=gradients)
+            return self._ratio(mechanism, dimensions, averages.mean, averages.mean_gradients)
+        peaks = find_peaks(mechanism, Signal.REFLECTED_INERTIA, dimensions, gradients=gradients, limit=1)
+        slopes = None if peaks.gradients is None else peaks.gradients[:, 0]
+        return self._ratio(mechanism, dimensions, peaks.values[:, 0], slopes)
+
+    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        """Return the ratios of the highest local peaks of the inertia; see `Quantity`."""
+        if self.mean or self.lacks(mechanism, "undefined"):
+            return super().pieces(mechanism, dimensions)
+        peaks = find_peaks(mechanism, Signal.REFLECTED_INERTIA, dimensions, gradients=True)
+        assert peaks.gradients is not None
+        values, slopes = np.full_like(peaks.values, -np.inf), np.zeros_like(peaks.gradients)
+        for place in range(values.shape[1]):
+            rows = np.flatnonzero(np.isfinite(peaks.values[:, place]))
+            ratio = self._ratio(mechanism, dimensions[rows], peaks.values[rows, place], peaks.gradients[rows, place])
+            assert ratio.gradients is not None
+            values[rows, place], slopes[rows, place] = ratio.values, ratio.gradients
+        return Pieces(values, slopes, peaks.angles)
+
+    def _ratio(self, mechanism: Mechanism, designs: Array, inertia: Array, slopes: Array | None) -> Values:
+        scale, flywheel = (
+            Values(*formula_of_numbers(mechanism, designs, formula, gradients=slopes is not None))
+            for formula in (_per_inertia, _of_flywheel)
+        )
+        linkage = Values(inertia, slopes).times(scale)
+        if linkage.gradients is None or flywheel.gradients is None:
+            return Values(linkage.values + flywheel.values, None)
+        return Values(linkage.values + flywheel.values, linkage.gradients + flywheel.gradients)
+
+
+_ratio = partial(
+    InertiaRatio,
+    kind=RATIO,
+    group=Group.DRIVE,
+    section="10. Motor and balance",
+    picture="inertia",
+    example=5.0,
+    needs=(DRIVE_TRAIN, ROTOR),
+)
+INERTIA_RATIO = _ratio(
+    name="inertia_ratio",
+    title="greatest inertia ratio",
+    short="inertia ratio",
+    mean=False,
+    place=239,
+    sentence="The greatest inertia of linkage and flywheel at the motor within a turn, per inertia of the rotor.",
+    advice="Makers of servo motors advise at most 3 to 10: beyond that the loop of the speed becomes soft.",
+    formula="max (J + J_f) / (i^2 J_m)",
+)
+MEAN_INERTIA_RATIO = _ratio(
+    name="mean_inertia_ratio",
+    title="mean inertia ratio over the crank angle",
+    short="mean inertia ratio",
+    mean=True,
+    place=240,
+    sentence="The mean inertia of linkage and flywheel at the motor, over the crank angle, per inertia of the rotor.",
+    formula="(mean of J over the crank angle + J_f) / (i^2 J_m)",
+)
