@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 
-def table_in(tables: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    """Return the table under a key."""
+def table_in(tables: Mapping[str, Any], name: str) -> Mapping[Any, Any]:
+    """Return the table under a key; keys of its own that are not text are refused later."""
     table = tables.get(name)
     return table if isinstance(table, Mapping) else {}
 

@@ -237,7 +237,7 @@ def test_the_figure_of_a_balance_draws_what_the_model_gives(space: RodSpace | No
     sheet = counterweight.figure(mechanism, LINKAGE, optimum=found, problem=problem)
     assert len(sheet.panels) == (2 if space is None else 3)
     theta = np.radians(sheet.panels[1].lines[0].x)
-    for n, machine in enumerate((mechanism, found.after)):
+    for n, machine in enumerate((mechanism, found.balanced)):
         curves = shaking_curves(machine, LINKAGE, theta)
         size = np.abs(curves.force_x).max()
         np.testing.assert_allclose(sheet.panels[0].lines[n].x, curves.force_x, rtol=0, atol=1e-9 * size)

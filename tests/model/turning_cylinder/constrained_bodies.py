@@ -83,7 +83,7 @@ class Bodies:
         for _ in range(60):
             values, rows = self.constraints(q)
             change = np.linalg.solve(rows.real, (values - driver * length).real)
-            q = q - change
+            q -= change
             if np.abs(change).max() < 1e-15:
                 break
         rows = self.constraints(q)[1].real
