@@ -53,7 +53,7 @@ def _triangle_near_dead_centre(number: Number, distance: float, outer: bool) -> 
     return x, x * x + lengths[2] * lengths[2], outer_product, inner_product
 
 
-def _travel(machine: Mechanism, number: Number, distance: Any) -> Any:
+def _travel_rate(machine: Mechanism, number: Number, distance: Any) -> Any:
     """Return |x'|, m, before the dead centre: the area of the parallelogram of crank and rod over l cos(phi)."""
     r, l, e = number(Raw.CRANK), number(Raw.ROD), number(Raw.OFFSET)
     outer = machine.slider.dead_centre == "outer"
@@ -86,18 +86,18 @@ def before_dead_centre(machine: Mechanism, design: Array, distances: Array) -> t
     way = 1.0 if outer else -1.0
     turned = way * np.arctan2(e * distances, (dead - way * distances) * dead + e * e)  # of the line, from there
     angles = _angle_from_line(machine, number, distances) - machine.sign * machine.direction * turned
-    return angles, _travel(machine, number, distances)
+    return angles, _travel_rate(machine, number, distances)
 
 
 def _touch_speed(machine: Mechanism, number: Number) -> Any:
-    return _travel(machine, number, machine.slider.touch or 0.0) * magnitude(number(Raw.SPEED))
+    return _travel_rate(machine, number, machine.slider.touch or 0.0) * magnitude(number(Raw.SPEED))
 
 
 def _dwell_angle(machine: Mechanism, number: Number) -> Any:
     return 2.0 * _angle_from_line(machine, number, machine.slider.dwell or 0.0)
 
 
-def _needs(name: str) -> Need:
+def _need_distance(name: str) -> Need:
     return Need(
         lambda machine: getattr(machine.slider, name) is not None,
         f"it needs a {name} distance of the slider; got none; add for example "
@@ -118,7 +118,7 @@ TOUCH_SPEED = NearDeadCentre(
     section="2. Closed forms",
     picture="speed",
     example="0.3 m/s",
-    needs=(TURNS, _needs("touch"), EVEN_SPEED),
+    needs=(TURNS, _need_distance("touch"), EVEN_SPEED),
 )
 DWELL_ANGLE = NearDeadCentre(
     name="dwell_angle",
@@ -136,5 +136,5 @@ DWELL_ANGLE = NearDeadCentre(
     picture=STROKE.picture,
     example="30 deg",
     better="high",
-    needs=(_needs("dwell"),),
+    needs=(_need_distance("dwell"),),
 )

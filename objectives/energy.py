@@ -22,20 +22,20 @@ _TURN = 2.0 * math.pi
 _ROUNDING = 1e-12  # fraction of the friction heat below which the work done on the loads is rounding error
 
 
-def _circle(slot: int) -> Formula:
+def _friction_circle_radius(slot: int) -> Formula:
     """Return the formula of the radius of a friction circle, m. slot: of the pin's radius."""
     return lambda number: number(slot) * number(slot + 1)
 
 
 _COEFFICIENTS: dict[int, Formula] = {
     GUIDE: lambda number: number(Raw.GUIDE_FRICTION),
-    CRANK_PIVOT: _circle(Raw.CRANK_PIVOT_RADIUS),
-    CRANK_PIN: _circle(Raw.CRANK_PIN_RADIUS),
-    SLIDER_PIN: _circle(Raw.SLIDER_PIN_RADIUS),
+    CRANK_PIVOT: _friction_circle_radius(Raw.CRANK_PIVOT_RADIUS),
+    CRANK_PIN: _friction_circle_radius(Raw.CRANK_PIN_RADIUS),
+    SLIDER_PIN: _friction_circle_radius(Raw.SLIDER_PIN_RADIUS),
 }
 
 
-def _heat(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[Array, Array | None]:
+def _friction_heat(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[Array, Array | None]:
     """Return the friction heat of a turn, J (n,), and its derivatives (n, 3 + k); infinite where friction locks."""
     heat = np.zeros(len(designs))
     slopes = None if work.gradients is None else np.zeros(designs.shape)
@@ -48,7 +48,7 @@ def _heat(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[Array, 
     return np.where(np.isinf(work.mean[:, 0]), np.inf, heat), slopes
 
 
-def _useful(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[Array, Array | None]:
+def _useful_work(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[Array, Array | None]:
     """Return the work done against the loads in a turn, J (n,), and its derivatives (n, 3 + k).
 
     A torque on the crank is not a force along a path: with such loads, it is the work that drives the loads alone.
@@ -94,7 +94,7 @@ class FrictionLoss(Quantity):
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         work = turn_work(mechanism, dimensions, gradients=gradients)
-        values, slopes = _heat(mechanism, dimensions, work)
+        values, slopes = _friction_heat(mechanism, dimensions, work)
         turns = cycle_turns(mechanism)
         return Values(turns * values, None if slopes is None else turns * slopes)
 
@@ -112,9 +112,9 @@ class Efficiency(Quantity):
         if self.lacks(mechanism, "undefined"):
             return undefined(dimensions, gradients)
         work = turn_work(mechanism, dimensions, gradients=gradients)
-        heat, by_heat = _heat(mechanism, dimensions, work)
+        heat, by_heat = _friction_heat(mechanism, dimensions, work)
         locks = np.isinf(heat)
-        useful, by_useful = _useful(mechanism, dimensions, work)
+        useful, by_useful = _useful_work(mechanism, dimensions, work)
         heat = np.where(locks, 0.0, heat)
         has_work = (np.abs(useful) > _ROUNDING * heat) & ~locks
         useful = np.where(has_work, useful, 1.0)

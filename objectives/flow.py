@@ -73,7 +73,7 @@ class FlowRipple(Quantity):
 
     def _differences(self, mechanism: Mechanism, designs: Array, peak_count: int) -> Pieces:
         n, pumps = len(designs), list(pumps_of(mechanism))
-        areas = [formula_of_numbers(mechanism, designs, partial(_area, k), gradients=True) for k in pumps]
+        areas = [formula_of_numbers(mechanism, designs, partial(_piston_area, k), gradients=True) for k in pumps]
         machine, count = _flow_as_torque(mechanism), cylinder_count(mechanism)
         flow_designs = np.column_stack([designs[:, :3], *(area for area, _ in areas), np.zeros(n)])
         peaks = find_peaks(machine, Signal.TORQUE, flow_designs, limit=peak_count, gradients=True)
@@ -87,7 +87,7 @@ class FlowRipple(Quantity):
         assert troughs.gradients is not None
         slopes = (peaks.gradients[:, :, None] + troughs.gradients[:, None]).reshape(*shape, -1) @ chain
         mean, mean_slopes = formula_of_numbers(
-            mechanism, designs, lambda number: _mean(number, pumps, count), gradients=True
+            mechanism, designs, lambda number: _mean_delivery(number, pumps, count), gradients=True
         )
         assert mean_slopes is not None
         values = differences.reshape(shape) / mean[:, None]
@@ -104,16 +104,16 @@ def pumps_of(mechanism: Mechanism) -> dict[int, Cylinder]:
     }
 
 
-def _area(k: int, number: Callable[[int], Any]) -> Any:
+def _piston_area(k: int, number: Callable[[int], Any]) -> Any:
     """Return the piston area of a load from its raw numbers, m^2."""
     bore, rod = (number(Raw.END + LOAD_SLOTS * k + Cylinder.slots[name][0]) for name in ("bore", "piston_rod"))
     return 0.25 * math.pi * (bore * bore - rod * rod)
 
 
-def _mean(number: Callable[[int], Any], pumps: Iterable[int], count: int) -> Any:
+def _mean_delivery(number: Callable[[int], Any], pumps: Iterable[int], count: int) -> Any:
     """Return the mean volume that all cylinders deliver per crank angle over a turn, m^3/rad."""
     swept = stroke(number(Raw.CRANK), number(Raw.ROD), magnitude(number(Raw.OFFSET)))
-    return swept * sum(_area(k, number) for k in pumps) * (count / (2.0 * math.pi))
+    return swept * sum(_piston_area(k, number) for k in pumps) * (count / (2.0 * math.pi))
 
 
 @memoise_by_machine

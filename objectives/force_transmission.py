@@ -28,17 +28,17 @@ class ForceTransmission(Quantity):
             find_peaks(mechanism, signal, dimensions, gradients=gradients, limit=1)
             for signal in (Signal.LINE_FORCE, Signal.SLIDER_PIN_FORCE)
         ]
-        values, slopes = _ratios(*peaks)
+        values, slopes = _force_ratios(*peaks)
         return Values(values[:, 0], slopes[:, 0] if gradients else None)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the ratios to the highest local peaks of |B|; the least ratio is the quantity; see `Quantity`."""
         line_peaks = find_peaks(mechanism, Signal.LINE_FORCE, dimensions, gradients=True, limit=1)
         pin_peaks = find_peaks(mechanism, Signal.SLIDER_PIN_FORCE, dimensions, gradients=True)
-        return Pieces(*_ratios(line_peaks, pin_peaks), pin_peaks.angles, least=True)
+        return Pieces(*_force_ratios(line_peaks, pin_peaks), pin_peaks.angles, least=True)
 
 
-def _ratios(line_peaks: Peaks, pin_peaks: Peaks) -> tuple[Array, Array]:
+def _force_ratios(line_peaks: Peaks, pin_peaks: Peaks) -> tuple[Array, Array]:
     """Return ratios (n, k) and their gradients: +inf for absent peaks, -inf where friction locks."""
     present = np.isfinite(pin_peaks.values)
     pin_forces = np.where(present & (pin_peaks.values > 0.0), pin_peaks.values, np.nan)
@@ -50,7 +50,7 @@ def _ratios(line_peaks: Peaks, pin_peaks: Peaks) -> tuple[Array, Array]:
     return values, np.where(present[:, :, None], slopes, 0.0)
 
 
-def _pulled(machine: Mechanism) -> bool:
+def _has_tension(machine: Mechanism) -> bool:
     m = machine.fullest
     inert = m.slider_mass > 0.0 and (m.speed != 0.0 or m.acceleration != 0.0 or m.gravity[0] != 0.0)
     return inert or pushed(m) or (m.friction.acts and linkage_loaded(m))
@@ -71,7 +71,7 @@ FORCE_TRANSMISSION = ForceTransmission(
     domain=Domain.share("force transmission", "0.5 to 0.9"),
     needs=(
         Need(
-            _pulled,
+            _has_tension,
             "it needs forces along the slider line; got none; add for example "
             '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]',
             consequence="undefined",

@@ -29,15 +29,15 @@ class Mass(GreatestOfFormulas):
         return [self.closed_form]
 
 
-def _crank(number: Number) -> Any:
-    return _link(number, number(Raw.CRANK), Raw.CRANK_WIDTH)
+def _crank_mass(number: Number) -> Any:
+    return _link_mass(number, number(Raw.CRANK), Raw.CRANK_WIDTH)
 
 
-def _rod(number: Number) -> Any:
-    return _link(number, number(Raw.ROD), Raw.ROD_WIDTH)
+def _rod_mass(number: Number) -> Any:
+    return _link_mass(number, number(Raw.ROD), Raw.ROD_WIDTH)
 
 
-def _link(number: Number, length: Any, first: int) -> Any:
+def _link_mass(number: Number, length: Any, first: int) -> Any:
     return link_properties(length, *(number(first + slot) for slot in range(9)))[0]
 
 
@@ -46,7 +46,7 @@ _mass = partial(
 )
 CRANK_MASS = _mass(
     name="crank_mass",
-    closed_form=_crank,
+    closed_form=_crank_mass,
     place=430,
     sentence="The mass of the crank without its counterweight. That of a crank given by its section follows its size.",
     formula="rho d (w r + pi w^2 / 4) of a bar",
@@ -55,7 +55,7 @@ CRANK_MASS = _mass(
 )
 ROD_MASS = _mass(
     name="rod_mass",
-    closed_form=_rod,
+    closed_form=_rod_mass,
     place=432,
     sentence="The mass of the connecting rod. That of a rod given by its section follows its size.",
     formula="rho d (w l + pi w^2 / 4) of a bar",
@@ -64,7 +64,9 @@ ROD_MASS = _mass(
 )
 MOVING_MASS = _mass(
     name="moving_mass",
-    closed_form=lambda number: _crank(number) + _rod(number) + number(Raw.COUNTERWEIGHT_MASS) + number(Raw.SLIDER_MASS),
+    closed_form=lambda number: (
+        _crank_mass(number) + _rod_mass(number) + number(Raw.COUNTERWEIGHT_MASS) + number(Raw.SLIDER_MASS)
+    ),
     place=434,
     sentence="The mass of all that moves: crank, counterweight, rod and slider.",
     advice="With sections as variables it trades against their safety, and it drives forces and torque.",

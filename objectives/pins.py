@@ -115,11 +115,11 @@ def _per_length(factor: Formula, depth: int) -> Formula:
     return lambda number: factor(number) / (2.0 * number(depth))
 
 
-def _speed(mechanism: Mechanism) -> Formula:
+def _rubbing_speed(mechanism: Mechanism) -> Formula:
     return lambda number: mechanism.direction * number(Raw.SPEED)
 
 
-def _worn(mechanism: Mechanism) -> Formula:
+def _wear_travel(mechanism: Mechanism) -> Formula:
     """Return K times the crank angle of a million cycles; `PinRubbing` supplies the rest of K F s / A."""
     assert mechanism.strength is not None
     rate = mechanism.strength.wear_coefficient or math.nan
@@ -187,7 +187,7 @@ PIN_SHEAR_SLIDER_PIN = _shear(
 _pv = partial(
     PinRubbing,
     kind=PRESSURE_SPEED,
-    factor=_speed,
+    factor=_rubbing_speed,
     source="Shigley, Mechanical Engineering Design, 9th ed., sec. 12-15 (boundary-lubricated bearings)",
     advice="It decides how a dry bearing heats and wears; makers of bushings state a limit of 0.05 to 2 MPa m/s.",
     example="0.5 MPa m/s",
@@ -195,7 +195,7 @@ _pv = partial(
 _wear = partial(
     PinRubbing,
     kind=LENGTH,
-    factor=_worn,
+    factor=_wear_travel,
     source="J. F. Archard, Contact and rubbing of flat surfaces, J. Appl. Phys. 24, 1953, 981-988",
     advice="Depth over the bearing's projected area, at the mean of all crank angles.",
     example="0.1 mm",

@@ -36,7 +36,7 @@ def _of_product(name: str, changes: dict[str, Any]) -> Quantity:
     return replace(FACTS[name], **changes) if changes else FACTS[name]
 
 
-def _reduced(quantity: Quantity) -> tuple[Any, ...] | str:
+def _pickled_form(quantity: Quantity) -> tuple[Any, ...] | str:
     """Return the pickled form of a quantity: a built-in one by its name and changes.
 
     Its formulas and the conditions of its needs may have no pickled form.
@@ -50,7 +50,7 @@ def _reduced(quantity: Quantity) -> tuple[Any, ...] | str:
 
 
 for _kind in {type(of) for of in FACTS.values()}:
-    copyreg.pickle(_kind, _reduced)
+    copyreg.pickle(_kind, _pickled_form)
 
 
 def listed(names: Collection[str]) -> str:

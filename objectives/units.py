@@ -159,13 +159,13 @@ def kind_for(symbol: str) -> Kind:
     kind = kind_with(dimension_of(symbol), symbol)
     if kind in KINDS:
         return kind
-    plain = symbol if _unit(symbol)[0] == 1 else kind.unit
+    plain = symbol if _parse_unit(symbol)[0] == 1 else kind.unit
     return replace(kind_in(symbol, per_si(symbol)), name=f"a value in {plain}", unit=plain)
 
 
 def dimension_of(symbol: str) -> Dimension:
     """Return the dimension of a unit, "" for none. Raises InputError unless it is a unit."""
-    return _unit(symbol)[1]
+    return _parse_unit(symbol)[1]
 
 
 def dimension_of_kind(kind: Kind) -> Dimension:
@@ -193,7 +193,7 @@ def base_unit(base: str) -> str:
 
 def number_in_si(digits: str, symbol: str) -> float:
     """Return a number with a unit in SI. Raises InputError for an unknown unit, and for a size beyond any machine."""
-    exact = Fraction(digits) * _unit(symbol)[0]
+    exact = Fraction(digits) * _parse_unit(symbol)[0]
     if abs(exact) > _GREATEST:
         raise InputError(f"{digits} {symbol} is beyond any machine: a number in SI is at most {_GREATEST:g}")
     return float(exact)
@@ -201,7 +201,7 @@ def number_in_si(digits: str, symbol: str) -> float:
 
 def per_si(symbol: str) -> float:
     """Return the value of one SI unit in a unit: 1000 for "mm". Raises InputError for an unknown unit."""
-    return float(1 / _unit(symbol)[0])
+    return float(1 / _parse_unit(symbol)[0])
 
 
 def to_si(value: object, kind: Kind, *, sign: Sign = "any", plain: bool = True) -> float:
@@ -216,7 +216,7 @@ def to_si(value: object, kind: Kind, *, sign: Sign = "any", plain: bool = True) 
     example = f'"{kind.example}"' if kind.unit else kind.example
     write = f"write it like {example}" + (f", or as a plain number in {kind.unit}" if kind.unit and plain else "")
     if isinstance(value, str):
-        exact = _read(value, kind, rule, write)
+        exact = _read_exact_value(value, kind, rule, write)
     elif isinstance(value, int | float) and not isinstance(value, bool):
         if not math.isfinite(value if isinstance(value, float) else 0):
             raise InputError(f"must be a finite number; got {quote(value)}; {write}")
@@ -248,7 +248,7 @@ def plus_minus_ends(value: object) -> tuple[str, str] | None:
     middle, half = Fraction(parts[1]), abs(Fraction(parts[3]))
     unit = parts[2] or parts[4].strip()
     if (second_unit := parts[4].strip() or unit) != unit:
-        (middle_factor, dimension), (factor, another) = _unit(unit), _unit(second_unit)
+        (middle_factor, dimension), (factor, another) = _parse_unit(unit), _parse_unit(second_unit)
         if dimension != another:
             raise InputError(
                 f'both parts of a range have units of one kind; got {quote(value)}; write it like "180 mm +- 0.5 mm"'
@@ -261,7 +261,7 @@ def is_value(text: str) -> bool:
     """Return whether a text is one number, alone or with any unit."""
     parts = number_and_unit(text)
     try:
-        return parts is not None and (parts[1] in _SPOKEN or _unit(parts[1]) is not None)
+        return parts is not None and (parts[1] in _SPOKEN or _parse_unit(parts[1]) is not None)
     except InputError:
         return False
 
@@ -332,7 +332,7 @@ def symbol_in(text: str, kind: Kind) -> str | None:
         return None
 
 
-def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
+def _read_exact_value(text: str, kind: Kind, rule: str, write: str) -> Fraction:
     """Return the exact SI value of a string."""
     if len(text) > _LONGEST:
         raise InputError(f"{rule}; got a string of {len(text)} characters; {write}")
@@ -355,7 +355,7 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
     if share := re.fullmatch(r"\s*([+-]?\d+)\s*/\s*([1-9]\d*)\s*(\D.*)", text, re.ASCII):
         point = f"{float(Fraction(f'{share[1]}/{share[2]}')):.10g} {share[3]}"
         try:
-            _read(point, kind, rule, write)
+            _read_exact_value(point, kind, rule, write)
         except InputError as error:  # of another kind
             raise InputError(str(error).replace(quote(point), quote(text))) from None
         raise InputError(f"write a decimal number, not a fraction; got {quote(text)}; write {quote(point)}")
@@ -376,10 +376,10 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
             raise InputError(f"{rule}; got {quote(text)}; {write}")
         return number
     try:
-        factor, dimension = _unit(unit)
+        factor, dimension = _parse_unit(unit)
     except InputError as error:
         raise InputError(f"{rule}; got {quote(text)}: {error}; {write}") from None
-    if dimension != _unit(kind.unit)[1]:
+    if dimension != _parse_unit(kind.unit)[1]:
         note, remedy = _other_kind(match[1], unit, kind)
         raise InputError(f"{rule}; got {quote(text)}{note}; {remedy or write}")
     for unit_of_kind, symbols, item in _AMBIGUOUS_SYMBOLS:
@@ -390,21 +390,21 @@ def _read(text: str, kind: Kind, rule: str, write: str) -> Fraction:
 
 def _other_kind(number: str, unit: str, kind: Kind) -> tuple[str, str]:
     """Return in words which kind a unit is of, and what to write instead; each empty if unknown."""
-    dimension = _unit(unit)[1]
-    kinds = [item for item in (*KINDS, *_OTHERS) if _unit(item.unit)[1] == dimension]
+    dimension = _parse_unit(unit)[1]
+    kinds = [item for item in (*KINDS, *_OTHERS) if _parse_unit(item.unit)[1] == dimension]
     energies = [item for item in kinds if ("J" in item.unit) == bool(re.search(r"J\b", unit))]
     note = f", which is {(energies or kinds)[0].name}" if kinds else ""
     force = _WEIGHT.sub(r"\1f", unit)
-    if force != unit and _unit(force)[1] == _unit(kind.unit)[1]:
-        newtons = f"{float(Fraction(number) * _unit(force)[0]):.4g} {kind.unit}"
+    if force != unit and _parse_unit(force)[1] == _parse_unit(kind.unit)[1]:
+        newtons = f"{float(Fraction(number) * _parse_unit(force)[0]):.4g} {kind.unit}"
         return note, f'a weight is a force: write "{number} {force}" or "{newtons}"'
-    return note, f"write the mass in {kind.unit}" if kinds and kind.plain == "mass" and _unit("N")[
+    return note, f"write the mass in {kind.unit}" if kinds and kind.plain == "mass" and _parse_unit("N")[
         1
     ] == dimension else ""
 
 
 @functools.lru_cache(maxsize=256)
-def _unit(text: str) -> tuple[Fraction, Dimension]:
+def _parse_unit(text: str) -> tuple[Fraction, Dimension]:
     """Return the factor to SI and the dimension of a unit such as "kg m^2", "N s/m" or "m/s^2".
 
     Names are separated by spaces, hyphens or signs of multiplication; one division sign, before the last name: a
@@ -435,7 +435,7 @@ def _lookup(name: str) -> tuple[Fraction, tuple[tuple[str, int], ...]]:
     name = "deg" if name == "°" else name
     if name in _USUAL:
         return _USUAL[name]
-    registry = _registry()
+    registry = _unit_registry()
     if name == "Grad" or not registry.parse_unit_name(name):  # else a gigaradian
         hint = _HINTS.get(name)
         near = None if hint else closest(name, _COMMON)
@@ -447,7 +447,7 @@ def _lookup(name: str) -> tuple[Fraction, tuple[tuple[str, int], ...]]:
 
 
 @functools.cache
-def _registry() -> Any:
+def _unit_registry() -> Any:
     """Return the registry of the units above, built when first needed."""
     import pint
 

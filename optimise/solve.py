@@ -159,7 +159,9 @@ def _search_and_deliver(problem: Problem, evaluators: list[Evaluator], run: Run)
         return front
     if problem.without_gradient():
         return empty_front(problem, evaluators, run, "infeasible", _NOT_KNOWN.format(method.name))
-    diagnosis = diagnose(problem, partial(_best, run=run, evaluators=evaluators), run.checkpoints, evaluators[0].engine)
+    diagnosis = diagnose(
+        problem, partial(_best_value, run=run, evaluators=evaluators), run.checkpoints, evaluators[0].engine
+    )
     if len(diagnosis.feasible) and not method.polishes and free:
         return empty_front(problem, evaluators, run, "infeasible", _MISSED.format(method.name))
     if len(diagnosis.feasible) and free:
@@ -192,7 +194,7 @@ _MISSED = (
 )
 
 
-def _best(problem: Problem, *, run: Run, evaluators: list[Evaluator]) -> Best | None:
+def _best_value(problem: Problem, *, run: Run, evaluators: list[Evaluator]) -> Best | None:
     """Return the best value of a problem's only objective, for the diagnosis of an infeasible problem."""
 
     def report(at: Progress) -> None:

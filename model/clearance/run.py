@@ -132,7 +132,7 @@ def simulate(
     while turns_made < cycles:
         ends = [(turns_made + share) * period for share in (*dead_centres, 1.0)]
         reached = all(
-            integrator.advance(end, outward=_outward(linkage, mechanism.speed, before, end), cancelled=cancelled)
+            integrator.advance(end, outward=_moves_outward(linkage, mechanism.speed, before, end), cancelled=cancelled)
             for before, end in zip([turns_made * period, *ends], ends, strict=False)
         )
         if not reached:
@@ -143,7 +143,7 @@ def simulate(
             progress(ClearanceProgress(turns_made, cycles, impacts, time.perf_counter() - began))
         if turns_made < cycles and cancelled is not None and cancelled():
             break
-    return _collect(mechanism, linkage, clearance, integrator, turns_made, cycles, discard)
+    return _collect_run(mechanism, linkage, clearance, integrator, turns_made, cycles, discard)
 
 
 def _require_simulable(mechanism: Mechanism, cycles: int, discard: int, tolerance: float) -> None:
@@ -159,13 +159,13 @@ def _require_simulable(mechanism: Mechanism, cycles: int, discard: int, toleranc
         raise InputError(f"tolerance must be from 1e-13 to 1e-3; got {tolerance:g}; 1e-7 is usual")
 
 
-def _outward(linkage: Linkage, speed: float, before: float, after: float) -> bool:
+def _moves_outward(linkage: Linkage, speed: float, before: float, after: float) -> bool:
     """Whether the ideal slider moves outward in between."""
     middle = linkage.at(0.5 * (before + after) * speed, speed=speed)
     return bool(linkage.sign * middle.slider_velocity > 0.0)
 
 
-def _collect(
+def _collect_run(
     mechanism: Mechanism,
     linkage: Linkage,
     clearance: Clearance,
@@ -174,7 +174,7 @@ def _collect(
     cycles: int,
     discard: int,
 ) -> ClearanceRun:
-    trace = integrator.trace if integrator.trace.times else _still(integrator)
+    trace = integrator.trace if integrator.trace.times else _trace_at_start(integrator)
     times = np.concatenate(trace.times)
     states = np.ascontiguousarray(np.concatenate(trace.states, axis=1))
     rate, outward = np.concatenate(trace.rates), np.concatenate(trace.outward)
@@ -214,7 +214,7 @@ def _collect(
     )
 
 
-def _still(integrator: Integrator) -> Trace:
+def _trace_at_start(integrator: Integrator) -> Trace:
     """Return only the start, for a run cancelled immediately."""
     trace = Trace()
     trace.add(np.zeros(1), integrator.state.reshape(-1, 1), FLIGHT, False)

@@ -87,16 +87,16 @@ def gas_cycle(
         return gas_cycle(single, designs, lambda gas: number(gas.times(count)), gradients=gradients)
     if cycle_turns(mechanism) > 1:
         sums, rates = _of_two_turns(mechanism, designs, gradients=gradients)
-        return np.asarray(number(sums), dtype=np.float64), None if rates is None else _differentiated(
+        return np.asarray(number(sums), dtype=np.float64), None if rates is None else _derivatives_by_design(
             number, sums, rates
         )
     raw, loads = fullest_inputs(mechanism)
     numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=gradients)
     blocks, steps = derived(raw, loads, numbers.columns, numbers.values, steps=gradients)
-    values = np.asarray(number(_gas(mechanism, blocks[:, :, 0])), dtype=np.float64)
+    values = np.asarray(number(_gas_sums(mechanism, blocks[:, :, 0])), dtype=np.float64)
     if not gradients:
         return values, None
-    slopes = number(_gas(mechanism, steps[:, :, 0])).imag / STEP
+    slopes = number(_gas_sums(mechanism, steps[:, :, 0])).imag / STEP
     return values, numbers.chain(slopes.reshape(len(designs), len(numbers.columns)))
 
 
@@ -108,25 +108,25 @@ def _of_two_turns(mechanism: Mechanism, designs: Array, *, gradients: bool) -> t
         raw, loads = fullest_inputs(half)
         numbers = numbers_of(half, designs, limit=len(raw), gradients=gradients)
         blocks, steps = derived(raw, loads, numbers.columns, numbers.values, steps=gradients)
-        sums.append(_gas(half, blocks[:, :, 0], four))
+        sums.append(_gas_sums(half, blocks[:, :, 0], four))
         if gradients:
             shape = len(designs), len(numbers.columns)
-            parts = _gas(half, steps[:, :, 0], four)
+            parts = _gas_sums(half, steps[:, :, 0], four)
             slopes.append(GasCycle(*(numbers.chain(part.imag.reshape(shape) / STEP) for part in parts)))
-    return _joined(*sums), _joined(*slopes) if gradients else None
+    return _sum_of_turns(*sums), _sum_of_turns(*slopes) if gradients else None
 
 
-def _joined(first: GasCycle, second: GasCycle) -> GasCycle:
+def _sum_of_turns(first: GasCycle, second: GasCycle) -> GasCycle:
     """Return the sums of both turns."""
     return first._replace(work=first.work + second.work, cycle_work=first.cycle_work + second.cycle_work)
 
 
-def _differentiated(number: Callable[[GasCycle], Any], values: GasCycle, slopes: GasCycle) -> Array:
+def _derivatives_by_design(number: Callable[[GasCycle], Any], values: GasCycle, slopes: GasCycle) -> Array:
     stepped = (value[:, None] + 1j * STEP * slope for value, slope in zip(values, slopes, strict=True))
     return np.asarray(number(GasCycle(*stepped)).imag / STEP)
 
 
-def _gas(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()) -> GasCycle:
+def _gas_sums(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()) -> GasCycle:
     """Return the sums for derived blocks (n, rows). four: for half of two turns, which loads have a cycle of both."""
     swept = clearance = work = cycles = intake = pumped = delivered = 0.0 * blocks[:, 0]
     stroke = blocks[:, _OUTER] - blocks[:, _INNER]
@@ -136,7 +136,7 @@ def _gas(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()) -> GasCyc
         if load.compression_exponent == 0.0:
             gained, spent, share = low * stroke, high * stroke, 1.0 + 0.0 * stroke
         else:
-            gained, spent, share = _strokes(stroke, h, low, high, compression, expansion)
+            gained, spent, share = _stroke_work(stroke, h, low, high, compression, expansion)
         if load.enters is Enters.BURNING_CYLINDER:
             burnt = blocks[:, q + 7]
             widens = np.log((h + stroke) / (h + burnt))
@@ -150,7 +150,7 @@ def _gas(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()) -> GasCyc
     return GasCycle(swept, clearance, work, cycles, delivers, delivered)
 
 
-def _strokes(stroke: Any, h: Any, low: Any, high: Any, compression: Any, expansion: Any) -> Any:
+def _stroke_work(stroke: Any, h: Any, low: Any, high: Any, compression: Any, expansion: Any) -> Any:
     """Return work of expansion and of compression per piston area, J/m^2, and the intake fraction of the stroke."""
     expanded, compressed = expanded_at(h, high / low, expansion), compressed_at(stroke, h, high / low, compression)
     with np.errstate(divide="ignore", invalid="ignore"):  # without clearance the gas has always expanded

@@ -35,21 +35,21 @@ def indicator(mechanism: Mechanism, linkage: Linkage, load: Cylinder, crank_angl
     """Return volume and pressure in one of a machine's cylinders; at a dead centre, the pressure just before it."""
     linkage = single(mechanism, linkage)
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
-    stroke, sign, top = _top(linkage, load)
+    stroke, sign, top = _piston_top(linkage, load)
     z = np.clip(sign * (linkage.sign * linkage.at(theta).slider_position - top), 0.0, stroke)
     # The motion a moment earlier: at a dead centre, that of the stroke ending there.
     before = linkage.at(theta - _BEFORE * mechanism.direction, speed=mechanism.direction).slider_velocity
     away = sign * linkage.sign * before > 0.0
-    pressure = _pressure(load, z, stroke, away)
+    pressure = _pressure_at(load, z, stroke, away)
     if load.cycle_turns > 1:
         turn = half_at(mechanism, *linkage.dead_centre_angles, theta - _BEFORE * mechanism.direction)
         parts = [load.on_turn(number) for number in (1, 2)]
-        first, second = (_pressure(part, z, stroke, away) for part in parts if isinstance(part, Cylinder))
+        first, second = (_pressure_at(part, z, stroke, away) for part in parts if isinstance(part, Cylinder))
         pressure = np.where(turn == 0, first, second)
     return Indicator(theta, load.clearance * load.area * stroke + load.clearance_volume + load.area * z, pressure)
 
 
-def _pressure(load: Cylinder, z: Array, stroke: float, away: Any) -> Array:
+def _pressure_at(load: Cylinder, z: Array, stroke: float, away: Any) -> Array:
     return np.asarray(
         np.where(away, load.pressure(z, stroke, expanding=True), load.pressure(z, stroke, expanding=False))
     )
@@ -58,7 +58,7 @@ def _pressure(load: Cylinder, z: Array, stroke: float, away: Any) -> Array:
 def valve_events(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> tuple[float | None, float | None]:
     """Return the crank angles, rad in [0, 2 pi), at which expansion and compression end; None for no such event."""
     linkage = single(mechanism, linkage)
-    stroke = _top(linkage, load)[0]
+    stroke = _piston_top(linkage, load)[0]
     if load.compression_exponent == 0.0 or isinstance(load, LimitedPressure):
         return None, None
     h, ratio = load.clearance * stroke + load.clearance_volume / load.area, load.high / load.low
@@ -77,7 +77,7 @@ def burning_ends(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> floa
     if not isinstance(load, LimitedPressure):
         return None
     linkage = single(mechanism, linkage)
-    angle = _angle_at(mechanism, linkage, load, load.burning_share * _top(linkage, load)[0], away=True)
+    angle = _angle_at(mechanism, linkage, load, load.burning_share * _piston_top(linkage, load)[0], away=True)
     if angle is None or load.cycle_turns == 1:
         return angle
     return float(in_cycle(mechanism, *linkage.dead_centre_angles, np.array(angle), 0))
@@ -88,7 +88,7 @@ def _angle_at(mechanism: Mechanism, linkage: Linkage, load: Cylinder, z: float, 
 
     away: whether it moves away from its top. None for a z out of its reach.
     """
-    stroke, sign, top = _top(linkage, load)
+    stroke, sign, top = _piston_top(linkage, load)
     outward = away == (sign > 0.0)
     second = outward == (mechanism.direction < 0.0)
     x = linkage.sign * (top + sign * z)
@@ -96,7 +96,7 @@ def _angle_at(mechanism: Mechanism, linkage: Linkage, load: Cylinder, z: float, 
     return angle % (2.0 * math.pi) if 0.0 < z < stroke else None
 
 
-def _top(linkage: Linkage, load: Cylinder) -> tuple[float, float, float]:
+def _piston_top(linkage: Linkage, load: Cylinder) -> tuple[float, float, float]:
     """Return stroke, sense in which the piston leaves its top (1 outward), and the top's distance from the pivot."""
     inner, outer = (linkage.sign * float(linkage.at(angle).slider_position) for angle in linkage.dead_centre_angles)
     return outer - inner, *((-1.0, outer) if load.head == "outer dead centre" else (1.0, inner))

@@ -51,8 +51,8 @@ def verdict(mechanism: Mechanism, linkage: Linkage) -> Verdict:
     cuts = sorted({0.5 * np.pi, 1.5 * np.pi, *map(float, linkage.dead_centre_angles)})
     spans: list[tuple[float, float]] = []
     for a, b in pairwise([*cuts, cuts[0] + 2.0 * np.pi]):
-        spans += _spans(mechanism.friction, linkage, a, b)
-    joined = _joined(spans)
+        spans += _locked_spans(mechanism.friction, linkage, a, b)
+    joined = _merge_spans(spans)
     inner_angles = np.concatenate([np.linspace(a, b, 66)[1:-1] for a, b in joined]) if joined else np.empty(0)
     if not len(inner_angles):
         return Verdict(margin, joined, None)
@@ -67,11 +67,11 @@ def states_at(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) ->
     design = _design(mechanism, linkage)
     loads = cycle(mechanism, linkage, angles).load
     states = []
-    for theta, load, excess in zip(angles, loads, _excess(mechanism.friction, linkage, angles), strict=True):
+    for theta, load, excess in zip(angles, loads, _locking_excess(mechanism.friction, linkage, angles), strict=True):
         if excess > 0.0:
             states.append("drives")
         else:
-            states.append("may jam" if _balances(design, float(theta), float(load)) else "locks")
+            states.append("may jam" if _has_balance_between(design, float(theta), float(load)) else "locks")
     return np.array(states, dtype=np.str_)
 
 
@@ -88,7 +88,7 @@ def _design(mechanism: Mechanism, linkage: Linkage) -> Design:
     return design
 
 
-def _excess(friction: Friction, linkage: Linkage, theta: Any, probe: Any = None) -> Any:
+def _locking_excess(friction: Friction, linkage: Linkage, theta: Any, probe: Any = None) -> Any:
     """Return |along| - |D| at crank angles, with the signs at the angles `probe` within the segment."""
     probe = theta if probe is None else probe
     arguments = (linkage.crank, linkage.rod, linkage.offset, linkage.sign)
@@ -98,12 +98,12 @@ def _excess(friction: Friction, linkage: Linkage, theta: Any, probe: Any = None)
     return np.abs(m.l_cos) - np.abs(pins - friction.guide * m.l_sin * np.sign(signs.x_1))
 
 
-def _spans(friction: Friction, linkage: Linkage, a: float, b: float) -> list[tuple[float, float]]:
+def _locked_spans(friction: Friction, linkage: Linkage, a: float, b: float) -> list[tuple[float, float]]:
     """Return the spans within a segment where |D| >= |along|."""
     middle = a + 0.382 * (b - a)
 
     def excess(theta: Any) -> Any:
-        return _excess(friction, linkage, theta, middle)
+        return _locking_excess(friction, linkage, theta, middle)
 
     from scipy.optimize import brentq
 
@@ -117,7 +117,7 @@ def _spans(friction: Friction, linkage: Linkage, a: float, b: float) -> list[tup
     return [(p, q) for p, q in pairwise(edges) if excess(0.5 * (p + q)) <= 0.0]
 
 
-def _joined(spans: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
+def _merge_spans(spans: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
     """Return spans in ascending order, merging those that touch, also across the end of the turn."""
     joined: list[tuple[float, float]] = []
     for a, b in spans:
@@ -131,7 +131,7 @@ def _joined(spans: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]
     return tuple(joined)
 
 
-def _balances(d: Design, theta: float, load: float) -> bool:
+def _has_balance_between(d: Design, theta: float, load: float) -> bool:
     """Return whether h crosses zero in between, although both its ends point the same way."""
     sine, cosine = np.sin(theta), np.cos(theta)
     m = motion(sine, cosine, d.r, d.l, d.e, d.branch)

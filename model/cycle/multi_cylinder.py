@@ -113,7 +113,7 @@ def multi_cylinder_cycle(mechanism: Mechanism, linkage: Linkage) -> MultiCylinde
     period = cycle_turns(mechanism) * TURN
     pieces = np.linspace(cuts[0], cuts[0] + period, 1 + _PIECES * cycle_turns(mechanism))
     ends = np.unique(np.concatenate([cuts, pieces]))
-    sizes = _sizes(mechanism, linkage)
+    sizes = _uncancelled_sizes(mechanism, linkage)
     panels = panels_of(
         lambda theta: _curve_rows(mechanism, multi_cylinder_curves(mechanism, linkage, theta)), ends, sizes
     )
@@ -144,7 +144,7 @@ def _curve_rows(mechanism: Mechanism, curves: MultiCylinderCurves) -> Array:
     return np.stack([curves.torque, x, y, x * x + y * y, curves.moment, couple, time])
 
 
-def _sizes(mechanism: Mechanism, linkage: Linkage) -> Array:
+def _uncancelled_sizes(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the sizes that the curves would have if the cylinders did not cancel."""
     theta = np.linspace(0.0, cycle_turns(mechanism) * TURN, _SAMPLES, endpoint=False)
     profile, sizes = mechanism.speed_profile, np.zeros(7)

@@ -24,19 +24,19 @@ _PLAIN = (int, float, complex, str, bytes, bool, type(None), type(Ellipsis))
 
 def digest(function: Callable[..., Any], examples: tuple[Any, ...]) -> str:
     """Return the digest of a kernel for arguments like the examples."""
-    hashed = hashlib.sha256(_surroundings())
+    hashed = hashlib.sha256(_environment_digest())
     hashed.update(_fingerprint(examples).encode())
-    for _, text in _reached(function):
+    for _, text in _walk_callees(function):
         hashed.update(text)
     return hashed.hexdigest()[:24]
 
 
 def codes(function: Callable[..., Any]) -> dict[int, int]:
     """Return the length of the code of a kernel and of each of its formulas, by identity."""
-    return {id(formula): len(formula.__code__.co_code) for formula, _ in _reached(function)}
+    return {id(formula): len(formula.__code__.co_code) for formula, _ in _walk_callees(function)}
 
 
-def _reached(function: Callable[..., Any]) -> Iterator[tuple[Any, bytes]]:
+def _walk_callees(function: Callable[..., Any]) -> Iterator[tuple[Any, bytes]]:
     """Yield a function and every function it calls, each with its own digest data."""
     visited: set[int] = set()
     waiting: list[Any] = [function]
@@ -44,13 +44,13 @@ def _reached(function: Callable[..., Any]) -> Iterator[tuple[Any, bytes]]:
         value = waiting.pop()
         if id(value) not in visited:
             visited.add(id(value))
-            text, calls = _parts(value)
+            text, calls = _code_and_callees(value)
             yield value, text
             waiting.extend(calls)
 
 
 @cache
-def _surroundings() -> bytes:
+def _environment_digest() -> bytes:
     """Return the data on which every kernel depends: processor, versions, settings of numba, and this compiler."""
     import llvmlite.binding as llvm
 
@@ -71,7 +71,7 @@ _ASIDE = (
 )
 
 
-def _parts(function: Any) -> tuple[bytes, list[Any]]:
+def _code_and_callees(function: Any) -> tuple[bytes, list[Any]]:
     """Return a function's own code and constants, and the functions that it calls."""
     calls: list[Any] = []
     text = [function.__qualname__, _fingerprint(function.__defaults__)]

@@ -74,9 +74,9 @@ def machine_code(source: KernelSource, modules: Iterable[str] = ()) -> MachineCo
     log_refused_folders()
     if folder is None:
         return source.compile()
-    package, root = _package(source.module), source.module.partition(".")[0] + "."
+    package, root = _package_of(source.module), source.module.partition(".")[0] + "."
     related = [module for module in reversed(list(modules)) if module.startswith(root)]
-    packages = dict.fromkeys([*map(_package, related), package])
+    packages = dict.fromkeys([*map(_package_of, related), package])
     if folder not in _refusing:
         compile_in_processes(folder, " ".join(packages), folder / name, dict.fromkeys([*related, source.module]))
         code = read(folder / name)
@@ -89,7 +89,7 @@ def machine_code(source: KernelSource, modules: Iterable[str] = ()) -> MachineCo
     return code
 
 
-def _package(module: str) -> str:
+def _package_of(module: str) -> str:
     return ".".join(module.split(".")[:2])
 
 
@@ -202,7 +202,7 @@ def _start(folder: Path, packages: str, modules: Iterable[str], lock: int) -> li
     if not sys.executable:
         return []
     started: list[subprocess.Popen[bytes]] = []
-    atexit.register(_end, started, os.getpid())
+    atexit.register(_end_compilers, started, os.getpid())
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "NUMBA_DISABLE_JIT": "0"}
     # numba composes messages for every formula that it tries in vain.
     environment |= {"NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1"}
@@ -232,7 +232,7 @@ def awaited_files(folder: Path) -> list[str]:
 _NO_LOCK = -1
 
 
-def _end(started: list[subprocess.Popen[bytes]], owner: int) -> None:
+def _end_compilers(started: list[subprocess.Popen[bytes]], owner: int) -> None:
     if os.getpid() == owner:  # and no fork of it
         for worker in started:
             worker.terminate()

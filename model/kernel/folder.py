@@ -63,13 +63,13 @@ def choose_folder() -> Chosen:
     """
     refused: list[str] = []
     readable: list[Path] = []
-    for place in _places():
+    for place in _candidate_folders():
         folder = place / "kernels"
         reason = _refusal(folder)
         if reason is None:
             return Chosen(folder, not any(folder.iterdir()), "; ".join(refused), tuple(readable))
         refused.append(f"{place} {reason}")
-        if _readable(folder):
+        if _is_trusted(folder):
             readable.append(folder)
     return Chosen(None, False, "; ".join(refused), tuple(readable))
 
@@ -77,7 +77,7 @@ def choose_folder() -> Chosen:
 _chosen = cache(choose_folder)
 
 
-def _places() -> Iterator[Path]:
+def _candidate_folders() -> Iterator[Path]:
     """Yield the places where the folder may be."""
     cache_folder = os.environ.get("NUMBA_CACHE_DIR")
     if cache_folder:
@@ -89,10 +89,10 @@ def _places() -> Iterator[Path]:
         if user.is_absolute():
             yield user
     if hasattr(os, "getuid"):  # elsewhere the folder for temporary files is the user's own
-        yield _temporary() / f"slidercrank-{os.getuid()}"
+        yield _temp_folder() / f"slidercrank-{os.getuid()}"
 
 
-def _temporary() -> Path:
+def _temp_folder() -> Path:
     try:
         return Path(tempfile.gettempdir())
     except OSError:
@@ -104,7 +104,7 @@ def _refusal(folder: Path) -> str | None:
     place = folder.parent
     try:
         place.mkdir(mode=0o700, parents=True, exist_ok=True)
-        if place.parent == _temporary() and not _private(place.lstat(), {os.getuid()}):
+        if place.parent == _temp_folder() and not _is_private(place.lstat(), {os.getuid()}):
             return "is not a folder that this user alone can write"
         folder.mkdir(exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
@@ -113,13 +113,13 @@ def _refusal(folder: Path) -> str | None:
         return f"cannot be written ({error.strerror or error})"
 
 
-def _readable(folder: Path) -> bool:
+def _is_trusted(folder: Path) -> bool:
     """Whether kernels of a folder may be run: no stranger can have put them there."""
-    if folder.parent.parent == _temporary() or not hasattr(os, "getuid") or not os.access(folder, os.R_OK | os.X_OK):
+    if folder.parent.parent == _temp_folder() or not hasattr(os, "getuid") or not os.access(folder, os.R_OK | os.X_OK):
         return False
-    return all(_private(place.stat(), {0, os.getuid()}) for place in (folder, folder.parent))
+    return all(_is_private(place.stat(), {0, os.getuid()}) for place in (folder, folder.parent))
 
 
-def _private(place: os.stat_result, owners: set[int]) -> bool:
+def _is_private(place: os.stat_result, owners: set[int]) -> bool:
     """Whether a place is a folder that only these owners can write."""
     return stat.S_ISDIR(place.st_mode) and place.st_uid in owners and not place.st_mode & 0o022

@@ -88,7 +88,7 @@ class Kernel:
 
     def source(self) -> KernelSource:
         """Return the kernel as it is to be compiled."""
-        examples = tuple(_example(hint) for name, hint in self._hints().items() if name != "return")
+        examples = tuple(_example_value(hint) for name, hint in self._hints().items() if name != "return")
         return KernelSource(f"{self.function.__module__}.{self.function.__name__}", self.function, examples)
 
     def _hints(self) -> dict[str, Any]:
@@ -99,7 +99,7 @@ class Kernel:
         with _loading:
             if self._loaded is None:
                 source, hints = self.source(), self._hints()
-                leaves = [leaf for example in source.examples for leaf in _leaves(example)]
+                leaves = [leaf for example in source.examples for leaf in _machine_types(example)]
                 packed = Struct("".join("d" if leaf.type == "double" else "q" for leaf in leaves)).pack
                 code = machine_code(source, [kernel.function.__module__ for kernel in KERNELS])
                 result = _RESULTS[hints.pop("return")]
@@ -108,7 +108,7 @@ class Kernel:
         return self._loaded
 
 
-def _members(kind: Any) -> list[Any] | None:
+def _tuple_types(kind: Any) -> list[Any] | None:
     """Return the types of a tuple's members, None for other types."""
     if get_origin(kind) is tuple:
         return list(get_args(kind))
@@ -117,19 +117,19 @@ def _members(kind: Any) -> list[Any] | None:
     return None
 
 
-def _example(kind: Any) -> Any:
+def _example_value(kind: Any) -> Any:
     """Return a value of a type."""
-    members = _members(kind)
+    members = _tuple_types(kind)
     if members is not None:
-        values = [_example(member) for member in members]
+        values = [_example_value(member) for member in members]
         return tuple(values) if get_origin(kind) is tuple else kind(*values)
     if get_origin(kind) is Annotated:
         array, dimensions = get_args(kind)
-        return np.zeros((1,) * dimensions, _item(array))
+        return np.zeros((1,) * dimensions, _item_type(array))
     return kind()
 
 
-def _item(array: Any) -> np.dtype[Any]:
+def _item_type(array: Any) -> np.dtype[Any]:
     """Return the type of the items of an `NDArray[...]`."""
     dtype: np.dtype[Any] = np.dtype(get_args(get_args(array)[1])[0])
     return dtype
@@ -137,12 +137,12 @@ def _item(array: Any) -> np.dtype[Any]:
 
 def _flattener(name: str, kind: Any) -> Callable[[Any], Flat]:
     """Return the function that converts a value to the machine's arguments."""
-    members = _members(kind)
+    members = _tuple_types(kind)
     if members is not None:
         return _flat_tuple([_flattener(name, member) for member in members])
     if get_origin(kind) is Annotated:
         array, dimensions = get_args(kind)
-        return _flat_array(name, _item(array), dimensions)
+        return _flat_array(name, _item_type(array), dimensions)
     if kind is complex:
         return lambda value: (value.real, value.imag)
     return lambda value: (kind(value),)
@@ -174,10 +174,10 @@ def _flat_array(name: str, item: np.dtype[Any], dimensions: int) -> Callable[[An
     return flat
 
 
-def _leaves(example: Any) -> list[Leaf]:
+def _machine_types(example: Any) -> list[Leaf]:
     """Return the machine types of a value."""
     if isinstance(example, tuple):
-        return [leaf for member in example for leaf in _leaves(member)]
+        return [leaf for member in example for leaf in _machine_types(member)]
     if isinstance(example, np.ndarray):
         return [Leaf("ptr", example.ndim, example.itemsize)]
     if isinstance(example, complex):

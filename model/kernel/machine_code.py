@@ -47,14 +47,14 @@ def load(code: MachineCode, leaves: list[Leaf]) -> Callable[[bytes, int], int]:
     """
     import llvmlite.binding as llvm
 
-    _prepare()
+    _register_symbols()
     missing = [name for name in code.calls if not llvm.address_of_symbol(name)]
     if missing:  # otherwise the engine would jump to an invalid address
         raise SlidercrankError(
             f"compiled formulas must find all functions that they call; {', '.join(missing)} is not in this process; "
             "install the versions of numba and llvmlite anew"
         )
-    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(_entry(code, leaves)), _machine())
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(_llvm_entry(code, leaves)), _machine())
     engine.add_object_file(llvm.ObjectFileRef.from_data(code.code))
     engine.finalize_object()
     _engines.append(engine)
@@ -62,7 +62,7 @@ def load(code: MachineCode, leaves: list[Leaf]) -> Callable[[bytes, int], int]:
     return function_type(engine.get_function_address(_SYMBOL))
 
 
-def _entry(code: MachineCode, leaves: list[Leaf]) -> str:
+def _llvm_entry(code: MachineCode, leaves: list[Leaf]) -> str:
     """Return the entry in LLVM's language."""
     lines: list[str] = []
     arguments: list[tuple[str, str]] = []
@@ -118,21 +118,21 @@ _engines: list[Any] = []  # these own the code
 
 
 @cache
-def _prepare() -> None:
+def _register_symbols() -> None:
     """Register the symbols that kernels call: mathematical functions, and numba's memory for arrays."""
     import llvmlite.binding as llvm
 
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())  # gives access to the functions of this process
-    for name, address in _library("_helperlib").c_helpers.items():
+    for name, address in _numba_library("_helperlib").c_helpers.items():
         llvm.add_symbol(f"numba_{name}", address)
         llvm.add_symbol(name, address)
-    for name, address in _library("core/runtime/_nrt_python").c_helpers.items():
+    for name, address in _numba_library("core/runtime/_nrt_python").c_helpers.items():
         llvm.add_symbol(f"NRT_{name}", address)
 
 
-def _library(path: str) -> Any:
+def _numba_library(path: str) -> Any:
     """Return one of numba's libraries, without numba."""
     numba = importlib.util.find_spec("numba")
     assert numba is not None

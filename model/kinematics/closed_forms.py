@@ -55,7 +55,7 @@ def closed_form(kind: Any, r: Any, l: Any, e: Any) -> Any:
 
 
 @analytic
-def _lanes(kind: Any, work: Any, slopes: Any) -> None:
+def _fill_closed_forms(kind: Any, work: Any, slopes: Any) -> None:
     """Fill value and, if requested, slopes (rows 3 to 6) for designs (rows 0 to 2)."""
     for j in range(_LANES):
         work[3, j] = closed_form(kind, work[0, j], work[1, j], work[2, j])
@@ -76,11 +76,11 @@ def _evaluate(kind: int, designs: Table, values: Row, gradients: Table) -> None:
                 work[i, j] = designs[min(begin + j, n - 1), i]
         # One loop per kind: a choice inside the loop would prevent vector instructions.
         if kind == _TIME_RATIO:
-            _lanes(_TIME_RATIO, work, slopes)
+            _fill_closed_forms(_TIME_RATIO, work, slopes)
         elif kind == _TRANSMISSION:
-            _lanes(_TRANSMISSION, work, slopes)
+            _fill_closed_forms(_TRANSMISSION, work, slopes)
         else:
-            _lanes(kind, work, slopes)
+            _fill_closed_forms(kind, work, slopes)
         last = min(_LANES, n - begin)
         for j in range(last):
             values[begin + j] = work[3, j]

@@ -107,7 +107,7 @@ class _Case(NamedTuple):
 
 
 @analytic
-def _measure(phase: Any, rms: Any, case: _Case) -> tuple[float, float]:
+def _deviation_at_phase(phase: Any, rms: Any, case: _Case) -> tuple[float, float]:
     """Return the deviation at a phase and the best shift, zero where fixed; fills each point's deviation."""
     r, l, e, b, sines, cosines, positions, shifts, d, _, _ = case
     n = positions.shape[0]
@@ -130,7 +130,7 @@ def _measure(phase: Any, rms: Any, case: _Case) -> tuple[float, float]:
 
 
 @analytic
-def _newton(phase: Any, case: _Case) -> float:
+def _newton_step(phase: Any, case: _Case) -> float:
     """Return Newton's step of the phase for the mean square of the deviations there; zero where not convex."""
     r, l, e, b, sines, cosines, positions, shifts, d, slope, bend = case
     n = positions.shape[0]
@@ -150,13 +150,13 @@ def _newton(phase: Any, case: _Case) -> float:
 
 
 @analytic
-def _section(low: Any, high: Any, rms: Any, case: _Case) -> float:
+def _golden_section(low: Any, high: Any, rms: Any, case: _Case) -> float:
     """Return the phase of the least deviation between two phases, by golden section."""
     p, q = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
     at_p = at_q = 0.0
     left = True
     for step in range(_SECTIONS):
-        value, _ = _measure(p if left else q, rms, case)
+        value, _ = _deviation_at_phase(p if left else q, rms, case)
         if left:
             at_p = value
         else:
@@ -173,7 +173,7 @@ def _section(low: Any, high: Any, rms: Any, case: _Case) -> float:
 
 
 @analytic
-def _bound(phase: Any, half: Any, bend: Any, case: _Case) -> Any:
+def _bound_deviation(phase: Any, half: Any, bend: Any, case: _Case) -> Any:
     """Return the greatest deviation at a phase, and its lower bound within `half` of that phase.
 
     bend: bound of the deviations' curvature. With the shift free, the common part of deviations, and of their slopes,
@@ -221,7 +221,7 @@ def _branch_and_bound(case: _Case, cells: Any) -> float:
     count, best, at_best = _PHASES, math.inf, 0.0
     for _ in range(_HALVINGS):
         for j in range(count):
-            value, cells[1, j] = _bound(cells[0, j], half, bend, case)
+            value, cells[1, j] = _bound_deviation(cells[0, j], half, bend, case)
             if value < best:
                 best, at_best = value, cells[0, j]
         open_cells = 0
@@ -233,14 +233,14 @@ def _branch_and_bound(case: _Case, cells: Any) -> float:
         for j in range(open_cells):
             cells[0, 2 * j], cells[0, 2 * j + 1] = cells[2, j] - half, cells[2, j] + half
         count = 2 * open_cells
-    return _section(at_best - 4.0 * half, at_best + 4.0 * half, False, case)
+    return _golden_section(at_best - 4.0 * half, at_best + 4.0 * half, False, case)
 
 
 @analytic
 def _least_square(case: _Case, grid: Any) -> float:
     """Return the phase of the least root mean square deviation, searched from the grid's best stretches."""
     for j in range(_PHASES):
-        grid[j], _ = _measure(_TURN * j / _PHASES, True, case)
+        grid[j], _ = _deviation_at_phase(_TURN * j / _PHASES, True, case)
     best_phase, least, last, j = 0.0, math.inf, -math.inf, -1
     for _ in range(_STRETCHES):
         best = -1
@@ -254,10 +254,10 @@ def _least_square(case: _Case, grid: Any) -> float:
             break
         j, last = best, grid[best]
         low, high = _TURN * (j - 1) / _PHASES, _TURN * (j + 1) / _PHASES
-        phase = _section(low, high, True, case)
+        phase = _golden_section(low, high, True, case)
         for turn in range(_NEWTON + 1):
-            value, _ = _measure(phase, True, case)
-            step = _newton(phase, case)
+            value, _ = _deviation_at_phase(phase, True, case)
+            step = _newton_step(phase, case)
             if abs(step) > 1e-5 or turn == _NEWTON:  # golden section errs by less where the square is convex
                 break
             phase += step
@@ -280,7 +280,7 @@ def _fit(
             phase = _least_square(case, grid)
         elif turns:
             phase = _branch_and_bound(case, cells)
-        out[row, 0], out[row, 2] = _measure(phase, rms, case)
+        out[row, 0], out[row, 2] = _deviation_at_phase(phase, rms, case)
         out[row, 1] = phase
 
 

@@ -39,20 +39,20 @@ class FitPieces(NamedTuple):
     labels: Array
 
 
-def _points(target: TargetMotion, branch: float, phase: Array, designs: NDArray[Any]) -> Any:
+def _motion_at_points(target: TargetMotion, branch: float, phase: Array, designs: NDArray[Any]) -> Any:
     """Return the `Motion` at the points, each array (n, points), for real or complex designs (n, 3)."""
     theta = np.array(target.crank_angles) + phase[:, None]
     r, l, e = (designs[:, v, None] for v in range(3))
     return motion(np.sin(theta), np.cos(theta), r, l, e, branch)
 
 
-def _slopes(target: TargetMotion, branch: float, phase: Array, designs: Array) -> Array:
+def _distance_slopes(target: TargetMotion, branch: float, phase: Array, designs: Array) -> Array:
     """Return the derivatives (n, points, 3) of the slider's distance at fixed phase, by complex step."""
     slopes = np.empty((len(designs), len(target.positions), 3))
     for v in range(3):
         stepped = designs.astype(np.complex128)
         stepped[:, v] += STEP * 1j
-        slopes[:, :, v] = branch * _points(target, branch, phase, stepped).x.imag / STEP
+        slopes[:, :, v] = branch * _motion_at_points(target, branch, phase, stepped).x.imag / STEP
     return slopes
 
 
@@ -64,9 +64,9 @@ def fit_pieces(target: TargetMotion, branch: float, measure: Measure, designs: A
     designs = turning(designs)
     fitted = fit(target, branch, measure, designs)
     if measure == "rms":
-        d = branch * _points(target, branch, fitted.phase, designs).x - np.array(target.positions)
+        d = branch * _motion_at_points(target, branch, fitted.phase, designs).x - np.array(target.positions)
         d = d + fitted.shift[:, None]
-        slopes = _slopes(target, branch, fitted.phase, designs)
+        slopes = _distance_slopes(target, branch, fitted.phase, designs)
         # With the shift free the deviations have zero mean, so the means of the derivatives need not be subtracted.
         noise = fitted.values <= 1e-14 * (designs[:, 0] + designs[:, 1])
         per = np.where(noise, 0.0, 1.0 / np.where(noise, 1.0, fitted.values * d.shape[1]))
@@ -100,12 +100,12 @@ class _Sides(NamedTuple):
     @classmethod
     def from_points(cls, target: TargetMotion, branch: float, phase: Array, designs: Array) -> _Sides:
         """Return the local peaks of both signs over the points; with the shift free, half-sums of pairs."""
-        m = _points(target, branch, phase, designs)
+        m = _motion_at_points(target, branch, phase, designs)
         d = branch * m.x - np.array(target.positions)
-        slopes = _slopes(target, branch, phase, designs)
+        slopes = _distance_slopes(target, branch, phase, designs)
         angles = np.broadcast_to(np.array(target.crank_angles), d.shape)
         curves = (branch * m.x_1, branch * m.x_2)
-        positive, negative = (_peaks(sign, d, *curves, slopes, angles) for sign in (1.0, -1.0))
+        positive, negative = (_highest_deviations(sign, d, *curves, slopes, angles) for sign in (1.0, -1.0))
         if target.shift == "fixed":
             return cls(*(np.concatenate(pair, axis=1) for pair in zip(positive, negative, strict=True)))
         n = len(d)
@@ -171,7 +171,7 @@ class _Sides(NamedTuple):
         return _Sides(values, slope, bend, np.take_along_axis(self.gradients, order[..., None], axis=1), labels)
 
 
-def _peaks(sign: float, d: Array, slope: Array, bend: Array, slopes: Array, angles: Array) -> _Sides:
+def _highest_deviations(sign: float, d: Array, slope: Array, bend: Array, slopes: Array, angles: Array) -> _Sides:
     """Return the highest deviations times a sign: local peaks over the points, and others, which may tie with them."""
     values = sign * d
     padded = np.pad(values, ((0, 0), (1, 1)), constant_values=-np.inf)

@@ -57,9 +57,9 @@ def crank_solutions(
     """
     crank, rod, offset = _real_lengths(linkage)
     slider_motion = _SliderMotion(
-        _number("slider position", position),
-        None if velocity is None else _number("slider velocity", velocity),
-        None if acceleration is None else _number("slider acceleration", acceleration),
+        _require_number("slider position", position),
+        None if velocity is None else _require_number("slider velocity", velocity),
+        None if acceleration is None else _require_number("slider acceleration", acceleration),
     )
     if slider_motion.acceleration is not None and slider_motion.velocity is None:
         raise InputError(
@@ -190,7 +190,7 @@ def _real_lengths(linkage: Dimensions) -> tuple[float, float, float]:
     return float(linkage.crank), float(linkage.rod), float(linkage.offset)
 
 
-def _number(name: str, value: ArrayLike) -> float:
+def _require_number(name: str, value: ArrayLike) -> float:
     array = finite(name, value)
     if array.ndim:
         raise InputError(f"{name} must be one number; got an array of shape {array.shape}; take one at a time")

@@ -30,28 +30,28 @@ def loaded_stroke(mechanism: Mechanism, dimensions: Array) -> NDArray[np.str_]:
     """
     dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64))
     if mechanism.varying:
-        parts = [_work(mechanism.with_values(row[3:].tolist()), row[None, :3]) for row in dimensions]
+        parts = [_stroke_work(mechanism.with_values(row[3:].tolist()), row[None, :3]) for row in dimensions]
         outward, inward = np.concatenate([np.zeros((2, 0)), *parts], axis=1)
     else:
-        outward, inward = _work(mechanism, dimensions)
+        outward, inward = _stroke_work(mechanism, dimensions)
     greater = np.maximum(outward, inward)
     differs = np.abs(outward - inward) > MORE * greater
     named = np.where(outward > inward, "outward", "inward")
     return np.asarray(np.where((greater > 0.0) & differs, named, "equal"))
 
 
-def _work(mechanism: Mechanism, dimensions: Array) -> Array:
+def _stroke_work(mechanism: Mechanism, dimensions: Array) -> Array:
     """Return the work against the outward and the inward stroke (2, n), J."""
     linkage = Linkage(dimensions[:, 0], dimensions[:, 1], dimensions[:, 2], mechanism.branch)
     work = np.zeros((2, len(dimensions)))
     for row, outward in enumerate((True, False)):
-        passage = _passage(linkage, outward=outward, direction=mechanism.direction)
+        passage = _passage_of_stroke(linkage, outward=outward, direction=mechanism.direction)
         for load in mechanism.loads:
             work[row] -= load.stroke_work(passage)
     return work
 
 
-def _passage(linkage: Linkage, *, outward: bool, direction: float) -> Passage:
+def _passage_of_stroke(linkage: Linkage, *, outward: bool, direction: float) -> Passage:
     inner, outer = (np.atleast_1d(angle)[:, None] for angle in linkage.dead_centre_angles)
     begin, end = (inner, outer) if outward else (outer, inner)
     turn = direction * np.mod(direction * (end - begin), 2.0 * math.pi)

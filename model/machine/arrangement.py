@@ -75,13 +75,13 @@ class Arrangement:
     @property
     def text(self) -> str:
         """The cylinders in a few words."""
-        lists = [f"{len(self.phases)} cylinders at {_degrees(self.phases)} deg"]
-        lists += [f"banks {_degrees(self.banks)} deg"] if self.banks else []
+        lists = [f"{len(self.phases)} cylinders at {_angles_text(self.phases)} deg"]
+        lists += [f"banks {_angles_text(self.banks)} deg"] if self.banks else []
         lists += [f"at {', '.join(f'{1e3 * at:.6g}' for at in self.places)} mm along the shaft"] if self.places else []
         return ", ".join(lists)
 
 
-def _degrees(angles: tuple[float, ...]) -> str:
+def _angles_text(angles: tuple[float, ...]) -> str:
     return ", ".join(f"{math.degrees(angle):.6g}" for angle in angles)
 
 

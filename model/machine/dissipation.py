@@ -28,12 +28,14 @@ def works_over_a_turn(mechanism: Mechanism) -> bool:
     their own formula, loads that differ between strokes, and loads over crank angle (`Load.turn_work`). For each
     varying number two values are tried, neither of them special.
     """
-    return any(machine.acceleration != 0.0 or _rubs(machine) or _load_works(machine) for machine in _tried(mechanism))
+    return any(
+        machine.acceleration != 0.0 or _has_friction(machine) or _load_works(machine) for machine in _trials(mechanism)
+    )
 
 
 def load_works_over_a_turn(mechanism: Mechanism) -> bool:
     """Return whether the loads may take or give net work over a turn for some design; see `works_over_a_turn`."""
-    return any(map(_load_works, _tried(mechanism)))
+    return any(map(_load_works, _trials(mechanism)))
 
 
 @memoise_by_machine
@@ -60,7 +62,7 @@ def with_loads_alone(mechanism: Mechanism) -> Mechanism:
 
 def rubs_under_load(mechanism: Mechanism) -> bool:
     """Return whether friction acts in a joint that carries a force, for some design."""
-    return any(map(_rubs, _tried(mechanism)))
+    return any(map(_has_friction, _trials(mechanism)))
 
 
 def linkage_loaded(machine: Mechanism) -> bool:
@@ -102,25 +104,25 @@ def pivot_loaded(machine: Mechanism) -> bool:
 
 def moves(machine: Mechanism) -> bool:
     """Return whether rod or slider has a mass or an inertia."""
-    return machine.slider_mass > 0.0 or _weighs(machine.rod)
+    return machine.slider_mass > 0.0 or _has_weight(machine.rod)
 
 
 def crank_weighs(machine: Mechanism) -> bool:
     """Return whether the crank, with its counterweight, has a mass or an inertia."""
-    return _weighs(machine.crank) or machine.counterweight.mass > 0.0 or machine.counterweight.inertia > 0.0
+    return _has_weight(machine.crank) or machine.counterweight.mass > 0.0 or machine.counterweight.inertia > 0.0
 
 
-def _weighs(link: Link) -> bool:
+def _has_weight(link: Link) -> bool:
     return isinstance(link, Bar) or link.mass > 0.0 or bool(link.inertia)
 
 
-def _rubs(machine: Mechanism) -> bool:
+def _has_friction(machine: Mechanism) -> bool:
     friction = machine.friction
     past_pivot = friction.guide > 0.0 or friction.crank_pin.circle > 0.0 or friction.slider_pin.circle > 0.0
     return (past_pivot and linkage_loaded(machine)) or (friction.crank_pivot.circle > 0.0 and pivot_loaded(machine))
 
 
-def _tried(mechanism: Mechanism) -> list[Mechanism]:
+def _trials(mechanism: Mechanism) -> list[Mechanism]:
     """Return the machine, or for varying numbers two machines with values that are not special."""
     if not mechanism.varying:
         return [mechanism]

@@ -132,7 +132,7 @@ def numbers_of(mechanism: Mechanism, designs: Array, *, limit: int, gradients: b
     columns = np.array(list(by_slot), dtype=np.int64)
     values = np.ascontiguousarray(np.stack(list(by_slot.values()), axis=1))
     shape = len(designs) if gradients else 0, len(columns), designs.shape[1]
-    rates = _rates(mechanism.varying)
+    rates = _rates_of_raw(mechanism.varying)
     if rates is not None:
         by_column = np.array([rates[slot] for slot in by_slot])
         return Numbers(columns, values, np.array(np.broadcast_to(by_column, shape)))
@@ -191,11 +191,11 @@ def nominal_number(mechanism: Mechanism, slot: int) -> float:
         for name, place in slots.items():
             if place == slot:
                 return float(getattr(owner, name))
-    return float(_nominal(mechanism)[slot])
+    return float(_nominal_numbers(mechanism)[slot])
 
 
 @memoise_by_machine
-def _nominal(mechanism: Mechanism) -> Array:
+def _nominal_numbers(mechanism: Mechanism) -> Array:
     return raw_vector(mechanism.nominal)
 
 
@@ -210,7 +210,7 @@ def require_width(mechanism: Mechanism, designs: Array) -> None:
 
 
 @cache
-def _rates(varying: tuple[Varying, ...]) -> dict[int, tuple[float, ...]] | None:
+def _rates_of_raw(varying: tuple[Varying, ...]) -> dict[int, tuple[float, ...]] | None:
     """Return the derivatives (3 + k,) of each raw number that designs set; None where they are not constant."""
     rates = {column: {column: 1.0} for column in range(3)}
     for column, item in enumerate(varying):

@@ -41,10 +41,10 @@ def turns_per_cycle(loads: Iterable[Load]) -> int:
 def halves(mechanism: Mechanism) -> tuple[Mechanism, ...]:
     """Return the machines of the first and the second turn. Raises `InputError` for loads with different datums."""
     _datum(mechanism)
-    return tuple(_half(mechanism, turn) for turn in (1, 2))
+    return tuple(_machine_of_turn(mechanism, turn) for turn in (1, 2))
 
 
-def _half(mechanism: Mechanism, turn: int) -> Mechanism:
+def _machine_of_turn(mechanism: Mechanism, turn: int) -> Mechanism:
     loads = mechanism.loads
 
     def numbers_of_turn(item: Varying) -> Varying:

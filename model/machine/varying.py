@@ -63,7 +63,7 @@ def with_values(part: Any, varying: Sequence[Varying], values: Sequence[float]) 
 def number_at(part: Any, path: str) -> float | None:
     """Return the number at a dotted path of a machine; None where a link uses its default. Raises `InputError`."""
     for key in path.split("."):
-        part = _member(part, key, path)
+        part = _member_at(part, key, path)
     if isinstance(part, bool) or not (part is None or isinstance(part, int | float)):
         raise InputError(f"a varying number must be one number of the machine; got {path!r}, which is none")
     return part
@@ -106,7 +106,7 @@ def _require_corners(load: Any, prefix: str, varying: Sequence[Varying]) -> None
         replace(load, **dict(itertools.chain(*corner)))
 
 
-def _member(part: Any, key: str, path: str) -> Any:
+def _member_at(part: Any, key: str, path: str) -> Any:
     if isinstance(part, tuple) and key.isdecimal() and int(key) < len(part):
         return part[int(key)]
     if is_dataclass(part) and key in {field.name for field in fields(part)}:
@@ -117,7 +117,7 @@ def _member(part: Any, key: str, path: str) -> Any:
 def _replace_at(part: Any, keys: list[str], number: float, path: str) -> Any:
     if not keys:
         return number
-    inner = _replace_at(_member(part, keys[0], path), keys[1:], number, path)
+    inner = _replace_at(_member_at(part, keys[0], path), keys[1:], number, path)
     if isinstance(part, tuple):
         index = int(keys[0])
         return (*part[:index], inner, *part[index + 1 :])

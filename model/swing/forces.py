@@ -111,10 +111,10 @@ def swing_curves(
     velocity, acceleration = rate / time, (last - first) * s_2 / time**2
     if swing.driver == "crank":
         theta, speed, rise = place, velocity, acceleration
-        m = _motion(linkage, theta)
+        m = _motion_at(linkage, theta)
     else:
         theta = angles_at(linkage, swing, place)
-        m = _motion(linkage, theta)
+        m = _motion_at(linkage, theta)
         speed = velocity / m.x_1
         rise = (acceleration - m.x_2 * speed**2) / m.x_1
     turning = swing.way * (-1.0 if back else 1.0)
@@ -130,7 +130,7 @@ def swing_curves(
         )
         joints = {name: getattr(cycle_curves, name) for name in JOINTS}
     else:
-        drive, joints = _pushed(theta, m, d, cycle_curves.load, cycle_curves.crank_load)
+        drive, joints = _free_crank_forces(theta, m, d, cycle_curves.load, cycle_curves.crank_load)
         power = drive * m.x_1 * speed
         angle = np.arcsin(np.clip(np.abs(toggle_distance(np.sin(theta), np.cos(theta), m)) / linkage.rod, 0.0, 1.0))
         error = _crank_error(theta, m, d, swing.actuator_tolerance)
@@ -162,11 +162,11 @@ def driver_ends(linkage: Linkage, swing: Swing) -> tuple[float, float]:
     """Return the driver's place at start and end: crank angle, rad, or slider position, m."""
     if swing.driver == "crank":
         return swing.start, swing.end
-    x = _motion(linkage, np.array([swing.start, swing.end])).x
+    x = _motion_at(linkage, np.array([swing.start, swing.end])).x
     return float(x[0]), float(x[1])
 
 
-def _motion(linkage: Linkage, theta: Array) -> Motion:
+def _motion_at(linkage: Linkage, theta: Array) -> Motion:
     m: Motion = motion(np.sin(theta), np.cos(theta), linkage.crank, linkage.rod, linkage.offset, linkage.sign)
     return m
 
@@ -182,17 +182,19 @@ def angles_at(linkage: Linkage, swing: Swing, x: Array) -> Array:
     half = np.arccos(np.clip((r * r + d * d - l * l) / (2.0 * r * d), -1.0, 1.0))
     # sin(theta - phi) distinguishes the two solutions: between dead points it keeps the sign of the swing's middle.
     middle = np.array([0.5 * (swing.start + swing.end)])
-    side = float(toggle_distance(np.sin(middle), np.cos(middle), _motion(linkage, middle))[0])
+    side = float(toggle_distance(np.sin(middle), np.cos(middle), _motion_at(linkage, middle))[0])
     theta = np.arctan2(e, x) + (half if side > 0.0 else -half)
     low, high = sorted((swing.start, swing.end))
     theta = theta + 2.0 * np.pi * np.round((0.5 * (low + high) - theta) / (2.0 * np.pi))
     for _ in range(2):
-        m = _motion(linkage, theta)
+        m = _motion_at(linkage, theta)
         theta = np.clip(theta - (m.x - x) / m.x_1, low, high)
     return np.asarray(theta)
 
 
-def _pushed(theta: Array, m: Motion, d: Design, load: Array, on_crank: Array) -> tuple[Array, dict[str, Array]]:
+def _free_crank_forces(
+    theta: Array, m: Motion, d: Design, load: Array, on_crank: Array
+) -> tuple[Array, dict[str, Array]]:
     """Return the force on the slider that turns a free crank, along +x, and the joint forces."""
     sine, cosine = np.sin(theta), np.cos(theta)
     b: Balance = with_couple(balance(sine, cosine, m, d, load), -on_crank)

@@ -111,7 +111,7 @@ def swing_peaks(
 
     limit: peaks returned per design.
     """
-    find = partial(_peaks, state=state, limit=limit, gradients=gradients)
+    find = partial(_peaks_of_state, state=state, limit=limit, gradients=gradients)
     batch_of = partial(SwingBatch, mechanism, swing, slopes=gradients, forces=state != ERROR)
     return _peaks_of_passing(mechanism, swing, designs, limit, gradients, find, batch_of)
 
@@ -133,7 +133,7 @@ def least_drives(
     def find(many: SwingBatch) -> Maxima:
         first, last = (many.driver_at(end) for end in (many.ends.start, many.ends.end))
         toward = np.where(last > first, -1.0, 1.0) * (-1.0 if back else 1.0)
-        return _maxima(many, (many.pieces(back=back),), DRIVE, limit, gradients, toward)
+        return _maxima_of_state(many, (many.pieces(back=back),), DRIVE, limit, gradients, toward)
 
     batch_of = partial(SwingBatch, mechanism, swing, slopes=gradients, slow=True)
     return _peaks_of_passing(mechanism, swing, designs, limit, gradients, find, batch_of)
@@ -185,16 +185,16 @@ def _peaks_of_passing(
     return SwingPeaks(values, places, slopes if gradients else None)
 
 
-def _peaks(batch: SwingBatch, state: int, limit: int, gradients: bool) -> Maxima:
+def _peaks_of_state(batch: SwingBatch, state: int, limit: int, gradients: bool) -> Maxima:
     # The size of the guide's friction enters a force on the slider: without slopes, its kink needs no cut.
     contacts = gradients or batch.swing.driver == "crank"
     forces = state != ERROR
     ways = batch.ways() if forces else (False,)
     cut = tuple(batch.pieces(back=back, forces=forces, contacts=contacts) for back in ways)
-    return _maxima(batch, cut, state, limit, gradients)
+    return _maxima_of_state(batch, cut, state, limit, gradients)
 
 
-def _maxima(
+def _maxima_of_state(
     batch: SwingBatch, ways: tuple[Pieces, ...], state: int, limit: int, gradients: bool, toward: Array | None = None
 ) -> Maxima:
     curve = _Curve(batch, ways, state, batch.columns if gradients else 0, toward)

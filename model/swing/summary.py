@@ -87,7 +87,7 @@ def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSumm
         energy_forward=cycle.energy(back=False),
         energy_back=cycle.energy(back=True),
         stored=free.energy(back=False),
-        efficiency=None if locked else _efficiency(slow, free),
+        efficiency=None if locked else _drive_efficiency(slow, free),
         peak_power=power,
         least_transmission=cycle.least("driven_angle"),
         position_error=cycle.greatest("driven_error") if tolerances else None,
@@ -95,7 +95,7 @@ def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSumm
     )
 
 
-def _efficiency(slow: SwingCycle, free: SwingCycle) -> float | None:
+def _drive_efficiency(slow: SwingCycle, free: SwingCycle) -> float | None:
     """Return the energy without friction over that with friction, for the first driven stroke."""
     for back in (False, True):
         least, spent = free.energy(back=back), slow.energy(back=back)

@@ -87,12 +87,12 @@ class SwingCycle:
     def _extreme(self, name: str, back: bool, rank: np.ufunc, count: int = 1) -> SwingPoint:
         """Return the extreme of one way. count: number of the best local extremes to follow between samples."""
         curves = self._sampled_ways[back]
-        ranks = _ranks(getattr(curves, name), rank)
+        ranks = _rank_values(getattr(curves, name), rank)
         padded = np.concatenate([[-np.inf], ranks, [-np.inf]])
         local = np.flatnonzero((ranks >= padded[:-2]) & (ranks >= padded[2:]))
         best = [int(np.argmax(ranks)), *local[np.argsort(-ranks[local], kind="stable")][: count - 1].tolist()]
         candidates = [self._refined(name, back, rank, curves, row) for row in dict.fromkeys(best)]
-        return candidates[int(np.argmax(_ranks(np.array([point.value for point in candidates]), rank)))]
+        return candidates[int(np.argmax(_rank_values(np.array([point.value for point in candidates]), rank)))]
 
     def _refined(self, name: str, back: bool, rank: np.ufunc, curves: SwingCurves, best: int) -> SwingPoint:
         for _ in range(_ZOOMS):
@@ -100,7 +100,7 @@ class SwingCycle:
             if (back, low, high) not in self._zoomed_curves:
                 self._zoomed_curves[back, low, high] = self.curves(np.linspace(low, high, _ZOOMED), back=back)
             curves = self._zoomed_curves[back, low, high]
-            best = int(np.argmax(_ranks(getattr(curves, name), rank)))
+            best = int(np.argmax(_rank_values(getattr(curves, name), rank)))
         return _point_at(curves, best, back, float(getattr(curves, name)[best]))
 
     def first_locked(self) -> SwingPoint | None:
@@ -209,7 +209,7 @@ class SwingCycle:
         return float(high)
 
 
-def _ranks(values: Array, rank: np.ufunc) -> Array:
+def _rank_values(values: Array, rank: np.ufunc) -> Array:
     return np.where(np.isnan(values), -np.inf, rank(values))
 
 

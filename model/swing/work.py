@@ -55,7 +55,7 @@ def work_of_loads(mechanism: Mechanism, swing: Swing, designs: Array) -> Array:
 
     def both_ways(rows: Array) -> tuple[Array, Array]:
         free = SwingBatch(mechanism, swing, rows, slopes=False, free=True)
-        ways = [_work(free, free.pieces(back=back), False)[0] for back in (False, True)]
+        ways = [_work_one_way(free, free.pieces(back=back), False)[0] for back in (False, True)]
         total = np.add(*ways)
         return -np.where(np.abs(total) <= _EVEN * np.abs(ways[0]), 0.0, total), np.empty((len(rows), 0))
 
@@ -68,7 +68,7 @@ def swing_efficiency(mechanism: Mechanism, swing: Swing, designs: Array, *, grad
     Uses the return stroke where only that is driven; NaN where neither is.
     """
     return _for_passing_designs(
-        mechanism, swing, designs, gradients, lambda rows: _efficiency(mechanism, swing, rows, gradients)
+        mechanism, swing, designs, gradients, lambda rows: _efficiency_and_slopes(mechanism, swing, rows, gradients)
     )
 
 
@@ -94,18 +94,18 @@ def _for_passing_designs(mechanism: Mechanism, swing: Swing, designs: Array, gra
 
 def _forward_work(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool) -> tuple[Array, Array]:
     batch = SwingBatch(mechanism, swing, designs, slopes=gradients)
-    values, slopes = _work(batch, batch.pieces(back=False), gradients)
+    values, slopes = _work_one_way(batch, batch.pieces(back=False), gradients)
     return values, batch.numbers.chain(slopes[:, None])[:, 0] if gradients else slopes
 
 
-def _efficiency(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool) -> tuple[Array, Array]:
+def _efficiency_and_slopes(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool) -> tuple[Array, Array]:
     values, slope = np.full(len(designs), np.nan), np.zeros((len(designs), designs.shape[1] if gradients else 0))
     rubbing, free = (
         SwingBatch(mechanism, swing, designs, slopes=gradients, slow=True, free=is_free) for is_free in (False, True)
     )
     for back in (True, False):  # the forward stroke takes precedence
-        spent, by_spent = _work(rubbing, rubbing.pieces(back=back), gradients)
-        least, by_least = _work(free, free.pieces(back=back), gradients)
+        spent, by_spent = _work_one_way(rubbing, rubbing.pieces(back=back), gradients)
+        least, by_least = _work_one_way(free, free.pieces(back=back), gradients)
         driven = (least > 0.0) & (spent > 0.0)
         with np.errstate(divide="ignore", invalid="ignore"):
             values = np.where(driven, least / spent, values)
@@ -115,7 +115,7 @@ def _efficiency(mechanism: Mechanism, swing: Swing, designs: Array, gradients: b
     return values, slope
 
 
-def _work(batch: SwingBatch, pieces: Pieces, gradients: bool) -> tuple[Array, Array]:
+def _work_one_way(batch: SwingBatch, pieces: Pieces, gradients: bool) -> tuple[Array, Array]:
     """Return the work over one way (n,) and its derivatives by raw numbers (n, c)."""
     u, w = graded_gauss(_PANELS, _GRADED)
     design, piece = np.nonzero(pieces.live)

@@ -44,7 +44,7 @@ def balanced_speed(turn: PeriodicTurn, drive: Drive, motor: Torque, near: float)
         top = max(1.0, 1.01 * float(motor_surplus(0.0) / (motor_surplus(0.0) - motor_surplus(1.0))))
     else:
         top = speed_range(drive)[1]
-    friction = _friction(turn, top)
+    friction = _mean_friction_by_speed(turn, top)
 
     def surplus(speed: Array | float) -> Array:
         return motor_surplus(speed) - friction(speed)
@@ -76,7 +76,7 @@ def _mean_friction(turn: PeriodicTurn, speed: float) -> float:
     return turn.way * turn.mean(turn.friction(np.array(turn.way * speed), 0.0))
 
 
-def _friction(turn: PeriodicTurn, top: float) -> Callable[[Array | float], Array | float]:
+def _mean_friction_by_speed(turn: PeriodicTurn, top: float) -> Callable[[Array | float], Array | float]:
     """Return the mean friction torque, N m, at speeds up to the greatest, rad/s."""
     if not turn.equation.rubs:
         return lambda speed: 0.0

@@ -84,18 +84,18 @@ class Terms:
 
 
 @kernel
-def _cut(block: Table, loads: Loads, watch: CycleWindow, cuts: Cuts) -> int:
+def _cut_cycle(block: Table, loads: Loads, watch: CycleWindow, cuts: Cuts) -> int:
     return cut_cycle(design_at(block, 0), block, 0, loads, watch, cuts)
 
 
 @kernel
-def _enter(block: Table, loads: Loads, watch: CycleWindow, probe: float, piece: Integers, shift: Row) -> bool:
+def _enter_piece(block: Table, loads: Loads, watch: CycleWindow, probe: float, piece: Integers, shift: Row) -> bool:
     _, outward = enter(design_at(block, 0), block, 0, probe, loads, watch, piece, shift)
     return outward
 
 
 @kernel
-def _terms(
+def _fill_terms(
     block: Table, loads: Loads, outward: bool, way: float, piece: Integers, shift: Row, angles: Row, out: Table
 ) -> None:
     still, spin, push, bare = design_at(block, 0), design_at(block, 1), design_at(block, 2), design_at(block, 3)
@@ -210,7 +210,7 @@ class Stretch(Span):
         count = len(equation.loads.kind)
         self._piece, self._shift = np.zeros(count, np.int64), np.zeros(count)
         self._block, self._loads = equation.block, equation.loads
-        counter_clockwise = _enter(
+        counter_clockwise = _enter_piece(
             self._block, self._loads, equation.watch, angle_within(low, high), self._piece, self._shift
         )
         self._outward = bool(counter_clockwise == (way > 0.0))
@@ -225,7 +225,7 @@ class Stretch(Span):
     def terms_at(self, crank_angle: Array) -> Terms:
         """Return the terms at crank angles (n,), rad; beyond the ends the loads continue as within."""
         out = np.empty((6, len(crank_angle)))
-        _terms(self._block, self._loads, self._outward, self.way, self._piece, self._shift, crank_angle, out)
+        _fill_terms(self._block, self._loads, self._outward, self.way, self._piece, self._shift, crank_angle, out)
         return Terms(*out)
 
     def with_friction(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
@@ -277,7 +277,7 @@ class CrankEquation(Equation):
             np.empty(capacity),
             np.empty(capacity, np.int64),
         )
-        count = _cut(self.block, self.loads, self.watch, cuts)
+        count = _cut_cycle(self.block, self.loads, self.watch, cuts)
         angles = np.sort(np.concatenate([np.mod(marks, TURN), cuts.angle[:count]]))
         is_distinct = np.diff(angles, prepend=angles[-1] - TURN) > NEAREST
         return np.asarray(angles[is_distinct] if len(angles) > 1 else angles)

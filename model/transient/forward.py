@@ -96,7 +96,7 @@ def simulate(
     resists an acceleration, `AssemblyError` if the linkage does not rotate fully.
     """
     drive = drive_of(mechanism, drive)
-    _require(duration, turns, steady, tolerance, samples)
+    _require_options(duration, turns, steady, tolerance, samples)
     run = _Run(mechanism, linkage, drive, start, duration, tolerance, samples)
     before, passed = math.nan, 0
     while True:
@@ -117,7 +117,7 @@ def simulate(
             return run.result(verdict)
 
 
-def _require(duration: float, turns: int | None, steady: float | None, tolerance: float, samples: int) -> None:
+def _require_options(duration: float, turns: int | None, steady: float | None, tolerance: float, samples: int) -> None:
     if not 0.0 < duration < math.inf:
         raise InputError(f"the duration must be positive and finite; got {duration:g} s")
     if turns is not None and turns < 1:

@@ -55,7 +55,7 @@ class SpeedOverAngle:
     @classmethod
     def table(cls, angles: Sequence[float], speeds: Sequence[float]) -> SpeedOverAngle:
         """Return the periodic cubic spline through a table; angles: increasing, rad, spanning less than a turn."""
-        at, values = _table("crank angles", angles, speeds)
+        at, values = _table_as_arrays("crank angles", angles, speeds)
         if at[-1] - at[0] >= TURN:
             raise InputError(
                 "crank angles of a periodic table must span less than 360 deg; "
@@ -81,7 +81,7 @@ class SpeedOverTime:
     @classmethod
     def table(cls, times: Sequence[float], speeds: Sequence[float], *, start: float = 0.0) -> SpeedOverTime:
         """Return the cubic spline through a table; times: increasing, s. start: crank angle at the first time, rad."""
-        at, values = _table("times", times, speeds)
+        at, values = _table_as_arrays("times", times, speeds)
         from scipy.interpolate import CubicSpline
 
         spline = CubicSpline(at, values)
@@ -105,13 +105,13 @@ def over_angle(
     """
     if not (0.0 < turns < math.inf and math.isfinite(start)):
         raise InputError(f"turns must be positive, and the start finite; got {turns:g} turns from {start:g} rad")
-    first = _values("speed", motion.speed, np.array([start]))[0]
+    first = _function_values("speed", motion.speed, np.array([start]))[0]
     way = math.copysign(1.0, first)
     angle = start + way * TURN * np.linspace(0.0, turns, max(2, math.ceil(samples * turns)) + 1)
     nodes, weights = gauss(4)
     step = np.diff(angle)[:, None]
-    inner_speeds = _values("speed", motion.speed, (angle[:-1, None] + step * nodes).ravel())
-    speed, slope = _values("speed", motion.speed, angle), _values("slope", motion.slope, angle)
+    inner_speeds = _function_values("speed", motion.speed, (angle[:-1, None] + step * nodes).ravel())
+    speed, slope = _function_values("speed", motion.speed, angle), _function_values("slope", motion.slope, angle)
     all_speeds = np.concatenate([speed, inner_speeds])
     if not np.all(all_speeds * way > 0.0):
         raise InputError(
@@ -120,7 +120,7 @@ def over_angle(
         )
     _require_slope(motion.speed, motion.slope, angle)
     time = np.concatenate([[0.0], np.cumsum(step[:, 0] * ((1.0 / inner_speeds).reshape(-1, 4) @ weights))])
-    return _motion(mechanism, linkage, time, angle, speed, speed * slope)
+    return _prescribed_motion(mechanism, linkage, time, angle, speed, speed * slope)
 
 
 def over_time(mechanism: Mechanism, linkage: Linkage, motion: SpeedOverTime, times: ArrayLike) -> PrescribedMotion:
@@ -133,20 +133,20 @@ def over_time(mechanism: Mechanism, linkage: Linkage, motion: SpeedOverTime, tim
     time = np.atleast_1d(np.asarray(times, dtype=np.float64))
     if time.ndim != 1 or not np.all(np.isfinite(time)) or np.any(np.diff(time) <= 0.0):
         raise InputError("times must be a list of finite, increasing values, s; sort them and remove repeated points")
-    speed = _values("speed", motion.speed, time)
-    acceleration = _values("acceleration", motion.acceleration, time)
+    speed = _function_values("speed", motion.speed, time)
+    acceleration = _function_values("acceleration", motion.acceleration, time)
     _require_slope(motion.speed, motion.acceleration, time)
     if motion.angle is None:
-        angle = _turned(motion.speed, time)
+        angle = _angle_turned(motion.speed, time)
     else:
-        angle = _values("angle", motion.angle, time)
+        angle = _function_values("angle", motion.angle, time)
         _require_slope(motion.angle, motion.speed, time)
     # Numerically zero, but with the sign that determines the direction of the loads.
     moving = np.where(speed == 0.0, np.copysign(1e-300, acceleration), speed)
-    return _motion(mechanism, linkage, time, angle, moving, acceleration)
+    return _prescribed_motion(mechanism, linkage, time, angle, moving, acceleration)
 
 
-def _motion(
+def _prescribed_motion(
     mechanism: Mechanism, linkage: Linkage, time: Array, angle: Array, speed: Array, acceleration: Array
 ) -> PrescribedMotion:
     curves = cycle(mechanism, linkage, angle, speed=speed, acceleration=acceleration)
@@ -155,13 +155,13 @@ def _motion(
     )
 
 
-def _turned(speed: Function, time: Array) -> Array:
+def _angle_turned(speed: Function, time: Array) -> Array:
     from scipy.integrate import solve_ivp
 
     if len(time) == 1:
         return np.zeros(1)
     solution = solve_ivp(
-        lambda t, _: _values("speed", speed, np.array([t])),
+        lambda t, _: _function_values("speed", speed, np.array([t])),
         (time[0], time[-1]),
         [0.0],
         method="DOP853",
@@ -173,7 +173,7 @@ def _turned(speed: Function, time: Array) -> Array:
     return np.asarray(solution.y[0])
 
 
-def _table(quantity: str, at: Sequence[float], speeds: Sequence[float]) -> tuple[Array, Array]:
+def _table_as_arrays(quantity: str, at: Sequence[float], speeds: Sequence[float]) -> tuple[Array, Array]:
     """Return a table as arrays. Raises `InputError` if it is not a valid table."""
     if len(at) != len(speeds) or len(at) < 4:
         raise InputError(
@@ -204,7 +204,7 @@ def _bounded_spline(spline: Any, at: Array) -> Function:
     return bounded
 
 
-def _values(name: str, function: Function, at: Array) -> Array:
+def _function_values(name: str, function: Function, at: Array) -> Array:
     values = np.array(np.broadcast_to(np.asarray(function(at), dtype=np.float64), at.shape))
     if not np.all(np.isfinite(values)):
         worst = np.flatnonzero(~np.isfinite(values))[0]
@@ -215,9 +215,9 @@ def _values(name: str, function: Function, at: Array) -> Array:
 def _require_slope(function: Function, slope: Function, at: Array) -> None:
     """Raise `InputError` if a function's derivative differs from the stated slope."""
     step = _STEP * ((float(np.ptp(at)) or 1.0) / len(at))
-    middle, slopes = _values("speed", function, at), _values("slope", slope, at)
-    after = (_values("speed", function, at + step) - middle) / step
-    before = (middle - _values("speed", function, at - step)) / step
+    middle, slopes = _function_values("speed", function, at), _function_values("slope", slope, at)
+    after = (_function_values("speed", function, at + step) - middle) / step
+    before = (middle - _function_values("speed", function, at - step)) / step
     # On a kink, the slope of either side is accepted, and any value in between.
     off = np.maximum(slopes - np.maximum(before, after), np.minimum(before, after) - slopes)
     if float(off.max()) > _CLOSE * max(float(np.abs(slopes).max()), float(np.abs(after).max()), 1e-6):

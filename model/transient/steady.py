@@ -78,7 +78,7 @@ class Runner:
                 "steady running needs a crank that completes every turn; got none near the "
                 f"{guess:.6g} rad/s where motor and loads balance; add a flywheel or a stronger motor"
             )
-        running = _result(*solved, motor, drive.inertia)
+        running = _steady_result(*solved, motor, drive.inertia)
         fastest = float(np.abs(running.speed).max())
         if not fastest <= speed_range(drive)[1]:
             raise InputError(
@@ -117,7 +117,7 @@ class Runner:
         turn, profile = solved
         if not self.works:  # cancelling terms leave rounding errors
             profile = replace(profile, added=0.0)
-        return _result(turn, profile, _no_motor, inertia)
+        return _steady_result(turn, profile, _no_motor, inertia)
 
     def speeds(self, inertia: float) -> tuple[float, float]:
         """Return the least and the greatest speed, rad/s, under the constant torque that keeps the mean one.
@@ -136,7 +136,7 @@ class Runner:
                 raise
             energy, start, added = coast.guess
             rate = turn.rate(energy, _no_motor, inertia)[0] + added / (turn.terms.inertia + inertia)
-            stopping = _result(turn, Profile(energy, start, rate, added, 1.0), _no_motor, inertia)
+            stopping = _steady_result(turn, Profile(energy, start, rate, added, 1.0), _no_motor, inertia)
             return 0.0, float(np.abs(stopping.speed).max())
         return float(np.abs(running.speed).min()), float(np.abs(running.speed).max())
 
@@ -173,11 +173,11 @@ def _no_motor(speed: Array) -> tuple[Array, Array]:
     return np.zeros(np.shape(speed)), np.zeros(np.shape(speed))
 
 
-def _result(turn: PeriodicTurn, profile: Profile, motor: Torque, inertia: float) -> SteadyRunning:
+def _steady_result(turn: PeriodicTurn, profile: Profile, motor: Torque, inertia: float) -> SteadyRunning:
     cycle_angle = turn.equation.period
     time_per_angle = turn.way / np.sqrt(2.0 * profile.energy)
     period = float(turn.width @ (time_per_angle @ WEIGHTS))
-    angle, time, energy, acceleration = _points(turn, profile, time_per_angle, period)
+    angle, time, energy, acceleration = _panel_points(turn, profile, time_per_angle, period)
     speed = turn.way * np.sqrt(2.0 * energy)
     torque = motor(speed)[0] + profile.added
     at_nodes = motor(turn.way * np.sqrt(2.0 * profile.energy))[0] + profile.added
@@ -196,7 +196,7 @@ def _result(turn: PeriodicTurn, profile: Profile, motor: Torque, inertia: float)
     )
 
 
-def _points(turn: PeriodicTurn, profile: Profile, pace: Array, period: float) -> Array:
+def _panel_points(turn: PeriodicTurn, profile: Profile, pace: Array, period: float) -> Array:
     """Return angle, time, E and its derivative at starts, nodes and extremes of all panels, (4, count), in order.
 
     The first point comes again at the end, a cycle later.

@@ -64,7 +64,7 @@ class Profile:
     memory: float
 
 
-def _sum(series: Array, x: float) -> float:
+def _legendre_sum(series: Array, x: float) -> float:
     """Return the sum of a Legendre series by Clenshaw's recursion, as `legval` does, but faster, in plain numbers."""
     numbers: list[float] = series.tolist()
     before, last = numbers[-2:]
@@ -134,7 +134,7 @@ class PeriodicTurn:
         at, known = np.concatenate([[-1.0], 2.0 * NODES - 1.0, [1.0]]), np.column_stack([first, values, last])
         found = []
         for p, i in np.argwhere(known[:, :-1] * known[:, 1:] < 0.0).tolist():
-            x = brentq(partial(_sum, FIT @ values[p]), at[i], at[i + 1], xtol=1e-15)
+            x = brentq(partial(_legendre_sum, FIT @ values[p]), at[i], at[i + 1], xtol=1e-15)
             found.append((p, 0.5 * (1.0 + float(x)), bool(known[p, i] < 0.0)))
         return found
 
@@ -146,8 +146,8 @@ class PeriodicTurn:
     def value_and_integral(self, values: Array, panel: int, place: float) -> tuple[float, float]:
         """Return values within a panel, at a place from 0 to 1, and their integral from its start."""
         series, x = FIT @ values[panel], 2.0 * float(place) - 1.0
-        integral = float(self.width[panel]) * _sum(INTEGRATED @ series, x)
-        return _sum(series, x), integral
+        integral = float(self.width[panel]) * _legendre_sum(INTEGRATED @ series, x)
+        return _legendre_sum(series, x), integral
 
     def rate(self, energy: Array, motor: Torque, inertia: float) -> tuple[Array, Array]:
         """Return dE / d(theta) and its derivative by E."""
@@ -292,7 +292,7 @@ class PeriodicTurn:
             moved = np.linalg.solve(system, sides)  # E on the nodes: residual, by E at the start, by the torque
             passed = self.width[:, None] * np.einsum("n,pn,pnk->pk", WEIGHTS, by_energy, moved)
             jump = start + self.width * (rate @ WEIGHTS) - np.roll(start, -1) + passed[:, 0]
-            chain = _chain(jump, 1.0 + passed[:, 1], passed[:, 2] + self.width * (by_torque @ WEIGHTS))
+            chain = _chain_panels(jump, 1.0 + passed[:, 1], passed[:, 2] + self.width * (by_torque @ WEIGHTS))
             (offset, by_start, by_added), memory = chain[-1], chain[-1][1]
             if mean_speed is None:
                 change, torque_change = (offset / (1.0 - by_start) if by_start != 1.0 else math.inf), 0.0
@@ -319,7 +319,7 @@ class PeriodicTurn:
         return None
 
 
-def _chain(jump: Array, growth: Array, torque: Array) -> Array:
+def _chain_panels(jump: Array, growth: Array, torque: Array) -> Array:
     """Return the change of E at each panel's start and at the end, (panels + 1, 3).
 
     Its constant part, its part by the change at the first start, and its part by the added torque.

@@ -39,13 +39,13 @@ class _Part:
 
 def kind_of_formula(node: Node, kinds: Mapping[str, Kind]) -> Kind:
     """Return the kind of a formula's values. kinds: of the names in it. Raises InputError where dimensions clash."""
-    part = fold(node, _Dimensions({name: _powers(dimension_of_kind(kind)) for name, kind in kinds.items()}))
+    part = fold(node, _Dimensions({name: _powers_of(dimension_of_kind(kind)) for name, kind in kinds.items()}))
     if any(power.denominator != 1 or abs(power) > _LARGEST for power in part.powers.values()):
         raise InputError(
             f"the value of a formula has a unit of whole powers, at most {_LARGEST}; got {part.text} in "
             f"{_unit(part.powers)}; raise it to a power that leaves such a unit"
         )
-    return _kind(part.powers)
+    return _kind_of_powers(part.powers)
 
 
 class _Dimensions:
@@ -56,7 +56,7 @@ class _Dimensions:
 
     def number(self, number: Number) -> _Part:
         value = None if number.unit else Fraction(number.digits)
-        return _Part(_powers(dimension_of(number.unit)), self.text.number(number), value)
+        return _Part(_powers_of(dimension_of(number.unit)), self.text.number(number), value)
 
     def name(self, name: str) -> _Part:
         return _Part(self.known[name], self.text.name(name))
@@ -72,19 +72,21 @@ class _Dimensions:
                         f"{text} {_SAID[function]} {_unit(first.powers)} and {_unit(item.powers)}; only values of one "
                         "kind go together; correct the names, or give numbers their units"
                     )
-            return _Part(first.powers, written, _value(function, arguments))
+            return _Part(first.powers, written, _exponent(function, arguments))
         if function in "*/":
             sign = 1 if function == "*" else -1
             powers = {base: Fraction(0) for base in (*first.powers, *last.powers)}
             powers |= first.powers
             powers = {base: power + sign * last.powers.get(base, 0) for base, power in powers.items()}
-            return _Part({base: power for base, power in powers.items() if power}, written, _value(function, arguments))
+            return _Part(
+                {base: power for base, power in powers.items() if power}, written, _exponent(function, arguments)
+            )
         if function == "**":
-            return _Part(_raised(first, last, text), written)
+            return _Part(_raised_to_power(first, last, text), written)
         if function == "sqrt":
             return _Part({base: power / 2 for base, power in first.powers.items()}, written)
         if function in ANGLES:
-            if not _may_be_added(first.powers, _powers(dimension_of(ANGLE.unit))):
+            if not _may_be_added(first.powers, _powers_of(dimension_of(ANGLE.unit))):
                 raise InputError(
                     f"{function} takes an angle; got {text} of {_unit(first.powers)}; give a number its "
                     "unit, 30 deg, or multiply a ratio by 1 rad"
@@ -95,11 +97,11 @@ class _Dimensions:
                 raise InputError(
                     f"{function} takes a ratio; got {text} of {_unit(first.powers)}; divide by a value of the same kind"
                 )
-            return _Part(_powers(dimension_of(ANGLE.unit)), written)
-        return _Part(first.powers, written, _value(function, arguments))  # neg, abs
+            return _Part(_powers_of(dimension_of(ANGLE.unit)), written)
+        return _Part(first.powers, written, _exponent(function, arguments))  # neg, abs
 
 
-def _raised(base: _Part, exponent: _Part, text: str) -> Powers:
+def _raised_to_power(base: _Part, exponent: _Part, text: str) -> Powers:
     if not exponent.plain:
         raise InputError(
             f"an exponent is a ratio; got {text} with one in {_unit(exponent.powers)}; divide it by a value of its kind"
@@ -114,7 +116,7 @@ def _raised(base: _Part, exponent: _Part, text: str) -> Powers:
     return {name: power * exponent.value for name, power in base.powers.items() if exponent.value}
 
 
-def _value(function: str, arguments: list[_Part]) -> Fraction | None:
+def _exponent(function: str, arguments: list[_Part]) -> Fraction | None:
     """Return the value of an exponent such as 1/3; None if it is not a number or too large."""
     values = [item.value for item in arguments]
     first, last = values[0], values[-1]
@@ -127,7 +129,7 @@ def _value(function: str, arguments: list[_Part]) -> Fraction | None:
     return {"+": first + last, "-": first - last, "*": first * last}.get(function)
 
 
-def _powers(dimension: Dimension) -> Powers:
+def _powers_of(dimension: Dimension) -> Powers:
     return {base: Fraction(power) for base, power in dimension}
 
 
@@ -141,7 +143,7 @@ def _without_arc(powers: Powers) -> Powers:
     return {base: power for base, power in powers.items() if power and not (arc and base == _ANGLE)}
 
 
-def _kind(powers: Powers) -> Kind:
+def _kind_of_powers(powers: Powers) -> Kind:
     return kind_with(frozenset((base, int(power)) for base, power in _without_arc(powers).items()))
 
 
@@ -149,5 +151,5 @@ def _unit(powers: Powers) -> str:
     """Return the display unit for values of a dimension."""
     significant = _without_arc(powers)
     if all(power.denominator == 1 and abs(power) <= _LARGEST for power in significant.values()):
-        return _kind(significant).metric.symbol or "no unit"
+        return _kind_of_powers(significant).metric.symbol or "no unit"
     return " ".join(f"{base_unit(base)}^{power}" for base, power in sorted(significant.items()))

@@ -297,13 +297,13 @@ class Formulas:
         """Return the remedy that keeps a number away from zero."""
         if name in self._places:
             interval = self._intervals[name]
-            return f"keep variables.{name} off zero: it is from {_ends(interval, self._kinds[name])}"
+            return f"keep variables.{name} off zero: it is from {_ends_text(interval, self._kinds[name])}"
         instead = self._quantities[name].instead_of_quotient if name in self._quantities else ""
         if instead:
             return f"use {instead} instead: work output divided by work input, also for machines that drive"
         return "divide by a quantity that is never zero, or ask for something of the product instead"
 
 
-def _ends(interval: Interval, kind: Kind) -> str:
+def _ends_text(interval: Interval, kind: Kind) -> str:
     unit = kind.metric
     return f"{interval.lower * unit.factor:.6g} to {interval.upper * unit.factor:.6g} {unit.symbol}".rstrip()

@@ -91,9 +91,9 @@ class TwoSided:
         same, swapped = (self.from_above, self.from_below) if from_above else (self.from_below, self.from_above)
         if known_sign:
             side = same if known_sign > 0 else swapped
-            return _either(known_sign * slope >= 0.0, side, side.active.padded(side.values.shape[1]))
+            return _choose_side(known_sign * slope >= 0.0, side, side.active.padded(side.values.shape[1]))
         width = max(same.values.shape[1], swapped.values.shape[1])
-        return same if width == 1 else _either(slope >= 0.0, same.padded(width), swapped.padded(width))
+        return same if width == 1 else _choose_side(slope >= 0.0, same.padded(width), swapped.padded(width))
 
 
 def two_sided(pieces: Pieces, factor: float, sign: int) -> TwoSided:
@@ -128,19 +128,19 @@ class Kinks:
     def call(self, function: str, arguments: list[TwoSided]) -> TwoSided:
         """Return a function of its arguments."""
         if function == "abs":
-            return replace(_extreme("max", [arguments[0], self.call("neg", arguments)]), sign=1)
+            return replace(_extreme_of_parts("max", [arguments[0], self.call("neg", arguments)]), sign=1)
         if function in ("min", "max"):
-            return _extreme(function, arguments)
+            return _extreme_of_parts(function, arguments)
         active_values = [item.from_above.values[:, 0] for item in arguments]
-        slopes = partials(function, active_values, _values(function, active_values))
-        signs, sign = _signs(function, arguments)
+        slopes = partials(function, active_values, _function_values(function, active_values))
+        signs, sign = _slope_signs(function, arguments)
         sides = []
         for from_above in (True, False):
             argument_sides = [
                 item.side_for(slope, up, from_above=from_above)
                 for item, slope, up in zip(arguments, slopes, signs, strict=True)
             ]
-            sides.append(_combined(function, argument_sides).ordered(from_above=from_above))
+            sides.append(_combine_pieces(function, argument_sides).ordered(from_above=from_above))
         return TwoSided(sides[0], sides[1], sign)
 
 
@@ -175,7 +175,7 @@ _RISING = {
 """Signs of the slopes of functions that rise or fall everywhere."""
 
 
-def _signs(function: str, arguments: list[TwoSided]) -> tuple[tuple[int, ...], int]:
+def _slope_signs(function: str, arguments: list[TwoSided]) -> tuple[tuple[int, ...], int]:
     """Return the known signs of a function's slopes by its arguments, and of its value."""
     first, last = arguments[0].sign, arguments[-1].sign
     if function == "*":
@@ -188,15 +188,15 @@ def _signs(function: str, arguments: list[TwoSided]) -> tuple[tuple[int, ...], i
     return _RISING.get(function, (0,)), values.get(function, 0)
 
 
-def _values(function: str, arguments: list[Array]) -> Array:
+def _function_values(function: str, arguments: list[Array]) -> Array:
     return UNARY[function][0](arguments[0]) if function in UNARY else BINARY[function][0](arguments[0], arguments[1])
 
 
-def _combined(function: str, sides: list[Side]) -> Side:
+def _combine_pieces(function: str, sides: list[Side]) -> Side:
     """Return a smooth function of every piece of one argument with every piece of the other."""
     if len(sides) == 1:
         (first,) = sides
-        values = _values(function, [first.values])
+        values = _function_values(function, [first.values])
         return Side(
             values, sum_of(partials(function, [first.values], values), [first.gradients]), first.labels, first.present
         )
@@ -204,7 +204,7 @@ def _combined(function: str, sides: list[Side]) -> Side:
     (n, p), (_, q), d = first.values.shape, second.values.shape, first.gradients.shape[2]
     places, second_places = np.repeat(np.arange(p), q), np.tile(np.arange(q), p)
     part_values = [first.values[:, places], second.values[:, second_places]]
-    values = _values(function, part_values)
+    values = _function_values(function, part_values)
     slopes = partials(function, part_values, values)
     gradients = sum_of(slopes, [first.gradients[:, places], second.gradients[:, second_places]])
     assert gradients.shape == (n, p * q, d)
@@ -216,7 +216,7 @@ def _combined(function: str, sides: list[Side]) -> Side:
     )
 
 
-def _extreme(function: str, arguments: list[TwoSided]) -> TwoSided:
+def _extreme_of_parts(function: str, arguments: list[TwoSided]) -> TwoSided:
     """Return the least or greatest of parts: all pieces on one side, the active part's on the other."""
     greatest = function == "max"
     wide = [item.from_above if greatest else item.from_below for item in arguments]
@@ -232,7 +232,7 @@ def _extreme(function: str, arguments: list[TwoSided]) -> TwoSided:
     width = max(item.values.shape[1] for item in narrow_sides)
     narrow = narrow_sides[0].padded(width)
     for place, item in enumerate(narrow_sides[1:], start=1):
-        narrow = _either(first == place, item.padded(width), narrow)
+        narrow = _choose_side(first == place, item.padded(width), narrow)
     signs = {item.sign for item in arguments}
     sign = (
         1 if greatest and 1 in signs else -1 if not greatest and -1 in signs else signs.pop() if len(signs) == 1 else 0
@@ -240,7 +240,7 @@ def _extreme(function: str, arguments: list[TwoSided]) -> TwoSided:
     return TwoSided(together, narrow, sign) if greatest else TwoSided(narrow, together, sign)
 
 
-def _either(rows: Mask, chosen: Side, alternative: Side) -> Side:
+def _choose_side(rows: Mask, chosen: Side, alternative: Side) -> Side:
     """Return the chosen side for `rows` (n,), the alternative elsewhere."""
     column = rows[:, None]
     return Side(

@@ -66,7 +66,7 @@ class FormulaBounds:
             self._refuse_divisor(node.arguments[1], given[1])
         if node.function == "**" and given[0].spans_zero and given[1].lower < 0.0:
             self._refuse_divisor(node.arguments[0], given[0])
-        found = _call(node, given)
+        found = _interval_of_call(node, given)
         linear = linear_of(node, self.linears)
         if node.function == "/" and linear is None:
             found = _intersection(found, self._quotient(*(linear_of(item, self.linears) for item in node.arguments)))
@@ -173,22 +173,22 @@ def _intersection(first: Interval, second: Interval) -> Interval:
     return Interval(min(lower, upper), max(lower, upper), first.excludes_zero or second.excludes_zero)
 
 
-def _call(node: Call, arguments: list[Interval]) -> Interval:
+def _interval_of_call(node: Call, arguments: list[Interval]) -> Interval:
     function, first, last = node.function, arguments[0], arguments[-1]
     if function == "neg":
         return Interval(-first.upper, -first.lower, first.excludes_zero)
     if function == "+":
-        return _sum(first, last)
+        return _interval_sum(first, last)
     if function == "-":
-        return _sum(first, Interval(-last.upper, -last.lower, last.excludes_zero))
+        return _interval_sum(first, Interval(-last.upper, -last.lower, last.excludes_zero))
     if function == "*":
-        return _hull(
+        return _hull_of_ends(
             first, last, lambda a, b: 0.0 if 0.0 in (a, b) else a * b, first.excludes_zero and last.excludes_zero
         )
     if function == "/":
-        return _hull(first, last, _quotient, first.excludes_zero)
+        return _hull_of_ends(first, last, _quotient, first.excludes_zero)
     if function == "**":
-        return _power(first, last)
+        return _interval_power(first, last)
     if function == "abs":
         ends = sorted((abs(first.lower), abs(first.upper)))
         return Interval(0.0 if first.lower <= 0.0 <= first.upper else ends[0], ends[1], first.excludes_zero)
@@ -208,10 +208,10 @@ def _call(node: Call, arguments: list[Interval]) -> Interval:
             )
         ends = sorted(image(min(max(end, least), greatest)) for end in (first.lower, first.upper))
         return Interval(ends[0], ends[1], first.excludes_zero and function == "sqrt")
-    return _turned(function, first)
+    return _interval_of_turn(function, first)
 
 
-def _turned(function: str, angle: Interval) -> Interval:
+def _interval_of_turn(function: str, angle: Interval) -> Interval:
     """Return the bounds of sine, cosine or tangent between two angles."""
     # Within half a turn of zero, sine and tangent are zero only at zero.
     excludes_zero = angle.excludes_zero and function != "cos" and -math.pi < angle.lower and angle.upper < math.pi
@@ -228,7 +228,7 @@ def _turned(function: str, angle: Interval) -> Interval:
     return Interval(-1.0 if bottom else low, 1.0 if top else high, excludes_zero)
 
 
-def _sum(first: Interval, second: Interval) -> Interval:
+def _interval_sum(first: Interval, second: Interval) -> Interval:
     lower, upper = first.lower + second.lower, first.upper + second.upper
     same = (first.lower >= 0.0 and second.lower >= 0.0) or (first.upper <= 0.0 and second.upper <= 0.0)
     return Interval(lower, upper, same and (first.excludes_zero or second.excludes_zero))
@@ -240,7 +240,7 @@ def _quotient(a: float, b: float) -> float:
     return math.copysign(math.inf, a) * math.copysign(1.0, b) if b == 0.0 else a / b
 
 
-def _hull(
+def _hull_of_ends(
     first: Interval, second: Interval, operation: Callable[[float, float], float], excludes_zero: bool
 ) -> Interval:
     # A divisor that is never zero may approach it from one side: its end there has that side's sign.
@@ -251,7 +251,7 @@ def _hull(
     return Interval(min(values), max(values), excludes_zero)
 
 
-def _power(base: Interval, exponent: Interval) -> Interval:
+def _interval_power(base: Interval, exponent: Interval) -> Interval:
     if exponent.lower != exponent.upper or base.lower < 0.0:
         even = exponent.lower == exponent.upper and exponent.lower % 2 == 0
         return Interval(0.0 if base.lower >= 0.0 or even else -math.inf, math.inf, base.excludes_zero)

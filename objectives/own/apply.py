@@ -71,7 +71,7 @@ def apply(
         remedy = _NOT_COMPLEX if column is not None and isinstance(error, TypeError) else "correct the function"
         error_text = f"{kind or type(error).__name__}: {error}".rstrip(": ")
         raise Refused(f"must not raise; got {error_text}{place(error, function)}; {remedy}") from None
-    return _checked(returned, dimensions, column)
+    return _checked_result(returned, dimensions, column)
 
 
 _NOT_COMPLEX = (
@@ -90,7 +90,7 @@ def place(error: BaseException, function: Callable[..., Any]) -> str:
     )
 
 
-def _checked(returned: NDArray[Any], dimensions: Array, column: int | None) -> FunctionResult:
+def _checked_result(returned: NDArray[Any], dimensions: Array, column: int | None) -> FunctionResult:
     n = len(dimensions)
     if returned.dtype.kind not in "fiuc":
         raise Refused(

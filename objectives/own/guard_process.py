@@ -34,13 +34,13 @@ def main() -> None:
     asking, log = sys.argv[1:]
     del sys.argv[1:]  # modules of the user may read it
     if hasattr(os, "fork"):
-        _fork(int(asking), log)
+        _fork_function_process(int(asking), log)
     from .child import main as run_function
 
     run_function()
 
 
-def _fork(asking: int, log: str) -> None:
+def _fork_function_process(asking: int, log: str) -> None:
     """Fork the function's process and return only in it; the other process is the guard, and ends with it.
 
     asking: number of the calling process. log: crash log, which nobody reads once that process has ended.
@@ -49,11 +49,11 @@ def _fork(asking: int, log: str) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for who asked
     signal.signal(signal.SIGCHLD, lambda *_: None)  # macOS drops a signal without a handler, even one waited for
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, signals)
-    _set(_SUBREAPER, 1)
+    _set_process_attribute(_SUBREAPER, 1)
     printed, output = os.pipe()
     function = os.fork()
     if not function:
-        _set(_DEATH_SIGNAL, signal.SIGKILL)
+        _set_process_attribute(_DEATH_SIGNAL, signal.SIGKILL)
         os.dup2(output, 2)
         for pipe in {printed, output} - {2}:  # nobody may have had a standard error
             os.close(pipe)
@@ -64,7 +64,7 @@ def _fork(asking: int, log: str) -> None:
     for pipe in (0, 1, output):  # requests and answers are the function's
         os.close(pipe)
     threading.Thread(target=_end_with, args=(asking,), daemon=True).start()
-    relay = threading.Thread(target=_relay, args=(printed,), daemon=True)
+    relay = threading.Thread(target=_relay_output, args=(printed,), daemon=True)
     relay.start()
     family = _Family(function)
     while family.code is None and signal.sigwait(signals) == signal.SIGCHLD:
@@ -128,7 +128,7 @@ def _end_with(asking: int) -> None:
     os.kill(os.getpid(), signal.SIGTERM)
 
 
-def _relay(printed: int) -> None:
+def _relay_output(printed: int) -> None:
     """Forward whole printable lines, up to `PRINTED`; read the rest too, so that no writer blocks on a full pipe.
 
     The last line gets a line end even if the function writes none: others write to the same log.
@@ -151,7 +151,7 @@ def _write(text: bytes) -> None:
         os.write(2, printable_text.encode())
 
 
-def _set(attribute: int, value: int) -> None:
+def _set_process_attribute(attribute: int, value: int) -> None:
     """Set an attribute of this process (Linux)."""
     if sys.platform == "linux":
         import ctypes

@@ -125,7 +125,7 @@ class Worker:
         _running.add(self)
         self._messages: queue.SimpleQueue[Message] = queue.SimpleQueue()
         threading.Thread(
-            target=_listen, args=(process.stdout, self._messages), name="own function", daemon=True
+            target=_queue_messages, args=(process.stdout, self._messages), name="own function", daemon=True
         ).start()
         self._send((self._log, self.limit, self.function, self.folders))
         self._await_message(_START + self.limit)
@@ -222,7 +222,7 @@ class Worker:
         return f"must return, not end the process; it ended with code {code}{place}; correct the function"
 
 
-def _listen(stream: IO[bytes], messages: queue.SimpleQueue[Message]) -> None:
+def _queue_messages(stream: IO[bytes], messages: queue.SimpleQueue[Message]) -> None:
     """Put the messages of a process into a queue, and an empty message at the end."""
     with stream, contextlib.suppress(OSError, ValueError):
         while len(head := _read(stream, HEAD.size)) == HEAD.size:

@@ -49,14 +49,14 @@ def limits_of(mechanism: Mechanism, dimensions: Array) -> Array:
                 f"robust quantities need tolerances that are given; got {item.name} that varies; fix it, or leave "
                 "out robust"
             )
-    absolute, fraction = _parts(mechanism)
+    absolute, fraction = _nominal_and_tolerances(mechanism)
     limits: Array = absolute + fraction * np.abs(dimensions[:, :3])
     return limits
 
 
 def uncertain(mechanism: Mechanism) -> list[int]:
     """Return which of crank, rod and offset (0, 1, 2) have a tolerance."""
-    absolute, fraction = _parts(mechanism)
+    absolute, fraction = _nominal_and_tolerances(mechanism)
     return np.flatnonzero((absolute > 0.0) | (fraction > 0.0)).tolist()
 
 
@@ -100,7 +100,7 @@ def evaluate_points(quantity: Quantity, mechanism: Mechanism, dimensions: Array,
 
     points: points of all designs, or (n, q, 3) for each.
     """
-    absolute, fraction = _parts(mechanism)
+    absolute, fraction = _nominal_and_tolerances(mechanism)
     n, q, width = len(dimensions), points.shape[-2], dimensions.shape[1]
     moved = np.repeat(dimensions[:, None, :], q, axis=1)
     moved[:, :, :3] += points * (absolute + fraction * np.abs(dimensions[:, None, :3]))
@@ -135,7 +135,7 @@ def match_pieces(point_values: PointValues) -> tuple[Array, Array, Mask]:
     return values, gradients, has_twin
 
 
-def _parts(mechanism: Mechanism) -> tuple[Array, Array]:
+def _nominal_and_tolerances(mechanism: Mechanism) -> tuple[Array, Array]:
     t = mechanism.tolerances
     tolerances = [(float(each.absolute), float(each.fraction)) for each in (t.crank, t.rod, t.offset)]
     absolute, fraction = np.array(tolerances).T

@@ -69,7 +69,7 @@ class Sample:
     @cached_property
     def interpolation(self) -> Array:
         """Matrix from values at the star to the sample: (points, samples)."""
-        return np.ascontiguousarray((_basis(self.deviations, self.columns) @ self._fit).T)
+        return np.ascontiguousarray((_monomials(self.deviations, self.columns) @ self._fit).T)
 
     @cached_property
     def linear(self) -> Array:
@@ -78,7 +78,7 @@ class Sample:
 
     @cached_property
     def _fit(self) -> Array:
-        return np.asarray(np.linalg.pinv(_basis(star(list(self.columns)), self.columns)), dtype=np.float64)
+        return np.asarray(np.linalg.pinv(_monomials(star(list(self.columns)), self.columns)), dtype=np.float64)
 
     def of_machines(self, machines: Array, slopes: Array) -> tuple[Array, Array]:
         """Return quantiles (n,) and gradients (n, width) from those of all machines, (n, s) and (n, s, width)."""
@@ -137,7 +137,7 @@ def linear_quantile(coefficients: Array, share: float) -> tuple[Array, Array]:
     return sigmas * size, sigmas * slope
 
 
-def _basis(points: Array, columns: tuple[int, ...]) -> Array:
+def _monomials(points: Array, columns: tuple[int, ...]) -> Array:
     """Return the monomials up to the second degree at points (q, 3), (q, m)."""
     constant = np.ones(len(points))
     linear = [points[:, a] for a in columns]

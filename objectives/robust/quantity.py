@@ -245,9 +245,9 @@ class RobustQuantity(Quantity):
         good = np.isfinite(top).all(axis=1) & ~kinked
         n, _, _, width = slopes.shape
         quantiles, gradients = np.full(n, np.inf if self.side == "high" else -np.inf), np.zeros((n, width))
-        for rows in _blocks(good, len(drawn.deviations) * values.shape[2]):
+        for rows in _row_blocks(good, len(drawn.deviations) * values.shape[2]):
             quantiles[rows], gradients[rows] = drawn.of_star(values[rows], slopes[rows])
-        for rows in _blocks(kinked, 32 * len(drawn.deviations)):
+        for rows in _row_blocks(kinked, 32 * len(drawn.deviations)):
             star_values = evaluate_points(self.inner, mechanism, dimensions[rows], drawn.deviations)
             machines, steep = star_values.highest(star_values.gradients)
             if self.side == "low":
@@ -256,7 +256,7 @@ class RobustQuantity(Quantity):
         return Pieces(quantiles[:, None], gradients[:, None], np.zeros((n, 1)), least=self.side == "low")
 
 
-def _blocks(rows: Mask, size: int) -> Iterator[IntArray]:
+def _row_blocks(rows: Mask, size: int) -> Iterator[IntArray]:
     """Yield the indices of rows in blocks that fit in memory together. size: number of values in each row."""
     places, step = np.flatnonzero(rows), max(1, _BLOCK // size)
     for begin in range(0, len(places), step):

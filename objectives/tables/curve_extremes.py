@@ -94,11 +94,11 @@ def curve_extremes(mechanism: Mechanism, linkage: Linkage) -> list[CurveExtremes
     def values(angles: Array) -> Array:
         return np.stack([curve.values for curve in defined_curves(mechanism, linkage, angles)])
 
-    pieces = _pieces(mechanism, linkage)
+    pieces = _smooth_pieces(mechanism, linkage)
     samples = [values(piece) for piece in pieces]
-    sizes = _sizes(first, samples)
+    sizes = _curve_sizes(first, samples)
     period = cycle_turns(mechanism) * _TURN
-    least, greatest = _ends(values, pieces, samples, sizes, period)
+    least, greatest = _extremes_at_ends(values, pieces, samples, sizes, period)
     extremes = []
     for row, curve in enumerate(first):
         ends = []
@@ -161,7 +161,7 @@ def cuts_of(mechanism: Mechanism, linkage: Linkage) -> Array:
     return np.unique(np.mod(np.concatenate(every), cycle_turns(mechanism) * _TURN))
 
 
-def _pieces(mechanism: Mechanism, linkage: Linkage) -> list[Array]:
+def _smooth_pieces(mechanism: Mechanism, linkage: Linkage) -> list[Array]:
     """Return crank angles of each smooth piece of the turn, with its ends moved inward by `_INSET`."""
     cuts = cuts_of(mechanism, linkage)
     kappa = crowding(float(linkage.crank), float(linkage.rod), float(linkage.offset))
@@ -178,7 +178,7 @@ def _pieces(mechanism: Mechanism, linkage: Linkage) -> list[Array]:
     return pieces
 
 
-def _sizes(curves: list[Curve], samples: list[Array]) -> Array:
+def _curve_sizes(curves: list[Curve], samples: list[Array]) -> Array:
     """Return the greatest magnitude (m, 2) of each curve, and of all curves with its unit; NaN if undetermined."""
     magnitudes = np.max([np.abs(values).max(axis=1) for values in samples], axis=0)
     units = [curve.kind.unit for curve in curves]
@@ -189,14 +189,14 @@ def _sizes(curves: list[Curve], samples: list[Array]) -> Array:
     return np.stack([magnitudes, shared], axis=1)
 
 
-def _ends(
+def _extremes_at_ends(
     values: Callable[[Array], Array], pieces: list[Array], samples: list[Array], sizes: Array, period: float
 ) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
     """Return the least value of each curve with its crank angle, and the same for its greatest value.
 
     All are refined together: a section of many brackets takes hardly longer than that of a few.
     """
-    sides = [_coarse(pieces, samples, sizes, sign) for sign in (-1.0, 1.0)]
+    sides = [_coarse_extremes(pieces, samples, sizes, sign) for sign in (-1.0, 1.0)]
     rows, left, right = (np.concatenate(parts) for parts in zip(*(side[1:] for side in sides), strict=True))
     at, signs = rows.astype(np.intp), np.repeat([-1.0, 1.0], [len(side[1]) for side in sides])
     tops, angles = golden(lambda theta: signs * values(theta)[at, np.arange(len(at))], left, right)
@@ -218,7 +218,7 @@ def _ends(
     return ends[0], ends[1]
 
 
-def _coarse(
+def _coarse_extremes(
     pieces: list[Array], samples: list[Array], sizes: Array, sign: float
 ) -> tuple[list[tuple[float, float]], Array, Array, Array]:
     """Return each curve's best piece end, times the sign, and the brackets in which it may be exceeded.
@@ -236,7 +236,7 @@ def _coarse(
             ends.append((0.0 if magnitude <= _CONSTANT * shared else sign * top, math.nan))
         else:
             ends.append(_best_end(curve, pieces))
-            brackets += [(row, *bracket) for bracket in _brackets(curve, pieces)]
+            brackets += [(row, *bracket) for bracket in _maximum_brackets(curve, pieces)]
     rows, left, right = np.array(brackets, dtype=float).reshape(-1, 3).T
     return ends, rows, left, right
 
@@ -261,7 +261,7 @@ def _maxima_at_cuts(curve: list[Array], pieces: list[Array]) -> tuple[Array, Arr
     return at[top], np.maximum(left, begin)[top]
 
 
-def _brackets(curve: list[Array], pieces: list[Array]) -> list[tuple[float, float]]:
+def _maximum_brackets(curve: list[Array], pieces: list[Array]) -> list[tuple[float, float]]:
     """Return the neighbours on both sides of each local maximum that may be next to the greatest value."""
     brackets: list[tuple[float, float, float]] = []
     for angles, values in zip(pieces, curve, strict=True):

@@ -92,7 +92,7 @@ def deviations(
                 float(angles[largest]),
                 float(values[largest]),
             )
-            fit = _fit(mechanism, linkage, name, angles, values, nodes, table[name])
+            fit = _best_shifts(mechanism, linkage, name, angles, values, nodes, table[name])
         else:
             numbers, fit = (math.nan,) * 5, None
         results.append(Deviation(name, curve.title, curve.kind, len(values), *numbers, fit))
@@ -103,14 +103,14 @@ def _rms(values: Array) -> float:
     return float(np.sqrt(np.mean(values * values)))
 
 
-def _fit(
+def _best_shifts(
     mechanism: Mechanism, linkage: Linkage, name: str, angles: Array, values: Array, nodes: Array, table: Array
 ) -> Fit | None:
     """Return the best shifts. nodes, table: crank angles over a turn and the computed curve there."""
     varies = float(np.ptp(table)) > _CONSTANT * float(np.abs(table).max())  # and is not NaN
-    if not varies or not _three(angles):
+    if not varies or not _has_three_angles(angles):
         return None
-    theta, means, weights = _grouped(angles, values)
+    theta, means, weights = _group_neighbours(angles, values)
 
     def computed(at: Array) -> Array:
         return next(c.values for c in defined_curves(mechanism, linkage, np.mod(at, _TURN)) if c.name == name)
@@ -147,7 +147,7 @@ def _fit(
     return Fit(shift, 0.0 - float(off.mean()), _rms(off - off.mean()))
 
 
-def _three(angles: Array) -> bool:
+def _has_three_angles(angles: Array) -> bool:
     """Return whether there are three distinct crank angles, one more than there are shifts."""
     ordered = np.sort(angles)
     for _ in range(2):
@@ -158,7 +158,7 @@ def _three(angles: Array) -> bool:
     return True
 
 
-def _grouped(angles: Array, values: Array) -> tuple[Array, Array, Array]:
+def _group_neighbours(angles: Array, values: Array) -> tuple[Array, Array, Array]:
     """Return mean crank angles and values of groups of neighbours, and their fractions of the samples."""
     order = np.argsort(angles, kind="stable")
     ends = np.unique(np.linspace(0, len(order), min(len(order), _GROUPS) + 1).astype(np.intp))

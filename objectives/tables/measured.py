@@ -70,12 +70,12 @@ def columns_of(
     names = [str(name) for name in names]
     moving = mechanism if mechanism.speed else replace(mechanism, speed=1.0)  # velocities have their usual units
     curves = {curve.name: curve for curve in every_curve(moving, linkage, np.zeros(1))}
-    spoken = {_plain(curve.title): name for name, curve in curves.items()} | {name: name for name in curves}
+    spoken = {_plain_text(curve.title): name for name, curve in curves.items()} | {name: name for name in curves}
     spoken |= {CRANK_ANGLE: CRANK_ANGLE, TIME_OF: TIME_OF}
     kinds = {name: curve.kind for name, curve in curves.items()} | {CRANK_ANGLE: ANGLE, TIME_OF: TIME}
     columns: dict[str, Column] = {}
     for name in names:
-        column = _meaning(name, spoken, kinds, units)
+        column = _column_meaning(name, spoken, kinds, units)
         if column is None:
             continue
         first = next((earlier for earlier, column_names in columns.items() if column_names.name == column.name), None)
@@ -86,7 +86,7 @@ def columns_of(
     if CRANK_ANGLE in column_names:
         columns.pop(column_names.get(TIME_OF, ""), None)
     elif TIME_OF not in column_names:
-        near = next((name for name in names if _near(name, ("crank_angle_deg", "time_s"))), None)
+        near = next((name for name in names if _likely_word(name, ("crank_angle_deg", "time_s"))), None)
         hint = f"is {near!r} one of them?" if near is not None else f"add one to {_listed(names)}"
         raise InputError(f"{_ANGLE_NEEDED}; got neither; {hint}")
     elif not mechanism.speed:
@@ -103,7 +103,7 @@ def columns_of(
         )
     measured = [name for name in columns if columns[name].name not in (CRANK_ANGLE, TIME_OF)]
     if not measured:
-        near = next((close for name in names if name not in columns and (close := _curve_near(name, spoken))), None)
+        near = next((close for name in names if name not in columns and (close := _likely_curve(name, spoken))), None)
         hint = f"did you mean {near}?" if near else f"curves are {', '.join(curves)}"
         raise InputError(
             f"a column must be a curve with its unit, such as slider_position_mm; got {_listed(names)}; {hint}"
@@ -171,10 +171,12 @@ def _one_turn(name: str, values: Array, linkage: Linkage) -> Array:
     return turned
 
 
-def _meaning(text: str, spoken: Mapping[str, str], kinds: Mapping[str, Kind], units: Units | None) -> Column | None:
+def _column_meaning(
+    text: str, spoken: Mapping[str, str], kinds: Mapping[str, Kind], units: Units | None
+) -> Column | None:
     """Return the meaning of a column; None if it has none."""
     bracketed = _BRACKETED.fullmatch(text)
-    stem = _plain(text if bracketed is None else bracketed[1])
+    stem = _plain_text(text if bracketed is None else bracketed[1])
     if bracketed is not None:
         curve_name, unit = (stem if stem in spoken else None), bracketed[2].strip()
     else:
@@ -188,10 +190,10 @@ def _meaning(text: str, spoken: Mapping[str, str], kinds: Mapping[str, Kind], un
     example = curve_name + kind.metric.suffix
     if not unit:
         raise InputError(f"a column must have its unit in its name; got {text!r}; write it like {example}")
-    factor = _factor(unit, kind)
+    factor = _unit_factor(unit, kind)
     if factor is None:
         unit = without_in(unit)
-        factor = _factor(unit, kind)
+        factor = _unit_factor(unit, kind)
     if factor is None and units is not None:
         factor = units(unit, kind)
     if factor is not None:
@@ -202,7 +204,7 @@ def _meaning(text: str, spoken: Mapping[str, str], kinds: Mapping[str, Kind], un
     matching_kinds = (
         other_kind
         for other_kind in DISPLAYED_KINDS
-        if _factor(unit, other_kind) or (units is not None and units(unit, other_kind))
+        if _unit_factor(unit, other_kind) or (units is not None and units(unit, other_kind))
     )
     other_kind = next(matching_kinds, None)
     if other_kind is None:  # no unit: more of a name that is none here
@@ -210,7 +212,7 @@ def _meaning(text: str, spoken: Mapping[str, str], kinds: Mapping[str, Kind], un
     raise InputError(f"{curve_name} is {kind.name}; got {text!r}, {other_kind.name}; write it like {example}")
 
 
-def _factor(unit: str, kind: Kind) -> float | None:
+def _unit_factor(unit: str, kind: Kind) -> float | None:
     """Return the SI value of a table's unit; None if the kind does not have it."""
     for display_unit in _display_units(kind):
         if squeezed(unit) in (squeezed(display_unit.symbol), squeezed(display_unit.suffix)):
@@ -222,19 +224,19 @@ def _display_units(kind: Kind) -> list[DisplayUnit]:
     return [unit for unit in (kind.metric, DisplayUnit(kind.unit, ""), kind.inch) if unit is not None and unit.symbol]
 
 
-def _plain(text: str) -> str:
+def _plain_text(text: str) -> str:
     return re.sub(r"[^a-z0-9]+", "_", text.strip().casefold()).strip("_")
 
 
-def _curve_near(name: str, spoken: Iterable[str]) -> str | None:
+def _likely_curve(name: str, spoken: Iterable[str]) -> str | None:
     """Return the curve that a column may mean: one with its first word, or else one with a similar name."""
-    word = _plain(name).partition("_")[0]
-    return next((curve for curve in spoken if word in curve.split("_")), None) or _near(name, spoken)
+    word = _plain_text(name).partition("_")[0]
+    return next((curve for curve in spoken if word in curve.split("_")), None) or _likely_word(name, spoken)
 
 
-def _near(name: str, words: Iterable[str]) -> str | None:
+def _likely_word(name: str, words: Iterable[str]) -> str | None:
     """Return the word that a misspelt name probably means; None if none is near."""
-    return next(iter(difflib.get_close_matches(_plain(name)[:60], list(words), n=1)), None)
+    return next(iter(difflib.get_close_matches(_plain_text(name)[:60], list(words), n=1)), None)
 
 
 def _listed(names: list[str]) -> str:

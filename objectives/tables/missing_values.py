@@ -55,7 +55,7 @@ def missing_value_reasons(
     reasons = [""] * len(designs)
     locked = locked_designs(mechanism, designs, swing)
     rows = np.flatnonzero(locked)
-    undetermined = rows[_undetermined(quantity, mechanism, designs[rows])] if len(rows) else rows
+    undetermined = rows[_undetermined_by_friction(quantity, mechanism, designs[rows])] if len(rows) else rows
     for row in undetermined.tolist():
         linkage = Linkage(*designs[row].tolist())
         why = _LOCKED_SWING if swing is not None else locking_reason(mechanism.friction, linkage)
@@ -74,12 +74,12 @@ def locked_designs(mechanism: Mechanism, designs: Array, swing: Swing | None = N
     return np.asarray(~(locking_margin(mechanism.friction, designs)[0] > 0.0))
 
 
-def _undetermined(quantity: Quantity, mechanism: Mechanism, designs: Array) -> Mask:
+def _undetermined_by_friction(quantity: Quantity, mechanism: Mechanism, designs: Array) -> Mask:
     """Return for which locked designs (n, 3) friction leaves a quantity or one of its parts undetermined.
 
     These have the worst possible value, infinite or zero, and another one without friction.
     """
-    parts = [_undetermined(part, mechanism, designs) for part in quantity.made_of]
+    parts = [_undetermined_by_friction(part, mechanism, designs) for part in quantity.made_of]
     undetermined = np.any(parts, axis=0) if parts else np.zeros(len(designs), np.bool_)
     values = quantity.evaluate(mechanism, designs).values
     worst = ~np.isfinite(values) | ((values == 0.0) & (quantity.name != SELF_LOCKING_MARGIN.name))

@@ -86,11 +86,11 @@ def sensitivity(mechanism: Mechanism, dimensions: Array, swing: Swing | None = N
         value, slopes_below, slopes_above = _one_sided(quantity, mechanism, design)
         if quantity.undefined_because([mechanism]):
             value = math.nan
-        rows.append(_row(quantity, value, (slopes_below, slopes_above), design, tolerances, True))
+        rows.append(_sensitivity_row(quantity, value, (slopes_below, slopes_above), design, tolerances, True))
     for centre in _DEAD_CENTRES if ends is None else ():
         value, slopes = centre.value_and_slopes(linkage)
         sides = np.array(slopes), np.array(slopes)
-        rows.append(_row(centre, value, sides, design, tolerances, centre.kind is not ANGLE))
+        rows.append(_sensitivity_row(centre, value, sides, design, tolerances, centre.kind is not ANGLE))
     return pd.DataFrame(rows)
 
 
@@ -112,11 +112,11 @@ def _one_sided(quantity: Quantity, mechanism: Mechanism, design: Array) -> tuple
         at = design.copy()
         if at[2] == 0.0:
             at[2] = side * _SIDE_OF_ZERO
-        sides.append(_steepest(quantity, mechanism, at, side))
+        sides.append(_steepest_derivatives(quantity, mechanism, at, side))
     return value, sides[0], sides[1]
 
 
-def _steepest(quantity: Quantity, mechanism: Mechanism, at: Array, side: float) -> Array:
+def _steepest_derivatives(quantity: Quantity, mechanism: Mechanism, at: Array, side: float) -> Array:
     """Return the derivatives (3,) towards one side of a design, for the steepest of its equal pieces."""
     pieces = quantity.pieces(mechanism, at[None])
     values, slopes = pieces.values[0], pieces.gradients[0]
@@ -140,14 +140,14 @@ def _is_tip(quantity: Quantity, mechanism: Mechanism, design: Array, value: floa
 def _one_sided_slopes(quantity: Quantity, mechanism: Mechanism, design: Array, side: float) -> Array:
     """Return the derivatives (3,) on one side of an offset of zero, from those at two small offsets."""
     near, far = (
-        _steepest(quantity, mechanism, design + np.array([0.0, 0.0, side * share * _TIP * design[1]]), side)
+        _steepest_derivatives(quantity, mechanism, design + np.array([0.0, 0.0, side * share * _TIP * design[1]]), side)
         for share in (1.0, 2.0)
     )
     slopes = 2.0 * near - far  # terms that grow with the offset cancel
     return np.where(np.abs(slopes) <= _TIE * np.abs(slopes).max(), 0.0, slopes)
 
 
-def _row(
+def _sensitivity_row(
     quantity: Quantity | _DeadCentre,
     value: float,
     sides: tuple[Array, Array],

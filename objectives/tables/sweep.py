@@ -70,7 +70,7 @@ def sweep(
             speeds = grid[:, n]
         else:
             designs[:, DIMENSIONS.index(name)] = grid[:, n]
-    reasons = [_reason(design, mechanism) for design in designs]
+    reasons = [_why_not_rotating(design, mechanism) for design in designs]
     columns = {f"{name}_mm": 1e3 * designs[:, n] for n, name in enumerate(DIMENSIONS)}
     columns["speed_rpm"] = speeds * 30.0 / math.pi
     turns = np.array([not reason for reason in reasons])
@@ -101,7 +101,7 @@ def _join_reasons(missing: Mapping[str, Sequence[str]], count: int) -> str:
     return "; ".join(reason if is_shared else f"{', '.join(titles)}: {reason}" for reason, titles in missing.items())
 
 
-def _reason(design: Array, mechanism: Mechanism) -> str:
+def _why_not_rotating(design: Array, mechanism: Mechanism) -> str:
     """Return the reason why a design does not rotate fully; "" if it does."""
     try:
         Linkage(design[0], design[1], design[2], mechanism.branch).require_full_rotation()

@@ -47,9 +47,9 @@ def openmdao_component(problem: Problem, quantities: Sequence[str] | None = None
     class SliderCrank(ExplicitComponent):  # type: ignore[misc]
         def setup(self) -> None:
             for (name, unit), start in zip(inputs.items(), starts, strict=True):
-                self.add_input(name, val=start, units=_unit(unit))
+                self.add_input(name, val=start, units=_openmdao_unit(unit))
             for name in names:
-                self.add_output(name, units=_unit(problem.quantity(name).kind.unit))
+                self.add_output(name, units=_openmdao_unit(problem.quantity(name).kind.unit))
             self.declare_partials("*", "*")
 
         def compute(self, inputs_: DefaultVector, outputs: DefaultVector) -> None:
@@ -69,5 +69,5 @@ def openmdao_component(problem: Problem, quantities: Sequence[str] | None = None
     return SliderCrank()
 
 
-def _unit(symbol: str) -> str | None:
+def _openmdao_unit(symbol: str) -> str | None:
     return symbol.replace("^", "**").replace(" ", "*") or None

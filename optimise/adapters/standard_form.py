@@ -98,21 +98,21 @@ class StandardForm:
             else (self.problem.evaluate(x, names), np.zeros((*x.shape[:-1], len(names), 0)))
         )
         at = {name: (values[..., i], slopes[..., i, :]) for i, name in enumerate(names)}
-        f = [_minimised(objective, *at[objective.quantity]) for objective in self.problem.objectives]
-        g, h = _turning(x, self._constraints, slopes.shape[-1]) if self._turns else [], list[Row]()
+        f = [_as_minimised(objective, *at[objective.quantity]) for objective in self.problem.objectives]
+        g, h = _full_rotation_rows(x, self._constraints, slopes.shape[-1]) if self._turns else [], list[Row]()
         for constraint in self._constraints:
             value, slope = at[constraint.quantity]
             for word, bound in reversed(constraint.sides):
-                (h if word == "equals" else g).append(_scaled(value, slope, bound, -1.0 if word == "min" else 1.0))
+                (h if word == "equals" else g).append(_scaled_row(value, slope, bound, -1.0 if word == "min" else 1.0))
         if self._branch is not None:
-            g += _ranges(x, self._branch, slopes.shape[-1])
+            g += _computed_range_rows(x, self._branch, slopes.shape[-1])
             f, g, h = (_without_spurious(rows, x, self.problem, self._branch) for rows in (f, g, h))
             if gradients:
                 chain = self._branch.jacobian(points.reshape(-1, len(self.names)))
                 chain = chain.reshape(*points.shape[:-1], *chain.shape[1:])
                 f, g, h = ([(v, (d[..., None, :] @ chain)[..., 0, :]) for v, d in rows] for rows in (f, g, h))
         width = len(self.names) if gradients else 0
-        (F, dF), (G, dG), (H, dH) = (_joined(rows, x.shape[:-1], width) for rows in (f, g, h))
+        (F, dF), (G, dG), (H, dH) = (_join_rows(rows, x.shape[:-1], width) for rows in (f, g, h))
         return Arrays(F, G, H, dF, dG, dH)
 
     def scipy(self, objective: str | None = None, *, keep_feasible: bool = False) -> ScipyForm:
@@ -131,7 +131,7 @@ class StandardForm:
         constraints: list[LinearConstraint | NonlinearConstraint] = []
         first = 0
         if self._branch is None and self._turns:
-            share, rest = _share(self._constraints), np.zeros((2, len(self.names) - 3))
+            share, rest = _greatest_crank_share(self._constraints), np.zeros((2, len(self.names) - 3))
             turning = np.column_stack([[[1.0, -share, 1.0], [1.0, -share, -1.0]], rest])
             constraints.append(LinearConstraint(turning, -np.inf, 0.0, keep_feasible=keep_feasible))
             first = 2  # rows of G that are linear
@@ -231,7 +231,7 @@ def standard_form(problem: Problem, *, eliminate: bool = False, elimination_bran
         names, lower, upper = branch.free, np.zeros(len(branch.free)), np.ones(len(branch.free))
         constraints = tuple(c for c in constraints if c.quantity not in branch.eliminated)
     bounded = [c.quantity for c in constraints if not c.equality for _ in c.sides]
-    computed = [] if branch is None else [name for name in _computed(branch) for _ in range(2)]
+    computed = [] if branch is None else [name for name in _computed_dimensions(branch) for _ in range(2)]
     return StandardForm(
         problem,
         names,
@@ -261,7 +261,7 @@ def _requested_branch(problem: Problem, index: int | None) -> EliminationBranch 
                 f"eliminating equalities gives one branch here, 0; got elimination_branch={index!r}; leave "
                 "elimination_branch out"
             )
-        several = "; ".join(f"{place}: offset {_side(branch)}" for place, branch in enumerate(branches))
+        several = "; ".join(f"{place}: offset {_branch_label(branch)}" for place, branch in enumerate(branches))
         raise InputError(
             f"eliminating equalities needs one of their branches; got {index!r} of {len(branches)} ({several}); make a "
             f"form for each, with elimination_branch=0 to {len(branches) - 1}, or keep the equalities, with "
@@ -274,7 +274,7 @@ def _requested_branch(problem: Problem, index: int | None) -> EliminationBranch 
     return branches[index]
 
 
-def _side(branch: EliminationBranch) -> str:
+def _branch_label(branch: EliminationBranch) -> str:
     """Return the sign of the offsets in a branch as text, and which of several roots it takes."""
     side = "above 0" if branch.sign > 0.0 else "below 0"
     roots = [
@@ -283,20 +283,20 @@ def _side(branch: EliminationBranch) -> str:
     return ", ".join([side, *roots])
 
 
-def _computed(branch: EliminationBranch) -> list[str]:
+def _computed_dimensions(branch: EliminationBranch) -> list[str]:
     return [name for name in branch.names[:3] if any(step.target == name for step in branch.steps)]
 
 
-def _ranges(x: Array, branch: EliminationBranch, width: int) -> list[Row]:
+def _computed_range_rows(x: Array, branch: EliminationBranch, width: int) -> list[Row]:
     """Rows of G for the ranges of computed dimensions; an offset counts by its size."""
     rows = []
-    for name in _computed(branch):
+    for name in _computed_dimensions(branch):
         column, ends = branch.names.index(name), branch.bounds[name]
         sign = branch.sign if name == "offset" else 1.0
         slope = np.zeros((*x.shape[:-1], width))
         slope[..., column : column + 1] = sign if width else 0.0
         value = sign * x[..., column]
-        rows += [_scaled(value, slope, ends.upper, 1.0), _scaled(value, slope, ends.lower, -1.0)]
+        rows += [_scaled_row(value, slope, ends.upper, 1.0), _scaled_row(value, slope, ends.lower, -1.0)]
     return rows
 
 
@@ -309,15 +309,15 @@ def _without_spurious(rows: list[Row], x: Array, problem: Problem, branch: Elimi
     return [(np.where(holds, value, np.inf), slope) for value, slope in rows]
 
 
-def _share(constraints: tuple[Constraint, ...]) -> float:
+def _greatest_crank_share(constraints: tuple[Constraint, ...]) -> float:
     """Greatest allowed ratio of crank + |offset| to the rod."""
     floor = next((c.lower for c in constraints if c.quantity == TRANSMISSION_ANGLE.name and c.lower is not None), None)
     return 1.0 - _MARGIN if floor is None or not 0.0 < floor < 1.5 else float(np.cos(floor))
 
 
-def _turning(x: Array, constraints: tuple[Constraint, ...], width: int) -> list[Row]:
+def _full_rotation_rows(x: Array, constraints: tuple[Constraint, ...], width: int) -> list[Row]:
     """Rows of G that keep the crank rotating fully: the floor on the transmission angle, linear in the dimensions."""
-    share, rows = _share(constraints), []
+    share, rows = _greatest_crank_share(constraints), []
     for sign in (1.0, -1.0):
         size = np.abs(x[..., 1])
         slope = np.zeros((*x.shape[:-1], width))
@@ -330,7 +330,7 @@ def _turning(x: Array, constraints: tuple[Constraint, ...], width: int) -> list[
     return rows
 
 
-def _minimised(objective: Objective, value: Array, slope: Array) -> tuple[Array, Array]:
+def _as_minimised(objective: Objective, value: Array, slope: Array) -> tuple[Array, Array]:
     objectives = minimised(objective, value)
     if objective.sense == "maximise":
         slope = -slope
@@ -339,13 +339,13 @@ def _minimised(objective: Objective, value: Array, slope: Array) -> tuple[Array,
     return np.where(np.isnan(objectives), np.inf, objectives), slope
 
 
-def _scaled(value: Array, slope: Array, bound: float, sign: float) -> tuple[Array, Array]:
+def _scaled_row(value: Array, slope: Array, bound: float, sign: float) -> tuple[Array, Array]:
     scale = sign / (abs(bound) or 1.0)
     excess = scale * (value - bound)
     return np.where(np.isnan(excess), np.inf, excess), scale * slope
 
 
-def _joined(rows: list[Row], shape: tuple[int, ...], width: int) -> tuple[Array, Array]:
+def _join_rows(rows: list[Row], shape: tuple[int, ...], width: int) -> tuple[Array, Array]:
     if not rows:
         return np.zeros((*shape, 0)), np.zeros((*shape, 0, width))
     return np.stack([value for value, _ in rows], axis=-1), np.stack([slope for _, slope in rows], axis=-2)

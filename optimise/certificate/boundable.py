@@ -21,11 +21,11 @@ def unbounded_reason(problem: Problem, objective: Objective) -> str:
     Bounded are quantities with `formulas`, travel and angle of a swing; from below the peaks over the cycle or the
     swing, and from above the least values of a swing, of machines without friction.
     """
-    reasons = (_unbounded(part, objective) for part in problem.parts())
+    reasons = (_why_unbounded(part, objective) for part in problem.parts())
     return next(filter(None, reasons), "")
 
 
-def _unbounded(problem: Problem, objective: Objective) -> str:
+def _why_unbounded(problem: Problem, objective: Objective) -> str:
     quantity, mechanism = problem.quantity(objective.quantity), problem.mechanism
     if quantity.formulas(mechanism) or is_swing_form(quantity):
         return ""

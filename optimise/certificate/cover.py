@@ -19,7 +19,7 @@ _EXACT = 4000  # points in three and more dimensions of which the hypervolume ta
 
 
 @kernel
-def _excess(points: Table, designs: Table, first: Integers, enough: float, out: Row) -> None:
+def _excess_of_points(points: Table, designs: Table, first: Integers, enough: float, out: Row) -> None:
     for i in range(points.shape[0]):
         best = out[i]
         for q in range(first[i], designs.shape[0]):
@@ -53,14 +53,14 @@ def excess(
     points, designs = np.ascontiguousarray(points), np.ascontiguousarray(designs)
 
     def work(begin: int, end: int) -> None:
-        _excess(points[begin:end], designs, start[begin:end], enough, out[begin:end])
+        _excess_of_points(points[begin:end], designs, start[begin:end], enough, out[begin:end])
 
     in_chunks(n, work, size=4096)
     return out
 
 
 @kernel
-def _choose(points: Table, values: Table, epsilon: float, chosen: Flags) -> None:
+def _choose_cover(points: Table, values: Table, epsilon: float, chosen: Flags) -> None:
     count = 0
     order = np.empty(points.shape[0], np.int64)
     for i in range(points.shape[0]):
@@ -86,7 +86,7 @@ def _choose(points: Table, values: Table, epsilon: float, chosen: Flags) -> None
 def choose_covering(points: Array, values: Array, epsilon: float) -> IntArray:
     """Return the rows of values (n, m) that cover their point (n, m) to epsilon where earlier ones do not."""
     chosen = np.zeros(len(points), dtype=bool)
-    _choose(np.ascontiguousarray(points), np.ascontiguousarray(values), epsilon, chosen)
+    _choose_cover(np.ascontiguousarray(points), np.ascontiguousarray(values), epsilon, chosen)
     return np.flatnonzero(chosen)
 
 

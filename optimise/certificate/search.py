@@ -31,7 +31,7 @@ _SHARE = 0.15  # of the time, kept for polishing
 _MOST_PAIRS = 50_000_000  # pairs of added designs and corners that are looked through for a smaller set
 
 
-def _objectives(problem: Problem, dimensions: Array) -> Array:
+def _exact_objectives(problem: Problem, dimensions: Array) -> Array:
     """Return the minimised objectives (n, m) of designs of one variant, exact over continuous crank angle."""
     columns = [
         minimised(wish, problem.quantity(wish.quantity).evaluate(problem.mechanism, dimensions).values)
@@ -59,7 +59,7 @@ class Search:
         values = np.empty((len(dimensions), len(problem.objectives)))
         for variant in distinct(variants).tolist():
             rows = variants == variant
-            values[rows] = _objectives(problem.part(variant), dimensions[rows])
+            values[rows] = _exact_objectives(problem.part(variant), dimensions[rows])
         self.span, self.ideal = span_of(problem, values), values.min(axis=0)
         self.front = self._scaled(values)
         self.designs = self.front
@@ -151,7 +151,7 @@ class Search:
         return excess(corner, fresh, earlier_excess=gaps, enough=self.epsilon)
 
     def _exact(self, index: int, dimensions: Array) -> Array:
-        return self._scaled(_objectives(self.evaluators[index].problem, dimensions))
+        return self._scaled(_exact_objectives(self.evaluators[index].problem, dimensions))
 
     def _note(self, index: int, design: Array) -> None:
         """Remember a design of a branch that lies farther beyond the front than any before."""

@@ -69,7 +69,7 @@ def compare(fronts: Sequence[Array], *, tolerance: float = TOLERANCE) -> Compari
     if not (math.isfinite(tolerance) and tolerance >= 0.0):
         raise InputError(f"the tolerance must be a fraction of the range, zero or more; got {tolerance:g}")
     everything = np.concatenate(list(fronts))
-    ideal, span = _scaling(everything)
+    ideal, span = _ideal_and_range(everything)
     scaled = [np.asarray((front - ideal) / span) for front in fronts]
     volumes = np.array([hypervolume(front, ideal, span) for front in fronts])
     union = hypervolume(everything, ideal, span)
@@ -89,7 +89,7 @@ def compare(fronts: Sequence[Array], *, tolerance: float = TOLERANCE) -> Compari
         hypervolumes=volumes,
         union=union,
         shares=volumes / union,
-        in_union=np.array([_undominated(front, scaled, tolerance) for front in scaled]),
+        in_union=np.array([_count_undominated(front, scaled, tolerance) for front in scaled]),
         coverage=coverage,
         epsilon=epsilon,
         dominates=covers_all & ~covers_all.T,
@@ -97,14 +97,14 @@ def compare(fronts: Sequence[Array], *, tolerance: float = TOLERANCE) -> Compari
     )
 
 
-def _scaling(everything: Array) -> tuple[Array, Array]:
+def _ideal_and_range(everything: Array) -> tuple[Array, Array]:
     """Return ideal and range of the union front; if that has no range, the range of all designs."""
     best = everything[nondominated(everything)]
     best_range = column_ranges(best)
     return best.min(axis=0), np.where(best_range > 0.0, best_range, scaling(everything)[1])
 
 
-def _undominated(front: Array, fronts: Sequence[Array], tolerance: float) -> int:
+def _count_undominated(front: Array, fronts: Sequence[Array], tolerance: float) -> int:
     """Return the number of designs that no other one dominates by more than the tolerance."""
     everything = np.concatenate(list(fronts))
     return sum(

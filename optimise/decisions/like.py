@@ -88,9 +88,9 @@ def nearest(
     for index, u in archive[order].by_branch(evaluators):
         finished.add(index, polish(evaluators[index], u, span))
     if not len(finished):
-        return _nearest(solve(extended_problem), values, span)
-    _zoom(finished, free, archive, values, extended_problem.settings.seed)
-    return assemble(extended_problem, evaluators, finished[_ranked(finished, archive, values)[:1]], run)
+        return _keep_nearest(solve(extended_problem), values, span)
+    _add_nearer_designs(finished, free, archive, values, extended_problem.settings.seed)
+    return assemble(extended_problem, evaluators, finished[_rank_by_distance(finished, archive, values)[:1]], run)
 
 
 def like(
@@ -133,8 +133,8 @@ def extended(
         if ends is None:
             assert required is not None
             unit = quantity.unit
-            existing = f"{_words((required.lower, required.upper), unit.factor, unit.symbol)} is required already"
-            stricter = _words((added.lower, added.upper), unit.factor, unit.symbol)
+            existing = f"{_ends_text((required.lower, required.upper), unit.factor, unit.symbol)} is required already"
+            stricter = _ends_text((added.lower, added.upper), unit.factor, unit.symbol)
             contradictions.append(f"{quantity.title} {stricter}, where {existing}")
             keys.append(key_of(["constraints", added.quantity]))
         else:
@@ -143,8 +143,8 @@ def extended(
         range_of_name = dimensions[name]
         ends = common(requested, (range_of_name.lower, range_of_name.upper))
         if ends is None:
-            existing = f"{_words((range_of_name.lower, range_of_name.upper), 1e3, 'mm')} is its range"
-            contradictions.append(f"{name} {_words(requested, 1e3, 'mm')}, where {existing}")
+            existing = f"{_ends_text((range_of_name.lower, range_of_name.upper), 1e3, 'mm')} is its range"
+            contradictions.append(f"{name} {_ends_text(requested, 1e3, 'mm')}, where {existing}")
             keys.append(f"variables.{name}")
         else:
             assert ends[0] is not None
@@ -166,7 +166,7 @@ def common(first: Ends, second: Ends) -> Ends | None:
     return None if lower is not None and upper is not None and lower > upper else (lower, upper)
 
 
-def _words(ends: Ends, factor: float, unit: str) -> str:
+def _ends_text(ends: Ends, factor: float, unit: str) -> str:
     lower, upper = (None if end is None else f"{end * factor:.6g} {unit}".rstrip() for end in ends)
     if lower == upper:
         return f"exactly {lower}"
@@ -204,12 +204,14 @@ def _lies_within(value: object, ends: Ends, factor: float) -> bool:
     )
 
 
-def _zoom(finished: FrontCandidates, evaluators: list[Evaluator], archive: Archive, values: Array, seed: int) -> None:
+def _add_nearer_designs(
+    finished: FrontCandidates, evaluators: list[Evaluator], archive: Archive, values: Array, seed: int
+) -> None:
     """Add polished designs around the nearest ones, ever more closely."""
     random = generator(seed, 2000)
     width = _WIDEST
     for _ in range(_ROUNDS):
-        parents = _ranked(finished, archive, values)[:_PARENTS]
+        parents = _rank_by_distance(finished, archive, values)[:_PARENTS]
         before = distance(finished.values[parents[:1]], values, finished.span)[0]
         for index, u in finished[parents].by_branch(evaluators):
             evaluator = evaluators[index]
@@ -218,7 +220,7 @@ def _zoom(finished: FrontCandidates, evaluators: list[Evaluator], archive: Archi
             points = points[evaluator.valid(points)]
             if len(points):
                 finished.add(index, polish(evaluator, points, finished.span))
-        after = distance(finished.values[_ranked(finished, archive, values)[:1]], values, finished.span)[0]
+        after = distance(finished.values[_rank_by_distance(finished, archive, values)[:1]], values, finished.span)[0]
         # A design that still comes nearer by about a step has farther to go.
         if before - after < 0.5 * width:
             width *= 0.5
@@ -226,7 +228,7 @@ def _zoom(finished: FrontCandidates, evaluators: list[Evaluator], archive: Archi
             break
 
 
-def _ranked(finished: FrontCandidates, archive: Archive, values: Array) -> IntArray:
+def _rank_by_distance(finished: FrontCandidates, archive: Archive, values: Array) -> IntArray:
     """Return the rows of non-dominated designs, nearest first; stationary ones before all others."""
     rows = finished.best()
     if archive.is_feasible.any():  # samples within a band around the constraints prove nothing
@@ -237,7 +239,7 @@ def _ranked(finished: FrontCandidates, archive: Archive, values: Array) -> IntAr
     return rows[np.lexsort((distances, finished.residual[rows] > STATIONARY))]
 
 
-def _nearest(front: ParetoFront, values: Array, span: Array) -> ParetoFront:
+def _keep_nearest(front: ParetoFront, values: Array, span: Array) -> ParetoFront:
     """Return a front with only its nearest design; an empty front unchanged."""
     if not len(front):
         return front

@@ -45,19 +45,19 @@ def robust_cost(front: ParetoFront) -> RobustCost | None:
     toleranced = np.zeros(plain.values.shape)
     for row in range(len(plain)):
         part = problem.part(plain.variants[row] if plain.variants else 0)
-        toleranced[row] = _values(part, plain.dimensions[row : row + 1])
-        keeps += _keeps(part, plain.dimensions[row : row + 1])
+        toleranced[row] = _objective_values(part, plain.dimensions[row : row + 1])
+        keeps += _meets_constraints(part, plain.dimensions[row : row + 1])
     names = [plain.problem.quantity(objective.quantity).field for objective in plain.objectives]
     fields = [problem.quantity(objective.quantity).field for objective in front.objectives]
     return RobustCost(plain.designs[names].to_numpy(float), toleranced, front.designs[fields].to_numpy(float), keeps)
 
 
-def _values(problem: Problem, design: Array) -> list[float]:
+def _objective_values(problem: Problem, design: Array) -> list[float]:
     quantities = [problem.quantity(objective.quantity) for objective in problem.objectives]
     return [float(q.evaluate(problem.mechanism, design).values[0]) * q.unit.factor for q in quantities]
 
 
-def _keeps(problem: Problem, design: Array) -> bool:
+def _meets_constraints(problem: Problem, design: Array) -> bool:
     for constraint in problem.constraints:
         value = float(problem.quantity(constraint.quantity).evaluate(problem.mechanism, design).values[0])
         for bound, sign in ((constraint.lower, 1.0), (constraint.upper, -1.0)):

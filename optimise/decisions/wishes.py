@@ -52,19 +52,19 @@ def read_wishes(front: ParetoFront, texts: Mapping[str, object], row: int | None
         )
     wishes_by_column = dict.fromkeys(range(len(front.objectives)), FREE)
     for name, text in texts.items():
-        column = _column(front, name)
+        column = _objective_index(front, name)
         if wishes_by_column[column] is not FREE:
             raise InputError(
                 f"an objective may have only one wish; got two for {front.objectives[column].quantity}; leave out one"
             )
-        wish = _read(front, column, text)
+        wish = _read_wish(front, column, text)
         wishes_by_column[column] = Wish("free") if wish.kind == "free" else wish
     wishes = tuple(wishes_by_column.values())
     _require_sense(front, wishes, row)
     return wishes
 
 
-def _column(front: ParetoFront, name: object) -> int:
+def _objective_index(front: ParetoFront, name: object) -> int:
     try:
         return front.column_of(str(name))
     except InputError:
@@ -72,7 +72,7 @@ def _column(front: ParetoFront, name: object) -> int:
         raise InputError(f"a wish must name one of the objectives {names}; got {name!r}; name one of them") from None
 
 
-def _read(front: ParetoFront, column: int, text_or_value: object) -> Wish:
+def _read_wish(front: ParetoFront, column: int, text_or_value: object) -> Wish:
     quantity = front.problem.quantity(front.objectives[column].quantity)
     text = " ".join(text_or_value.split()) if isinstance(text_or_value, str) else ""
     for word in ("improve", "keep", "free"):

@@ -107,7 +107,7 @@ class Cluster:
                     ) from None
                 _log.warning("connection to scheduler %s lost (%s); reconnecting", self.address, _error_text(error))
                 delay = _DELAYS[0] if lost else min(2.0 * delay, _DELAYS[1])
-                _pause(delay, poll)
+                _sleep_until(delay, poll)
         return [results[index] for index in range(len(items))]
 
     def close(self) -> None:
@@ -134,7 +134,9 @@ class Cluster:
         def give(indices: list[int]) -> None:
             name = uuid.uuid4().hex
             keys = [f"slidercrank-{name}-{index}" for index in indices]
-            futures = client.map(_run_task, [(_versions(), function, items[index]) for index in indices], key=keys)
+            futures = client.map(
+                _run_task, [(_library_versions(), function, items[index]) for index in indices], key=keys
+            )
             pending.update(zip(futures, indices, strict=True))
 
         give([index for index in range(len(items)) if index not in results])
@@ -212,16 +214,16 @@ class Cluster:
 
 def _run_task(task: tuple[tuple[str, ...], Callable[[Any], Any], Any]) -> Any:
     versions, function, item = task
-    if versions != _versions():
+    if versions != _library_versions():
         raise EngineError(
-            f"workers must have the same versions as the client; got {', '.join(_versions())} for "
+            f"workers must have the same versions as the client; got {', '.join(_library_versions())} for "
             f"{', '.join(versions)}; install the same"
         )
     return function(item)
 
 
 @lru_cache(maxsize=1)
-def _versions() -> tuple[str, ...]:
+def _library_versions() -> tuple[str, ...]:
     return (f"python {'.'.join(python_version_tuple()[:2])}", *(f"{name} {version(name)}" for name in _SAME))
 
 
@@ -238,7 +240,7 @@ def _error_text(error: BaseException) -> str:
     return f"{type(error).__name__}: {error}".splitlines()[0][:200].rstrip(": ")
 
 
-def _pause(seconds: float, poll: Poll | None) -> None:
+def _sleep_until(seconds: float, poll: Poll | None) -> None:
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         if poll is not None:

@@ -135,7 +135,7 @@ class Processes:
             )
             try:
                 with block_interrupts():
-                    ready = pool.submit(_ready)
+                    ready = pool.submit(_report_ready)
                 ready.result()
                 self._pool = pool
             except BrokenProcessPool:
@@ -159,7 +159,7 @@ def block_interrupts() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _ready() -> None:
+def _report_ready() -> None:
     """Do nothing, when the process has started."""
 
 

@@ -48,7 +48,7 @@ def best_of(
     ]
     run = Run(problem, 1, report, checkpoints or Checkpoints(), stages=report)
     light = replace(problem, settings=replace(problem.settings, samples=problem.settings.samples or _FEW))
-    front = search_with(replace(AUTO, search=partial(_sampled, problem)), light, combined, run)
+    front = search_with(replace(AUTO, search=partial(_search_in_stages, problem)), light, combined, run)
     if front is None:
         return None
     quantity = problem.quantity(problem.objectives[0].quantity)
@@ -56,7 +56,7 @@ def best_of(
     return Best(value, front.dimensions[0])
 
 
-def _sampled(full: Problem, light: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
+def _search_in_stages(full: Problem, light: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the archive of a few samples if it suffices, else of a whole search.
 
     It suffices with enough feasible designs, or if none can be feasible.
@@ -99,7 +99,7 @@ def on_dimensions(problem: Problem) -> Problem:
 
     Choices that leave the dimensions and what is asked of them as they are fall together.
     """
-    parts = list(dict.fromkeys(_weightless(part) for part in problem.parts()))
+    parts = list(dict.fromkeys(_without_masses(part) for part in problem.parts()))
     if len(parts) == 1:
         return parts[0]
     variants = tuple(
@@ -121,7 +121,7 @@ def rules_on_dimensions(problem: Problem) -> tuple[Constraint, ...]:
     return tuple(c for c in problem.constraints if problem.quantity(c.quantity).of_dimensions)
 
 
-def _weightless(part: Problem) -> Problem:
+def _without_masses(part: Problem) -> Problem:
     machine = massless_machine(part.mechanism)
     custom = tuple(quantity for quantity in part.own if quantity.of_dimensions)
     return replace(part, mechanism=machine, constraints=rules_on_dimensions(part), own=custom, costs=None)

@@ -119,11 +119,11 @@ def _least_violation(
         row = int(np.argmin(found.values[:, 0]))
         if found.values[row, 0] < least:
             least = float(found.values[row, 0])
-            nearest = _together(problem, branch.variant, dimensions[row])
+            nearest = _jointly_possible(problem, branch.variant, dimensions[row])
     return np.concatenate(feasible) if feasible else np.zeros((0, 3)), turning, nearest if turning else blank
 
 
-def _together(problem: Problem, variant: int, design: Array) -> str:
+def _jointly_possible(problem: Problem, variant: int, design: Array) -> str:
     """Return a design and what it meets in place of the requirements that it misses, in words."""
     part = problem.part(variant)
     found = []

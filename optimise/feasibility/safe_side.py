@@ -26,15 +26,15 @@ def safe(value: float, side: Side, *, digits: int = DIGITS) -> str:
     """
     size = Decimal(repr(abs(float(value)) * _ROUNDING))
     rounded = Context(prec=digits, rounding=ROUND_FLOOR if side == "down" else ROUND_CEILING)
-    return _text(rounded.plus(Decimal(repr(float(value))) + (size if side == "down" else -size)))
+    return _number_text(rounded.plus(Decimal(repr(float(value))) + (size if side == "down" else -size)))
 
 
 def exact(value: float) -> str:
     """Return a value that is possible alone, its neighbours not, in as many digits as rounding leaves of it."""
-    return _text(Context(prec=_EXACT).plus(Decimal(repr(float(value)))))
+    return _number_text(Context(prec=_EXACT).plus(Decimal(repr(float(value)))))
 
 
-def _text(number: Decimal) -> str:
+def _number_text(number: Decimal) -> str:
     number = number.normalize()
     if number == 0:
         return "0"

@@ -83,12 +83,12 @@ def _too_much(stuck: list[tuple[Mechanism, Array]], motion: Swing) -> str:
     low, high = 0.0, 1.0
     for _ in range(_HALVINGS):
         share = 0.5 * (low + high)
-        runs = any(driven(_rubbing(machine, share), motion, able).any() for machine, able in stuck)
+        runs = any(driven(_with_friction_share(machine, share), motion, able).any() for machine, able in stuck)
         low, high = (share, high) if runs else (low, share)
     return f"the first ones run with {low:.2g} of its coefficients; "
 
 
-def _rubbing(machine: Mechanism, share: float) -> Mechanism:
+def _with_friction_share(machine: Mechanism, share: float) -> Mechanism:
     """Return a machine with a share of its coefficients of friction."""
     friction = machine.friction
     pins = {

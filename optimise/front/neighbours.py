@@ -18,14 +18,14 @@ def neighbours(points: Array, count: int) -> tuple[Array, IntArray]:
     distance = np.full((len(points), count), np.inf)
     nearest = np.zeros(len(points) * count, dtype=np.int64)
     ordered = points[order]
-    in_chunks(len(points), lambda begin, end: _search(ordered, begin, end, distance, nearest))
+    in_chunks(len(points), lambda begin, end: _search_neighbours(ordered, begin, end, distance, nearest))
     rows = np.empty_like(order)
     rows[order] = np.arange(len(order))
     return distance[rows], order[nearest.reshape(-1, count)[rows]]
 
 
 @kernel
-def _search(points: Table, begin: int, end: int, distance: Table, nearest: Integers) -> None:
+def _search_neighbours(points: Table, begin: int, end: int, distance: Table, nearest: Integers) -> None:
     """Search points sorted by first coordinate: beyond the farthest neighbour's distance there, none is nearer."""
     n, m = points.shape
     count = distance.shape[1]

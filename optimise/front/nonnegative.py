@@ -24,12 +24,12 @@ def nonnegative_least_squares(matrix: Array, target: Array) -> Array | None:
     """
     columns = np.array(matrix.T, order="C")
     solution = np.zeros(len(columns))
-    ended = _solve(columns, target.astype(np.float64), _STEPS * len(columns), solution)
+    ended = _solve_nonnegative(columns, target.astype(np.float64), _STEPS * len(columns), solution)
     return solution if ended else None
 
 
 @analytic
-def _reflect(mirror: Row, pivot: int, up: float, column: Row) -> None:
+def _reflect_column(mirror: Row, pivot: int, up: float, column: Row) -> None:
     """Reflect a column by the mirror whose entry `pivot` is `up`, and whose later entries are kept."""
     scale = up * mirror[pivot]
     if scale >= 0.0:
@@ -65,7 +65,7 @@ def _leave(columns: Table, target: Row, order: Integers, free: int, leaving: int
 
 
 @kernel
-def _solve(columns: Table, target: Row, max_steps: int, solution: Row) -> bool:
+def _solve_nonnegative(columns: Table, target: Row, max_steps: int, solution: Row) -> bool:
     n, m = columns.shape
     order = np.arange(n)  # first the columns whose x may be positive, by which the others are made triangular
     free, steps = 0, 0
@@ -102,7 +102,7 @@ def _solve(columns: Table, target: Row, max_steps: int, solution: Row) -> bool:
             if head + abs(mirror[free]) * _INDEPENDENT > head:
                 for row in range(m):
                     trial[row] = target[row]
-                _reflect(mirror, free, up, trial)
+                _reflect_column(mirror, free, up, trial)
                 entered = trial[free] / mirror[free] > 0.0
             if not entered:
                 mirror[free] = pivot
@@ -111,7 +111,7 @@ def _solve(columns: Table, target: Row, max_steps: int, solution: Row) -> bool:
             target[row] = trial[row]
         order[chosen], order[free] = order[free], column
         for place in range(free + 1, n):
-            _reflect(mirror, free, up, columns[order[place]])
+            _reflect_column(mirror, free, up, columns[order[place]])
         for row in range(free + 1, m):
             mirror[row] = 0.0
         slope[column] = 0.0

@@ -64,8 +64,8 @@ def rounding(
     """
     if isinstance(count, bool) or not isinstance(count, Integral) or count < 1:
         raise InputError(f"count must be a whole number of 1 or more; got {count!r}")
-    allowed = _allowed(part, allow or {})
-    moved, remarks = _moved(part, given, _steps(to, part))
+    allowed = _allowed_misses(part, allow or {})
+    moved, remarks = _moved(part, given, _rounding_steps(to, part))
     search = RoundingSearch(part, given, span, moved, allowed)
     best = yield from search.best(int(count))
     return Rounded(
@@ -98,7 +98,7 @@ def _moved(part: Problem, given: Array, steps: Mapping[str, float]) -> tuple[dic
             "discrete values in this job; name another"
         )
     return moved, [
-        *_stays(given, ranges, steps),
+        *_unchanged_numbers_text(given, ranges, steps),
         *(
             f"{name} has discrete values in the job, {rule}, and stays as it is"
             for name, rule in discrete_rules.items()
@@ -123,14 +123,14 @@ def doubtful_misses(part: Problem, allow: Mapping[str, float | str]) -> list[str
         [],
     )
     bounds = {item.quantity: max(abs(bound) for _, bound in item.sides) for item in constraints_of(part)}
-    for name, value in _allowed(part, plain_misses).items():
+    for name, value in _allowed_misses(part, plain_misses).items():
         quantity = part.quantity(name)
         if quantity.unit.symbol != quantity.kind.unit and value > _LARGE * bounds[name]:
             doubts.append(both_readings(name, value, quantity.kind.unit, quantity.unit.symbol, quantity.unit.factor))
     return doubts
 
 
-def _allowed(part: Problem, misses: Mapping[str, float | str]) -> dict[str, float]:
+def _allowed_misses(part: Problem, misses: Mapping[str, float | str]) -> dict[str, float]:
     """Return the allowed misses of requirements, SI, by quantity. A required slow stroke cannot be missed."""
     constraints = {item.quantity: item for item in constraints_of(replace(part, slow_stroke=None))}
     quantities = {name: part.quantity(name) for name in constraints}
@@ -145,7 +145,7 @@ def _allowed(part: Problem, misses: Mapping[str, float | str]) -> dict[str, floa
         if names[name] in allowed:
             raise InputError(f"a requirement may have only one allowed miss; got two for {names[name]}; leave out one")
         try:
-            allowed[names[name]] = _miss(value, quantities[names[name]], constraints[names[name]])
+            allowed[names[name]] = _allowed_miss(value, quantities[names[name]], constraints[names[name]])
         except InputError as error:
             raise InputError(f"the allowed miss of {name} {error}") from None
     return allowed
@@ -160,7 +160,7 @@ def _require_names(misses: Mapping[str, float | str]) -> Mapping[str, float | st
     return misses
 
 
-def _miss(value: float | str, quantity: Quantity, constraint: Constraint) -> float:
+def _allowed_miss(value: float | str, quantity: Quantity, constraint: Constraint) -> float:
     """Return the allowed miss of a requirement, SI. Raises `InputError`, with the amount meant by a percentage."""
     percent = _PERCENT.fullmatch(value) if isinstance(value, str) else None
     if percent is not None and quantity.kind.unit:
@@ -171,7 +171,7 @@ def _miss(value: float | str, quantity: Quantity, constraint: Constraint) -> flo
     return to_si(value, kind, sign="positive", plain=not isinstance(value, str))
 
 
-def _steps(to: float | Mapping[str, float], part: Problem) -> dict[str, float]:
+def _rounding_steps(to: float | Mapping[str, float], part: Problem) -> dict[str, float]:
     """Return the step of each number to round."""
     ranges = part.ranges
     steps = dict(to) if isinstance(to, Mapping) else dict.fromkeys(DIMENSIONS, to)
@@ -192,7 +192,7 @@ def _steps(to: float | Mapping[str, float], part: Problem) -> dict[str, float]:
     return {name: float(steps[name]) for name in ranges if name in steps}
 
 
-def _stays(given: Array, ranges: Mapping[str, Range], steps: Mapping[str, float]) -> list[str]:
+def _unchanged_numbers_text(given: Array, ranges: Mapping[str, Range], steps: Mapping[str, float]) -> list[str]:
     """Return in words the numbers that stay unchanged though they are not multiples of a step."""
     notes = []
     for value, (name, ends) in zip(given.tolist(), ranges.items(), strict=True):

@@ -30,7 +30,7 @@ def saved_front(fields: Mapping[str, Any]) -> str:
     record = {
         "form": _FORM,
         "name": fields["problem"].name,
-        "objectives": _objectives(fields["problem"]),
+        "objectives": _objective_fields(fields["problem"]),
         "variables": dimensions.shape[1],
         **{name: fields[name] for name in _AS_THEY_ARE},
         "history": [asdict(progress) for progress in fields["history"]],
@@ -44,7 +44,7 @@ def saved_front(fields: Mapping[str, Any]) -> str:
         "goals": [[owner.tolist(), slopes.tolist()] for owner, slopes in fields["goals"]],
         "active": [edges.tolist() for edges in active],
     }
-    return json.dumps(_finite(record), ensure_ascii=False, indent=1, allow_nan=False)
+    return json.dumps(_json_finite(record), ensure_ascii=False, indent=1, allow_nan=False)
 
 
 def write_front(fields: Mapping[str, Any], file: Path) -> None:
@@ -61,7 +61,7 @@ def front_fields(file: Path, problem: Problem) -> dict[str, Any]:
     """
     try:
         record = json.loads(file.read_text(encoding="utf-8"))
-        fields = _fields(record, problem)
+        fields = _front_fields(record, problem)
         objectives = record["objectives"]
     except OSError as error:
         raise InputError(f"{file} cannot be read: {error.strerror}; name a file that `save` wrote") from None
@@ -74,7 +74,7 @@ def front_fields(file: Path, problem: Problem) -> dict[str, Any]:
     return fields
 
 
-def _fields(record: dict[str, Any], problem: Problem) -> dict[str, Any]:
+def _front_fields(record: dict[str, Any], problem: Problem) -> dict[str, Any]:
     if record["form"] != _FORM:
         raise ValueError(f"form {record['form']}")
     words, count = set(record["words"]), len(record["values"])
@@ -88,28 +88,31 @@ def _fields(record: dict[str, Any], problem: Problem) -> dict[str, Any]:
         raise ValueError("columns of different lengths")
     return {
         "problem": problem,
-        **{name: _number(record[name]) for name in _AS_THEY_ARE},
+        **{name: _number_from_json(record[name]) for name in _AS_THEY_ARE},
         "history": tuple(
-            Progress(**{key: _number(value) for key, value in item.items()}) for item in record["history"]
+            Progress(**{key: _number_from_json(value) for key, value in item.items()}) for item in record["history"]
         ),
         "discrete": None
         if record["discrete"] is None
         else DiscreteSearch(**record["discrete"] | {"continuous": tuple(map(float, record["discrete"]["continuous"]))}),
         "columns": columns,
-        "dimensions": _array(record["dimensions"], record["variables"]),
+        "dimensions": _array_of_rows(record["dimensions"], record["variables"]),
         "variants": tuple(record["variants"]),
-        "values": _array(record["values"], len(record["objectives"])),
-        "goals": tuple((np.array(owner, dtype=np.float64), _array(slopes, free)) for (owner, slopes), free in goals),
-        "active": tuple(_array(edges, free) for edges, free in active),
+        "values": _array_of_rows(record["values"], len(record["objectives"])),
+        "goals": tuple(
+            (np.array(owner, dtype=np.float64), _array_of_rows(slopes, free)) for (owner, slopes), free in goals
+        ),
+        "active": tuple(_array_of_rows(edges, free) for edges, free in active),
     }
 
 
 def _require_same(fields: dict[str, Any], objectives: list[Any], problem: Problem, file: Path) -> None:
     """Raise `InputError` unless a problem has the objectives of a front, with the values of its first design."""
     remedy = "load it with the problem that it was solved for"
-    if objectives != _objectives(problem):
+    if objectives != _objective_fields(problem):
         saved, stated = (
-            ", ".join(f"{sense} {name}" for name, sense, _ in items) for items in (objectives, _objectives(problem))
+            ", ".join(f"{sense} {name}" for name, sense, _ in items)
+            for items in (objectives, _objective_fields(problem))
         )
         raise InputError(f"the objectives of {file} are {saved}; those of the problem are {stated}; {remedy}")
     if not len(fields["values"]):
@@ -127,24 +130,24 @@ def _require_same(fields: dict[str, Any], objectives: list[Any], problem: Proble
             )
 
 
-def _objectives(problem: Problem) -> list[list[Any]]:
+def _objective_fields(problem: Problem) -> list[list[Any]]:
     return [[objective.quantity, objective.sense, objective.target] for objective in problem.objectives]
 
 
-def _array(rows: list[Any], width: int) -> Array:
+def _array_of_rows(rows: list[Any], width: int) -> Array:
     return np.array(rows, dtype=np.float64).reshape(len(rows), width)
 
 
-def _finite(value: Any) -> Any:
+def _json_finite(value: Any) -> Any:
     """Return a value with texts in place of numbers that JSON does not have."""
     if isinstance(value, float) and not math.isfinite(value):
         return str(value)
     if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
+        return {key: _json_finite(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
+        return [_json_finite(item) for item in value]
     return value
 
 
-def _number(value: Any) -> Any:
+def _number_from_json(value: Any) -> Any:
     return float(value) if value in ("inf", "-inf", "nan") else value

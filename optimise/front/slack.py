@@ -17,14 +17,14 @@ def slack_of(constraint: Constraint, values: Array) -> Array:
     """
     slack = np.full(len(values), np.inf)
     if constraint.equality:
-        slack = -_clear(values, constraint.lower, np.abs(values - float(constraint.lower or 0.0)))
+        slack = -_distances_from_bound(values, constraint.lower, np.abs(values - float(constraint.lower or 0.0)))
     else:
         for side, bound, _ in sides(constraint):
-            slack = np.minimum(slack, _clear(values, bound, side * (bound - values)))
+            slack = np.minimum(slack, _distances_from_bound(values, bound, side * (bound - values)))
     return slack
 
 
-def _clear(values: Array, bound: float | None, slack: Array) -> Array:
+def _distances_from_bound(values: Array, bound: float | None, slack: Array) -> Array:
     """Return distances from a bound; 0 where a value differs from it only by rounding."""
     on_it = is_constant(np.stack([values, np.full(len(values), bound or 0.0)]), size=0.0 if bound else 1.0)
     return np.where(on_it & np.isfinite(values), 0.0, slack)

@@ -24,7 +24,7 @@ _STIFF = 1e3  # weight of the rows that fix the sums of weights, against gradien
 def multipliers(goals: Array, active: Array) -> tuple[float, Array, Array]:
     """Return residual, lambda (p,), mu (q,) for gradients (p, k) of objectives and (q, k) of active constraints."""
     p, q = len(goals), len(active)
-    size, lengths = _sizes(goals, active)
+    size, lengths = _row_sizes(goals, active)
     matrix = np.zeros((goals.shape[1] + 1, p + q))
     matrix[:-1, :p] = goals.T / size
     matrix[:-1, p:] = (active / lengths[:, None]).T
@@ -55,7 +55,7 @@ def strict_multipliers(
     """
     names = sorted(set(owner.tolist()))
     p, q, m = len(goals), len(active), len(names)
-    size, lengths = _sizes(goals, active)
+    size, lengths = _row_sizes(goals, active)
     k = goals.shape[1]
     matrix = np.zeros((k + m, p + q + (0 if exactly else m)))
     matrix[:k, :p] = goals.T / size
@@ -73,7 +73,7 @@ def strict_multipliers(
     return residual, solution[:p], solution[p : p + q] * size / lengths
 
 
-def _sizes(goals: Array, active: Array) -> tuple[float, Array]:
+def _row_sizes(goals: Array, active: Array) -> tuple[float, Array]:
     """Return one size for all objective rows and the length of each active row, for equal weights at any scale."""
     lengths = row_lengths(active)
     lengths[lengths == 0.0] = 1.0

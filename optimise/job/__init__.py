@@ -61,7 +61,7 @@ def load_job(
     if not isinstance(path, str | PathLike):
         raise JobError(f"a job file must be given by its path; got {type(path).__name__}; for tables use problem")
     data = read_job(path)
-    with _named(path):
+    with _naming_file(path):
         problem = parse_job(
             data,
             values,
@@ -90,7 +90,7 @@ def read_job(path: str | PathLike[str]) -> dict[str, Any]:
 
     Raises JobError for files that cannot be read.
     """
-    with _named(path):
+    with _naming_file(path):
         file = path_from_text(path)
         return with_files(read(file), file.parent)
 
@@ -109,7 +109,7 @@ def with_files(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
 
 
 @contextlib.contextmanager
-def _named(path: str | PathLike[str]) -> Iterator[None]:
+def _naming_file(path: str | PathLike[str]) -> Iterator[None]:
     try:
         yield
     except JobError as error:

@@ -37,7 +37,7 @@ class _Read(Physical):
         return {"anyOf": [{"type": "string"}, {"type": "number"}]}
 
 
-def _named(amounts: dict[str, Any]) -> dict[str, Any]:
+def _amounts_by_name(amounts: dict[str, Any]) -> dict[str, Any]:
     for name in amounts:
         if name in FACTS or name in (SLOW_STROKE, *DIMENSIONS, *ARGUMENTS):
             raise InputError(f"an amount must have a unique name; got {name}; choose another name")
@@ -45,7 +45,7 @@ def _named(amounts: dict[str, Any]) -> dict[str, Any]:
     return amounts
 
 
-Amounts = Annotated[dict[str, Annotated[Any, _Read(RATIO)]], AfterValidator(_named)]
+Amounts = Annotated[dict[str, Annotated[Any, _Read(RATIO)]], AfterValidator(_amounts_by_name)]
 """Amounts of an option by name."""
 
 

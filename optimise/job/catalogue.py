@@ -117,14 +117,14 @@ def read_catalogue(
     Raises JobError, naming row, column and remedy.
     """
     try:
-        return _catalogue(read_table(text, file_name), custom_names, tables, name)
+        return _read_catalogue(read_table(text, file_name), custom_names, tables, name)
     except JobError:
         raise
     except InputError as error:
         raise JobError(str(error)) from None
 
 
-def _catalogue(
+def _read_catalogue(
     table: TableFile, custom_names: frozenset[str], tables: Mapping[str, Any] | None, name: str
 ) -> Catalogue:
     file_name = table.name
@@ -146,7 +146,9 @@ def _catalogue(
             "leave out rows that you would not buy, or columns that do not matter"
         )
     return Catalogue(
-        options=[_option(filled_columns, cells[row], searched=row in screening.searched) for row in screening.order],
+        options=[
+            _option_of_row(filled_columns, cells[row], searched=row in screening.searched) for row in screening.order
+        ],
         rows=len(table),
         understood=table.understood([0, *(column.place for column in filled_columns)]),
         name=name,
@@ -214,7 +216,7 @@ def _require_given(columns: Sequence[Column], name: str, tables: Mapping[str, An
                 raise JobError(f"{name}, column {quote(column.header)}: {unknown_path(column.name, tables)}") from None
 
 
-def _option(columns: Sequence[Column], row: Sequence[str], *, searched: bool) -> dict[str, Any]:
+def _option_of_row(columns: Sequence[Column], row: Sequence[str], *, searched: bool) -> dict[str, Any]:
     option: dict[str, Any] = {"name": row[0]}
     for column in columns:
         cell = row[column.place]

@@ -86,7 +86,7 @@ def columns_of(header: Sequence[str], name: str, custom_names: frozenset[str]) -
         if text.startswith("#"):
             continue
         column_name = f"{name}, column {quote(text)}"
-        column = _column(place, text, column_name, custom_names)
+        column = _read_column(place, text, column_name, custom_names)
         same = next(
             (earlier for earlier in columns if (earlier.name, earlier.word) == (column.name, column.word)), None
         )
@@ -101,19 +101,19 @@ def columns_of(header: Sequence[str], name: str, custom_names: frozenset[str]) -
     return columns
 
 
-def _column(place: int, text: str, column_name: str, custom_names: frozenset[str]) -> Column:
+def _read_column(place: int, text: str, column_name: str, custom_names: frozenset[str]) -> Column:
     parts = _COLUMN.fullmatch(text)
     if parts is None:
         raise JobError(f"{column_name}: {_RULE}; a column that begins with # is skipped")
     name, word, unit = parts["name"].strip(), parts["word"], (parts["unit"] or parts["other"] or "").strip()
     if word is not None:
         try:
-            name, kind = _limited(
-                name if name in custom_names else _quantities().get(identifier(name), name), custom_names
+            name, kind = _limited_quantity(
+                name if name in custom_names else _quantity_names().get(identifier(name), name), custom_names
             )
         except InputError as error:
             key = identifier(name)
-            if not re.fullmatch(r"[\w -]+", name) or closest(key, (*_quantities(), *custom_names)) is not None:
+            if not re.fullmatch(r"[\w -]+", name) or closest(key, (*_quantity_names(), *custom_names)) is not None:
                 raise JobError(f"{column_name}: {error}") from None
             raise JobError(
                 f"{column_name}: a limit must be on a quantity; got {quote(name)}, which is not one; name the column "
@@ -124,7 +124,7 @@ def _column(place: int, text: str, column_name: str, custom_names: frozenset[str
         return Column(place, text, name, word, unit, kind)
     if _PATH.fullmatch(name):
         return Column(place, text, name, None, unit)
-    quantity = FACTS.get(_quantities().get(identifier(name), ""))
+    quantity = FACTS.get(_quantity_names().get(identifier(name), ""))
     if quantity is not None and not _GIVEN & set(quantity.offered):
         _require_unit(unit, quantity.kind, column_name, text)
         return Column(
@@ -141,7 +141,7 @@ def identifier(text: str) -> str:
 
 
 @cache
-def _quantities() -> dict[str, str]:
+def _quantity_names() -> dict[str, str]:
     """Return the quantities by their names, and by their titles as such."""
     return {identifier(quantity.title): name for name, quantity in FACTS.items()} | {name: name for name in FACTS}
 
@@ -157,7 +157,7 @@ def _require_amount_name(text: str, name: str, unit: str, column_name: str, cust
             f"{column_name}: min, max or equals must follow the quantity, in lower case; write {limited} "
             f"{word}{unit_text}"
         )
-    quantity_name = _quantities().get(identifier(name), name)
+    quantity_name = _quantity_names().get(identifier(name), name)
     if quantity_name in FACTS or quantity_name in custom_names:
         raise JobError(
             f"{column_name}: a quantity needs min, max or equals; got none; write {quantity_name} max{unit_text} for "
@@ -170,7 +170,7 @@ def _require_amount_name(text: str, name: str, unit: str, column_name: str, cust
         )
     for formula in (name, text):  # text: the brackets at its end may be those of a function
         if _is_known(formula, custom_names):
-            limited, _ = _limited(formula, custom_names)
+            limited, _ = _limited_quantity(formula, custom_names)
             raise JobError(
                 f"{column_name}: a formula needs min, max or equals; got none; write {limited} max for its limit"
             )
@@ -178,11 +178,11 @@ def _require_amount_name(text: str, name: str, unit: str, column_name: str, cust
     if not key or not (name[0].isalpha() and key[0].isalpha()) or len(key) > LONGEST_NAME:
         raise JobError(f"{column_name}: {_RULE}; got neither; rename it, or let it begin with # to skip it")
     peak = f"peak_{identifier(misplaced['after'] or '')}" if misplaced is not None else ""
-    near = [peak] if peak in _quantities() else difflib.get_close_matches(key, _quantities(), n=1, cutoff=_NEAR)
+    near = [peak] if peak in _quantity_names() else difflib.get_close_matches(key, _quantity_names(), n=1, cutoff=_NEAR)
     if near:
         raise JobError(
             f"{column_name}: must be the name of a quantity, or a name unlike any; did you mean "
-            f"{_quantities()[near[0]]}? "
+            f"{_quantity_names()[near[0]]}? "
             "rename it, or let it begin with # to skip it"
         )
 
@@ -190,12 +190,12 @@ def _require_amount_name(text: str, name: str, unit: str, column_name: str, cust
 def _is_known(text: str, custom_names: frozenset[str]) -> bool:
     """Return whether a text is a quantity or a formula."""
     try:
-        return bool(_limited(text, custom_names))
+        return bool(_limited_quantity(text, custom_names))
     except InputError:
         return False
 
 
-def _limited(text: str, custom_names: frozenset[str]) -> tuple[str, Kind | None]:
+def _limited_quantity(text: str, custom_names: frozenset[str]) -> tuple[str, Kind | None]:
     """Return quantity or formula of a limit, as a job writes it, and its kind if known here.
 
     That of the job's own quantities and of numbers that vary the job knows. Raises InputError.

@@ -38,7 +38,7 @@ class _Request:
     bound: float | None = None
 
 
-def _requests(tables: Mapping[str, Any], columns: Sequence[Column]) -> dict[str, _Request]:
+def _requirements_on_amounts(tables: Mapping[str, Any], columns: Sequence[Column]) -> dict[str, _Request]:
     """Return the requirements of a job on the amounts of a catalogue."""
     objectives, constraints, quantity_tables = (
         table_in(tables, name) for name in ("objectives", "constraints", "quantity")
@@ -99,7 +99,7 @@ def screened(
     columns: with cells that are checked. rows: cells. tables: of the job, which say what is asked for. file_name: what
     messages begin with. Raises JobError if no row has all that is asked for.
     """
-    requests, constraints = _requests(tables, columns), table_in(tables, "constraints")
+    requests, constraints = _requirements_on_amounts(tables, columns), table_in(tables, "constraints")
     fixed, costs = list[Array](), list[Array]()
     compared = list[str]()
     blanks, exclusions = dict[int, str](), dict[int, str]()
@@ -114,7 +114,7 @@ def screened(
         if request is not None:
             blank_reason = f"no {column.name.replace('_', ' ')}, which the job requires"
             blanks |= dict.fromkeys(np.flatnonzero(blank).tolist(), blank_reason)
-            exclusions |= _exclusions(table_in(constraints, column.name), column, values, rows)
+            exclusions |= _excluded_rows(table_in(constraints, column.name), column, values, rows)
             floor = -math.inf if request.bound is None else request.way * request.bound
             (costs if request.way else fixed).append(np.maximum(request.way * values, floor) if request.way else values)
         elif column.word is not None and column.monotone:
@@ -128,18 +128,18 @@ def screened(
     if not complete.any():
         names = " and ".join(requests)
         raise JobError(f"{file_name} must have a row with {names}, which the job requires; got none; fill the cells")
-    order = _order(columns, rows)
+    order = _order_rows(columns, rows)
     rank = np.empty(len(rows))
     rank[order] = np.arange(len(rows))
-    groups, tight = _groups(fixed, len(rows)), _side_by_side(costs, len(rows))
+    groups, tight = _row_groups(fixed, len(rows)), _side_by_side(costs, len(rows))
     least = np.column_stack([tight, rank])
     searched, named, lost = list[int](), list[int](), dict[int, int]()
     for group in range(int(groups.max()) + 1):
         group_rows = order[(groups == group)[order]]
         complete_rows = group_rows[complete[group_rows]]
-        best = complete_rows[_unbeaten(tight[complete_rows])]
+        best = complete_rows[_undominated_rows(tight[complete_rows])]
         searched += best.tolist()
-        named += complete_rows[_unbeaten(least[complete_rows])].tolist()
+        named += complete_rows[_undominated_rows(least[complete_rows])].tolist()
         for row in np.setdiff1d(complete_rows, best).tolist():
             lost[row] = int(best[(tight[best] <= tight[row]).all(axis=1)][0])
     return Screened(
@@ -152,7 +152,9 @@ def screened(
     )
 
 
-def _exclusions(bounds: Mapping[str, Any], column: Column, values: Array, rows: Sequence[list[str]]) -> dict[int, str]:
+def _excluded_rows(
+    bounds: Mapping[str, Any], column: Column, values: Array, rows: Sequence[list[str]]
+) -> dict[int, str]:
     """Return which rows have an amount beyond the job's own constraints on it, each with the reason in words.
 
     values: of the amount, SI.
@@ -180,7 +182,7 @@ def _limit_cost(bounds: Mapping[str, Any], column: Column, side: float) -> float
     return max((side * bound for bound in limits if bound is not None), default=-math.inf)
 
 
-def _order(columns: Sequence[Column], rows: Sequence[list[str]]) -> IntArray:
+def _order_rows(columns: Sequence[Column], rows: Sequence[list[str]]) -> IntArray:
     """Return the rows, the least first: by price, mass and limits, the tighter first, as far as there are columns.
 
     A blank price, mass or limit comes last, and of equal rows the first one first.
@@ -199,14 +201,14 @@ def _side_by_side(columns: Sequence[Array], count: int) -> Array:
     return np.stack(columns, axis=1) if columns else np.zeros((count, 0))
 
 
-def _groups(columns: Sequence[Array], count: int) -> IntArray:
+def _row_groups(columns: Sequence[Array], count: int) -> IntArray:
     """Return a number of each row that rows have in common which are equal in some columns."""
     if not columns:
         return np.zeros(count, np.int64)
     return np.asarray(np.unique(_side_by_side(columns, count), axis=0, return_inverse=True)[1].ravel(), np.int64)
 
 
-def _unbeaten(costs: Array) -> IntArray:
+def _undominated_rows(costs: Array) -> IntArray:
     """Return the rows (n, k) that none dominates; of equal ones the first."""
     from ..front.dominance import nondominated  # brings what computes
 

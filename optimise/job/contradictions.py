@@ -80,12 +80,12 @@ def _require_one_density(problem: Problem) -> None:
 
 def _require_delivery(problem: Problem) -> None:
     """Refuse compressors whose clearance volume is so large that no stroke of the ranges delivers, in every variant."""
-    reasons = [_undelivered(part) for part in problem.parts()]
+    reasons = [_why_nothing_delivered(part) for part in problem.parts()]
     if reasons and all(reasons):
         raise InfeasibleError(reasons[0])
 
 
-def _undelivered(part: Problem) -> str:
+def _why_nothing_delivered(part: Problem) -> str:
     """Return why a compressor of a problem without choices delivers in no design, or "".
 
     What is left in the clearance must not fill the swept volume once it has expanded to the suction pressure. A stroke

@@ -117,7 +117,7 @@ class CrankSpeedPart(Part):
                 f"only one of {', '.join(SPEED_KEYS)} may set the crank speed; got {' and '.join(self.speed_keys)}; "
                 "leave out all but one"
             )
-        if self.speed is not None and self.direction not in (None, _direction(self.speed)):
+        if self.speed is not None and self.direction not in (None, _direction_of_speed(self.speed)):
             raise InputError(
                 "the sign of speed must match direction, positive counter-clockwise; got "
                 f'{_RPM * self.speed:.6g} rpm and direction = "{self.direction}"; give speed = '
@@ -136,8 +136,8 @@ class CrankSpeedPart(Part):
             )
         way = self.direction or "counter-clockwise"
         profile = None if self.speed_profile is None else self.speed_profile.build()
-        if isinstance(profile, SpeedTable) and _direction(profile.mean) != way:
-            table_direction = _direction(profile.mean)
+        if isinstance(profile, SpeedTable) and _direction_of_speed(profile.mean) != way:
+            table_direction = _direction_of_speed(profile.mean)
             raise InputError(
                 "speeds of speed_profile must have the sign of the direction, positive counter-clockwise; got "
                 f'{_RPM * profile.speeds[0]:.6g} rpm, {table_direction}, with direction = "{way}"; give direction = '
@@ -146,5 +146,5 @@ class CrankSpeedPart(Part):
             )
 
 
-def _direction(speed: float) -> Direction:
+def _direction_of_speed(speed: float) -> Direction:
     return "clockwise" if speed < 0.0 else "counter-clockwise"

@@ -75,10 +75,10 @@ class Curve:
 def curve_in(table: TableFile, argument_kinds: Sequence[Kind], value_kinds: Sequence[Kind]) -> Curve:
     """Return the curve of a table's columns with units of some kinds. Raises `InputError` for none or several."""
     kinds = (*argument_kinds, *value_kinds)
-    heads = [head for place, text in enumerate(table.heads) if (head := _head(place, text, kinds)) is not None]
+    heads = [head for place, text in enumerate(table.heads) if (head := _read_heading(place, text, kinds)) is not None]
     if not heads and len(table.heads) == 2:
         columns = list(zip(table.heads, (argument_kinds, value_kinds), strict=True))
-        likely = [next((kind for kind in kinds if _names(text, kind)), kinds[0]) for text, kinds in columns]
+        likely = [next((kind for kind in kinds if _names_kind(text, kind)), kinds[0]) for text, kinds in columns]
         example = ",".join(f"{text} ({kind.metric.symbol})" for text, kind in zip(table.heads, likely, strict=True))
         raise InputError(
             f"{table.name}: the columns have no units; got {', '.join(map(quote, table.heads))}; write, for example, "
@@ -99,21 +99,24 @@ def curve_in(table: TableFile, argument_kinds: Sequence[Kind], value_kinds: Sequ
     if len(arguments) < 2:
         raise InputError(f"{table.name} must have at least two points; got {len(arguments)}; add rows")
     curve = Curve(table.name, x, y, arguments, values, (table.understood([x.place, y.place]),))
-    return _rising(curve, table) if x.kind is not TIME else curve
+    return _in_rising_order(curve, table) if x.kind is not TIME else curve
 
 
-def _head(place: int, text: str, kinds: Sequence[Kind]) -> Head | None:
+def _read_heading(place: int, text: str, kinds: Sequence[Kind]) -> Head | None:
     """Return the meaning of a head by its unit; None without one of some kinds. Of several units the name decides."""
     if text.startswith("#"):
         return None
     meanings = [
-        (kind, unit) for text_unit in _units(text) for kind in kinds if (unit := symbol_in(text_unit, kind)) is not None
+        (kind, unit)
+        for text_unit in _units_in(text)
+        for kind in kinds
+        if (unit := symbol_in(text_unit, kind)) is not None
     ]
-    named = [meaning for meaning in meanings if _names(text, meaning[0])]
+    named = [meaning for meaning in meanings if _names_kind(text, meaning[0])]
     return Head(place, text, *(named or meanings)[0]) if meanings else None
 
 
-def _units(text: str) -> list[str]:
+def _units_in(text: str) -> list[str]:
     """Return possible units in a heading, the likeliest first: text in brackets, then words at its end."""
     words = re.split(r"[\s_,:]+|\s/\s", _BRACKETS.sub("", text).strip())
     endings = [" ".join(words[n:]) for n in range(1, len(words))]
@@ -121,13 +124,13 @@ def _units(text: str) -> list[str]:
     return [without_in(unit) for unit in units]
 
 
-def _names(text: str, kind: Kind) -> bool:
+def _names_kind(text: str, kind: Kind) -> bool:
     return kind.plain.split()[-1] in text.casefold()
 
 
 def _require_kind(table: TableFile, head: Head, kinds: Sequence[Kind]) -> None:
     """Raise `InputError` for a head whose name says another kind than its unit."""
-    named = [kind for kind in kinds if _names(head.text, kind)]
+    named = [kind for kind in kinds if _names_kind(head.text, kind)]
     if named and head.kind not in named:
         raise InputError(
             f"{table.name}, column {quote(head.text)}: must have the unit of {named[0].name}, as its name says; got "
@@ -135,11 +138,11 @@ def _require_kind(table: TableFile, head: Head, kinds: Sequence[Kind]) -> None:
         )
 
 
-def _remedy(heads: Sequence[str], kinds: Sequence[Kind]) -> str:
+def _heading_remedy(heads: Sequence[str], kinds: Sequence[Kind]) -> str:
     """Return the remedy for headings without a unit: correct a misspelt one, or add one."""
     words = {squeezed(unit).casefold(): unit for kind in kinds for unit in (*kind.typed, kind.metric.symbol)}
     words |= {"grad": ANGLE.metric.symbol} if ANGLE in kinds else {}
-    for unit in (unit for head in heads if not head.startswith("#") for unit in _units(head)):
+    for unit in (unit for head in heads if not head.startswith("#") for unit in _units_in(head)):
         if intended_unit := words.get(squeezed(unit).casefold()):
             return f"the unit {quote(unit)} is not known; write {intended_unit}"
     return "name the unit"
@@ -147,7 +150,7 @@ def _remedy(heads: Sequence[str], kinds: Sequence[Kind]) -> str:
 
 def _only_head(table: TableFile, heads: list[Head], kinds: Sequence[Kind]) -> Head:
     """Return the only one of some columns, or of several of one kind the only one that names it."""
-    named = [head for head in heads if _names(head.text, head.kind)]
+    named = [head for head in heads if _names_kind(head.text, head.kind)]
     candidates = named if len(named) == 1 and len({head.kind for head in heads}) == 1 else heads
     if len(candidates) == 1:
         return candidates[0]
@@ -156,7 +159,7 @@ def _only_head(table: TableFile, heads: list[Head], kinds: Sequence[Kind]) -> He
     if not candidates:
         raise InputError(
             f"{rule}, with its unit in brackets or at the end of its name; got "
-            f"{', '.join(map(quote, table.heads[:6]))}; " + _remedy(table.heads, kinds)
+            f"{', '.join(map(quote, table.heads[:6]))}; " + _heading_remedy(table.heads, kinds)
         )
     raise InputError(
         f"{rule}; got {' and '.join(quote(head.text) for head in candidates[:3])}; let the names of the others begin "
@@ -164,7 +167,7 @@ def _only_head(table: TableFile, heads: list[Head], kinds: Sequence[Kind]) -> He
     )
 
 
-def _rising(curve: Curve, table: TableFile) -> Curve:
+def _in_rising_order(curve: Curve, table: TableFile) -> Curve:
     """Return a curve whose places go up: turned round where they go down, over full turns where they begin again."""
     at, values, notes = curve.arguments, curve.values, curve.notes
     steps = np.diff(at)

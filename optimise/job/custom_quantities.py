@@ -34,7 +34,7 @@ from .raw_tables import options_in, table_in
 from .values import Part, Physical, optional, required
 
 
-def _function(text: str) -> str:
+def _check_function(text: str) -> str:
     if not FUNCTION.fullmatch(text):
         raise InputError(
             f'must name a module and a function in it; got {quote(text)}; write it like "mymodule:myfunction", or '
@@ -43,7 +43,7 @@ def _function(text: str) -> str:
     return text
 
 
-def _unit(text: str) -> str:
+def _check_unit(text: str) -> str:
     try:
         kind_for(text)
     except InputError as error:
@@ -68,10 +68,10 @@ Title = Annotated[str, Field(max_length=60), AfterValidator(require_one_line)]
 class FunctionPart(Part):
     """A Python function as a quantity; its name then stands in [objectives] and [constraints] like any other."""
 
-    function: Annotated[str, Field(max_length=200), AfterValidator(_function)] = required(
+    function: Annotated[str, Field(max_length=200), AfterValidator(_check_function)] = required(
         "module:function; the module lies beside the job file or is installed", "mymodule:greatest_jerk"
     )
-    unit: Annotated[str, Field(max_length=30), AfterValidator(_unit)] = optional(
+    unit: Annotated[str, Field(max_length=30), AfterValidator(_check_unit)] = optional(
         'display unit; the function returns SI; "" for a ratio', "m/s^3", default=""
     )
     title: Title | None = optional("title; default the name", "greatest jerk of the slider")
@@ -105,7 +105,7 @@ class FormulaPart(Part):
         "offset - crank",
     )
     title: Title | None = optional("title; default the name", "clearance beside the crank")
-    unit: Annotated[str, Field(max_length=30), AfterValidator(_unit)] | None = optional(
+    unit: Annotated[str, Field(max_length=30), AfterValidator(_check_unit)] | None = optional(
         "display unit; default the usual one of its kind", "mm"
     )
 
@@ -172,7 +172,7 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
     Lenient otherwise: what is wrong in a declaration the validation of the job says.
     """
     parts = data.get("quantity", {})
-    names = _formulas(parts)
+    names = _formula_names(parts)
     if parts and not allowed and len(names) < len(parts):
         raise JobError(
             f"quantity: custom functions are not run here; got {quote(parts)}; leave the table out, or have them "
@@ -190,14 +190,14 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
             kind = kind_for("")
         is_taken = name in FACTS or name == SLOW_STROKE
         if not is_taken and name.isidentifier() and not name.startswith("_"):
-            tables[name] = _stated(name.replace("_", " "), kind)
+            tables[name] = _stated_quantity(name.replace("_", " "), kind)
     tables |= {
-        name: _stated(name.replace("_", " "), kind)
+        name: _stated_quantity(name.replace("_", " "), kind)
         for name, kind in kinds_of_amounts(amounts_in(data)).items()
         if name not in FACTS and name != SLOW_STROKE and name.isidentifier() and not name.startswith("_")
     }
     limits = (table_in(part, "constraints") for part in (data, *options_in(data)))
-    requested = [name for table in (table_in(data, "objectives"), *limits) for name in _names(table)]
+    requested = [name for table in (table_in(data, "objectives"), *limits) for name in _used_names(table)]
     requested += [word for name in names for word in words_of(parts[name]["formula"])]
     known_names = {*FACTS, *tables, *names, *DIMENSIONS, SLOW_STROKE}
     # Formulas stand among the names; looking for packages takes longer than reading a job.
@@ -205,11 +205,11 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
     packages = quantity_entry_points() if unknown else {}
     installed_quantities = tuple(installed(name) for name in unknown if name in packages)
     for quantity in installed_quantities:
-        tables[quantity.name] = _stated(quantity.title, kind_for(quantity.unit.symbol))
+        tables[quantity.name] = _stated_quantity(quantity.title, kind_for(quantity.unit.symbol))
     return Declared(tables, installed_quantities, names)
 
 
-def _formulas(parts: object) -> tuple[str, ...]:
+def _formula_names(parts: object) -> tuple[str, ...]:
     """Return the names of those parts that are formulas and nothing else."""
     entries = parts.items() if isinstance(parts, Mapping) else ()
     return tuple(
@@ -219,11 +219,11 @@ def _formulas(parts: object) -> tuple[str, ...]:
     )
 
 
-def _stated(title: str, kind: Kind) -> Stated:
+def _stated_quantity(title: str, kind: Kind) -> Stated:
     return Stated(title, kind, kind.example if kind.unit else float(kind.example))
 
 
-def _names(table: Mapping[str, Any]) -> Iterator[str]:
+def _used_names(table: Mapping[str, Any]) -> Iterator[str]:
     """Yield the names in the keys and the bounds of a table, those in formulas too."""
     for key, value in table.items():
         yield from words_of(key)

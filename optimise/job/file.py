@@ -36,7 +36,7 @@ def read(path: Path) -> dict[str, Any]:
         raise JobError(
             f"the name of a job file must end in .toml or .json; got {quote(path.suffix or path.name)}; rename the file"
         )
-    content = _bytes(path)
+    content = _read_bytes(path)
     if b"\0" in content:
         raise JobError("a job file must be plain UTF-8 text; got a binary or UTF-16 file; save it as UTF-8")
     try:
@@ -49,10 +49,10 @@ def read(path: Path) -> dict[str, Any]:
         ) from None
     if not text.strip():
         raise JobError("a job file must not be empty; got an empty file; start from an example")
-    return _tables(text, path.suffix.casefold())
+    return _parse_tables(text, path.suffix.casefold())
 
 
-def _bytes(path: Path) -> bytes:
+def _read_bytes(path: Path) -> bytes:
     """Return the content of a regular file of moderate size."""
     try:
         status = path.stat()
@@ -76,11 +76,11 @@ def _bytes(path: Path) -> bytes:
         raise JobError(f"the file cannot be read: {error}") from None
 
 
-def _tables(text: str, suffix: str) -> dict[str, Any]:
+def _parse_tables(text: str, suffix: str) -> dict[str, Any]:
     if suffix == ".toml":
         return toml_tables(text)
     try:
-        data = json.loads(text, object_pairs_hook=_unique)
+        data = json.loads(text, object_pairs_hook=_object_without_duplicates)
     except RecursionError:
         raise _too_deep() from None
     except JobError:
@@ -128,7 +128,7 @@ def _too_long() -> JobError:
     return JobError("a number must have a few digits only; got thousands; shorten it")
 
 
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+def _object_without_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """Return an object, refusing a key that comes twice: JSON would silently keep the last."""
     table = dict(pairs)
     if len(table) < len(pairs):

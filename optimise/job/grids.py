@@ -70,7 +70,7 @@ def read_grid(table: Mapping[str, Any], read: Callable[[object], float]) -> Grid
             '{ min = "20 mm", max = "60 mm", step = "0.5 mm" }, or a range without steps like ["20 mm", "60 mm"]'
         )
     if words == ["values"]:
-        return _listed(table, read)
+        return _grid_of_list(table, read)
     for end in ("min", "max"):
         if end not in table:
             raise InputError(f"must have min and max with {words[0]}; {end} is missing; add it")
@@ -81,7 +81,7 @@ def read_grid(table: Mapping[str, Any], read: Callable[[object], float]) -> Grid
             f"{swap(table['min'], table['max'])}"
         )
     rounding = _ROUNDING * max(abs(lower), abs(upper))
-    expand = _multiples if words == ["step"] else _preferred
+    expand = _grid_of_multiples if words == ["step"] else _grid_of_preferred_numbers
     values, rule = expand(table, read, lower - rounding, upper + rounding)
     if not values:
         raise InputError(
@@ -91,7 +91,7 @@ def read_grid(table: Mapping[str, Any], read: Callable[[object], float]) -> Grid
     return Grid(tuple(values), rule)
 
 
-def _listed(table: Mapping[str, Any], read: Callable[[object], float]) -> Grid:
+def _grid_of_list(table: Mapping[str, Any], read: Callable[[object], float]) -> Grid:
     if len(table) > 1:
         raise InputError("a list of values must not have min or max; got them; leave them out")
     values = table["values"]
@@ -109,7 +109,7 @@ def _listed(table: Mapping[str, Any], read: Callable[[object], float]) -> Grid:
     return Grid(tuple(numbers), f"one of {len(numbers)} values")
 
 
-def _multiples(
+def _grid_of_multiples(
     table: Mapping[str, Any], read: Callable[[object], float], lower: float, upper: float
 ) -> tuple[list[float], str]:
     try:
@@ -138,7 +138,7 @@ def step_of(value: object, read: Callable[[object], float]) -> float:
     return read(value)
 
 
-def _preferred(
+def _grid_of_preferred_numbers(
     table: Mapping[str, Any], read: Callable[[object], float], lower: float, upper: float
 ) -> tuple[list[float], str]:
     name = table["series"]
@@ -149,7 +149,7 @@ def _preferred(
             f"preferred numbers must be above zero; got min {quote(table['min'])}; raise it, or give the values as a "
             "list"
         )
-    number, unit = _parts(table["min"])
+    number, unit = _number_and_unit_text(table["min"])
     # The unit in SI, without the rounding of the division.
     factor = Decimal(f"{read(table['min']) / float(number):.15g}")
     first, last = (math.floor(math.log10(end / float(factor))) for end in (lower, upper))
@@ -158,7 +158,7 @@ def _preferred(
     return values, f"{name} in {unit or 'SI'}"
 
 
-def _parts(value: object) -> tuple[Decimal, str]:
+def _number_and_unit_text(value: object) -> tuple[Decimal, str]:
     """Return number and unit of a value; a plain number has none."""
     parts = _NUMBER.fullmatch(value) if isinstance(value, str) else None
     return (Decimal(str(value)), "") if parts is None else (Decimal(parts[1]), parts[2])

@@ -53,7 +53,9 @@ class StatedFormula:
 def formula_names(tables: Mapping[str, Any]) -> list[FormulaName]:
     """Return the names that formulas may have in this job alone: its own quantities, and the numbers that vary."""
     kinds = _Kinds(tables)
-    names = [FormulaName(name, _title(name, part), kinds.quantity_kind(name)) for name, part in kinds.stated.items()]
+    names = [
+        FormulaName(name, _part_title(name, part), kinds.quantity_kind(name)) for name, part in kinds.stated.items()
+    ]
     names += [FormulaName(name, name.replace("_", " "), kind) for name, kind in kinds.amounts.items()]
     return [*names, *(FormulaName(path, number_in_words(path), kind) for path, kind in kinds.varying)]
 
@@ -64,17 +66,17 @@ def stated_formulas(tables: Mapping[str, Any]) -> list[StatedFormula]:
     Only the units are checked here, and the names: ranges and the machine may be missing still.
     """
     kinds = _Kinds(tables)
-    return [_read(key, text, kinds) for key, text in islice(_formulas(tables, kinds), _MOST)]
+    return [_read_formula(key, text, kinds) for key, text in islice(_stated_formulas(tables, kinds), _MOST)]
 
 
-def _read(key: str, text: str, kinds: _Kinds) -> StatedFormula:
+def _read_formula(key: str, text: str, kinds: _Kinds) -> StatedFormula:
     try:
         return StatedFormula(key, kinds.formula_kind(text), None)
     except InputError as error:
         return StatedFormula(key, None, str(error))
 
 
-def _formulas(tables: Mapping[str, Any], kinds: _Kinds) -> Iterator[tuple[str, str]]:
+def _stated_formulas(tables: Mapping[str, Any], kinds: _Kinds) -> Iterator[tuple[str, str]]:
     for name, part in kinds.stated.items():
         if isinstance(part.get("formula"), str):
             yield key_of(["quantity", name, "formula"]), part["formula"]
@@ -90,7 +92,7 @@ def _formulas(tables: Mapping[str, Any], kinds: _Kinds) -> Iterator[tuple[str, s
                     yield key_of([table, name, word]), bound
 
 
-def _title(name: str, part: Mapping[str, Any]) -> str:
+def _part_title(name: str, part: Mapping[str, Any]) -> str:
     title = part.get("title")
     return title if isinstance(title, str) and title.strip() else name.replace("_", " ")
 

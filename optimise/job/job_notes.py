@@ -47,7 +47,7 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
         notes.append(
             'masses are given but no gravity, so that nothing weighs; add gravity = "9.81 m/s^2", or gravity = 0'
         )
-    notes += _pins(job)
+    notes += _pin_notes(job)
     if job.motion.build() is not None:
         notes += [
             f"mechanism.{key}: a swing is set by [motion] instead; leave out the {words}"
@@ -112,7 +112,7 @@ def sources_of(data: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def _pins(job: Job) -> list[str]:
+def _pin_notes(job: Job) -> list[str]:
     """Return notes on pins that rub at another radius than [sections] has them, or that vary while that stays."""
     notes: list[str] = []
     if job.sections is None:

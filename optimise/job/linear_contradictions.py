@@ -43,13 +43,13 @@ def require_compatible(problem: Problem) -> None:
     is_possible: dict[tuple[object, ...], bool] = {}
     parts = problem.parts()
     for part in parts:
-        sides = [(sign, *_programme(part, sign)) for sign, _ in signs(part)]
+        sides = [(sign, *_linear_rows(part, sign)) for sign, _ in signs(part)]
         if not sides or any(not rows for _, rows, _ in sides):
             return
         for sign, rows, ends in sides:
             key = (sign, tuple(rows), tuple(ends.items()))
             if key not in is_possible:
-                is_possible[key] = _possible(rows, ends, turning=problem.motion is None)
+                is_possible[key] = _has_common_point(rows, ends, turning=problem.motion is None)
             if is_possible[key]:
                 return
     raise InfeasibleError(_conflict_text(parts[0]))
@@ -57,12 +57,12 @@ def require_compatible(problem: Problem) -> None:
 
 def _conflict_text(part: Problem) -> str:
     """Return which requirements of a problem exclude each other, as few as do on either sign of the offset."""
-    sides = [_programme(part, sign) for sign, _ in signs(part)]
+    sides = [_linear_rows(part, sign) for sign, _ in signs(part)]
     names = list(dict.fromkeys(row.name for rows, _ in sides for row in rows))
     for name in list(names):
         fewer = [rest for rest in names if rest != name]
         if fewer and not any(
-            _possible([row for row in rows if row.name in fewer], ends, turning=part.motion is None)
+            _has_common_point([row for row in rows if row.name in fewer], ends, turning=part.motion is None)
             for rows, ends in sides
         ):
             names = fewer
@@ -79,7 +79,7 @@ def _conflict_text(part: Problem) -> str:
         "" if side is None else f"; constraints.slow_stroke keeps the offset {'above' if side > 0.0 else 'below'} 0"
     )
     ever = any(
-        _possible([row for row in rows if row.name in names], ends | _ANY, turning=part.motion is None)
+        _has_common_point([row for row in rows if row.name in names], ends | _ANY, turning=part.motion is None)
         for rows, ends in sides
     )
     if len(names) == 1:
@@ -92,7 +92,7 @@ def _conflict_text(part: Problem) -> str:
     )
 
 
-def _programme(part: Problem, sign: float) -> tuple[list[_Row], dict[str, tuple[float, float]]]:
+def _linear_rows(part: Problem, sign: float) -> tuple[list[_Row], dict[str, tuple[float, float]]]:
     """Return the linear requirements on one sign of the offset, if a formula is among them, and the ranges."""
     sizes = next(sizes for side, sizes in signs(part) if side == sign)
     ends = {
@@ -106,10 +106,10 @@ def _programme(part: Problem, sign: float) -> tuple[list[_Row], dict[str, tuple[
         if item.equality and item.lower is not None
     }
     rows = [_Row(name, row, True) for name, row in linear_equations(equalities, sign).items()]
-    return [*rows, *_bounds(part, sign)], ends
+    return [*rows, *_formula_bounds(part, sign)], ends
 
 
-def _bounds(part: Problem, sign: float) -> Iterator[_Row]:
+def _formula_bounds(part: Problem, sign: float) -> Iterator[_Row]:
     """Yield least and greatest values of linear formulas; quotients would need the sign of their divisors."""
     for item in part.constraints:
         quantity = part.quantity(item.quantity)
@@ -124,7 +124,7 @@ def _bounds(part: Problem, sign: float) -> Iterator[_Row]:
                 yield _Row(quantity.name, row if word == "max" else row.times(Fraction(-1)), False)
 
 
-def _possible(rows: Sequence[_Row], ends: dict[str, tuple[float, float]], *, turning: bool) -> bool:
+def _has_common_point(rows: Sequence[_Row], ends: dict[str, tuple[float, float]], *, turning: bool) -> bool:
     """Return whether some point of the ranges meets all rows, as far as a linear programme can tell."""
     from scipy.optimize import linprog
 

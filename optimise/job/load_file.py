@@ -27,13 +27,13 @@ def with_loads(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
     """Return a job with the points of its loads' files in place of the files. Raises `InputError`."""
     job = dict(data)
     if load_files(data):
-        job["load"] = [_filled(part, place, files, data) for place, part in enumerate(job["load"])]
+        job["load"] = [_fill_from_files(part, place, files, data) for place, part in enumerate(job["load"])]
     return job
 
 
-def _filled(part: Any, place: int, files: Files, data: Mapping[str, Any]) -> Any:
+def _fill_from_files(part: Any, place: int, files: Files, data: Mapping[str, Any]) -> Any:
     file = part.get("file") if isinstance(part, Mapping) else None
-    tables = {(_kind(at), _kind(value_entry)): table for table, at, value_entry in tables_of_points()}
+    tables = {(_kind_of_entry(at), _kind_of_entry(value_entry)): table for table, at, value_entry in tables_of_points()}
     if not isinstance(file, str):
         return part
     name = key_of(["load", place, "file"])
@@ -85,7 +85,7 @@ def tables_of_points() -> list[tuple[Table, Entry, Entry]]:
     return [(table, pair[0], pair[1]) for table, pair in pairs if len(pair) == 2]
 
 
-def _kind(entry: Entry) -> Kind:
+def _kind_of_entry(entry: Entry) -> Kind:
     """Return the kind of the values of an entry."""
     marked: Any = getattr(values, str(entry.kind))
     kind: Kind = marked.__metadata__[0].kind

@@ -62,9 +62,9 @@ class LoadPart(Checked[model.Load]):
         return super().build()
 
 
-def _part(table: model.Table) -> type[LoadPart]:
+def _part_of_table(table: model.Table) -> type[LoadPart]:
     """Return the table of a job file that a kind of load declares."""
-    fields: dict[str, Any] = {entry.name: (_type(entry), _field(entry)) for entry in table.entries}
+    fields: dict[str, Any] = {entry.name: (_entry_type(entry), _entry_field(entry)) for entry in table.entries}
     if any(entry.several for entry in table.entries):
         fields[SOURCE] = (values.Source, values.source())
     part = create_model(table.name, __base__=LoadPart, __doc__=table.help, **fields)
@@ -76,13 +76,13 @@ def _part(table: model.Table) -> type[LoadPart]:
     return part
 
 
-def _type(entry: model.Entry) -> Any:
+def _entry_type(entry: model.Entry) -> Any:
     item_type: Any = getattr(values, entry.kind) if isinstance(entry.kind, str) else Literal[entry.kind]
     several: Any = tuple.__class_getitem__((item_type, ...)) if entry.several else item_type
     return Annotated[several, WrapValidator(stepping)] if entry.increasing else several
 
 
-def _field(entry: model.Entry) -> Any:
+def _entry_field(entry: model.Entry) -> Any:
     shape: Any = {"min_length": 2, "max_length": MOST_POINTS} if entry.several else {}
     default = ... if entry.default is None else entry.default
     words = isinstance(default, str)
@@ -99,22 +99,22 @@ def _file_part() -> type[LoadPart]:
     file = optional("a table beside the job file: forces, torques or pressures, recognised by their units", "trace.csv")
     fields: dict[str, Any] = {"file": (Annotated[str, Field(max_length=200)], file)}
     for name, several in entries.items():
-        kind: Any = reduce(or_, map(_type, several)) | None
+        kind: Any = reduce(or_, map(_entry_type, several)) | None
         fields[name] = (kind, optional(several[0].description, several[0].example))
     part = create_model("FileLoad", __base__=LoadPart, __doc__="A load whose points are in a file.", **fields)
-    part.makes = staticmethod(_refused)
+    part.makes = staticmethod(_refuse_file)
     return part
 
 
-def _refused(file: str, **_: object) -> model.Load:
+def _refuse_file(file: str, **_: object) -> model.Load:
     raise unread_file_error(file, "points")
 
 
-PARTS = {table.key: _part(table) for kind in kinds() for table in kind.tables} | {"file": _file_part()}
+PARTS = {table.key: _part_of_table(table) for kind in kinds() for table in kind.tables} | {"file": _file_part()}
 """By the key that tells a kind of load, in the order in which kinds are told apart."""
 
 
-def _choice() -> str:
+def _load_kinds_text() -> str:
     """Return the kinds of load for messages, each by its required keys."""
     required = [
         [entry.name for entry in table.entries if entry.default is None] for kind in kinds() for table in kind.tables
@@ -124,7 +124,7 @@ def _choice() -> str:
 
 
 _SYNONYMS = {"resists": "opposes", "against": "opposes", "assists": "helps", "along": "helps"}
-_KINDS = Kinds(PARTS, _choice(), "give each its own [[load]]; loads add up", _SYNONYMS)
+_KINDS = Kinds(PARTS, _load_kinds_text(), "give each its own [[load]]; loads add up", _SYNONYMS)
 
 if TYPE_CHECKING:
     Load = LoadPart

@@ -90,7 +90,7 @@ def _one_way(value: object) -> object:
     return value
 
 
-def _way(value: object) -> str:
+def _way_text(value: object) -> str:
     if isinstance(value, Part):
         return "(by section)" if isinstance(value, SectionLink) else "(by mass)"
     return "(by section)" if isinstance(value, Mapping) and _SECTION & set(value) else "(by mass)"
@@ -98,7 +98,7 @@ def _way(value: object) -> str:
 
 AnyLink = Annotated[
     Annotated[SectionLink, Tag("(by section)")] | Annotated[MassLink, Tag("(by mass)")],
-    Discriminator(_way),
+    Discriminator(_way_text),
     BeforeValidator(_one_way),
 ]
 
@@ -217,7 +217,7 @@ class MechanismPart(CrankSpeedPart):
         return axial, lateral
 
 
-def _part(ends: tuple[float, float]) -> tuple[float, float]:
+def _split_ends(ends: tuple[float, float]) -> tuple[float, float]:
     if not 0.0 <= ends[0] < ends[1] <= 1.0:
         raise InputError(
             "must be [start, end] with 0 <= start < end <= 1, fractions of the stroke from the "
@@ -248,7 +248,7 @@ class TolerancesPart(Part):
         "radial clearances of the joints", {"crank_pin": "0.02 mm"}, default=ClearancesPart()
     )
     during: During = optional("the stroke in which the position error counts", "cycle", default="cycle")
-    part_of_stroke: Annotated[tuple[Fraction, Fraction], AfterValidator(_part)] = optional(
+    part_of_stroke: Annotated[tuple[Fraction, Fraction], AfterValidator(_split_ends)] = optional(
         "part of the stroke in which the position error counts: fractions from the inner (0) to the outer dead centre "
         "(1)",
         [0.0, 0.25],

@@ -71,7 +71,7 @@ def explain(error: ValidationError, schema: Schema, tables: Mapping[str, Any] | 
         if details["type"] == "too_short" and details["loc"] in parents:
             continue  # a list that is too short for want of the entries that were refused
         if details["type"] == "extra_forbidden":
-            unknown[details["loc"]], near = _unknown(details["loc"], details["input"], schema)
+            unknown[details["loc"]], near = _unknown_key_message(details["loc"], details["input"], schema)
             explained.add(near)
         elif details["loc"][:-1] == ("constraints",) and details["input"] in _WISHES:
             unknown[details["loc"]] = f"{key_of(details['loc'])}: {sentence_of(details, schema)}"
@@ -85,7 +85,7 @@ def explain(error: ValidationError, schema: Schema, tables: Mapping[str, Any] | 
     for table in dict.fromkeys(loc[:-1] for loc in unknown):
         keys = [str(loc[-1]) for loc in unknown if loc[:-1] == table]
         keys.sort(key=list((tables or {}).get("constraints", keys) if table == ("constraints",) else keys).index)
-        owner = min(_owners(keys, schema), key=lambda one: one.strip("[]") not in missing, default="")
+        owner = min(_tables_with_keys(keys, schema), key=lambda one: one.strip("[]") not in missing, default="")
         if len(keys) > 1 and owner and owner.strip("[]") not in table:
             unknown = {loc: sentence for loc, sentence in unknown.items() if loc[:-1] != table}
             place = f"in {key_of(keys_of(table))}" if table else "at the top of the file"
@@ -124,14 +124,14 @@ def key_of(path: Sequence[object]) -> str:
     return text or "the job"
 
 
-def _unknown(loc: Sequence[Any], value: object, schema: Schema) -> tuple[str, str]:
+def _unknown_key_message(loc: Sequence[Any], value: object, schema: Schema) -> tuple[str, str]:
     """Return the message on an unknown key, and the key that was probably meant; "" if none is near.
 
     Of a table that comes in kinds, such as a load, only the keys of its own kind are possible.
     """
     table, key = loc[:-1], loc[-1]
     path = keys_of(table)
-    allowed = sorted(_properties(schema, table), key=FACTS.__contains__)  # a job's own quantities first
+    allowed = sorted(_possible_keys(schema, table), key=FACTS.__contains__)  # a job's own quantities first
     left_over = (
         f" and {len(allowed) - _MOST_KEYS} more, all in `slidercrank schema`" if len(allowed) > _MOST_KEYS else ""
     )
@@ -158,11 +158,11 @@ def place_of(key: str, schema: Schema) -> str:
     """Return in words where a key that its table does not have belongs; "" if no table has it either."""
     if key in schema["properties"] and not headings([key], schema):
         return f"{key} belongs above the first table of the file; move it there"
-    owners = _owners([key], schema)
+    owners = _tables_with_keys([key], schema)
     return f"it belongs in {' or '.join(owners)}; move it there" if owners else ""
 
 
-def _owners(keys: Sequence[str], schema: Schema) -> list[str]:
+def _tables_with_keys(keys: Sequence[str], schema: Schema) -> list[str]:
     """Return the headings of the tables that have all of some keys."""
     names = schema["properties"]
     return [
@@ -178,7 +178,7 @@ def headings(words: Sequence[str], schema: Schema) -> dict[str, set[str]]:
     (first, *rest), name = words, ".".join(words)
     tops: list[list[Any]] = [[first], [first, 0]] if rest else [[first]]
     places = [place for top in tops for place in ((f"[{name}]", [*top, *rest]), (f"[[{name}]]", [*top, *rest, 0]))]
-    return {heading: keys for heading, path in places if (keys := set(_properties(schema, path)))}
+    return {heading: keys for heading, path in places if (keys := set(_possible_keys(schema, path)))}
 
 
 def _kinds_with(key: str, schema: Schema, path: Sequence[Any]) -> list[str]:
@@ -199,14 +199,14 @@ def sentence_of(details: ErrorDetails, schema: Schema) -> str:
     if kind == "missing":
         return f"is missing, but required{write.replace('write', 'add')}"
     table = ".".join(str(key) for key in keys_of(path) if isinstance(key, str))
-    if kind in ("tuple_type", "list_type") and isinstance(value, Mapping) and _properties(schema, [*path, 0]):
+    if kind in ("tuple_type", "list_type") and isinstance(value, Mapping) and _possible_keys(schema, [*path, 0]):
         return f"{SEVERAL.format(table)}; got a single one; write [[{table}]] for [{table}]"
     if rule_of(details) == _TABLE and isinstance(value, list) and any(isinstance(item, Mapping) for item in value):
         return f"{SINGLE.format(table)}; got a list of {len(value)}; write [{table}] for [[{table}]]"
     if kind == "literal_error":
         # Of loads, tables of several kinds have keys of one name: the words of this one are the validator's.
         expected = re.findall(r"'([^']*)'", str(context.get("expected", "")))
-        words = expected or list(dict.fromkeys(_words(nodes_at(schema, path))))
+        words = expected or list(dict.fromkeys(_allowed_words(nodes_at(schema, path))))
         near = closest(value, words) if isinstance(value, str) else None
         hint = f'; did you mean "{near}"?' if near else ""
         return f"must be {_any_of(words)}; {value_text}{hint}"
@@ -217,7 +217,7 @@ def sentence_of(details: ErrorDetails, schema: Schema) -> str:
     if kind in ("too_short", "too_long"):
         return f"{rule_of(details)}; got {len(value)}{write}"
     is_value = isinstance(value, str | float | int) and not isinstance(value, bool)
-    if rule_of(details) == _TABLE and is_value and "equals" in _properties(schema, path):
+    if rule_of(details) == _TABLE and is_value and "equals" in _possible_keys(schema, path):
         if value in _WISHES:
             return f"{quote(value)} belongs below [objectives]; got it below [{path[0]}]; move it there"
         fact = FACTS.get(str(path[-1]))
@@ -259,7 +259,7 @@ def toml(value: object) -> str:
     return quote(value)
 
 
-def _properties(schema: Schema, path: Sequence[Any]) -> dict[str, Any]:
+def _possible_keys(schema: Schema, path: Sequence[Any]) -> dict[str, Any]:
     """Return the keys that are possible in a table."""
     properties: dict[str, Any] = {}
     for node in nodes_at(schema, path):
@@ -267,7 +267,7 @@ def _properties(schema: Schema, path: Sequence[Any]) -> dict[str, Any]:
     return properties
 
 
-def _words(nodes: Sequence[Schema]) -> Iterator[str]:
+def _allowed_words(nodes: Sequence[Schema]) -> Iterator[str]:
     for node in nodes:
         yield from (str(word) for word in node.get("enum", []))
         if "const" in node:
@@ -276,7 +276,7 @@ def _words(nodes: Sequence[Schema]) -> Iterator[str]:
 
 def nodes_at(schema: Schema, path: Sequence[Any]) -> list[Schema]:
     """Return every alternative of the schema at a location; after a tag, those with its key."""
-    nodes = _alternatives(schema, schema)
+    nodes = _schema_alternatives(schema, schema)
     for part in path:
         if _is_tag(part):
             nodes = [node for node in nodes if part[1:-1] in node.get("properties", {})] or nodes
@@ -288,7 +288,7 @@ def nodes_at(schema: Schema, path: Sequence[Any]) -> list[Schema]:
             if inner is None and isinstance(node.get("additionalProperties"), dict):
                 inner = node["additionalProperties"]
             if inner:
-                inner_nodes += _alternatives(schema, inner)
+                inner_nodes += _schema_alternatives(schema, inner)
         nodes = inner_nodes
     return nodes
 
@@ -299,11 +299,11 @@ def _by_pattern(node: Schema, part: object) -> Schema | None:
     return next((inner for pattern, inner in patterns if re.search(pattern, str(part))), None)
 
 
-def _alternatives(schema: Schema, node: Schema) -> list[Schema]:
+def _schema_alternatives(schema: Schema, node: Schema) -> list[Schema]:
     """Return a node, and what it refers to or offers a choice of."""
     nodes = [node]
     if "$ref" in node:
-        nodes += _alternatives(schema, schema["$defs"][node["$ref"].rsplit("/", 1)[1]])
+        nodes += _schema_alternatives(schema, schema["$defs"][node["$ref"].rsplit("/", 1)[1]])
     for choice in (*node.get("anyOf", ()), *node.get("oneOf", ())):
-        nodes += _alternatives(schema, choice)
+        nodes += _schema_alternatives(schema, choice)
     return nodes

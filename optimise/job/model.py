@@ -76,7 +76,7 @@ class OptimiserPart(Built[Settings]):
     )
 
 
-def _printable(text: str) -> str:
+def _require_printable(text: str) -> str:
     if not text.strip() or not text.replace("\n", " ").replace("\t", " ").isprintable():
         raise InputError(f"must be printable text, not empty; got {quote(text)}")
     return text
@@ -96,7 +96,7 @@ class Job(Part):
     name: Annotated[str, Field(max_length=80), AfterValidator(require_one_line)] = required(
         "name of the job and of its run", "Vibrating sieve"
     )
-    description: Annotated[str, Field(max_length=4000), AfterValidator(_printable)] | None = optional(
+    description: Annotated[str, Field(max_length=4000), AfterValidator(_require_printable)] | None = optional(
         "any text to store with the results", "Second draft"
     )
     mechanism: MechanismPart = required(

@@ -27,7 +27,7 @@ _TURN, _SWING = "turn", "swing"
 _MARGIN = ANGLE.metric.factor * (SWING_TRANSMISSION_ANGLE.floor or 0.0)
 
 
-def _swing(
+def _swing_of_table(
     kind: str,
     *,
     margin: float | None = None,
@@ -58,7 +58,7 @@ def _swing(
                 'write kind = "swing", or leave them out'
             )
         return None
-    end_kind = _stated(set(ends))
+    end_kind = _stated_ends(set(ends))
     start, span = ends[_STARTS[end_kind]], ends.get(_SPANS[end_kind])
     if end_kind == "crank" and crank_side != "left":
         raise InputError(
@@ -74,11 +74,11 @@ def _swing(
         stated_for=end_kind,
         side=crank_side,
         follows=span is not None,
-        points=_points(law, law_times, law_shares),
+        points=_law_points(law, law_times, law_shares),
     )
 
 
-def _points(law: Law, times: tuple[float, ...], shares: tuple[float, ...]) -> tuple[tuple[float, float], ...]:
+def _law_points(law: Law, times: tuple[float, ...], shares: tuple[float, ...]) -> tuple[tuple[float, float], ...]:
     """Return the points of a law that is a table. Raises `InputError` for lists of different lengths."""
     if law == "table" and not times:
         raise InputError(
@@ -98,7 +98,7 @@ _ENDS: dict[Stated, str] = {"crank": "to", "slider": "slider_to"}
 _SPANS: dict[Stated, str] = {"crank": "swing", "slider": "slider_travel"}
 
 
-def _stated(keys: set[str]) -> Stated:
+def _stated_ends(keys: set[str]) -> Stated:
     """Return the kind of the ends of a swing. Raises `InputError` unless there is a start, and an end or a span."""
     stated_kinds = [end_kind for end_kind in _STARTS if keys & {_STARTS[end_kind], _ENDS[end_kind], _SPANS[end_kind]}]
     if len(stated_kinds) > 1:
@@ -132,7 +132,7 @@ _EXAMPLES: dict[Stated, str] = {
 class _Motion(Checked[Swing | None]):
     """How the crank moves: it rotates fully, or it swings back and forth between two angles."""
 
-    makes: ClassVar = _swing
+    makes: ClassVar = _swing_of_table
 
     @property
     def start(self) -> Start:

@@ -35,11 +35,11 @@ def impossible_options(problem: Problem) -> list[tuple[str, str]]:
     return [
         (", ".join(variant.labels) or f"combination {place + 1}", why)
         for place, variant in enumerate(problem.variants)
-        if (why := next(_reasons(problem, place), None))
+        if (why := next(_reasons_against(problem, place), None))
     ]
 
 
-def _reasons(problem: Problem, variant: int) -> Iterator[str]:
+def _reasons_against(problem: Problem, variant: int) -> Iterator[str]:
     try:
         part = problem.part(variant)
     except InputError as error:  # of requirements that leave nothing together

@@ -39,26 +39,26 @@ def unknown_path(path: str, tables: Mapping[str, Any]) -> str:
             f"{key} in "
             f"[mechanism] in place of {speed_keys[0]}"
         )
-    several = _several(path, tables)
+    several = _not_one_value_message(path, tables)
     if several:
         return several
-    near = closest(path, [known_path for known_path, value in _leaves(tables, "") if _is_plain(value)])
+    near = closest(path, [known_path for known_path, value in _walk_values(tables, "") if _is_plain(value)])
     hint = (
         f"did you mean {near}?" if near else f"give it in [{path.partition('.')[0]}] first, as single designs have it"
     )
     return f"must name a number that the job gives; got {path}; {hint}"
 
 
-def _several(path: str, tables: Mapping[str, Any]) -> str:
+def _not_one_value_message(path: str, tables: Mapping[str, Any]) -> str:
     """Return the message for a path to a table, a list or a value in one; else ""."""
-    part, is_complete = _reached(path, tables)
+    part, is_complete = _innermost_part(path, tables)
     if isinstance(part, list | tuple) and part and not any(isinstance(item, Mapping) for item in part):
         return (
             f"must name a single number; got {path}{',' if is_complete else ' from'} a list of {len(part)} values; the "
             "values in a list, such as the points of a table, cannot vary; solve a job for each list"
         )
     if is_complete and isinstance(part, Mapping):
-        number = next((known_path for known_path, value in _leaves(part, path) if _is_number(value)), None)
+        number = next((known_path for known_path, value in _walk_values(part, path) if _is_number(value)), None)
         named = f"; did you mean {number}?" if number else " without a number that can vary"
         return f"must name a number that the job gives; got {path}, a table{named}"
     return ""
@@ -69,7 +69,7 @@ def stated(part: Any) -> dict[str, Any]:
     return dict(part) if isinstance(part, Mapping) else {name: getattr(part, name) for name in part.model_fields_set}
 
 
-def _reached(path: str, tables: Mapping[str, Any]) -> tuple[Any, bool]:
+def _innermost_part(path: str, tables: Mapping[str, Any]) -> tuple[Any, bool]:
     """Return the innermost part of a job that a path leads into, and whether the path ends there."""
     part: Any = tables
     steps = path.split(".")
@@ -113,15 +113,15 @@ def _is_number(value: object) -> bool:
     return (isinstance(value, float | int) and not isinstance(value, bool)) or str(value)[:1] in set("+-.0123456789")
 
 
-def _leaves(data: Any, root: str) -> Iterator[tuple[str, Any]]:
+def _walk_values(data: Any, root: str) -> Iterator[tuple[str, Any]]:
     """Yield path and value of everything in a job that is no table; places in lists count from 1."""
     if isinstance(data, Mapping):
         for name, item in data.items():
             if root or name in ROOTS:
-                yield from _leaves(item, f"{root}.{name}" if root else str(name))
+                yield from _walk_values(item, f"{root}.{name}" if root else str(name))
     elif isinstance(data, list | tuple):
         for place, item in enumerate(data):
             if isinstance(item, Mapping):
-                yield from _leaves(item, f"{root}.{place + 1}")
+                yield from _walk_values(item, f"{root}.{place + 1}")
     else:
         yield root, data

@@ -28,17 +28,17 @@ def require_eyes_wider_than_pins(problem: Problem) -> None:
 
 def _too_thick(mechanism: Mechanism, link: str) -> list[str]:
     """Return why the eyes of a link have no net section, whatever the numbers that vary."""
-    width = max(_ends(mechanism, f"{link}.width"))
+    width = max(_number_range(mechanism, f"{link}.width"))
     return [
         f"mechanism.{link}.width: a bar must be wider than the pins in its eyes; got "
         f"{1e3 * width:.6g} mm at most and sections.pins.{pin} of {1e3 * least:.6g} mm at least; widen the bar or take "
         "a thinner pin"
         for pin in (NEAR, LINKS[link].far)
-        if (least := min(_ends(mechanism, f"strength.{pin}"))) >= width
+        if (least := min(_number_range(mechanism, f"strength.{pin}"))) >= width
     ]
 
 
-def _ends(mechanism: Mechanism, path: str) -> tuple[float, ...]:
+def _number_range(mechanism: Mechanism, path: str) -> tuple[float, ...]:
     """Return the ends between which a number of a machine may vary, or its only value."""
     for item in mechanism.varying:
         for set_path, factor in item.sets:

@@ -88,13 +88,13 @@ def read_noting(
 
     values: put in place of numbers of the job, by their paths, in what is noted. Raises `ValidationError`.
     """
-    read, placed_numbers = _placed(job, data)
+    read, placed_numbers = _tables_as_read(job, data)
     read = job.model_validate(data) if read is None else read
     placed = {path: PlainNumbers(key, value, kind) for path, key, value, kind in placed_numbers}
     for path in values or ():
         placed.pop(path, None)
     stated = [(path, path, value) for path, value in (values or {}).items()]
-    varying = [item for item in (*stated, *_varying(data)) if plain_in(item[2])]
+    varying = [item for item in (*stated, *_varying_values(data)) if plain_in(item[2])]
     if not varying:
         return read, list(placed.values())
     tried: Mapping[str, Any] = data
@@ -103,14 +103,14 @@ def read_noting(
             tried = _with_number_at(tried, path, plain_in(value)[0])
         except LookupError:  # a word of the table, such as the name of a series
             continue
-    kinds = {path: kind for path, _, _, kind in _placed(job, tried)[1]}
+    kinds = {path: kind for path, _, _, kind in _tables_as_read(job, tried)[1]}
     further = [PlainNumbers(key, value, kinds[path]) for key, path, value in varying if path in kinds]
     return read, [*placed.values(), *further]
 
 
 def plain_values(job: type[Part], data: Mapping[str, Any]) -> list[PlainNumbers]:
     """Return the numbers without a unit in the tables of a job that may be invalid."""
-    return [PlainNumbers(key, value, kind) for _, key, value, kind in _placed(job, data)[1]]
+    return [PlainNumbers(key, value, kind) for _, key, value, kind in _tables_as_read(job, data)[1]]
 
 
 def plain_bounds(problem: Problem, data: Mapping[str, Any]) -> Iterator[PlainNumbers]:
@@ -124,7 +124,7 @@ def plain_bounds(problem: Problem, data: Mapping[str, Any]) -> Iterator[PlainNum
                         yield PlainNumbers(key_of([table, name, word]), value, kind)
 
 
-def _placed(job: type[Table], data: Mapping[str, Any]) -> tuple[Table | None, list[tuple[str, str, Any, Kind]]]:
+def _tables_as_read(job: type[Table], data: Mapping[str, Any]) -> tuple[Table | None, list[tuple[str, str, Any, Kind]]]:
     """Return the tables of a valid job without such numbers as read, else None, and the numbers without a unit.
 
     Of each that has a place of its own dotted path, key, value and kind.
@@ -143,7 +143,7 @@ def _placed(job: type[Table], data: Mapping[str, Any]) -> tuple[Table | None, li
     return None, placed
 
 
-def _varying(data: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]]:
+def _varying_values(data: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]]:
     """Yield key, path and value of what variables and options say of numbers that have their places elsewhere."""
     for path, value in varying_in(data).items():
         yield f"variables.{path}", path, value

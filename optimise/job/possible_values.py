@@ -46,7 +46,7 @@ class Box:
     @classmethod
     def from_problem(cls, problem: Problem) -> Box:
         """Return the ranges of a problem, narrowed by nothing yet."""
-        return cls(crank=problem.crank, rod=problem.rod, offset=_sizes(problem.offset))
+        return cls(crank=problem.crank, rod=problem.rod, offset=_offset_sizes(problem.offset))
 
     def possible(self, quantity: Quantity) -> tuple[float, float]:
         """Return bounds of a quantity that has a reach, SI; needs `turns`."""
@@ -67,7 +67,7 @@ def require_reachable(problem: Problem) -> None:
     if not box.turns:
         raise InfeasibleError(
             "variables: the rod must exceed crank + |offset| for full rotation; "
-            f"got {_extremes(box)}; lengthen the rod or reduce the other two"
+            f"got {_extremes_text(box)}; lengthen the rod or reduce the other two"
         )
     constraints = {constraint.quantity: constraint for constraint in problem.constraints}
     if ROD_TO_OFFSET.name in constraints:
@@ -104,7 +104,7 @@ def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> B
     if not narrowed.turns:
         raise InfeasibleError(
             f"constraints.{ROD_TO_OFFSET.name}: full rotation leaves the crank less than rod - |offset|; got "
-            f"{_bounds(constraint)} and with it {_extremes(narrowed)}; shorten the crank, or raise the ratio"
+            f"{_bounds_text(constraint)} and with it {_extremes_text(narrowed)}; shorten the crank, or raise the ratio"
         )
     return narrowed
 
@@ -122,31 +122,31 @@ def _require_within(quantity: Quantity, constraint: Constraint, box: Box, proble
         allowed, instead = bounds.to_lower, "ask for more"
     else:
         return
-    sentence, active = _possible(problem, constraint)
+    sentence, active = _possible_values_text(problem, constraint)
     remedy = ", ".join([f"allow {allowed}", *([f"relax {' and '.join(active)}"] if active else []), f"or {instead}"])
     same = equation_of(quantity, 0.0) if isinstance(quantity, FormulaQuantity) else None
     if same is not None and not same.names:
         sentence, remedy = f"it is {_format_value(quantity, float(same.constant))} for every design", "leave it out"
-    raise InfeasibleError(f"{key}: {sentence}; got {_bounds(constraint, quantity)}; {remedy}")
+    raise InfeasibleError(f"{key}: {sentence}; got {_bounds_text(constraint, quantity)}; {remedy}")
 
 
-def _possible(problem: Problem, constraint: Constraint) -> tuple[str, list[str]]:
+def _possible_values_text(problem: Problem, constraint: Constraint) -> tuple[str, list[str]]:
     """Return the possible values of a quantity that cannot meet its constraint, in words, and active rules.
 
     With rod / offset, which narrows the ranges, and with all other rules on the dimensions if these allow anything.
     """
     ranges = "within the ranges of crank, rod and offset"
     if not problem.variants and all(ends.fixed for ends in (problem.crank, problem.rod, problem.offset)):
-        nearest, _ = _nearest(problem, constraint, (constraint,))
+        nearest, _ = _nearest_relaxation(problem, constraint, (constraint,))
         crank, rod, offset = (f"{name} {1e3 * getattr(problem, name).lower:.6g} mm" for name in DIMENSIONS)
         if nearest is not None:
             return f"{crank}, {rod} and {offset}, all fixed, give {nearest.with_unit}", []
     narrowing = tuple(c for c in problem.constraints if c.quantity == ROD_TO_OFFSET.name and c is not constraint)
     requirements = _rules_on_dimensions(problem)
-    nearest, active = _nearest(problem, constraint, requirements)
+    nearest, active = _nearest_relaxation(problem, constraint, requirements)
     if nearest is None:  # the other rules contradict one another
         requirements = (constraint, *narrowing)
-        (nearest, _), active = _nearest(problem, constraint, requirements), [*narrowing]
+        (nearest, _), active = _nearest_relaxation(problem, constraint, requirements), [*narrowing]
     if nearest is None:
         return f"{ranges} it is impossible", []
     rules = [_in_words(problem, rule) for rule in active]
@@ -168,7 +168,7 @@ def _rules_on_dimensions(problem: Problem) -> tuple[Constraint, ...]:
     return rules_on_dimensions(problem)
 
 
-def _nearest(
+def _nearest_relaxation(
     problem: Problem, constraint: Constraint, requirements: tuple[Constraint, ...]
 ) -> tuple[Relaxation | None, list[Constraint]]:
     """Return the reachable value for one of the constraints that are kept, and which of the others are active there.
@@ -190,10 +190,10 @@ def _nearest(
     if nearest is None or problem.variants:
         return nearest, []
     other_rules = [rule for rule in requirements if rule.quantity != constraint.quantity]
-    return nearest, [side for rule in other_rules for side in _active(problem, rule, tried[0].design)]
+    return nearest, [side for rule in other_rules for side in _active_bounds(problem, rule, tried[0].design)]
 
 
-def _active(problem: Problem, rule: Constraint, design: Array) -> list[Constraint]:
+def _active_bounds(problem: Problem, rule: Constraint, design: Array) -> list[Constraint]:
     """Return the active bounds of a rule at the best design of a search, each as a separate rule."""
     value = float(problem.quantity(rule.quantity).evaluate(problem.mechanism, design[None]).values[0])
     if rule.equality:
@@ -222,15 +222,15 @@ def beyond_both(problem: Problem, ratio_quantity: Quantity, share: Range = _ANY)
         return None
     condition = f"with a least transmission angle of {_format_value(TRANSMISSION_ANGLE, angle.lower)}"
     for requirements in (_rules_on_dimensions(problem), (ratio, angle)):
-        ratios, angles = (_nearest(problem, item, requirements)[0] for item in (ratio, angle))
+        ratios, angles = (_nearest_relaxation(problem, item, requirements)[0] for item in (ratio, angle))
         held_too = f" and {_OTHERS}" if len(requirements) > 2 else ""
         angle_remedy = angles and f"lower constraints.{angle.quantity} to {angles.with_unit} at most"
         if ratios is not None:
-            limit_text = f"it is at most {ratios.with_unit}; got {_bounds(ratio)}; lower it to that"
+            limit_text = f"it is at most {ratios.with_unit}; got {_bounds_text(ratio)}; lower it to that"
             return f"{condition}{held_too} {limit_text}{f', or {angle_remedy}' if angle_remedy else ''}"
         if angle_remedy:
-            return f"{condition}{held_too} no linkage reaches it; got {_bounds(ratio)}; {angle_remedy}"
-    return f"{condition} no linkage reaches it; got {_bounds(ratio)}; lower both"
+            return f"{condition}{held_too} no linkage reaches it; got {_bounds_text(ratio)}; {angle_remedy}"
+    return f"{condition} no linkage reaches it; got {_bounds_text(ratio)}; lower both"
 
 
 def greatest_time_ratio(cosine: float, share: Range) -> float:
@@ -250,7 +250,7 @@ def greatest_time_ratio(cosine: float, share: Range) -> float:
     return ratio_of(best)
 
 
-def _sizes(offset: Range) -> Range:
+def _offset_sizes(offset: Range) -> Range:
     """Return the range of |offset|."""
     ends = sorted((abs(offset.lower), abs(offset.upper)))
     spans_zero = offset.lower <= 0.0 <= offset.upper
@@ -262,12 +262,12 @@ def _format_value(quantity: Quantity, value: float) -> str:
     return f"{float(f'{value * unit.factor:.5g}'):.12g} {unit.symbol}".rstrip()  # 100000, not 1e+05
 
 
-def _bounds(constraint: Constraint, quantity: Quantity | None = None) -> str:
+def _bounds_text(constraint: Constraint, quantity: Quantity | None = None) -> str:
     quantity = quantity or QUANTITIES[constraint.quantity]
     return " and ".join(f"{word} {_format_value(quantity, bound)}" for word, bound in constraint.sides)
 
 
-def _extremes(box: Box) -> str:
+def _extremes_text(box: Box) -> str:
     return (
         f"a rod of at most {1e3 * box.rod.upper:.6g} mm, a crank of at least "
         f"{1e3 * box.crank.lower:.6g} mm, an offset of at least {1e3 * box.offset.lower:.6g} mm"

@@ -61,12 +61,14 @@ def problem_of(
     formulas = Formulas(custom, machine, dimension_ranges(job), formulas_of(job.quantity), turning=motion is None)
     choices, variants, catalogue = variants_of(job, formulas, {of.name: of for of in amounts})
     objectives = tuple(objectives_of(job.objectives, formulas))
-    constraints = with_margin(_joined(constraints_of(job.constraints, formulas), formulas), job.motion.requested_margin)
+    constraints = with_margin(
+        _join_by_formula(constraints_of(job.constraints, formulas), formulas), job.motion.requested_margin
+    )
     named_quantities = {item.quantity for item in objectives} | {item.quantity for item in constraints}
     missing = [of for of in amounts if of.name in named_quantities]
     quantities = QUANTITIES | {of.name: of for of in (*custom, *formulas.formula_quantities.values())}
-    variants, left_out = _possible(variants, constraints, quantities, missing)
-    catalogue, _ = _possible(catalogue, constraints, quantities, missing)
+    variants, left_out = _possible_variants(variants, constraints, quantities, missing)
+    catalogue, _ = _possible_variants(catalogue, constraints, quantities, missing)
     if choices and not variants:
         if require_feasible:
             raise no_option(left_out)
@@ -142,7 +144,7 @@ def _require_shorter(problem: Problem) -> None:
                 )
 
 
-def _joined(constraints: Iterable[Constraint], formulas: Formulas) -> tuple[Constraint, ...]:
+def _join_by_formula(constraints: Iterable[Constraint], formulas: Formulas) -> tuple[Constraint, ...]:
     """Return constraints, those on one formula as one: a formula may be written in several ways.
 
     Raises `InfeasibleError` if they leave nothing.
@@ -161,7 +163,7 @@ def _joined(constraints: Iterable[Constraint], formulas: Formulas) -> tuple[Cons
     return tuple(joined.values())
 
 
-def _possible(
+def _possible_variants(
     variants: tuple[Variant, ...],
     constraints: tuple[Constraint, ...],
     quantities: Mapping[str, Quantity],
@@ -171,14 +173,17 @@ def _possible(
 
     quantities: quantities by name. required: amounts that a variant must have.
     """
-    reasons = [_missing(variant, required) or _contradiction(variant, constraints, quantities) for variant in variants]
+    reasons = [
+        _missing_amount(variant, required) or _contradiction_of(variant, constraints, quantities)
+        for variant in variants
+    ]
     left_out = tuple(
         (", ".join(variant.labels), why) for variant, why in zip(variants, reasons, strict=True) if why is not None
     )
     return tuple(variant for variant, why in zip(variants, reasons, strict=True) if why is None), left_out
 
 
-def _missing(variant: Variant, required: Iterable[Quantity]) -> str | None:
+def _missing_amount(variant: Variant, required: Iterable[Quantity]) -> str | None:
     """Return in words which amount that is asked for a variant does not have; None if there is no such."""
     amounts = dict(variant.amounts)
     return next(
@@ -186,7 +191,7 @@ def _missing(variant: Variant, required: Iterable[Quantity]) -> str | None:
     )
 
 
-def _contradiction(
+def _contradiction_of(
     variant: Variant, constraints: Iterable[Constraint], quantities: Mapping[str, Quantity]
 ) -> str | None:
     """Return in words which limit of a variant leaves nothing of a constraint; None if there is no such."""

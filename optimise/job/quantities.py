@@ -66,11 +66,11 @@ class Bounds(Part):
             )
         both_numbers = isinstance(lower, float) and isinstance(upper, float)  # a formula is a text still
         if both_numbers and lower > upper:
-            raise InputError(_crossed(data if isinstance(data, Mapping) else {"min": lower, "max": upper}))
+            raise InputError(_crossed_bounds_text(data if isinstance(data, Mapping) else {"min": lower, "max": upper}))
         return bounds
 
 
-def _crossed(bounds: Mapping[Any, object]) -> str:
+def _crossed_bounds_text(bounds: Mapping[Any, object]) -> str:
     return (
         f"min must not exceed max; got min {quote(bounds['min'])} and max {quote(bounds['max'])}; "
         f"{swap(bounds['min'], bounds['max'])} or leave out one"
@@ -140,7 +140,7 @@ SLOW_STROKE = "slow_stroke"
 _SENSES = '"minimise", "maximise" or { target = value }'
 
 
-def _sense(value: object) -> object:
+def _check_sense(value: object) -> object:
     """Refuse what is neither a known word nor a table."""
     if isinstance(value, str):
         if value in SENSES and value != "target":
@@ -165,7 +165,7 @@ def _pattern_of(schema: dict[str, Any]) -> None:
     schema["patternProperties"] = {_PATTERN: inner["additionalProperties"]}
 
 
-def _bare(path: str, value: object) -> tuple[str, object]:
+def _undotted_key(path: str, value: object) -> tuple[str, object]:
     """Return the first path of a key that dots made tables of, and the value given for it."""
     while isinstance(value, Mapping) and value and not {*WORDS, "target"} & set(value):
         key, value = next(iter(value.items()))
@@ -186,7 +186,7 @@ class _Table(Part):
         if not isinstance(data, Mapping):
             return data
         for key in (key for key in ROOTS if isinstance(data.get(key), Mapping)):
-            path, value = _bare(key, data[key])
+            path, value = _undotted_key(key, data[key])
             raise InputError(
                 f"a key with dots must be in quotes, like a formula; got {path} without; write it as "
                 f'"{path}" = {toml(value)}'
@@ -232,7 +232,7 @@ def tables(custom_facts: Mapping[str, Stated], named: Iterable[str] = ()) -> tup
     }
     for name, (title, kind, example, bound) in (product_facts | dict(custom_facts)).items():
         if kind not in forms:
-            forms[kind] = _forms(kind, names)
+            forms[kind] = _bound_and_objective_types(kind, names)
         bounds, wish = forms[kind]
         limits[name] = (bounds | None, optional(title, {bound: example}))
         wishes[name] = (wish | None, optional(title, "minimise", {"target": example}))
@@ -240,7 +240,7 @@ def tables(custom_facts: Mapping[str, Stated], named: Iterable[str] = ()) -> tup
     limits[SLOW_STROKE] = (SlowStroke | None, slow)
     limits["formulas"] = (dict[str, FormulaBounds], Field(default={}, alias=_KEY))
     several: Any = dict
-    wishes["formulas"] = (several[str, _wish(FormulaTarget)], Field(default={}, alias=_KEY))
+    wishes["formulas"] = (several[str, _target_type(FormulaTarget)], Field(default={}, alias=_KEY))
     constraints = create_model("Constraints", __base__=_Table, **cast(Any, limits))
     objectives = create_model("Objectives", __base__=_Table, **cast(Any, wishes))
     for table in (constraints, objectives):
@@ -248,7 +248,7 @@ def tables(custom_facts: Mapping[str, Stated], named: Iterable[str] = ()) -> tup
     return constraints, objectives
 
 
-def _forms(kind: Kind, names: frozenset[str]) -> tuple[Any, Any]:
+def _bound_and_objective_types(kind: Kind, names: frozenset[str]) -> tuple[Any, Any]:
     """Return the types of the bounds and of the objective of a quantity of one kind. names: of formulas in bounds."""
     value, bound = Annotated[float, Physical(kind)], Annotated[Any, _Bound(kind, names=names)]
     name = kind.plain.title().replace(" ", "")
@@ -258,16 +258,16 @@ def _forms(kind: Kind, names: frozenset[str]) -> tuple[Any, Any]:
     bounds = create_model(f"{name}Bounds", __base__=Bounds, **limits)
     target_field: Any = {"target": (value, required("to come near to", *example))}
     target = create_model(f"{name}Target", __base__=Target, **target_field)
-    return bounds, _wish(target)
+    return bounds, _target_type(target)
 
 
-def _wish(target: type[Target]) -> Any:
+def _target_type(target: type[Target]) -> Any:
     """Return the type of an objective whose target is of a type."""
     words = Literal["minimise", "maximise", "minimize", "maximize"]
     return Annotated[
         Annotated[words, Tag("(word)")] | Annotated[target, Tag("(target)")],
         Discriminator(lambda value: "(word)" if isinstance(value, str) else "(target)"),
-        BeforeValidator(_sense),
+        BeforeValidator(_check_sense),
     ]
 
 
@@ -285,17 +285,17 @@ def constraints_of(
 
     key: where they stand, for messages. Raises JobError for a wrong formula, and for bounds of it that leave nothing.
     """
-    for name, bounds in _entries(part):
+    for name, bounds in _table_entries(part):
         if name == SLOW_STROKE:
             continue
         stated_bounds = {word: value for word in WORDS if (value := getattr(bounds, word)) is not None}
         if all(isinstance(value, float) for value in stated_bounds.values()) and name in FACTS:
-            yield Constraint(quantity=name, **_ends(stated_bounds))
+            yield Constraint(quantity=name, **_ends_of_bounds(stated_bounds))
         elif formulas is not None:
-            yield from _bounded(f"{key}{key_of([name])}", name, stated_bounds, formulas)
+            yield from _bounds_of_formula(f"{key}{key_of([name])}", name, stated_bounds, formulas)
 
 
-def _bounded(key: str, name: str, bounds: Mapping[Word, object], formulas: Formulas) -> Iterator[Constraint]:
+def _bounds_of_formula(key: str, name: str, bounds: Mapping[Word, object], formulas: Formulas) -> Iterator[Constraint]:
     """Yield the constraints of a formula, or of a quantity bounded by formulas: those on one quantity together."""
     of = formulas.quantity(name, key)
     merged_bounds: dict[str, dict[Word, float]] = {}
@@ -304,16 +304,16 @@ def _bounded(key: str, name: str, bounds: Mapping[Word, object], formulas: Formu
         merged_bounds.setdefault(bounded.name, {})[word] = bound
     for quantity, ends in merged_bounds.items():
         if "min" in ends and "max" in ends and ends["min"] > ends["max"]:
-            raise JobError(f"{key}: {_crossed(bounds)}")
-        yield Constraint(quantity=quantity, **_ends(ends))
+            raise JobError(f"{key}: {_crossed_bounds_text(bounds)}")
+        yield Constraint(quantity=quantity, **_ends_of_bounds(ends))
 
 
-def _ends(bounds: Mapping[Word, Any]) -> dict[str, float | None]:
+def _ends_of_bounds(bounds: Mapping[Word, Any]) -> dict[str, float | None]:
     equals = bounds.get("equals")
     return {"lower": bounds.get("min", equals), "upper": bounds.get("max", equals)}
 
 
-def _entries(part: Part) -> Iterator[tuple[str, Any]]:
+def _table_entries(part: Part) -> Iterator[tuple[str, Any]]:
     """Yield name and value of what a table has: quantities, then formulas."""
     for name in type(part).model_fields:
         value = getattr(part, name)
@@ -330,7 +330,7 @@ def slow_stroke_of(part: ConstraintsPart) -> SlowStroke | None:
 
 def objectives_of(part: ObjectivesPart, formulas: Formulas) -> Iterator[Objective]:
     """Return the objectives of a job as the problem has them. Raises JobError for a wrong formula."""
-    for name, wish in _entries(part):
+    for name, wish in _table_entries(part):
         key = f"objectives.{key_of([name])}"
         of = formulas.quantity(name, key)
         if isinstance(wish, Target):

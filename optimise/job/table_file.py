@@ -79,26 +79,26 @@ def bytes_of(path: Path, name: str, limit: int) -> bytes:
 def text_of(content: bytes, name: str) -> str:
     """Return a file's text: in the encoding that its mark says, else UTF-8, else Latin-1 as Windows has it."""
     if content[:4].decode("cp1252", "replace") in _BINARY:
-        raise _binary(name)
+        raise _binary_file_error(name)
     for mark, encoding in _MARKS:
         if content.startswith(mark):
-            return _decoded(content.removeprefix(mark), encoding, name)
+            return _decode_text(content.removeprefix(mark), encoding, name)
     even, odd = (content[place:2000:2].count(0) for place in (0, 1))
     if bool(even) != bool(odd) and not len(content) % 2:  # UTF-16 without a mark: one byte of each Latin letter is zero
-        return _decoded(content, "utf-16-be" if even else "utf-16-le", name)
+        return _decode_text(content, "utf-16-be" if even else "utf-16-le", name)
     try:
         return content.decode()
     except UnicodeDecodeError:
         return content.decode("cp1252", "replace")
 
 
-def _binary(name: str) -> InputError:
+def _binary_file_error(name: str) -> InputError:
     return InputError(
         f"{name} must be a CSV text file; got a spreadsheet or other binary file; save it as CSV and use that file"
     )
 
 
-def _decoded(content: bytes, encoding: str, name: str) -> str:
+def _decode_text(content: bytes, encoding: str, name: str) -> str:
     try:
         return content.decode(encoding)
     except UnicodeDecodeError:
@@ -190,7 +190,7 @@ class TableFile:
         parts = [(portion, {n: with_plain_signs(portion.columns[n]) for n in places}) for portion in self.portions]
         signs = _Signs([text for _, cells in parts for text in cells.values()])
         decimal, grouping = self.signs = self._decimal(signs)
-        example = signs.first_match(_group(decimal))
+        example = signs.first_match(_ambiguous_form(decimal))
         word = "comma" if decimal == "," else "point"
         note = f"decimal {word}"
         if example is not None and (number := f"{float(example.replace(decimal, '.')):g}") != example:
@@ -209,12 +209,12 @@ class TableFile:
 
     def _decimal(self, signs: _Signs) -> tuple[str, str]:
         """Return the decimal sign of a file's numbers and the one that parts thousands."""
-        point, comma = signs.first_match(_sure(".", ",")), signs.first_match(_sure(",", "."))
+        point, comma = signs.first_match(_certain_form(".", ",")), signs.first_match(_certain_form(",", "."))
         if point is not None and comma is not None:
             raise InputError(f"{self.name} must use one decimal sign; got {comma} and {point}; write all numbers alike")
         if point is not None or comma is not None:
             return (".", ",") if comma is None else (",", ".")
-        comma, point = signs.first_match(_group(",")), signs.first_match(_group("."))
+        comma, point = signs.first_match(_ambiguous_form(",")), signs.first_match(_ambiguous_form("."))
         if comma is not None and (point is not None or self.separator == ","):
             second = f" and {point}" if point is not None else ""
             raise InputError(
@@ -267,14 +267,14 @@ class _Signs:
         return next((hit[0] for hit in map(cells.search, self._texts) if hit), None)
 
 
-def _group(sign: str) -> str:
+def _ambiguous_form(sign: str) -> str:
     """Return the form of a number whose one sign is decimal or parts thousands: 1.300, but not 0.300."""
     return rf"[+-]?[1-9]\d{{0,2}}\{sign}\d{{3}}"
 
 
-def _sure(decimal: str, grouping: str) -> str:
+def _certain_form(decimal: str, grouping: str) -> str:
     """Return the form of a number whose decimal sign is certain: 0.3, .3, 1.3000, 1,300.5, and 1,000,000."""
-    plain_number = rf"(?!{_group(decimal)}$)[+-]?(?:\d+\{decimal}\d*|\{decimal}\d+){EXPONENT}"
+    plain_number = rf"(?!{_ambiguous_form(decimal)}$)[+-]?(?:\d+\{decimal}\d*|\{decimal}\d+){EXPONENT}"
     parted = rf"[+-]?\d{{1,3}}(?:\{grouping}\d{{3}})+\{decimal}\d*{EXPONENT}"
     return rf"{plain_number}|{parted}|[+-]?\d{{1,3}}(?:\{grouping}\d{{3}}){{2,}}"
 
@@ -286,14 +286,14 @@ def read_table(text: str, name: str, *, ragged: bool = False) -> TableFile:
     """
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
     if text[:4] in _BINARY or "\0" in text:
-        raise _binary(name)
+        raise _binary_file_error(name)
     try:
-        return _read(text, name, ragged=ragged)
+        return _read_table(text, name, ragged=ragged)
     except csv.Error as error:
         raise InputError(f"{name} must be a table in CSV; got {error}; correct it") from None
 
 
-def _read(text: str, name: str, *, ragged: bool) -> TableFile:
+def _read_table(text: str, name: str, *, ragged: bool) -> TableFile:
     separator = separator_of(text)
     lines = split(content_lines(text), separator)
     leading = list(itertools.islice(lines, SAMPLE))
@@ -330,7 +330,7 @@ def _read(text: str, name: str, *, ragged: bool) -> TableFile:
         raise InputError(
             f"{name} must have at most {_MOST_COLUMNS} columns; got {len(heads)}; keep only those that matter"
         )
-    portions = list(_portions(rows, len(heads), name, ragged=ragged))
+    portions = list(_row_portions(rows, len(heads), name, ragged=ragged))
     if not portions:
         raise InputError(f"{name} must have rows below the column names; got none; add them")
     notes = [f"separated by {SEPARATORS.get(separator, quote(separator))}"] if len(heads) > 1 else []
@@ -338,7 +338,7 @@ def _read(text: str, name: str, *, ragged: bool) -> TableFile:
     return TableFile(name, tuple(heads), notes, separator, portions)
 
 
-def _portions(rows: Iterable[tuple[int, list[str]]], width: int, name: str, *, ragged: bool) -> Iterator[_Portion]:
+def _row_portions(rows: Iterable[tuple[int, list[str]]], width: int, name: str, *, ragged: bool) -> Iterator[_Portion]:
     """Yield some rows at a time, each of `width` cells; short ones are filled up if they may be `ragged`."""
     rows = iter(rows)
     while block := list(itertools.islice(rows, _BATCH)):

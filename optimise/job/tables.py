@@ -44,7 +44,7 @@ def problem(
     if not isinstance(tables, Mapping):
         raise JobError(f"a job must be a dict of tables; got {type(tables).__name__}; for a file use load_job")
     try:
-        data = {key: _plain(item) for key, item in tables.items()}
+        data = {key: _plain_copy(item) for key, item in tables.items()}
     except RecursionError:
         raise JobError("a job must be a dict of tables; got one that contains itself, or endless tables") from None
     quantity_tables = data.get("quantity")
@@ -72,10 +72,10 @@ def _with_functions(item: Quantity, functions: Mapping[str, Function]) -> Quanti
     return item.with_parts(tuple(_with_functions(part, functions) for part in item.made_of))
 
 
-def _plain(value: object) -> object:
+def _plain_copy(value: object) -> object:
     """Return tables and lists as dicts and lists of Python's own numbers, copied."""
     if isinstance(value, Mapping):
-        return {key: _plain(item) for key, item in value.items()}
+        return {key: _plain_copy(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
+        return [_plain_copy(item) for item in value]
     return value.tolist() if isinstance(value, np.ndarray | np.generic) else value

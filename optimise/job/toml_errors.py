@@ -53,14 +53,14 @@ Edit = Callable[[str], tuple[str, str]]
 """Returns the rule that it restores, and the line edited."""
 
 
-def _edit(wrong: str, right: str, rule: str) -> Edit:
+def _edit_code(wrong: str, right: str, rule: str) -> Edit:
     """Return the edit that replaces a pattern outside of texts and comments."""
     pattern = re.compile(f"{_PASSED}(?:{wrong})")
     return lambda line: (rule, pattern.sub(lambda found: found[1] or found.expand(right), line).rstrip(" "))
 
 
-def _rewrite(wrong: str, right: str, rule: str) -> Edit:
-    """Return the edit that replaces a pattern, in texts too. Its groups count from 2 as those of `_edit`."""
+def _edit_all(wrong: str, right: str, rule: str) -> Edit:
+    """Return the edit that replaces a pattern, in texts too. Its groups count from 2 as those of `_edit_code`."""
     pattern = re.compile(f"()(?:{wrong})")
     return lambda line: (rule, pattern.sub(right, line))
 
@@ -72,51 +72,53 @@ _BRACES, _SQUARE = "keys within a value must be in braces", "a list must be in s
 _BELOW, _ABOVE = "a lower limit is written with min", "an upper limit is written with max"
 _ONE_NAME = "a key must not contain spaces"
 _SIGNS: tuple[Edit, ...] = (
-    _edit("[“”„‟«»‘’‚‛`´″]", '"', _STRAIGHT),
-    _rewrite("''", '"', _STRAIGHT),
-    _edit("'", '"', "text must end with the quote it begins with"),
-    _edit("[−–]", "-", "a minus sign must be the - of the keyboard"),
-    _edit(f"[{SPACES}]", " ", "a space must be an ordinary one, not a non-breaking one (␣) of Word or a web page"),
+    _edit_code("[“”„‟«»‘’‚‛`´″]", '"', _STRAIGHT),
+    _edit_all("''", '"', _STRAIGHT),
+    _edit_code("'", '"', "text must end with the quote it begins with"),
+    _edit_code("[−–]", "-", "a minus sign must be the - of the keyboard"),
+    _edit_code(f"[{SPACES}]", " ", "a space must be an ordinary one, not a non-breaking one (␣) of Word or a web page"),
 )
 """Before values are read."""
-_COMMAS = _edit(r"(?<!\d,\d)(?<!\d,\d\d)(?<!\d,\d\d\d)\s*;\s*(?!\s*(?:$|[+-]?\d+,\d))", ", ", _COMMA_RULE)
+_COMMAS = _edit_code(r"(?<!\d,\d)(?<!\d,\d\d)(?<!\d,\d\d\d)\s*;\s*(?!\s*(?:$|[+-]?\d+,\d))", ", ", _COMMA_RULE)
 _EDITS: tuple[Edit, ...] = (
-    _edit(r"(?:^\s*[;!%]|//|--|/\*)\s*(.*?)\s*(?:\*/\s*(.*))?$", r"# \2 \3", _COMMENTED),
-    _edit(r"\s*(?::=?|=[=>]|<-)\s*", " = ", _EQUALS),
-    _edit(r"^(\s*[\w.-]+)\s*\"\s*=\s*", r'\2 = "', _EQUALS),
-    _edit(r"^(\s*[\w.-]+)\s+(?=[\"'\d+\[{-])", r"\2 = ", _EQUALS),
-    _edit(r"([{,]\s*[\w-]+)\s+(?=[\"'\d+\[{-])", r"\2 = ", _EQUALS),
-    _edit(rf"=?\s*>=?\s*({_TEXT}|[\d.]+)", r" = { min = \2 }", _BELOW),
-    _edit(rf"=?\s*<=?\s*({_TEXT}|[\d.]+)", r" = { max = \2 }", _ABOVE),
-    _edit(r"(?<={)\s*>=?\s*", " min = ", _BELOW),
-    _edit(r"(?<={)\s*<=?\s*", " max = ", _ABOVE),
+    _edit_code(r"(?:^\s*[;!%]|//|--|/\*)\s*(.*?)\s*(?:\*/\s*(.*))?$", r"# \2 \3", _COMMENTED),
+    _edit_code(r"\s*(?::=?|=[=>]|<-)\s*", " = ", _EQUALS),
+    _edit_code(r"^(\s*[\w.-]+)\s*\"\s*=\s*", r'\2 = "', _EQUALS),
+    _edit_code(r"^(\s*[\w.-]+)\s+(?=[\"'\d+\[{-])", r"\2 = ", _EQUALS),
+    _edit_code(r"([{,]\s*[\w-]+)\s+(?=[\"'\d+\[{-])", r"\2 = ", _EQUALS),
+    _edit_code(rf"=?\s*>=?\s*({_TEXT}|[\d.]+)", r" = { min = \2 }", _BELOW),
+    _edit_code(rf"=?\s*<=?\s*({_TEXT}|[\d.]+)", r" = { max = \2 }", _ABOVE),
+    _edit_code(r"(?<={)\s*>=?\s*", " min = ", _BELOW),
+    _edit_code(r"(?<={)\s*<=?\s*", " max = ", _ABOVE),
     _COMMAS,
-    _edit(r"(?<=[\"'\]}\w])\s+(?=[\"'\[{\d]|[\w-]+\s*=)", ", ", _COMMA_RULE),
-    _edit(r",\s*,", ",", "there must be one comma between values"),
-    _edit(r"\s*[;,]$", "", "a line must not end with a comma or semicolon"),
-    _edit(r"\s*[;,]?\s+(?=[\w.-]+\s*=)", "\n", "each key must have a line of its own"),
-    _edit(r",\s*(?=})", " ", "there must be no comma before a closing brace"),
-    _edit(r"=\s*(?=[\w-]+\s*=)", "= { ", _BRACES),
-    _edit(r"(?<=[^\s{])$", " }", _BRACES),
-    _edit(rf"{{(\s*{_TEXT}(?:\s*,\s*{_TEXT})*\s*)}}", r"[\2]", _SQUARE),
+    _edit_code(r"(?<=[\"'\]}\w])\s+(?=[\"'\[{\d]|[\w-]+\s*=)", ", ", _COMMA_RULE),
+    _edit_code(r",\s*,", ",", "there must be one comma between values"),
+    _edit_code(r"\s*[;,]$", "", "a line must not end with a comma or semicolon"),
+    _edit_code(r"\s*[;,]?\s+(?=[\w.-]+\s*=)", "\n", "each key must have a line of its own"),
+    _edit_code(r",\s*(?=})", " ", "there must be no comma before a closing brace"),
+    _edit_code(r"=\s*(?=[\w-]+\s*=)", "= { ", _BRACES),
+    _edit_code(r"(?<=[^\s{])$", " }", _BRACES),
+    _edit_code(rf"{{(\s*{_TEXT}(?:\s*,\s*{_TEXT})*\s*)}}", r"[\2]", _SQUARE),
     lambda line: _with_brackets(line),
-    _edit(r"\(([^()]*)\)", r"[\2]", _SQUARE),
-    _edit(r"(?<==)\s*(?=[^\[{]*\]$)", " [", _SQUARE),
-    _edit(r"(?<==)\s*([^\[{]*,.*?)\s*$", r" [\2]", _SQUARE),
-    _rewrite(r"^(\s*\w+(?:\.\w+)+)(\s+)([\w-]+)(?=\s*=)", r"\2.\4", _ONE_NAME),
-    _rewrite(r"^(\s*[\w.-]+)(\s+)([\w-]+)(?=\s*=)", r"\2_\4", _ONE_NAME),
-    _rewrite(
+    _edit_code(r"\(([^()]*)\)", r"[\2]", _SQUARE),
+    _edit_code(r"(?<==)\s*(?=[^\[{]*\]$)", " [", _SQUARE),
+    _edit_code(r"(?<==)\s*([^\[{]*,.*?)\s*$", r" [\2]", _SQUARE),
+    _edit_all(r"^(\s*\w+(?:\.\w+)+)(\s+)([\w-]+)(?=\s*=)", r"\2.\4", _ONE_NAME),
+    _edit_all(r"^(\s*[\w.-]+)(\s+)([\w-]+)(?=\s*=)", r"\2_\4", _ONE_NAME),
+    _edit_all(
         r"^(\s*)(\w+)(?=\s*=)", r'\2"\3"', "a key outside quotes must consist of the letters a to z, digits, _ and -"
     ),
-    _edit(r"\[\s*([\d.]+)\s*,\s*([\d.]+)\s*\]\s*([^\W\d]\w*)$", r'["\2 \4", "\3 \4"]', "each value must have its unit"),
-    _rewrite(
+    _edit_code(
+        r"\[\s*([\d.]+)\s*,\s*([\d.]+)\s*\]\s*([^\W\d]\w*)$", r'["\2 \4", "\3 \4"]', "each value must have its unit"
+    ),
+    _edit_all(
         r"\"([+-]?[\d.]+)\"\s+([^\W\d][^\",;\]}]*)$", r'"\2 \3"', "a unit must be within the quotes of its number"
     ),
-    _rewrite(r"^(\s*)\"([\w.-]+)\s*=\s*([^\"]*)\"$", r'\2\3 = "\4"', "only a value may be in quotes"),
-    _edit(rf"(?<==)\s*([^\W\d][^{_SEPARATORS}]*(?:,[^{_SEPARATORS}]*)*?)\s*$", r' "\2"', _TEXT_QUOTED),
-    _edit(r"(?<=[\"\]}])\s+(?=[^\W\d][\w ,.-]*$)", "  # ", _COMMENTED),
-    _edit(r"^(?=(?:[^\W\d][\w,.:-]*\s+){3,}[\w.]+$)", "# ", _COMMENTED),
-    _rewrite(
+    _edit_all(r"^(\s*)\"([\w.-]+)\s*=\s*([^\"]*)\"$", r'\2\3 = "\4"', "only a value may be in quotes"),
+    _edit_code(rf"(?<==)\s*([^\W\d][^{_SEPARATORS}]*(?:,[^{_SEPARATORS}]*)*?)\s*$", r' "\2"', _TEXT_QUOTED),
+    _edit_code(r"(?<=[\"\]}])\s+(?=[^\W\d][\w ,.-]*$)", "  # ", _COMMENTED),
+    _edit_code(r"^(?=(?:[^\W\d][\w,.:-]*\s+){3,}[\w.]+$)", "# ", _COMMENTED),
+    _edit_all(
         r"^(\s*[\w.-]+\s*=\s*\"[^\"]*\s)\"([^\"]+)\"([\s.,;:)][^\"]*\")$",
         r"\2'\3'\4",
         'text in double quotes must not contain "',
@@ -131,42 +133,42 @@ def in_words(text: str, error: str) -> str:
     place = _PLACE.search(error)  # none at the end of the text
     number = min(int(place[1]), len(lines)) if place else len(lines)
     number = next((n for n in range(number, 0, -1) if lines[n - 1].strip()), 1)
-    begins = _begins(lines[number - 1])
-    start = next((n for n in range(number - 1, 0, -1) if _begins(lines[n - 1])), number)
-    code = _code(lines[number - 1])
+    begins = _begins_entry(lines[number - 1])
+    start = next((n for n in range(number - 1, 0, -1) if _begins_entry(lines[n - 1])), number)
+    code = _code_of(lines[number - 1])
     if (twice := _TWICE.search(error)) and (begins or _with_brackets(code)[1] == code):
-        return _repeated(lines[: number if begins else start], twice[1])
+        return _repeated_key_message(lines[: number if begins else start], twice[1])
     opened = [n for n, line in enumerate(lines, start=1) for _ in re.findall("\"\"\"|'''", line)]
     if not place and len(opened) % 2:
-        return _unclosed(lines[: opened[-1]], "the end of the file")
+        return _unclosed_message(lines[: opened[-1]], "the end of the file")
     in_list = start < number and _unread_size(lines[start - 1 : number - 1]) < 0
     if not place or (in_list and begins):
         first = start if in_list else number
         if _unread_size(lines[first - 1 : number - begins * in_list]) < 0:
-            return _unclosed(lines[:first], f"line {number}" if place else "the end of the file")
+            return _unclosed_message(lines[:first], f"line {number}" if place else "the end of the file")
     path = _path_of(lines[: start if in_list else number]) or _path_of([*lines[: number - 1], f"{code} ="])
     like = example_of(schema_of(Job), path)
     before = _LIST if in_list else ""
     if like and _BARE.fullmatch(code) and _with_brackets(code)[1] == code:
         rules, edited = ["there must be = and a value after a key"], like
     elif in_list and _unread_size([before + code]) <= 0:
-        number = max(n for n in range(start, number) if _code(lines[n - 1]).strip())
-        code = _code(lines[number - 1])
+        number = max(n for n in range(start, number) if _code_of(lines[n - 1]).strip())
+        code = _code_of(lines[number - 1])
         rules, edited = ["a line of a list must end with a comma"], f"{code},"
     else:
-        joined = [" ".join(map(_code, lines[number - 1 : n])) for n in range(number + 1, number + _MOST_JOINED)]
+        joined = [" ".join(map(_code_of, lines[number - 1 : n])) for n in range(number + 1, number + _MOST_JOINED)]
         few = not in_list and len(joined[-1]) <= _LONGEST
         last = next((number + n for n, one in enumerate(joined, start=1) if few and not _unread_size([one])), 0)
         if last:
             rule = "a text, or keys in braces, must be on one line"
             return f"{_line_prefix(number, path)}{rule}; got lines {number} to {last}; join them"
-        rules, edited = _edited(before + code, path)
+        rules, edited = _correct_line(before + code, path)
     if rules:
         edited = edited.removeprefix(before)
         path = path if in_list else _path_of([*lines[: number - 1], edited])
-        if set(rules) <= {_TEXT_QUOTED, _VALUE_QUOTED} and (refused := _refused(lines[: number - 1], edited)):
+        if set(rules) <= {_TEXT_QUOTED, _VALUE_QUOTED} and (refused := _mistake_in_value(lines[: number - 1], edited)):
             return f"line {number}, {refused}"
-        typed, write = (_quote_line(one, _same(code, edited)) for one in (code, edited))
+        typed, write = (_quote_line(one, _common_prefix_length(code, edited)) for one in (code, edited))
         return f"{_line_prefix(number, path)}{'; '.join(rules)}; got {typed}; write {write}"
     like = like or "key = value, a heading like [objectives], or # and a comment"
     return (
@@ -178,7 +180,7 @@ def in_words(text: str, error: str) -> str:
 
 def with_lines(message: str, text: str) -> str:
     """Return a message on the tables of a TOML text, problems in the order of their lines."""
-    keys = list(_paths(text.split("\n")))
+    keys = list(_paths_of_lines(text.split("\n")))
     lines = {key_of(path[:-1]): number for number, path, brackets in reversed(keys) if brackets == "[["}
     lines |= {key_of(path): number for number, path, _ in keys}
 
@@ -198,12 +200,12 @@ def with_lines(message: str, text: str) -> str:
     return "\n".join([heading, *sorted(problems, key=place)])
 
 
-def _code(line: str) -> str:
+def _code_of(line: str) -> str:
     """Return a line without its comment."""
     return line[: next((comment.start() for comment in _COMMENT.finditer(line[:_LONGEST]) if comment[1]), None)]
 
 
-def _refused(lines_above: Sequence[str], line: str) -> str:
+def _mistake_in_value(lines_above: Sequence[str], line: str) -> str:
     """Return key and mistake of the value in a line with valid syntax; "" if it has none."""
     lines = [*(line_above for line_above in lines_above if _HEADER.fullmatch(line_above[:_LONGEST])), line]
     path = _path_of(lines)
@@ -219,7 +221,7 @@ def _refused(lines_above: Sequence[str], line: str) -> str:
     return ""
 
 
-def _begins(line: str) -> bool:
+def _begins_entry(line: str) -> bool:
     """Whether a line begins a key or a table."""
     return bool(_KEY.match(line[:_LONGEST]) or _HEADER.fullmatch(line[:_LONGEST]))
 
@@ -239,7 +241,7 @@ def _unread_size(lines: Sequence[str]) -> int:
     return 0
 
 
-def _edited(line: str, path: Path) -> tuple[list[str], str]:
+def _correct_line(line: str, path: Path) -> tuple[list[str], str]:
     """Return the rules that a line breaks, and the corrected line; no rules if no correction works."""
     rules: list[str] = []
     unread = _unread_size([line]) if len(line) <= _LONGEST else 0
@@ -265,7 +267,7 @@ def _with_values(line: str, path: Path) -> tuple[str, str]:
             return match[0]
         inner = _INNER.search(line[: match.start(3)])
         in_braces = inner is not None and "{" in line[: inner.start()]
-        rule, text = _value(match[3], (*path, inner[1]) if inner and in_braces else path)
+        rule, text = _correct_value(match[3], (*path, inner[1]) if inner and in_braces else path)
         rules.append(rule)
         return match[2] + text
 
@@ -273,7 +275,7 @@ def _with_values(line: str, path: Path) -> tuple[str, str]:
     return rules[0] if rules else "", edited
 
 
-def _value(token: str, path: Path) -> tuple[str, str]:
+def _correct_value(token: str, path: Path) -> tuple[str, str]:
     """Return the rule that the value of a key breaks, and the corrected value."""
     if token.lower() in ("true", "false"):
         return "true and false must be in lower case", token.lower()
@@ -326,9 +328,9 @@ def _with_brackets(line: str) -> tuple[str, str]:
     return rule, next((heading for candidate in tried for heading in headings(candidate, schema_of(Job))), bracketed)
 
 
-def _unclosed(lines: Sequence[str], end: str) -> str:
+def _unclosed_message(lines: Sequence[str], end: str) -> str:
     """Return the message on a list or text that begins in the last of some lines. end: where it is still open."""
-    line = _code(lines[-1])
+    line = _code_of(lines[-1])
     three = next((three for three in ('"""', "'''") if three in line), "")
     if three:
         rule = f"text that begins with {three} must end with {three}; on one line, use a single quote at each end"
@@ -343,9 +345,9 @@ def _unclosed(lines: Sequence[str], end: str) -> str:
     return f"{_line_prefix(len(lines), _path_of(lines))}{rule}; got {_quote_line(line)}, open at {end}; {write}"
 
 
-def _repeated(lines: Sequence[str], inner: str | None) -> str:
+def _repeated_key_message(lines: Sequence[str], inner: str | None) -> str:
     """Return the message on a key or table that stands in the last of some lines and above. inner: a key in braces."""
-    *above, (last, path, brackets) = _paths(lines)
+    *above, (last, path, brackets) = _paths_of_lines(lines)
     if inner:
         return f"{_line_prefix(last, (*path, inner))}may be given only once; got it twice; remove one"
     near = [one for one in above if one[1][: len(path)] == path or path[: len(one[1])] == one[1]]
@@ -362,9 +364,9 @@ def _repeated(lines: Sequence[str], inner: str | None) -> str:
         remedy = "move the lines below it there"
     elif path == other:
         header = next((one.split("#")[0].strip() for one in reversed(lines) if _HEADER.fullmatch(one[:_LONGEST])), "")
-        moved = [n for n in range(first + 1, last + 1) if _refused([header], lines[n - 1])]
+        moved = [n for n in range(first + 1, last + 1) if _mistake_in_value([header], lines[n - 1])]
         known = [item for name in schema_of(Job)["properties"] for item in headings([name], schema_of(Job)).items()]
-        fits = [one for one, keys in known if path[-1] in keys and not _refused([one], lines[-1])]
+        fits = [one for one, keys in known if path[-1] in keys and not _mistake_in_value([one], lines[-1])]
         if moved and fits:
             rule = f"this value belongs below the heading {fits[0]}"
             return f"{_line_prefix(last, path)}{rule}; got it below {header}; write {fits[0]} above line {moved[0]}"
@@ -372,28 +374,28 @@ def _repeated(lines: Sequence[str], inner: str | None) -> str:
     return f"{_line_prefix(last, path)}may be given only once; got {key_of(other)} in line {first} already; {remedy}"
 
 
-def _paths(lines: Sequence[str]) -> Iterator[tuple[int, Path, str]]:
+def _paths_of_lines(lines: Sequence[str]) -> Iterator[tuple[int, Path, str]]:
     """Yield line, path and opening brackets of each table and, without brackets, of each key that lines begin."""
     table: Path = ()
     count = Counter[Path]()
     for number, line in enumerate((line[:_LONGEST] for line in lines), start=1):
         if header := _HEADER.fullmatch(line):
-            name = table = _words(header[2])
+            name = table = _words_of_path(header[2])
             if header[1] == "[[":
                 name = table = (*name, count[name])
                 count[name[:-1]] += 1
             yield number, name, header[1]
         elif key := _KEY.match(line):
-            yield number, (*table, *_words(key[1])), ""
+            yield number, (*table, *_words_of_path(key[1])), ""
 
 
-def _words(path: str) -> Path:
+def _words_of_path(path: str) -> Path:
     return tuple(word.strip("\"'") for word in re.findall(_WORD, path))
 
 
 def _path_of(lines: Sequence[str]) -> Path:
     """Return the key that the last of some lines begins; an empty one if it begins none."""
-    *_, (number, path, brackets) = ((0, (), ""), *_paths(lines))
+    *_, (number, path, brackets) = ((0, (), ""), *_paths_of_lines(lines))
     return path if number == len(lines) and not brackets else ()
 
 
@@ -402,7 +404,7 @@ def _line_prefix(number: int, path: Path) -> str:
     return f"line {number}, {key_of(path)}: " if path else f"line {number}: "
 
 
-def _same(first: str, second: str) -> int:
+def _common_prefix_length(first: str, second: str) -> int:
     """Return how many characters of two texts are the same from their beginnings on."""
     return next(
         (n for n, (a, b) in enumerate(zip(first, second, strict=False)) if a != b), min(len(first), len(second))

@@ -65,7 +65,7 @@ class VariablesPart(Part):
             steps = key.split(".") if isinstance(key, str) and key.partition(".")[0] in ROOTS else [key]
             if len(steps) > DEEPEST:
                 raise InputError(f"a path must have at most {DEEPEST} words; got {quote(key)}; shorten it")
-            _place(nested, steps, deepcopy(value), key)
+            _put_value(nested, steps, deepcopy(value), key)
         return nested
 
     @property
@@ -176,7 +176,7 @@ def set_by_options(tables: Mapping[str, Any]) -> set[str]:
     return {path for option in options_in(tables) for path in table_in(option, "values")}
 
 
-def _place(table: dict[str, Any], steps: list[str], value: Any, key: str) -> None:
+def _put_value(table: dict[str, Any], steps: list[str], value: Any, key: str) -> None:
     """Put a value into tables within tables."""
     for step in steps[:-1]:
         table = table.setdefault(step, {})
@@ -187,7 +187,7 @@ def _place(table: dict[str, Any], steps: list[str], value: Any, key: str) -> Non
     present = table.get(steps[-1])
     if isinstance(present, dict) and isinstance(value, Mapping):
         for inner, item in value.items():
-            _place(present, [inner], item, f"{key}.{inner}")
+            _put_value(present, [inner], item, f"{key}.{inner}")
     elif present is not None:
         raise InputError(f"{key} is given twice; leave out one of the two")
     else:

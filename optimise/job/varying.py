@@ -64,7 +64,7 @@ def varying_machine(job: Job, key: str = "variables") -> Mechanism:
     varying = []
     for path, stated_value in job.variables.paths.items():
         if not is_choice(stated_value):
-            varying.append(_varying(job, f"{key}.{path}", path, stated_value))
+            varying.append(_varying_number(job, f"{key}.{path}", path, stated_value))
     if not any(path.startswith("start.") for item in varying for path in item.paths):
         base = replace(base, start=Start())
     try:
@@ -80,7 +80,7 @@ def variants_of(
 
     None if nothing is to be chosen. formulas: of the job, which its options may constrain too. amounts: of the job.
     """
-    every = list(_axes(job, formulas, amounts))
+    every = list(_choice_axes(job, formulas, amounts))
     axes = [(name, [option for option in options if option.searched]) for name, options in every]
     if not axes:
         return (), (), ()
@@ -99,7 +99,7 @@ def variants_of(
         )
     names = [name for name, _ in axes]
     combinations = list(itertools.product(*(options for _, options in axes)))
-    variants = tuple(_variant(job, names, chosen) for chosen in combinations)
+    variants = tuple(_variant_of_options(job, names, chosen) for chosen in combinations)
     searched = {tuple(map(id, chosen)): variant for chosen, variant in zip(combinations, variants, strict=True)}
     catalogue = dict(searched) if any(part.table is not None for part in job.choice) else {}
     for place, (_, options) in enumerate(every) if catalogue else ():
@@ -131,15 +131,15 @@ def discrete_of(job: Job) -> tuple[Discrete, ...]:
             discrete.append(Discrete(name=name, values=stated.values, rule=stated.rule))
     for path, stated in job.variables.paths.items():
         if says_values(stated):
-            grid = _grid(job, f"variables.{path}", path, stated)
+            grid = _read_grid(job, f"variables.{path}", path, stated)
             discrete.append(Discrete(name=path, values=grid.values, rule=grid.rule))
     return tuple(discrete)
 
 
-def _grid(job: Job, key: str, path: str, table: Mapping[str, Any]) -> Grid:
+def _read_grid(job: Job, key: str, path: str, table: Mapping[str, Any]) -> Grid:
     """Return the values of a number that varies, read by the rules of its own key."""
     try:
-        return read_grid(table, lambda value: _number(with_values(job, {path: value}, key), path, key))
+        return read_grid(table, lambda value: _number_at(with_values(job, {path: value}, key), path, key))
     except InputError as error:
         text = str(error)
         raise JobError(text if text.startswith(key) else f"{key}: {text}") from None
@@ -159,7 +159,7 @@ def dimension_ranges(job: Job) -> dict[str, Range]:
     ranges_by_name = {}
     for name in DIMENSIONS:
         options = [
-            _length(name, option.paths[name], f"choice {quote(part.name)}, option {quote(option.name)}")
+            _read_length_range(name, option.paths[name], f"choice {quote(part.name)}, option {quote(option.name)}")
             for part in job.choice
             for option in part.option
             if name in option.paths
@@ -174,7 +174,7 @@ def is_choice(value: object) -> bool:
     return isinstance(value, Mapping) and set(value) == {"choices"}
 
 
-def _axes(job: Job, formulas: Formulas, amounts: Mapping[str, Amount]) -> Iterator[tuple[str, list[_Option]]]:
+def _choice_axes(job: Job, formulas: Formulas, amounts: Mapping[str, Amount]) -> Iterator[tuple[str, list[_Option]]]:
     """Yield name and options of every choice."""
     for name in DIMENSIONS:
         stated = getattr(job.variables, name)
@@ -208,22 +208,22 @@ def _axes(job: Job, formulas: Formulas, amounts: Mapping[str, Amount]) -> Iterat
         yield part.name, options
 
 
-def _variant(job: Job, names: list[str], chosen: tuple[_Option, ...]) -> Variant:
+def _variant_of_options(job: Job, names: list[str], chosen: tuple[_Option, ...]) -> Variant:
     ranges: dict[str, Any] = {name: getattr(job.variables, name) for name in DIMENSIONS}
     values: dict[str, Any] = {}
     for name, option in zip(names, chosen, strict=True):
         for path, value in option.values.items():
-            if path in values or (path in job.variables.paths and path not in _single(name, option)):
+            if path in values or (path in job.variables.paths and path not in _path_of_choice(name, option)):
                 raise JobError(f"choice {name!r}: {path} may be set only once; got it twice; leave out one of the two")
             values[path] = value
     for name in DIMENSIONS:
         if name in values:
-            ranges[name] = _length(name, values.pop(name), "choice")
+            ranges[name] = _read_length_range(name, values.pop(name), "choice")
     try:
         other = with_values(job, values, "choice") if values else job
     except JobError:
         for name, option in zip(names, chosen, strict=True):  # one that is wrong by itself is named
-            single = next(iter(_single(name, option)), None)
+            single = next(iter(_path_of_choice(name, option)), None)
             name_of_part = f"variables.{single}" if single else f"choice {quote(name)}, option {quote(option.label)}"
             with_values(job, {path: value for path, value in option.values.items() if path in values}, name_of_part)
         raise
@@ -260,13 +260,13 @@ def _slow_stroke(chosen: tuple[_Option, ...]) -> SlowStroke | None:
     return next(iter(stroke_labels), None)
 
 
-def _single(name: str, option: _Option) -> tuple[str, ...]:
+def _path_of_choice(name: str, option: _Option) -> tuple[str, ...]:
     """Return the path of a choice that [variables] itself gives."""
     paths = tuple(option.values)
     return paths if len(paths) == 1 and paths[0].removeprefix("mechanism.") == name else ()
 
 
-def _length(name: str, value: Any, key: str) -> tuple[float, float] | Choices:
+def _read_length_range(name: str, value: Any, key: str) -> tuple[float, float] | Choices:
     try:
         found = RangeOf("any" if name == "offset" else "positive").read(value)
         if isinstance(found, Grid):
@@ -278,10 +278,10 @@ def _length(name: str, value: Any, key: str) -> tuple[float, float] | Choices:
         raise JobError(f"{key}: {name} {error}") from None
 
 
-def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
+def _varying_number(job: Job, key: str, path: str, given: Any) -> Varying:
     """Return the varying number of a path."""
     if says_values(given):
-        grid = _grid(job, key, path, given)
+        grid = _read_grid(job, key, path, given)
         if len(grid.values) < 2:
             raise JobError(
                 f"{key}: must have at least two values; got one, {grid.rule}; give it as a fixed number instead"
@@ -295,14 +295,14 @@ def _varying(job: Job, key: str, path: str, given: Any) -> Varying:
         )
     jobs = [with_values(job, {path: end}, key) for end in given]
     _require_range_of_speed(path, key, jobs)
-    lower, upper = (_number(other, path, key) for other in jobs)
+    lower, upper = (_number_at(other, path, key) for other in jobs)
     if not lower < upper:
         raise JobError(
             f"{key}: must run from its lower to its upper end; got {quote(given[0])} to {quote(given[1])}; "
             f"{swap(*given)}"
         )
     sets = []
-    for place, low, high in _differing(jobs[0].machine(), jobs[1].machine(), ""):
+    for place, low, high in _differing_numbers(jobs[0].machine(), jobs[1].machine(), ""):
         factor = high / upper if upper else low / lower
         tolerance = _ROUNDING * abs(factor) * max(abs(lower), abs(upper))
         if not (abs(low - factor * lower) <= tolerance and abs(high - factor * upper) <= tolerance):
@@ -363,7 +363,7 @@ def with_values(job: Job, values: Mapping[str, Any], key: str) -> Job:
         raise JobError(f"{key}: {sentence}") from None
 
 
-def _number(job: Job, path: str, key: str) -> float:
+def _number_at(job: Job, path: str, key: str) -> float:
     """Return the number at a path of a job, SI."""
     part: Any = job
     for step in path.split("."):
@@ -375,17 +375,17 @@ def _number(job: Job, path: str, key: str) -> float:
     return float(number)
 
 
-def _differing(low: Any, high: Any, root: str) -> Iterator[tuple[str, float, float]]:
+def _differing_numbers(low: Any, high: Any, root: str) -> Iterator[tuple[str, float, float]]:
     """Yield dotted path and both values of every number that differs between two machines."""
     if low == high:
         return
     if is_dataclass(low) and type(low) is type(high):
         for field in fields(low):
             place = f"{root}.{field.name}" if root else field.name
-            yield from _differing(getattr(low, field.name), getattr(high, field.name), place)
+            yield from _differing_numbers(getattr(low, field.name), getattr(high, field.name), place)
     elif isinstance(low, tuple) and isinstance(high, tuple) and len(low) == len(high):
         for number, pair in enumerate(zip(low, high, strict=True)):
-            yield from _differing(*pair, f"{root}.{number}")
+            yield from _differing_numbers(*pair, f"{root}.{number}")
     elif isinstance(low, int | float) and isinstance(high, int | float):
         yield root, float(low), float(high)
     else:  # of another kind: it does not follow

@@ -84,12 +84,12 @@ def differential_evolution(problem: Problem, evaluators: list[Evaluator], run: R
     archive, improvements = Archive.empty(1), Archive.empty(1)
     run.archive = improvements
     for index in range(len(evaluators)):
-        _evolve(problem, evaluators, index, archive, improvements, run)
+        _evolve_branch(problem, evaluators, index, archive, improvements, run)
     run.report_round("evolving", evaluators, archive)
     return archive
 
 
-def _evolve(
+def _evolve_branch(
     problem: Problem, evaluators: list[Evaluator], index: int, archive: Archive, improvements: Archive, run: Run
 ) -> None:
     """Put the optimum of one branch into the archive, and every improvement into `improvements`."""
@@ -145,12 +145,12 @@ def shgo(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     run.archive = improvements
     run.rounds = 1 + len(evaluators)
     for index in range(len(evaluators)):
-        _descend(problem, evaluators, index, archive, improvements)
+        _search_basins(problem, evaluators, index, archive, improvements)
         run.report_round("descending", evaluators, archive)
     return archive
 
 
-def _descend(
+def _search_basins(
     problem: Problem, evaluators: list[Evaluator], index: int, archive: Archive, improvements: Archive
 ) -> None:
     """Put the optima of the basins of one branch into the archive, and every improvement into `improvements`."""

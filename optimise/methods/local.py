@@ -115,7 +115,7 @@ def by_slsqp(programme: Programme, u: Array) -> Array | None:
     """
     best = None
     for _ in range(_AGAIN):
-        optimum = _feasible_point(programme, _slsqp(programme, u))
+        optimum = _feasible_point(programme, _slsqp_run(programme, u))
         if optimum is None:
             break
         moved = np.abs(optimum - u).max(initial=0.0)
@@ -125,7 +125,7 @@ def by_slsqp(programme: Programme, u: Array) -> Array | None:
     return best
 
 
-def _slsqp(programme: Programme, u: Array) -> Array:
+def _slsqp_run(programme: Programme, u: Array) -> Array:
     from scipy.optimize import minimize
 
     minimised: Any = minimize  # its stubs know no mixed arguments
@@ -155,7 +155,7 @@ def by_trust_constr(programme: Programme, u: Array) -> Array | None:
     nearer to the limits. It stays within the inequalities, unless u lies on one. It does not support equalities.
     """
     for attempt in range(_ATTEMPTS):
-        end, converged = _barrier(programme, u, _MARGIN * _NEARER**attempt)
+        end, converged = _interior_point_run(programme, u, _MARGIN * _NEARER**attempt)
         best = _feasible_point(programme, end)
         if best is None or converged:
             break
@@ -163,7 +163,7 @@ def by_trust_constr(programme: Programme, u: Array) -> Array | None:
     return best
 
 
-def _barrier(programme: Programme, u: Array, margin: float) -> tuple[Array, bool]:
+def _interior_point_run(programme: Programme, u: Array, margin: float) -> tuple[Array, bool]:
     """Return the end of one interior-point run, and whether it is an optimum. margin: distance between s and t."""
     from scipy.optimize import BFGS, Bounds, NonlinearConstraint, minimize
 

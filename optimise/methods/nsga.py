@@ -38,7 +38,7 @@ def nsga2(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the designs that NSGA-II finds; crowding distance keeps its population diverse."""
     from optuna.samplers import NSGAIISampler
 
-    return _genetic(problem, evaluators, run, NSGAIISampler)
+    return _search_genetic(problem, evaluators, run, NSGAIISampler)
 
 
 def nsga3(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
@@ -46,7 +46,7 @@ def nsga3(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     from optuna.samplers import NSGAIIISampler
 
     size, objectives = population_size(problem), len(problem.objectives)
-    return _genetic(problem, evaluators, run, NSGAIIISampler, dividing_parameter=divisions(size, objectives))
+    return _search_genetic(problem, evaluators, run, NSGAIIISampler, dividing_parameter=divisions(size, objectives))
 
 
 def population_size(problem: Problem) -> int:
@@ -71,7 +71,7 @@ def divisions(population: int, objectives: int) -> int:
     return parts
 
 
-def _genetic(problem: Problem, evaluators: list[Evaluator], run: Run, sampler: Any, **options: Any) -> Archive:
+def _search_genetic(problem: Problem, evaluators: list[Evaluator], run: Run, sampler: Any, **options: Any) -> Archive:
     """Return the designs that one of Optuna's genetic samplers finds."""
     from optuna.samplers.nsgaii import PolynomialMutation, SBXCrossover
 

@@ -164,7 +164,7 @@ class _Front:
             return optima[:0]
         sampled = self.scaled(self.samples.values)
         sampled = sampled[nondominated(sampled)]
-        aims = np.concatenate([sampled[:: 1 + len(sampled) // _POOL], _middles(optima)])
+        aims = np.concatenate([sampled[:: 1 + len(sampled) // _POOL], _gabriel_middles(optima)])
         away = distance_matrix(aims, np.concatenate([optima, self.aimed])).min(axis=1)
         picked: list[int] = []
         while len(picked) < min(missing, len(aims)):
@@ -209,7 +209,7 @@ def grid(lower: Array, upper: Array, parts: int) -> Array:
     return np.asarray(lower + places * (upper - lower))
 
 
-def _middles(points: Array) -> Array:
+def _gabriel_middles(points: Array) -> Array:
     """Return the middles (n, m) of the edges of the Gabriel graph of points."""
     from scipy.spatial import distance_matrix
 

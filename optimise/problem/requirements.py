@@ -41,7 +41,7 @@ class Range:
     upper: float
 
     def __post_init__(self) -> None:
-        if not (_finite(self.lower) and _finite(self.upper) and self.lower <= self.upper):
+        if not (_is_finite(self.lower) and _is_finite(self.upper) and self.lower <= self.upper):
             raise InputError(
                 f"a range needs lower <= upper, both finite; got {_format(self.lower)} to {_format(self.upper)}"
             )
@@ -68,7 +68,7 @@ class Constraint:
         if self.lower is None and self.upper is None:
             raise InputError(f"the constraint on {self.quantity} needs a lower bound, an upper bound or a value")
         for bound in (self.lower, self.upper):
-            if bound is not None and not _finite(bound):
+            if bound is not None and not _is_finite(bound):
                 raise InputError(f"the constraint on {self.quantity} must be a finite number, SI; got {_format(bound)}")
         if self.lower is not None and self.upper is not None and self.lower > self.upper:
             raise InputError(
@@ -106,10 +106,10 @@ class Objective:
 
     def __post_init__(self) -> None:
         _require_name(self.quantity)
-        object.__setattr__(self, "sense", _sense(self.quantity, self.sense))
+        object.__setattr__(self, "sense", _standard_sense(self.quantity, self.sense))
         if (self.sense == "target") != (self.target is not None):
             raise InputError(f"the objective {self.quantity} needs a target exactly when its sense is 'target'")
-        if self.target is not None and not _finite(self.target):
+        if self.target is not None and not _is_finite(self.target):
             raise InputError(f"the target of {self.quantity} must be a finite number, SI; got {_format(self.target)}")
         _warn_of_units(self.quantity, {"target": self.target})
 
@@ -135,7 +135,7 @@ def _require_name(name: object) -> None:
         )
 
 
-def _sense(name: str, sense: object) -> Sense:
+def _standard_sense(name: str, sense: object) -> Sense:
     """Return a sense in its standard spelling. Raises `InputError` for an unknown one."""
     if not isinstance(sense, str) or sense not in SENSES:
         raise InputError(
@@ -159,7 +159,7 @@ def _warn_of_units(quantity: str, numbers: Mapping[str, float | None]) -> None:
             break
 
 
-def _finite(value: object) -> bool:
+def _is_finite(value: object) -> bool:
     return isinstance(value, Real) and math.isfinite(value)
 
 

@@ -117,7 +117,7 @@ def _restatement(
     for quantity, form, inverse, rises in _FORMS:
         if quantity is TIME_RATIO and not steady:  # along a speed profile it is not a formula of the dimensions
             continue
-        found = _line(form(quantity.evaluate(machine, designs).values), values)
+        found = _line_through(form(quantity.evaluate(machine, designs).values), values)
         if found is not None:
             return Restatement(quantity.name, *found, rises, inverse)
     return None
@@ -161,7 +161,7 @@ def _random_designs(crank: Range, rod: Range, offset: Range) -> Array:
     return np.asarray(drawn[turning][:_COMPARED])
 
 
-def _line(x: Array, y: Array) -> tuple[float, float] | None:
+def _line_through(x: Array, y: Array) -> tuple[float, float] | None:
     """Return factor and constant of the line through all points (n,); None if they are not on a line."""
     if not (np.isfinite(x).all() and np.isfinite(y).all()):
         return None

@@ -42,7 +42,7 @@ def robust(problem: Problem, plan: Robust) -> Problem:
 
     Raises `InputError` for a quantity that is not in the problem, cannot be robust, or has no gradient.
     """
-    chosen_names = _chosen(problem, plan)
+    chosen_names = _robust_names(problem, plan)
     sides: dict[str, set[Side]] = {name: set() for name in chosen_names}
     for constraint in problem.every_constraint:
         if constraint.quantity in sides and not constraint.equality:
@@ -99,14 +99,14 @@ def nominal(problem: Problem) -> Problem:
         objectives=tuple(
             replace(item, quantity=inner.get(item.quantity, item.quantity)) for item in problem.objectives
         ),
-        constraints=_nominal(problem.constraints, inner),
-        variants=tuple(replace(variant, limits=_nominal(variant.limits, inner)) for variant in problem.variants),
-        catalogue=tuple(replace(variant, limits=_nominal(variant.limits, inner)) for variant in problem.catalogue),
+        constraints=_on_nominal(problem.constraints, inner),
+        variants=tuple(replace(variant, limits=_on_nominal(variant.limits, inner)) for variant in problem.variants),
+        catalogue=tuple(replace(variant, limits=_on_nominal(variant.limits, inner)) for variant in problem.catalogue),
         own=tuple(quantity for quantity in problem.own if not isinstance(quantity, RobustQuantity)),
     )
 
 
-def _chosen(problem: Problem, plan: Robust) -> list[str]:
+def _robust_names(problem: Problem, plan: Robust) -> list[str]:
     """Return the names of the quantities to make robust."""
     bounded = [c.quantity for c in problem.every_constraint if not c.equality]
     able = list(dict.fromkeys([o.quantity for o in problem.objectives if o.sense != "target"] + bounded))
@@ -167,6 +167,6 @@ def _robust_constraints(
             yield Constraint(quantity=names[name, "high"], upper=upper)
 
 
-def _nominal(constraints: tuple[Constraint, ...], inner: dict[str, str]) -> tuple[Constraint, ...]:
+def _on_nominal(constraints: tuple[Constraint, ...], inner: dict[str, str]) -> tuple[Constraint, ...]:
     """Return constraints on the nominal quantities, with the two sides of one joined again."""
     return merged(replace(item, quantity=inner.get(item.quantity, item.quantity)) for item in constraints)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 from ...model.errors import InputError
 
 
-def _require(subject: str, name: str, value: float, least: float = 0.0) -> None:
+def _require_at_least(subject: str, name: str, value: float, least: float = 0.0) -> None:
     if not math.isfinite(value) or value <= least:
         raise InputError(f"{subject} must have a finite {name} above {least:g}; got {value:g}")
 
@@ -35,7 +35,7 @@ class SectionLimits:
 
     def __post_init__(self) -> None:
         for name in ("crank_pivot", "crank_pin", "slider_pin"):
-            _require("a pin", f"diameter ({name})", getattr(self, name))
+            _require_at_least("a pin", f"diameter ({name})", getattr(self, name))
         for name in (item.name for item in fields(self) if item.name.endswith("_safety")):
             if not 1.0 <= getattr(self, name) < math.inf:
                 raise InputError(f"{name} must be at least 1 and finite; got {getattr(self, name):g}")

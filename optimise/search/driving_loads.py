@@ -39,7 +39,7 @@ _NAMED = 3
 
 def driven_by_loads(problem: Problem) -> list[str]:
     """Return the warning about loads that do positive net work on sampled designs of a problem, or none."""
-    return _warning(samples(problem), "sampled design") if any(map(_may_be_driven, problem.parts())) else []
+    return _load_warning(samples(problem), "sampled design") if any(map(_may_be_driven, problem.parts())) else []
 
 
 def front_driven_by_loads(front: ParetoFront) -> list[str]:
@@ -49,7 +49,7 @@ def front_driven_by_loads(front: ParetoFront) -> list[str]:
         [row for row, rows_of_variant in enumerate(variants) if rows_of_variant == variant]
         for variant in sorted({*variants})
     ]
-    return _warning(
+    return _load_warning(
         ((front.part(rows_of_variant[0]), front.dimensions[rows_of_variant]) for rows_of_variant in rows), "design"
     )
 
@@ -99,7 +99,7 @@ def _may_be_driven(problem: Problem) -> bool:
     return not delivers and any(not (load.drives or load.resists) for load in problem.mechanism.fullest.loads)
 
 
-def _warning(parts: Iterable[tuple[Problem, Array]], design: str) -> list[str]:
+def _load_warning(parts: Iterable[tuple[Problem, Array]], design: str) -> list[str]:
     """Return the warning about designs, each with the problem for its choices. design: noun for one of them."""
     works: list[float] = []
     subject, named, count = "loads", "", 0

@@ -280,11 +280,11 @@ def _closed_rules(required: dict[str, float], *, steady: bool) -> list[Rule]:
         if all(name in required for name in names) and (steady or TIME_RATIO.name not in names):
             rules.append(ClosedRule(origin, target, sources, tuple(required[name] for name in names)))
     # At a ratio of one the dead centres are opposite for any rod.
-    level = {pair for name, pair in _PAIRS.items() if name in required and _excess(required[name])[1] == 1.0}
+    level = {pair for name, pair in _PAIRS.items() if name in required and _excess_angle(required[name])[1] == 1.0}
     return [rule for rule in rules if rule.origin not in level or rule.target != "rod"]
 
 
-def _excess(ratio: float) -> tuple[float, float]:
+def _excess_angle(ratio: float) -> tuple[float, float]:
     """Return sine and cosine of the excess angle b for a crank angle ratio."""
     b = math.pi * (ratio - 1.0) / (ratio + 1.0)
     return math.sin(b), math.cos(b)
@@ -295,18 +295,18 @@ def _crank_of_pair(stroke: float, ratio: float, l: Any) -> Any:
 
     l^2 (1 - cos b) + r^2 (1 + cos b) = S^2 / 2.
     """
-    cosine = _excess(ratio)[1]
+    cosine = _excess_angle(ratio)[1]
     return np.sqrt((0.5 * stroke**2 - l * l * (1.0 - cosine)) / (1.0 + cosine))
 
 
 def _rod_of_pair(stroke: float, ratio: float, r: Any) -> Any:
     """Return the rod by the same rule."""
-    cosine = _excess(ratio)[1]
+    cosine = _excess_angle(ratio)[1]
     return np.sqrt((0.5 * stroke**2 - r * r * (1.0 + cosine)) / (1.0 - cosine))
 
 
 def _offset_of_ratio(ratio: float, r: Any, l: Any) -> Any:
-    return geometry.offset_from_excess_angle(r, l, *_excess(ratio))
+    return geometry.offset_from_excess_angle(r, l, *_excess_angle(ratio))
 
 
 _PAIRS = {ratio.name: f"{STROKE.name}+{ratio.name}" for ratio in (TIME_RATIO, CRANK_ANGLE_RATIO)}

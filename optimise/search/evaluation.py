@@ -191,7 +191,7 @@ class Evaluator:
         parts: list[tuple[int, Pieces]] = []
         for index, objective in enumerate(objectives):
             parts += [(index, part) for part in _objective_rows(objective, pieces[objective.quantity])]
-        aims = replace(_stack(parts, len(u), self.dimension), constant=self.constant)
+        aims = replace(_stack_rows(parts, len(u), self.dimension), constant=self.constant)
         parts = []
         for index, constraint in enumerate(self.constraints):
             quantity_pieces = pieces[constraint.quantity]
@@ -206,7 +206,7 @@ class Evaluator:
             parts += [
                 (index, _excess_pieces(quantity_pieces, *side)) for side in _range_sides(self.branch.bounds[name])
             ]
-        return aims, _stack(parts, len(u), self.dimension)
+        return aims, _stack_rows(parts, len(u), self.dimension)
 
 
 def _to_unit_box(pieces: Pieces, jacobian: Array) -> Pieces:
@@ -219,7 +219,7 @@ def _to_unit_box(pieces: Pieces, jacobian: Array) -> Pieces:
         return Pieces(pieces.values, slopes, pieces.labels, pieces.least, opposite)
     # Rod to offset grows without bound: no numbers that overflow in a product, no slope where infinite.
     bounded = (heights < _HUGE) & (sizes < _HUGE).all(axis=2)
-    # What is not a number stays none, whatever its sign: `_stack` makes it no optimum and a violation.
+    # What is not a number stays none, whatever its sign: `_stack_rows` makes it no optimum and a violation.
     values = np.where(bounded | np.isnan(pieces.values), pieces.values, np.copysign(np.inf, pieces.values))
     slopes = np.einsum("npd,ndk->npk", np.where(bounded[:, :, None], pieces.gradients, 0.0), jacobian)
     return Pieces(values, slopes, pieces.labels, pieces.least, opposite)
@@ -264,7 +264,7 @@ def _binding_pieces(pieces: Pieces, side: float) -> Pieces:
     return Pieces(pieces.values[rows, column], pieces.gradients[rows, column], pieces.labels[rows, column])
 
 
-def _stack(parts: list[tuple[int, Pieces]], n: int, k: int) -> Rows:
+def _stack_rows(parts: list[tuple[int, Pieces]], n: int, k: int) -> Rows:
     if not parts:
         return Rows.absent(n, k)
     values = np.concatenate([part.values for _, part in parts], axis=1)

@@ -38,27 +38,27 @@ def identity_of(problem: Problem) -> Identity:
     """Return the identity of a search of this problem. Its name may change and its budget rise before it resumes."""
     settings = replace(problem.settings, evaluations=None)
     digest = hashlib.blake2b(digest_size=16)
-    for part in _parts(replace(problem, settings=settings, name="")):
+    for part in _identifying_parts(replace(problem, settings=settings, name="")):
         digest.update(part)
     return Identity(digest.hexdigest(), json.dumps({name: version_of(name) for name in _COMPUTE}))
 
 
-def _parts(value: Any) -> Iterator[bytes]:
+def _identifying_parts(value: Any) -> Iterator[bytes]:
     """Yield a value's type and content; for a composite value, the number of parts, then the parts."""
     yield f"{type(value).__qualname__}:".encode()
     if is_dataclass(value) and not isinstance(value, type):
         for item in fields(value):
             if item.compare and item.name not in _LEFT_OUT:
                 yield item.name.encode()
-                yield from _parts(getattr(value, item.name))
+                yield from _identifying_parts(getattr(value, item.name))
     elif isinstance(value, np.ndarray):
         yield f"{value.dtype}{value.shape}".encode() + value.tobytes()
     elif isinstance(value, Mapping):
-        yield from _parts(tuple(value.items()))
+        yield from _identifying_parts(tuple(value.items()))
     elif isinstance(value, (tuple, list)):
         yield f"{len(value)};".encode()
         for item in value:
-            yield from _parts(item)
+            yield from _identifying_parts(item)
     elif isinstance(value, float):
         yield value.hex().encode() + b";"
     elif value is None or isinstance(value, (str, int, bool, np.generic)):
@@ -66,4 +66,4 @@ def _parts(value: Any) -> Iterator[bytes]:
     elif callable(value) and hasattr(value, "__qualname__"):
         yield f"{value.__module__}.{value.__qualname__};".encode()
     else:
-        yield from _parts(vars(value) if hasattr(value, "__dict__") else None)
+        yield from _identifying_parts(vars(value) if hasattr(value, "__dict__") else None)

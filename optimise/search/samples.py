@@ -47,7 +47,7 @@ def samples(problem: Problem) -> Iterator[tuple[Problem, Array]]:
         designs, misses = next(filter(_has_feasible, tried), tried[0])
         order = np.argsort(np.maximum(misses, FEASIBLE), kind="stable")
         count_feasible = np.count_nonzero(misses <= FEASIBLE) or _SAMPLES
-        yield part, _representatives(part, designs[order][:count_feasible])
+        yield part, _representative_rows(part, designs[order][:count_feasible])
 
 
 def _try_points(part: Problem, branch: EliminationBranch, count: int) -> tuple[Array, Array]:
@@ -70,7 +70,7 @@ def _middle_of_narrow_range(constraint: Constraint) -> Constraint:
     return replace(constraint, lower=0.5 * (lower + upper), upper=0.5 * (lower + upper))
 
 
-def _representatives(part: Problem, designs: Array) -> Array:
+def _representative_rows(part: Problem, designs: Array) -> Array:
     """Return the first designs and those of extreme numbers and stroke."""
     if not len(designs):
         return designs

@@ -39,7 +39,7 @@ def sobol(power: int, dimension: int, random: np.random.Generator) -> Array:
     shift = random.integers(2, size=(dimension, _BITS), dtype=np.uint32) @ (np.uint32(1) << places)
     lower = np.tril(random.integers(2, size=(dimension, _BITS, _BITS), dtype=np.uint32), -1)
     lower += np.eye(_BITS, dtype=np.uint32)
-    digits = _directions(dimension)[:, :, None] >> places[::-1] & 1  # the most significant first
+    digits = _direction_numbers(dimension)[:, :, None] >> places[::-1] & 1  # the most significant first
     mixed = np.einsum("dpk,djk->djp", lower, digits) & 1
     numbers = (mixed << places[::-1]).sum(axis=2, dtype=np.uint32)
     count = np.arange(1, 2**power)
@@ -49,7 +49,7 @@ def sobol(power: int, dimension: int, random: np.random.Generator) -> Array:
     return np.asarray(np.bitwise_xor.accumulate(points) * 2.0**-_BITS)
 
 
-def _directions(dimension: int) -> NDArray[np.uint32]:
+def _direction_numbers(dimension: int) -> NDArray[np.uint32]:
     """Return the direction numbers (k, bits)."""
     rows = []
     for inner, first in _FIRST[:dimension]:

@@ -57,27 +57,27 @@ def swing_rules(problem: Problem, required: Mapping[str, float], sign: float) ->
         yield SwingRule(angle, "rod", ("crank", "offset", *free), numbers, _rod_of_angle, 4)
 
 
-def _ends(start: float, end: float, follows: float, free: tuple[Any, ...]) -> tuple[Any, Any]:
+def _swing_ends(start: float, end: float, follows: float, free: tuple[Any, ...]) -> tuple[Any, Any]:
     first = free[0] if free else start
     return first, first + (end - start) if follows else end
 
 
-def _sides(root: int) -> tuple[float, float]:
+def _root_signs(root: int) -> tuple[float, float]:
     """Return the two signs that a root stands for: of the direction, and of the solution."""
     return (1.0, -1.0)[root % 2], (1.0, -1.0)[root // 2]
 
 
-def _pins(root: int, travel: float, ends: tuple[Any, Any], r: Any) -> tuple[Any, Any, Any, Any]:
+def _crank_pins(root: int, travel: float, ends: tuple[Any, Any], r: Any) -> tuple[Any, Any, Any, Any]:
     """Return the crank pin at the start, and at the end moved back by the travel."""
     first, last = ends
-    way = _sides(root)[0]
+    way = _root_signs(root)[0]
     return r * np.cos(first), r * np.sin(first), r * np.cos(last) - way * travel, r * np.sin(last)
 
 
 def _rod_of_travel(
     root: int, travel: float, sign: float, start: float, end: float, follows: float, r: Any, a: Any, *free: Any
 ) -> Any:
-    x_0, y_0, x_1, y_1 = _pins(root, travel, _ends(start, end, follows, free), r)
+    x_0, y_0, x_1, y_1 = _crank_pins(root, travel, _swing_ends(start, end, follows, free), r)
     e = sign * a
     x = 0.5 * (x_1 + x_0) + 0.5 * (y_1 - y_0) * (y_1 + y_0 - 2.0 * e) / (x_1 - x_0)
     return np.sqrt((x_0 - x) ** 2 + (y_0 - e) ** 2)
@@ -86,16 +86,16 @@ def _rod_of_travel(
 def _offset_of_travel(
     root: int, travel: float, sign: float, start: float, end: float, follows: float, r: Any, l: Any, *free: Any
 ) -> Any:
-    x_0, y_0, x_1, y_1 = _pins(root, travel, _ends(start, end, follows, free), r)
+    x_0, y_0, x_1, y_1 = _crank_pins(root, travel, _swing_ends(start, end, follows, free), r)
     square = (x_1 - x_0) ** 2 + (y_1 - y_0) ** 2
-    away = _sides(root)[1] * np.sqrt(l * l / square - 0.25)
+    away = _root_signs(root)[1] * np.sqrt(l * l / square - 0.25)
     return sign * (0.5 * (y_0 + y_1) + away * (x_1 - x_0))
 
 
 def _bisector(root: int, angle: float, ends: tuple[Any, Any], e: Any) -> tuple[Any, Any, Any, Any]:
     """Return a point and the direction of the bisector of the slider pin at start and turned-back end."""
     first, last = ends
-    turn = _sides(root)[0] * angle
+    turn = _root_signs(root)[0] * angle
     cosine, sine = np.cos(turn), np.sin(turn)
     x_1, y_1 = cosine * last + sine * e, cosine * e - sine * last
     return 0.5 * (first + x_1), 0.5 * (e + y_1), e - y_1, x_1 - first
@@ -104,16 +104,16 @@ def _bisector(root: int, angle: float, ends: tuple[Any, Any], e: Any) -> tuple[A
 def _crank_of_angle(
     root: int, angle: float, sign: float, start: float, end: float, follows: float, l: Any, a: Any, *free: Any
 ) -> Any:
-    x, y, u, v = _bisector(root, angle, _ends(start, end, follows, free), sign * a)
-    away = _sides(root)[1] * np.sqrt(l * l / (u * u + v * v) - 0.25)
+    x, y, u, v = _bisector(root, angle, _swing_ends(start, end, follows, free), sign * a)
+    away = _root_signs(root)[1] * np.sqrt(l * l / (u * u + v * v) - 0.25)
     return np.sqrt((x + away * u) ** 2 + (y + away * v) ** 2)
 
 
 def _rod_of_angle(
     root: int, angle: float, sign: float, start: float, end: float, follows: float, r: Any, a: Any, *free: Any
 ) -> Any:
-    x, y, u, v = _bisector(root, angle, _ends(start, end, follows, free), sign * a)
+    x, y, u, v = _bisector(root, angle, _swing_ends(start, end, follows, free), sign * a)
     square = u * u + v * v
     projection = (x * u + y * v) / square
-    away = -projection + _sides(root)[1] * np.sqrt(projection * projection + (r * r - x * x - y * y) / square)
+    away = -projection + _root_signs(root)[1] * np.sqrt(projection * projection + (r * r - x * x - y * y) / square)
     return np.sqrt(square * (away * away + 0.25))

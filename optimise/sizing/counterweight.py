@@ -278,7 +278,7 @@ class _Programme:
             (Signal.SHAKING_FORCE, np.hypot(*force), self.force),
             *([(Signal.SHAKING_MOMENT, np.abs(moment), self.force * self.arm)] if self.arm else []),
         ):
-            found = find_peaks(after, kind, _design(self.linkage))
+            found = find_peaks(after, kind, _design_row(self.linkage))
             fresh.append(found.angles[0, found.values[0] > size.max() + _EXCESS * unit])
         return np.concatenate(fresh)
 
@@ -287,11 +287,11 @@ def shaking_of(mechanism: Mechanism, linkage: Linkage) -> Shaking:
     """Return peaks and root mean squares of shaking force and moment of one linkage."""
     numbers: list[float] = []
     for kind in (Signal.SHAKING_FORCE, Signal.SHAKING_MOMENT):
-        peaks, angles = first_peaks(mechanism, kind, _design(linkage))
-        mean = average(mechanism, kind, _design(linkage))
+        peaks, angles = first_peaks(mechanism, kind, _design_row(linkage))
+        mean = average(mechanism, kind, _design_row(linkage))
         numbers += [float(peaks[0]), float(angles[0]), float(mean.rms[0])]
     return Shaking(*numbers)
 
 
-def _design(linkage: Linkage) -> Array:
+def _design_row(linkage: Linkage) -> Array:
     return np.array([[linkage.crank, linkage.rod, linkage.offset]], dtype=np.float64)

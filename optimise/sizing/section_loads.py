@@ -102,9 +102,9 @@ def joint_loads(mechanism: Mechanism, linkage: Linkage) -> JointLoads:
         for signal in (Signal.PIVOT_FORCE, Signal.CRANK_PIN_FORCE, Signal.SLIDER_PIN_FORCE)
     )
     return JointLoads(
-        rod=_range(axial),
-        crank=_range(-(pin * crank).sum(axis=0)),
-        bending=_range(-float(linkage.crank) * (pin * across).sum(axis=0)),
+        rod=_range_of(axial),
+        crank=_range_of(-(pin * crank).sum(axis=0)),
+        bending=_range_of(-float(linkage.crank) * (pin * across).sum(axis=0)),
         crank_pivot=pivot,
         crank_pin=crank_pin,
         slider_pin=slider_pin,
@@ -134,5 +134,5 @@ def whip_of(mechanism: Mechanism, linkage: Linkage) -> Whip:
     )
 
 
-def _range(values: Array) -> Range:
+def _range_of(values: Array) -> Range:
     return Range(float(values.min()), float(values.max()))

@@ -83,7 +83,7 @@ def with_masses(mechanism: Mechanism, linkage: Linkage, x: Array, radius: float)
     weight = Counterweight(mass=size / radius, radius=radius, angle=math.atan2(x[1], x[0]) if size else math.pi)
     rod = mechanism.rod
     if x[2] > 0.0:
-        mass, along, across, inertia = np.add(_moments(rod, float(linkage.rod)), x[2:])
+        mass, along, across, inertia = np.add(_link_moments(rod, float(linkage.rod)), x[2:])
         central = inertia - (along * along + across * across) / mass
         rod = RigidLink(
             mass=float(mass),
@@ -94,7 +94,7 @@ def with_masses(mechanism: Mechanism, linkage: Linkage, x: Array, radius: float)
     return replace(mechanism, counterweight=weight, rod=rod)
 
 
-def _moments(link: Link, length: float) -> Array:
+def _link_moments(link: Link, length: float) -> Array:
     """Return mass, first moments along and across, and inertia of a link about its origin."""
     if isinstance(link, Bar):
         numbers = (link.width, link.depth, link.density, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -107,6 +107,6 @@ def _moments(link: Link, length: float) -> Array:
 
 def moving_moment(mechanism: Mechanism, linkage: Linkage) -> float:
     """Return the first moment, kg m, of crank, rod and slider, the last two at the crank pin."""
-    crank = _moments(mechanism.crank, float(linkage.crank))
-    mass = _moments(mechanism.rod, float(linkage.rod))[0] + mechanism.slider_mass
+    crank = _link_moments(mechanism.crank, float(linkage.crank))
+    mass = _link_moments(mechanism.rod, float(linkage.rod))[0] + mechanism.slider_mass
     return float(math.hypot(crank[1], crank[2]) + mass * float(linkage.crank))

@@ -187,7 +187,7 @@ class _Programme:
         """Return the multipliers of sampled angles gathered at the peaks nearest to them."""
         multipliers = np.zeros(len(at))
         if len(at):
-            np.add.at(multipliers, _nearest(angles, at), carried)
+            np.add.at(multipliers, _nearest_angles(angles, at), carried)
         active = multipliers > _CARRIES * multipliers.sum()
         return self._point(x, at[active], multipliers[active])
 
@@ -212,7 +212,7 @@ class _Programme:
             here = pinned.copy()
             here[free] *= np.exp(z[:count])
             found = self.error.peaks(here)[1]
-            return here, found[_nearest(start.angles, found)]
+            return here, found[_nearest_angles(start.angles, found)]
 
         def conditions(z: Array) -> Array:
             here, where = place(z)
@@ -266,7 +266,7 @@ class _Programme:
         )
 
 
-def _nearest(angles: Array, among: Array) -> NDArray[np.intp]:
+def _nearest_angles(angles: Array, among: Array) -> NDArray[np.intp]:
     """Return which of some crank angles is nearest to each angle, rad."""
     distance: Array = np.abs(np.mod(angles[:, None] - among + math.pi, _TURN) - math.pi)
     return np.asarray(distance.argmin(axis=1))

@@ -30,7 +30,7 @@ def code_of(kind: type[Load]) -> int:
     return kinds().index(kind) if kind.enters == Enters.FORMULA else int(kind.enters)
 
 
-def _choice() -> Any:
+def _combined_formula() -> Any:
     """Return the combined formula of all kinds that have one: arguments are the code, then those of `Load.formula`.
 
     It is composed when kernels are compiled and inlined into them, without a call at run time.
@@ -42,11 +42,11 @@ def _choice() -> Any:
 
     for kind in kinds():
         if kind.formula is not None:
-            chosen = _either(code_of(kind), kind.formula, chosen)
+            chosen = _choose_formula(code_of(kind), kind.formula, chosen)
     return chosen
 
 
-def _either(load_code: int, formula: Any, otherwise: Any) -> Any:
+def _choose_formula(load_code: int, formula: Any, otherwise: Any) -> Any:
     @analytic
     def chosen(code: Any, position: Any, velocity: Any, way: Any, first: Any, second: Any) -> Any:
         if code == load_code:
@@ -56,4 +56,4 @@ def _either(load_code: int, formula: Any, otherwise: Any) -> Any:
     return chosen
 
 
-force_of: Any = _choice()
+force_of: Any = _combined_formula()

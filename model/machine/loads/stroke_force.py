@@ -93,7 +93,7 @@ def _force_along_motion(force: float, stroke: str, part: StrokePart, *, drives: 
     )
 
 
-def _directed(force: float, direction: str, during: During) -> StrokeForce:
+def _opposing_force(force: float, direction: str, during: During) -> StrokeForce:
     signed = force if direction == "outward" else -force
     return StrokeForce(
         outward=0.0 if during == "inward stroke" else signed,
@@ -146,6 +146,6 @@ StrokeForce.tables = (
             DURING,
         ),
         {"force": "100 N", "direction": "inward"},
-        _directed,
+        _opposing_force,
     ),
 )

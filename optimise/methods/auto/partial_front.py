@@ -47,7 +47,7 @@ def partial_front(problem: Problem, evaluators: list[Evaluator], run: Run, *, si
             if any(map(runs_custom_function, problem.own))
             else contextlib.nullcontext()
         ):
-            return _front(problem, evaluators, run)
+            return _assemble_front(problem, evaluators, run)
     except Cancelled:
         return empty_front(problem, evaluators, run, "cancelled", _SLOW)
 
@@ -58,23 +58,23 @@ _SLOW = (
 )
 
 
-def _front(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
+def _assemble_front(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
     candidates, archive = run.candidates, run.archive
     if len(archive) and not candidates.free.any():
         candidates = candidates.only_enumerated(span_of(problem, np.concatenate([archive.values, candidates.values])))
         _add_archive(problem, evaluators, archive, candidates)
     if not len(candidates):
         return empty_front(problem, evaluators, run, "cancelled", "cancelled before any feasible design was found")
-    candidates = candidates[_spread(candidates.values, _MOST)]
+    candidates = candidates[_evenly_spread_rows(candidates.values, _MOST)]
     best = candidates.best()
-    rows = best[_spread(candidates.values[best], problem.settings.designs)]
+    rows = best[_evenly_spread_rows(candidates.values[best], problem.settings.designs)]
     return assemble(problem, evaluators, candidates, run, _rows_in_time(problem, evaluators, candidates, rows))
 
 
 def _add_archive(problem: Problem, evaluators: list[Evaluator], archive: Archive, candidates: FrontCandidates) -> None:
     """Add designs of an archive, moved onto the constraints."""
     # Designs that need no move come first.
-    first, *rest = (group[_spread(group.values, problem.settings.designs)] for group in archive.groups())
+    first, *rest = (group[_evenly_spread_rows(group.values, problem.settings.designs)] for group in archive.groups())
     chosen = first.join(*rest)
     end = time.perf_counter() + _PROJECTING
     # Each batch is spread over the whole front.
@@ -96,10 +96,10 @@ def _rows_in_time(
         variants = np.array([evaluators[index].branch.variant for index in sample.branch], dtype=np.int64)
         columns_of(problem, variants, sample.dimensions(evaluators))
         count, seconds_per_design = 2 * count, (time.perf_counter() - begin) / len(sample)
-    return rows[_spread(candidates.values[rows], max(1, int(_ANALYSING / seconds_per_design)))]
+    return rows[_evenly_spread_rows(candidates.values[rows], max(1, int(_ANALYSING / seconds_per_design)))]
 
 
-def _spread(values: Array, count: int) -> IntArray:
+def _evenly_spread_rows(values: Array, count: int) -> IntArray:
     """Return at most `count` rows of objectives (n, m), never fewer than the best of each; spread over the first."""
     if len(values) <= count:
         return np.arange(len(values))

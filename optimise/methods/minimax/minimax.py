@@ -52,14 +52,14 @@ def minimax(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     for index, u in begin:
         if is_budget_spent(problem, evaluators):
             break
-        end, top, violation = _descend(evaluators[index], descents[index], u)
+        end, top, violation = _end_of_descent(evaluators[index], descents[index], u)
         if violation <= FEASIBLE:
             archive.add_points(index, end[None], np.array([[top * scale]]))
         run.report_round("descending", evaluators, archive)
     return archive
 
 
-def _descend(evaluator: Evaluator, descent: Descent, u: Array) -> tuple[Array, float, float]:
+def _end_of_descent(evaluator: Evaluator, descent: Descent, u: Array) -> tuple[Array, float, float]:
     """Return the end of the descent from a point, with its greatest piece and its violation; a recorded step."""
 
     def compute() -> tuple[Array, Array]:
@@ -92,7 +92,7 @@ def starts(problem: Problem, evaluators: list[Evaluator], archive: Archive) -> t
     values = archive.values[:, 0]
     if not len(values):
         values = np.array([_highest_piece(evaluators[index], u) for index, u in begin])
-    return _scale(problem, values), begin
+    return _objective_scale(problem, values), begin
 
 
 def _highest_piece(evaluator: Evaluator, u: Array) -> float:
@@ -101,7 +101,7 @@ def _highest_piece(evaluator: Evaluator, u: Array) -> float:
     return float(heights[0][0])
 
 
-def _scale(problem: Problem, values: Array) -> float:
+def _objective_scale(problem: Problem, values: Array) -> float:
     """Return the scale of the objective: its best size, or its spread where a target can be met."""
     if not len(values):
         return 1.0

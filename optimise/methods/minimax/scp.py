@@ -163,7 +163,9 @@ class Descent:
         goals, limits = self.evaluator.exact(moved)
         goals = replace(goals, gradients=goals.gradients / self.scale)
         hessian = difference(point.goals, goals, step.goals) + difference(point.limits, limits, step.limits)
-        return _convex_root(0.5 * (hessian / moves[:, None] + (hessian / moves[:, None]).T), _normals(point, step))
+        return _convex_root(
+            0.5 * (hessian / moves[:, None] + (hessian / moves[:, None]).T), _active_normals(point, step)
+        )
 
 
 def residual_of(point: Point, step: Step) -> float:
@@ -184,7 +186,7 @@ def residual_of(point: Point, step: Step) -> float:
     return float(np.linalg.norm(left)) + float(gap) + point.violation
 
 
-def _normals(point: Point, step: Step, least: float = 1e-6) -> Array:
+def _active_normals(point: Point, step: Step, least: float = 1e-6) -> Array:
     """Return gradients of the rows active in a step: limits, bounds, and ties of pieces as differences."""
     tied = point.goals.gradients[step.goals > least]
     edge = np.eye(len(point.u))
