@@ -25,7 +25,7 @@ from ...objectives.formula.resolve import resolve_quantities
 from ...objectives.kinds import ANGLE, unit_text
 from ...objectives.quantity import Array, Quantity, Values
 from ...objectives.registry import QUANTITIES
-from ...objectives.tables.cycle_curves import cycle_curves, cycle_table, even_angles
+from ...objectives.tables.cycle_curves import Curve, cycle_curves, cycle_table, even_angles
 from ...objectives.tables.design_input import (
     countable,
     given_designs,
@@ -37,6 +37,7 @@ from ...objectives.tables.design_input import (
 from ...objectives.tables.deviation import deviations
 from ...objectives.tables.measured import measured_from
 from ...objectives.tables.missing_values import missing_value_reason
+from ...objectives.tables.swing_curves import curves_of_both_strokes, motion_and_drive, swing_table
 from ...objectives.tables.swinging import require_in_motion, swinging
 from ...objectives.tables.violations import violations
 
@@ -49,7 +50,7 @@ _DEVIATION = (
     *("title", "unit", "samples", "rms", "mean", "largest", "largest_at_rad"),
     *("best_shift_rad", "best_shift", "rms_left"),
 )
-_PLOTTED = ("slider_position", "slider_velocity", "slider_acceleration", "torque")
+_PLOTTED = ("slider_position", "slider_velocity", "slider_acceleration", "torque", "drive")
 
 
 @dataclass(frozen=True)
@@ -134,16 +135,18 @@ class Analysis(Mapping[str, float]):
         return pd.DataFrame.from_dict(rows, orient="index")
 
     def cycle(self, angles: int | ArrayLike = 360) -> pd.DataFrame:
-        """Return the curves over the cycle, a row for each crank angle, in SI.
+        """Return the curves over the cycle, a row for each crank angle, in SI; of a swing, over both strokes.
 
         angles: number of crank angles, evenly spaced over the cycle from 0 (two turns if a load has a cycle of 720
         deg); or crank angles (n,), rad. Columns carry their unit: crank_angle_rad, slider_position_m,
         slider_velocity_m_s, slider_acceleration_m_s2, slider_jerk_m_s3, rod_angle_rad, transmission_angle_rad,
         torque_Nm, power_W, load_N, the joint forces, position errors. See `cycle_curves`.
-        Warns with `InputWarning` of angles beyond two turns, which are probably in degrees. Raises `InputError` for a
-        design that swings.
+        Warns with `InputWarning` of angles beyond two turns, which are probably in degrees.
+
+        For a swing, angles is the number of evenly spaced times, see `objectives.tables.swing_curves.swing_table`.
         """
-        self._require_turning("a cycle")
+        if self.swing is not None:
+            return swing_table(self.mechanism, self.linkage, self.swing, angles)
         for angle in () if np.ndim(angles) == 0 else numbers(angles, "a crank angle").real.flat:
             if math.isfinite(angle) and not ANGLE.is_plausible(angle):
                 usual = ANGLE.metric
@@ -161,7 +164,11 @@ class Analysis(Mapping[str, float]):
         which, added to the measured crank angles and values, leave the least rms_left. Raises `InputError` for a table
         without crank angle or curve, wrong units, values that no machine has, and a design that swings.
         """
-        self._require_turning("a deviation from measured curves")
+        if self.swing is not None:
+            raise InputError(
+                "measured curves are compared at crank angles of a full turn; got a crank that swings, which passes "
+                "each angle twice; compare with `Analysis.cycle`, which has both strokes over time"
+            )
         import pandas as pd
 
         given = measured_from(measured, self.mechanism, self.linkage)
@@ -173,34 +180,36 @@ class Analysis(Mapping[str, float]):
         return pd.DataFrame.from_dict(rows, orient="index")
 
     def plot(self) -> Figure:
-        """Return a matplotlib figure of position, velocity, acceleration and torque over the cycle.
-
-        Raises `InputError` for a design that swings.
-        """
-        self._require_turning("a figure of the cycle")
+        """Return a matplotlib figure of position, velocity, acceleration and drive over the cycle, or both strokes."""
         from ...model.notebook_figure import NotebookFigure
 
-        turns = cycle_turns(self.mechanism)
-        closed_angles = turns * np.append(even_angles(360 * turns), 2.0 * np.pi)  # curves close
-        curves = {curve.name: curve for curve in cycle_curves(self.mechanism, self.linkage, closed_angles)}
-        found = NotebookFigure(figsize=(6.4, 8.0), layout="constrained")
-        angle = curves["crank_angle"]
-        for name, axes in zip(_PLOTTED, found.subplots(len(_PLOTTED), 1, sharex=True), strict=True):
-            curve = curves[name]
-            axes.plot(angle.kind.metric.factor * angle.values, curve.kind.metric.factor * curve.values)
+        strokes = self._curves_of_strokes()
+        names = [name for name in _PLOTTED if name in strokes[0]]
+        found = NotebookFigure(figsize=(6.4, 2.0 * len(names)), layout="constrained")
+        for name, axes in zip(names, np.atleast_1d(found.subplots(len(names), 1, sharex=True)), strict=True):
+            for curves in strokes:
+                curve, angle = curves[name], curves["crank_angle"]
+                axes.plot(angle.kind.metric.factor * angle.values, curve.kind.metric.factor * curve.values)
             axes.set_ylabel(f"{curve.title},\n{unit_text(curve.kind.metric.symbol)}")
             axes.set_xlabel("crank angle, deg")
-            axes.set_xticks(range(0, 360 * turns + 1, 60 * turns))
+            if self.swing is None:
+                turns = cycle_turns(self.mechanism)
+                axes.set_xticks(range(0, 360 * turns + 1, 60 * turns))
             axes.label_outer()
         found.suptitle(self.title or self.linkage.label)
         return found
 
-    def _require_turning(self, what: str) -> None:
-        if self.swing is not None:
-            raise InputError(
-                f"{what} needs a rotating crank; the crank of this design swings; `Problem.swing` returns the values "
-                "of its forward and return strokes, `slidercrank swing --curves FILE.csv` the curves"
-            )
+    def _curves_of_strokes(self) -> list[dict[str, Curve]]:
+        """Return the curves by name: over the closed cycle, or over the forward and the return stroke of a swing."""
+        if self.swing is None:
+            turns = cycle_turns(self.mechanism)
+            closed_angles = turns * np.append(even_angles(360 * turns), 2.0 * np.pi)
+            return [{curve.name: curve for curve in cycle_curves(self.mechanism, self.linkage, closed_angles)}]
+        described = {curve.name: curve for curve in motion_and_drive(self.swing)}
+        return [
+            {name: Curve(name, one.title, getattr(way, one.attribute), one.kind) for name, one in described.items()}
+            for way in curves_of_both_strokes(self.mechanism, self.linkage, self.swing)
+        ]
 
     def _repr_html_(self) -> str:
         """Picture of the linkage and table of its quantities, for notebooks."""

@@ -4,23 +4,31 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...model.cycle.crank_speed import turn_time
-from ...model.errors import InputError
 from ...model.machine.two_turns import cycle_turns
 from ...model.swing.swing import placed, require_swing
 from ...objectives.kinds import System
-from ..runs.result import csv_text, rows_of
+from ...objectives.tables.swing_curves import (
+    POINTS,
+    curves_at_even_times,
+    curves_of_both_strokes,
+    defined_curves,
+    even_points,
+    force_components,
+    motion_and_drive,
+)
+from ..runs.result import csv_text, json_ready, rows_of
 from .display_units import rows_in
 from .stored_designs import StoredDesign
-from .swing_curves import curves_at_even_times, force_components, has_position_error, motion_and_drive, swing_rows
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
+    from ...model.swing.swing import Swing
 
 
 LEAST, MOST = 4, 3600
@@ -104,14 +112,9 @@ def design_curves(design: StoredDesign, count: int) -> DesignCurves:
         columns = cycle_table(design.mechanism, design.linkage, angles=count, turns=turns)
         at_inner, at_outer = (1e3 * float(x) for x in design.linkage.dead_centres)
         return DesignCurves(turns, seconds, (inner, outer), (at_inner, at_outer), columns)
-    if not LEAST <= count <= MOST or count % 2:
-        raise InputError(
-            f"curves of a swing must have {LEAST} to {MOST} points, the same number in both strokes; got {count}; ask "
-            "for an even number"
-        )
     linkage = require_swing(design.mechanism, design.linkage, design.part.motion)
     swing = placed(design.mechanism, linkage, design.part.motion)
-    ways = curves_at_even_times(design.mechanism, linkage, swing, count)
+    ways = curves_at_even_times(design.mechanism, linkage, swing, even_points(count, MOST))
     start, end = (1e3 * float(way.slider_position[0]) for way in ways)
     return DesignCurves(
         0,
@@ -125,10 +128,21 @@ def design_curves(design: StoredDesign, count: int) -> DesignCurves:
                 curve.kind.metric.symbol,
                 np.concatenate([curve.values_in(way) for way in ways]).tolist(),
             )
-            for curve in (*motion_and_drive(swing), *force_components())
-            if has_position_error(design.mechanism, swing) or curve.attribute != "driven_error"
+            for curve in defined_curves(design.mechanism, swing)
         ],
     )
+
+
+def swing_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> list[dict[str, Any]]:
+    """Return a row for each point of both strokes, metric: time, motion, drive, power, joint forces, errors."""
+    all_curves = (*motion_and_drive(swing), *force_components())
+    rows = []
+    for way, curves in zip(("forth", "back"), curves_of_both_strokes(mechanism, linkage, swing), strict=True):
+        time = {} if swing.duration is None else {"time_s": swing.duration * curves.share}
+        columns = time | {curve.field: curve.values_in(curves) for curve in all_curves}
+        plain = {name: json_ready(values.tolist(), gaps=True) for name, values in columns.items()}
+        rows += [{"way": way} | {name: values[i] for name, values in plain.items()} for i in range(POINTS)]
+    return rows
 
 
 def design_csv(design: StoredDesign, system: System = "metric") -> str:

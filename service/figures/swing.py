@@ -12,7 +12,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.swing.forces import SwingCurves
 from ...model.swing.swing import Swing
 from ...objectives.kinds import System
-from ..designs.swing_curves import SwingCurve, curves_of_both_strokes, has_position_error, motion_and_drive
+from ...objectives.tables.swing_curves import SwingCurve, curves_of_both_strokes, has_position_error, motion_and_drive
 from ..drawings.swing_parts import swing_look, swing_moving, swing_scenery
 from ..render.blocks import dimensions, joined
 from .drawing import scale_bar

@@ -15,7 +15,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
 from ...model.swing.swing import Swing
-from ..designs.swing_curves import curves_at_even_times
+from ...objectives.tables.swing_curves import curves_at_even_times
 from ..drawings.linkage_shapes import fixed_shapes, look_of, moving_shapes, pin_positions
 from ..drawings.shapes import Shape
 from ..drawings.swing_parts import swing_look, swing_moving, swing_scenery

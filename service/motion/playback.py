@@ -17,8 +17,8 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
 from ...model.swing.swing import Swing
+from ...objectives.tables.swing_curves import curves_at_even_times, has_position_error, motion_and_drive
 from ..designs.design_curves import CurveColumn, cycle_table
-from ..designs.swing_curves import curves_at_even_times, has_position_error, motion_and_drive
 from ..drawings import layers as on
 from ..drawings.linkage_shapes import Look, bar, block, fixed_shapes, lengths_in_words, look_of
 from ..drawings.shapes import Circle, Shape

@@ -9,7 +9,7 @@ from ...model.swing.errors import error_shares
 from ...model.swing.summary import SwingSummary, summarise
 from ...model.swing.swing import Swing
 from ...objectives.kinds import metric_unit_in
-from ..designs.swing_curves import driven_side, error_kind
+from ...objectives.tables.swing_curves import driven_side, error_kind
 from ..questions.swing.analysis import blocks as swing_blocks
 from ..questions.swing.analysis import swing_record, swing_title
 from ..render.blocks import Table as Numbers

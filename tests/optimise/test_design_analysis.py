@@ -217,3 +217,50 @@ def test_a_cycle_of_two_turns_is_told_whole() -> None:
 def test_crank_angles_that_are_none_are_refused(angles: Any) -> None:
     with pytest.raises(InputError, match="crank angle"):
         sc.analyse(sc.Mechanism(speed=3.0), DESIGN).cycle(angles)
+
+
+def swinging() -> sc.Analysis:
+    """Return a design whose crank swings within two seconds, driven by a torque."""
+    tables: dict[str, Any] = {
+        "name": "Swing",
+        "mechanism": {"slider": {"mass": "3 kg"}},
+        "load": [{"force": "40 N", "opposes": "motion"}],
+        "motion": {"kind": "swing", "from": "30 deg", "to": "110 deg", "law": "harmonic", "duration": "2 s"},
+        "variables": {"crank": ["30 mm", "60 mm"], "rod": ["120 mm", "200 mm"], "offset": "10 mm"},
+        "objectives": {"peak_actuator_torque": "minimise", "swing_transmission_angle": "maximise"},
+    }
+    return sc.problem(tables).analyse([0.05, 0.15, 0.01])
+
+
+def test_curves_of_a_swing_are_consistent_with_themselves_and_its_quantities() -> None:
+    analysis = swinging()
+    curves = analysis.cycle(4000)
+    time, forth = curves["time_s"], curves["way"] == "forth"
+    assert len(curves) == 4000
+    assert forth.sum() == 2001
+    assert curves["crank_angle_rad"].iloc[[0, 2000]].tolist() == pytest.approx(np.radians([30.0, 110.0]))
+    for value, rate in (("crank_angle_rad", "crank_speed_rad_s"), ("slider_position_m", "slider_velocity_m_s")):
+        inside = slice(1, 2000)
+        slope = np.gradient(curves[value], time)[inside]
+        assert slope == pytest.approx(curves[rate].to_numpy()[inside], abs=1e-5 * np.abs(curves[rate]).max())
+    power = curves["drive_Nm"] * curves["crank_speed_rad_s"]
+    assert curves["power_W"].to_numpy() == pytest.approx(power.to_numpy())
+    assert np.abs(curves["drive_Nm"]).max() == pytest.approx(analysis["peak_actuator_torque"], rel=1e-5)
+    assert "slider_position_error_m" not in curves  # no tolerances
+
+
+def test_a_figure_of_a_swing_has_both_strokes() -> None:
+    axes = swinging().plot().axes
+    assert [axis.get_ylabel().partition(",")[0] for axis in axes][-1] == "torque on the crank"
+    assert [len(axis.lines) for axis in axes] == [2, 2, 2, 2]
+
+
+@pytest.mark.parametrize("points", [[0.0, 1.0], 7, 2, 10**6])
+def test_points_of_a_swing_that_are_none_are_refused(points: Any) -> None:
+    with pytest.raises(InputError, match="the same number in both strokes; got"):
+        swinging().cycle(points)
+
+
+def test_measured_curves_of_a_swing_are_refused_because_it_passes_each_angle_twice() -> None:
+    with pytest.raises(InputError, match="which passes each angle twice"):
+        swinging().deviations({"crank_angle_deg": [40.0], "slider_position_mm": [150.0]})

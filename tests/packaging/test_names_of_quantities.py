@@ -31,7 +31,7 @@ TERMS = {
     "objectives/tables/cycle_curves.py": "curves over the cycle, not quantities",
     "service/questions/inverse/analysis.py": "on which stroke a crank angle puts the slider at a position",
     "service/designs/design_curves.py": "curves over the cycle, not quantities",
-    "service/designs/swing_curves.py": "curves over a swing, not quantities",
+    "objectives/tables/swing_curves.py": "curves over a swing, not quantities",
     "service/page/static/design/panels.js": "curves over the cycle, not quantities",
 }
 

@@ -17,15 +17,15 @@ from ....model.swing.swing_types import Driver, Law, Side
 from ....objectives.column_keys import kind_of_key
 from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, FORCE, LENGTH, POWER, TORQUE
 from ....objectives.tables.cycle_curves import KINDS
-from ...designs.display_units import rows_in
-from ...designs.swing_curves import (
+from ....objectives.tables.swing_curves import (
     drive_kind,
     driven_side,
     error_kind,
     force_magnitudes,
     motion_and_drive,
-    swing_rows,
 )
+from ...designs.design_curves import swing_rows
+from ...designs.display_units import rows_in
 from ...render.blocks import Block, NamedNumber, Text, heading, number_list, recorded, words
 from ...render.extremes_table import extremes_table
 from ...text.tables import finite_or_none

@@ -15,7 +15,7 @@ import pytest
 
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
-from slidercrank.service.designs.swing_curves import swing_rows
+from slidercrank.service.designs.design_curves import swing_rows
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Picture, Report, Table
 from slidercrank.service.report.html import html_file

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ...model.arrays import Array
+from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.forces import SwingCurves, swing_curves
 from ...model.swing.swing import Swing, placed, require_swing
-from ...objectives.kinds import (
+from ..kinds import (
     ACCELERATION,
     ANGLE,
     ANGULAR_ACCELERATION,
@@ -24,7 +26,10 @@ from ...objectives.kinds import (
     TORQUE,
     Kind,
 )
-from ..runs.result import json_ready
+from .cycle_curves import LEAST, MOST
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 POINTS = 181
 """Of one way, in curves and figures."""
@@ -137,13 +142,39 @@ def has_position_error(mechanism: Mechanism, swing: Swing) -> bool:
     return mechanism.tolerances.are_stated or swing.actuator_tolerance > 0.0
 
 
-def swing_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> list[dict[str, Any]]:
-    """Return a row for each point of both strokes, metric: time, motion, drive, power, joint forces, errors."""
-    all_curves = (*motion_and_drive(swing), *force_components())
-    rows = []
-    for way, curves in zip(("forth", "back"), curves_of_both_strokes(mechanism, linkage, swing), strict=True):
-        time = {} if swing.duration is None else {"time_s": swing.duration * curves.share}
-        columns = time | {curve.field: curve.values_in(curves) for curve in all_curves}
-        plain = {name: json_ready(values.tolist(), gaps=True) for name, values in columns.items()}
-        rows += [{"way": way} | {name: values[i] for name, values in plain.items()} for i in range(POINTS)]
-    return rows
+def defined_curves(mechanism: Mechanism, swing: Swing) -> list[SwingCurve]:
+    """Return the curves of a swing that a machine defines: an error needs tolerances."""
+    every = (*motion_and_drive(swing), *force_components())
+    return [one for one in every if one.attribute != "driven_error" or has_position_error(mechanism, swing)]
+
+
+def swing_table(mechanism: Mechanism, linkage: Linkage, swing: Swing, points: int | ArrayLike = 360) -> pd.DataFrame:
+    """Return the curves of both strokes as a table in SI, a row for each of evenly spaced times.
+
+    The first row is the start of the swing, the middle one its end. Columns: way, "forth" or "back", time_s unless the
+    swing is slow, and the names of the curves with the unit. Raises `InputError` for an odd number of points, too few
+    or too many, and `AssemblyError` for a linkage that cannot make the swing.
+    """
+    count, checked = even_points(points, MOST), require_swing(mechanism, linkage, swing)
+    swing = placed(mechanism, checked, swing)
+    ways = curves_at_even_times(mechanism, checked, swing, count)
+    shares = np.concatenate([ways[0].share, 1.0 + ways[1].share])
+    columns: dict[str, Any] = {"way": np.where(shares <= 1.0, "forth", "back")}
+    if swing.duration is not None:
+        columns["time_s"] = swing.duration * shares
+    for curve in defined_curves(mechanism, swing):
+        values = np.concatenate([getattr(way, curve.attribute) for way in ways])
+        columns[curve.name + curve.kind.si.suffix] = values
+    import pandas as pd
+
+    return pd.DataFrame(columns)
+
+
+def even_points(count: object, limit: int) -> int:
+    """Return a number of points of both strokes. Raises `InputError` unless it is even, and from `LEAST` to a limit."""
+    if isinstance(count, int | np.integer) and LEAST <= count <= limit and not count % 2:
+        return int(count)
+    raise InputError(
+        f"curves of a swing must have {LEAST} to {limit} points, the same number in both strokes; got {count!r:.60}; "
+        "ask for an even number"
+    )
