@@ -40,13 +40,13 @@ _MORE_MEMORY = (
 
 
 _COMMANDS = (
-    *("optimise", "analyse", "inverse", "swing", "sweep", "allocate", "balance", "law", "sections"),
+    *("optimise", "analyse", "inverse", "swing", "lever", "sweep", "allocate", "balance", "law", "sections"),
     *("certify", "compare", "like", "round", "wish"),
     *("check", "schema", "quantities", "front", "export", "report", "cases"),
     *("serve", "submit", "jobs", "watch", "cancel", "resume", "delete", "worker", "mcp", "doctor"),
 )
 _MODULES = {"check": "job", "schema": "job", "front": "runs", "watch": "submit"}
-_MODULES |= dict.fromkeys(("inverse", "swing", "allocate", "balance", "law", "sections"), "question_commands")
+_MODULES |= dict.fromkeys(("inverse", "swing", "lever", "allocate", "balance", "law", "sections"), "question_commands")
 _MODULES |= dict.fromkeys(("like", "round", "certify", "compare", "sweep"), "front_or_job_commands")
 _MODULES |= dict.fromkeys(("serve", "worker"), "serving")
 _MODULES |= dict.fromkeys(("jobs", "cancel", "resume", "delete"), "queue")

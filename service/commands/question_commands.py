@@ -120,5 +120,5 @@ def _file_option(name: str, help: str, metavar: str = "FILE") -> inspect.Paramet
     return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=hint)
 
 
-inverse, swing = map(design_command, ("inverse", "swing"))
+inverse, lever, swing = map(design_command, ("inverse", "lever", "swing"))
 allocate, balance, law, sections = map(sizing_command, ("allocate", "counterweight", "law", "sections"))

@@ -218,7 +218,11 @@ def rails(look: Look) -> list[Shape]:
 
 def bearing(look: Look, *, is_below: bool) -> list[Shape]:
     """Return the bearing of the crank pivot. is_below: whether it stands below it."""
-    foot = 1.5 * max(look.pin, 0.3 * look.crank_width)
-    y = -2.0 * foot if is_below else 2.0 * foot
-    legs = [Line(on.FRAME, (0.0, 0.0), (x, y)) for x in (-foot, foot)]
-    return [*legs, Line(on.FRAME, (-1.8 * foot, y), (1.8 * foot, y))]
+    return pivot_bearing((0.0, 0.0), 1.5 * max(look.pin, 0.3 * look.crank_width), is_below=is_below)
+
+
+def pivot_bearing(pivot: Point, foot: float, *, is_below: bool) -> list[Shape]:
+    """Return the stand of a fixed pivot. foot: half the distance of its legs on the ground, mm."""
+    x, y = pivot[0], pivot[1] + (-2.0 * foot if is_below else 2.0 * foot)
+    legs = [Line(on.FRAME, pivot, (x + side, y)) for side in (-foot, foot)]
+    return [*legs, Line(on.FRAME, (x - 1.8 * foot, y), (x + 1.8 * foot, y))]

@@ -13,6 +13,7 @@ from ...model.swing.forces import SwingCurves
 from ...model.swing.swing import Swing
 from ...objectives.kinds import System
 from ...objectives.tables.swing_curves import SwingCurve, curves_of_both_strokes, has_position_error, motion_and_drive
+from ..drawings.shapes import Shape
 from ..drawings.swing_parts import swing_look, swing_moving, swing_scenery
 from ..render.blocks import dimensions, joined
 from .drawing import scale_bar
@@ -44,14 +45,23 @@ def swing_figure(
     if title:
         panel_figure = replace(panel_figure, title=title, subtitle=joined([subtitle, panel_figure.subtitle], "; "))
     drawn = swing_look(mechanism, linkage, swing)
-    (left, low, right, high), size = drawn.extent, drawn.look.size
+    shapes = [*swing_scenery(drawn), *swing_moving(drawn, 0.5 * (drawn.swing.start + drawn.swing.end))]
+    return figure_below_machine(panel_figure, shapes, drawn.extent, system)
+
+
+def figure_below_machine(
+    panel_figure: PanelFigure, shapes: list[Shape], extent: tuple[float, float, float, float], system: System
+) -> Figure:
+    """Return panels below a machine drawn to scale. extent: its left, bottom, right and top, mm."""
+    left, low, right, high = extent
+    size = max(right - left, high - low)
     low -= 0.11 * size
     wide = panel_figure.columns * float(np.max(panel_figure.width)) - 2.0 * _ASIDE
     tall = min(_TALLEST, wide * (high - low) / (right - left))
     figure = draw_panel_figure(panel_figure, system, space_above=tall + _BELOW)
     foot = -(-len(panel_figure.panels) // panel_figure.columns) * panel_figure.height + _BELOW
     axes = add_axes(figure, _ASIDE, foot, wide, tall)
-    paint(axes, [*swing_scenery(drawn), *swing_moving(drawn, 0.5 * (drawn.swing.start + drawn.swing.end))])
+    paint(axes, shapes)
     scale_bar(axes, left, low + 0.03 * size, size, system)
     show_rectangle(axes, left, low, right, high)
     return figure

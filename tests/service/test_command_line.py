@@ -74,6 +74,7 @@ def test_help_names_every_command(command: Command) -> None:
         "analyse",
         "inverse",
         "swing",
+        "lever",
         "check",
         "schema",
         "front",

@@ -13,8 +13,8 @@ const TITLES = {
   sensitivity: "Sensitivity",
   tolerances: "Effect of tolerances on the slider position",
 };
-/** The only one of a design that swings. @type {Record<string, string>} */
-const TITLES_OF_SWING = { swing: "The swing" };
+/** Those of a design that swings. @type {Record<string, string>} */
+const TITLES_OF_SWING = { swing: "The swing", lever: "Moved by a cylinder that turns" };
 const WITHOUT = "This job has no tolerances. Add some under “Tolerances”.";
 const ELSEWHERE = ["inverse", "round", "wish"]; // questions with a view of their own
 

@@ -1,0 +1,86 @@
+"""Shapes of a lever, its turning cylinder and their bearings, mm: pins and pivots exact, widths schematic."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...model.turning_cylinder.forces import LeverMachine, LeverSwing
+from . import layers as on
+from .linkage_shapes import bar, pivot_bearing
+from .shapes import Arc, Circle, Layer, Line, Outline, Point, Shape
+
+_MM = 1e3
+_LEVER, _BARREL, _ROD, _PIN = 0.06, 0.075, 0.03, 0.014  # of the greater of crank and frame
+_NECK = 0.93  # barrel, of the shortest length
+
+
+def lever_shapes(machine: LeverMachine, swing: LeverSwing, angle: float) -> list[Shape]:
+    """Return bearings, the path of the pin, both ends dashed, and the lever with its cylinder at an angle, rad."""
+    size = _size(machine)
+    shapes: list[Shape] = []
+    for pivot in (0j, _pivot(machine)):
+        shapes += pivot_bearing(_point(pivot), 0.05 * size, is_below=True)
+    first, last = sorted(math.degrees(end + machine.sizes.pin_angle) for end in (swing.start, swing.end))
+    shapes.append(Arc(on.PATHS, (0.0, 0.0), _MM * machine.sizes.crank, first, last))
+    for layer, end in ((on.START, swing.start), (on.END, swing.end)):
+        shapes += _links((layer,) * 3, machine, swing, end)
+    shapes += _links((on.ACTUATOR, on.ROD, on.CRANK), machine, swing, angle)
+    if machine.lever.mass:
+        centre = _centre(machine) * np.exp(1j * angle)
+        ends = (centre - 0.04 * size * direction / _MM for direction in (1.0, -1.0, 1j, -1j))
+        left, right, low, high = (_point(end) for end in ends)
+        shapes += [Line(on.BODY, left, right), Line(on.BODY, low, high), Circle(on.BODY, _point(centre), 0.025 * size)]
+    pins = (0j, _pivot(machine), machine.sizes.crank * np.exp(1j * (angle + machine.sizes.pin_angle)))
+    return [*shapes, *(Circle(on.PINS, _point(pin), _PIN * size) for pin in pins)]
+
+
+def lever_extent(machine: LeverMachine, swing: LeverSwing) -> tuple[float, float, float, float]:
+    """Return left, bottom, right and top of the lever and its cylinder over the swing, with their widths, mm."""
+    angles = np.linspace(swing.start, swing.end, 91)
+    places = [np.zeros(1, np.complex128), np.array([_pivot(machine)])]
+    places.append(machine.sizes.crank * np.exp(1j * (angles + machine.sizes.pin_angle)))
+    if machine.lever.mass:
+        places.append(_centre(machine) * np.exp(1j * angles))
+    every, edge = _MM * np.concatenate(places), 0.12 * _size(machine)
+    x, y = every.real, every.imag
+    return float(x.min() - edge), float(y.min() - edge), float(x.max() + edge), float(y.max() + edge)
+
+
+def _links(layers: tuple[Layer, Layer, Layer], machine: LeverMachine, swing: LeverSwing, angle: float) -> list[Shape]:
+    """Return barrel, piston rod and lever at an angle."""
+    sizes, size = machine.sizes, _size(machine)
+    motion = sizes.at(np.array([angle]))
+    pin, line = sizes.crank * complex(motion.radial[0]), complex(motion.line[0])
+    foot = pin - float(motion.length[0]) * line
+    neck = foot + _NECK * min(float(sizes.length(end)) for end in (swing.start, swing.end)) * line
+    return [
+        _strip(layers[1], neck, pin, _ROD * size),
+        _strip(layers[0], foot, neck, _BARREL * size),
+        bar(layers[2], (0.0, 0.0), _point(pin), _LEVER * size),
+    ]
+
+
+def _strip(layer: Layer, start: complex, end: complex, width: float) -> Outline:
+    """Return a rectangle about a line between two places, m. width: mm."""
+    across = 0.5j * width * (end - start) / abs(end - start) / _MM
+    corners = (start - across, end - across, end + across, start + across)
+    return Outline(layer, tuple(_point(corner) for corner in corners), (0.0, 0.0, 0.0, 0.0))
+
+
+def _size(machine: LeverMachine) -> float:
+    return _MM * max(machine.sizes.crank, machine.sizes.frame)
+
+
+def _pivot(machine: LeverMachine) -> complex:
+    return machine.sizes.frame * complex(math.cos(machine.sizes.frame_angle), math.sin(machine.sizes.frame_angle))
+
+
+def _centre(machine: LeverMachine) -> complex:
+    lever = machine.lever
+    return complex(lever.moment_along, lever.moment_across) / lever.mass
+
+
+def _point(place: complex) -> Point:
+    return _MM * place.real, _MM * place.imag

@@ -1,0 +1,50 @@
+"""Figure of a lever with its turning cylinder: the machine to scale, force, length and angle over the lever angle."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ...model.turning_cylinder.cylinder import Cylinder
+from ...model.turning_cylinder.forces import LeverMachine, LeverSwing, lever_curves
+from ...objectives.kinds import ANGLE, FORCE, LENGTH, SPEED, System
+from ...objectives.tables.swing_curves import POINTS
+from ..drawings.lever_parts import lever_extent, lever_shapes
+from ..render.blocks import Value, words
+from .panel_figure import DASHED, Line, Panel, PanelFigure
+from .swing import figure_below_machine
+
+_X = "lever angle, deg"
+
+
+def lever_figure(machine: LeverMachine, swing: LeverSwing, cylinder: Cylinder, system: System = "metric") -> Figure:
+    """Return the lever half-way between both ends, which are dashed, above its curves."""
+    found = lever_curves(machine, swing, np.linspace(0.0, 1.0, POINTS))
+    degrees, rub = np.degrees(found.lever_angle), cylinder.seal_friction
+    forces = [Line("extending", degrees, found.push + rub), Line("retracting", degrees, found.push - rub, DASHED)]
+    panels = [
+        Panel("push of the cylinder", _X, tuple(forces if rub else [replace(forces[0], label="")]), FORCE),
+        Panel("length of the cylinder", _X, (Line("", degrees, found.length),), LENGTH),
+        Panel("transmission angle", _X, (Line("", degrees, found.transmission),), ANGLE),
+    ]
+    if swing.duration is not None:
+        panels.append(Panel("speed of the cylinder", _X, (Line("", degrees, found.speed),), SPEED))
+    sizes = machine.sizes
+    subtitle = words(
+        "crank {crank}, frame {frame} at {angle}, offset {offset}",
+        crank=Value(sizes.crank, LENGTH),
+        frame=Value(sizes.frame, LENGTH),
+        angle=Value(sizes.frame_angle, ANGLE),
+        offset=Value(sizes.offset, LENGTH),
+    )
+    figure = PanelFigure(
+        "Lever moved by a cylinder that turns",
+        subtitle,
+        tuple(panels),
+        columns=2 if len(panels) > 3 else 1,
+        width=5.2,
+    )
+    shapes = lever_shapes(machine, swing, 0.5 * (swing.start + swing.end))
+    return figure_below_machine(figure, shapes, lever_extent(machine, swing), system)

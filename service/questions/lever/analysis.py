@@ -1,0 +1,260 @@
+"""A lever and its turning cylinder over a swing: the JSON record, its text, curves and figure."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+
+from ....model.linkage.linkage import Linkage
+from ....model.machine.links import RigidLink
+from ....model.machine.mechanism import Mechanism
+from ....model.swing.swing_types import Law
+from ....model.turning_cylinder.forces import lever_curves
+from ....model.turning_cylinder.summary import LeverPoint, LeverSummary, summarise
+from ....objectives.column_keys import kind_of_key
+from ....objectives.kinds import ANGLE, FORCE, LENGTH, POWER, PRESSURE, RATIO, SPEED, VOLUME_FLOW, Kind
+from ....objectives.tables.swing_curves import POINTS
+from ...designs.display_units import rows_in
+from ...render.blocks import Block, NamedNumber, Text, named_number, number_list, recorded, sentence, words
+from ...runs.result import Row
+from ..record_types import Keys, Note
+from .request import LeverRequest, lever_request
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ....objectives.kinds import System
+
+_TELESCOPIC = (
+    "no single-stage cylinder is {longest:.6g} mm long open and {shortest:.6g} mm closed: its stroke is less than its "
+    "closed length; move a pivot, swing less far, or take a telescopic cylinder"
+)
+_IDLE = "the cylinder never has to push or pull: nothing weighs and nothing is accelerated; give a mass, or gravity"
+_BUCKLING = "buckling: Euler, both ends pinned, the whole length as slender as the piston rod, of steel"
+_POINTS = {
+    "peak_push": FORCE,
+    "peak_pull": FORCE,
+    "least_transmission_angle": ANGLE,
+    "peak_pin_force": FORCE,
+    "peak_pivot_force": FORCE,
+    "peak_cylinder_pivot_force": FORCE,
+    "lever_angle_error": ANGLE,
+    "peak_cylinder_speed": SPEED,
+    "peak_power": POWER,
+    "buckling_margin": RATIO,
+}
+"""Values with the lever angle and the length where they occur."""
+_LACKS = {
+    "lever_angle_error": "null without tolerances",
+    "peak_cylinder_speed": "null for a slow swing",
+    "peak_power": "null for a slow swing",
+    "buckling_margin": "null without a piston rod, and where nothing pushes",
+    "push_pressure": "null without a bore",
+    "pull_pressure": "null without a bore",
+    "extending_flow": "null without a bore, and for a slow swing",
+    "retracting_flow": "null without a bore, and for a slow swing",
+    "time_ratio": "null where the lever cannot turn fully",
+    "fitting_lesser": "null without closed length and stroke, and where no linkage takes them",
+    "fitting_greater": "null without closed length and stroke, and where no linkage takes them",
+    "duration": "null for a slow swing",
+}
+
+
+def _type_of(name: str) -> Any:
+    return Annotated[float | None, Note(_LACKS[name])] if name in _LACKS else float
+
+
+def _keys(names: Mapping[str, Kind]) -> dict[str, Any]:
+    return {f"{name}{kind.metric.suffix}": _type_of(name) for name, kind in names.items()}
+
+
+def _places(name: str) -> dict[str, Any]:
+    kind = Annotated[float | None, Note("null where the value is")]
+    return {f"{name}_at_lever_angle_deg": kind, f"{name}_at_length_mm": kind}
+
+
+LeverNumbers = Annotated[
+    dict[str, Any],
+    Keys(
+        "LeverNumbers",
+        "A lever and the cylinder that moves it out and back.",
+        {
+            **_keys({"crank": LENGTH, "frame": LENGTH, "frame_angle": ANGLE, "offset": LENGTH, "pin_angle": ANGLE}),
+            **_keys({"start_lever_angle": ANGLE, "end_lever_angle": ANGLE}),
+            "law": Law,
+            "duration_s": _type_of("duration"),
+            **_keys({"start_length": LENGTH, "end_length": LENGTH, "travel": LENGTH, "extension_ratio": RATIO}),
+            "single_stage": bool,
+            **_keys({"push_at_start": FORCE, "push_at_end": FORCE}),
+            **{
+                key: type_
+                for name, kind in _POINTS.items()
+                for key, type_ in (_keys({name: kind}) | _places(name)).items()
+            },
+            "dead_point_margin_deg": float,
+            "work_out_J": float,
+            "work_back_J": float,
+            **_keys({"push_pressure": PRESSURE, "pull_pressure": PRESSURE}),
+            **_keys({"extending_flow": VOLUME_FLOW, "retracting_flow": VOLUME_FLOW}),
+            **_keys({"time_ratio": RATIO, "fitting_lesser": LENGTH, "fitting_greater": LENGTH}),
+            "notes": Annotated[list[str], Note("what is left out or cannot be built, and why")],
+        },
+    ),
+]
+
+
+def prepare(
+    mechanism: Mechanism, linkage: Linkage, *, cancelled: Any = None, request: LeverRequest | None = None, **inputs: Any
+) -> dict[str, Any]:
+    """Return what is asked, once for numbers, curves and figure. inputs: by name, in SI, with `swing` and `words`."""
+    return {"request": request or lever_request(mechanism, linkage, **inputs)}
+
+
+def numbers(mechanism: Mechanism, _: Linkage, *, request: LeverRequest, **options: Any) -> LeverNumbers:
+    """Return the numbers of a swing, ready for JSON.
+
+    Raises `AssemblyError` if the linkage does not close, `InputError` for a dead point within the swing and for a
+    cylinder that cannot make it.
+    """
+    summary = summarise(request.machine, request.swing, request.cylinder, request.errors)
+    sizes, swing = request.machine.sizes, request.swing
+    record: Row = {
+        "crank_mm": 1e3 * sizes.crank,
+        "frame_mm": 1e3 * sizes.frame,
+        "frame_angle_deg": math.degrees(sizes.frame_angle),
+        "offset_mm": 1e3 * sizes.offset,
+        "pin_angle_deg": math.degrees(sizes.pin_angle),
+        "start_lever_angle_deg": math.degrees(swing.start),
+        "end_lever_angle_deg": math.degrees(swing.end),
+        "law": swing.law,
+        "duration_s": swing.duration,
+        "start_length_mm": 1e3 * summary.lengths[0],
+        "end_length_mm": 1e3 * summary.lengths[1],
+        "travel_mm": 1e3 * abs(summary.lengths[1] - summary.lengths[0]),
+        "extension_ratio": summary.extension_ratio,
+        "single_stage": summary.single_stage,
+        "push_at_start_N": summary.hold[0],
+        "push_at_end_N": summary.hold[1],
+    }
+    points = (
+        *(summary.push, summary.pull, summary.transmission, summary.pin, summary.pivot, summary.cylinder_pivot),
+        *(summary.angle_error, summary.speed, summary.power, summary.buckling_margin),
+    )
+    for (name, kind), point in zip(_POINTS.items(), points, strict=True):
+        record |= _with_place(name, kind, point)
+    push_pressure, pull_pressure = summary.pressures or (None, None)
+    extending, retracting = summary.flows or (None, None)
+    lesser, greater = summary.fitting_sizes or (None, None)
+    record |= {
+        "dead_point_margin_deg": math.degrees(summary.dead_point_margin),
+        "work_out_J": summary.energy_out,
+        "work_back_J": summary.energy_back,
+        **_metric("push_pressure", PRESSURE, push_pressure),
+        **_metric("pull_pressure", PRESSURE, pull_pressure),
+        **_metric("extending_flow", VOLUME_FLOW, extending),
+        **_metric("retracting_flow", VOLUME_FLOW, retracting),
+        "time_ratio": summary.time_ratio,
+        **_metric("fitting_lesser", LENGTH, lesser),
+        **_metric("fitting_greater", LENGTH, greater),
+        "notes": _notes(mechanism, summary),
+    }
+    return record
+
+
+def _metric(name: str, kind: Kind, value: float | None) -> dict[str, float | None]:
+    return {f"{name}{kind.metric.suffix}": None if value is None else kind.metric.factor * value + 0.0}
+
+
+def _with_place(name: str, kind: Kind, point: LeverPoint | None) -> dict[str, float | None]:
+    """Return a value with the lever angle and the length where it occurs; none for zero."""
+    place = None if point is None or point.value == 0.0 else point
+    return {
+        **_metric(name, kind, None if point is None else point.value),
+        **_metric(f"{name}_at_lever_angle", ANGLE, None if place is None else place.lever_angle),
+        **_metric(f"{name}_at_length", LENGTH, None if place is None else place.length),
+    }
+
+
+def _notes(mechanism: Mechanism, summary: LeverSummary) -> list[str]:
+    notes = []
+    if not summary.single_stage:
+        shortest, longest = sorted(1e3 * length for length in summary.lengths)
+        notes.append(_TELESCOPIC.format(shortest=shortest, longest=longest))
+    if summary.push.value == summary.pull.value == 0.0:
+        notes.append(_IDLE)
+    if summary.buckling_margin is not None:
+        notes.append(_BUCKLING)
+    absent = {
+        "its loads": bool(mechanism.loads),
+        "friction": mechanism.friction.acts,
+        "masses of rod and slider": mechanism.slider_mass > 0.0 or mechanism.rod != RigidLink(mass=0.0),
+    }
+    left_out = [name for name, is_stated in absent.items() if is_stated]
+    if left_out:
+        notes.append(f"left out of the job, as a lever has neither rod nor slider: {', '.join(left_out)}")
+    return notes
+
+
+def blocks(record: Mapping[str, Any]) -> list[Block]:
+    """Return the numbers of a metric record."""
+    how = "slowly" if record["law"] == "slow" else f"by the law {record['law']}, {record['duration_s']:g} s each way"
+    skipped = ("law", "duration_s", "single_stage", "notes")
+    keys = [key for key in record if key not in skipped and "_at_lever" not in key and "_at_length" not in key]
+    lines: list[NamedNumber] = []
+    for key in keys:
+        if record[key] is not None and not key.startswith("fitting"):
+            name, value, _ = named_number(record, key)
+            lines.append((name, value, _place(record, kind_of_key(key)[0])))
+    found = number_list(f"Lever moved by a cylinder that turns, {how}", lines)
+    if record["fitting_lesser_mm"] is not None:
+        found.append(
+            sentence(
+                "The swing takes the whole stroke of the cylinder if crank and frame are {lesser} and {greater}.",
+                lesser=recorded(record, "fitting_lesser_mm"),
+                greater=recorded(record, "fitting_greater_mm"),
+            )
+        )
+    return found
+
+
+def _place(record: Mapping[str, Any], name: str) -> Text:
+    if record.get(f"{name}_at_lever_angle_deg") is None:
+        return ""
+    return words(
+        "at {angle}, cylinder {length} long",
+        angle=recorded(record, f"{name}_at_lever_angle_deg", decimals=2),
+        length=recorded(record, f"{name}_at_length_mm"),
+    )
+
+
+def curves(
+    mechanism: Mechanism, linkage: Linkage, *, units: System, request: LeverRequest, **_: Any
+) -> list[dict[str, Any]]:
+    """Return rows of the curves from start to end, at even times."""
+    found = lever_curves(request.machine, request.swing, np.linspace(0.0, 1.0, POINTS))
+    time = {} if request.swing.duration is None else {"time_s": request.swing.duration * found.share}
+    columns = {
+        **time,
+        "lever_angle_deg": np.degrees(found.lever_angle),
+        "length_mm": 1e3 * found.length,
+        "cylinder_angle_deg": np.degrees(found.cylinder_angle),
+        "cylinder_speed_m_s": found.speed,
+        "push_N": found.push,
+        "transmission_angle_deg": np.degrees(found.transmission),
+    }
+    for name, force in (("pin", found.pin), ("pivot", found.pivot), ("cylinder_pivot", found.cylinder_pivot)):
+        columns |= {f"{name}_x_N": force.real, f"{name}_y_N": force.imag}
+    lists = {key: values.tolist() for key, values in columns.items()}
+    return rows_in([{key: values[i] for key, values in lists.items()} for i in range(POINTS)], units)
+
+
+def figure(
+    mechanism: Mechanism, linkage: Linkage, *, units: System = "metric", request: LeverRequest, **_: Any
+) -> Figure:
+    """Return force, length and transmission angle over the lever angle, below the lever at both ends."""
+    from ...figures.lever import lever_figure
+
+    return lever_figure(request.machine, request.swing, request.cylinder, units)

@@ -1,0 +1,117 @@
+"""What is asked of a lever: numbers that are not given come from the job."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from ....model.cycle.cycle import design_of
+from ....model.errors import InputError
+from ....model.linkage.linkage import Linkage
+from ....model.machine.mechanism import Mechanism
+from ....model.swing.swing import Swing, placed
+from ....model.swing.swing_types import Law
+from ....model.turning_cylinder.cylinder import Cylinder
+from ....model.turning_cylinder.forces import LeverBody, LeverMachine, LeverSwing, UniformBar
+from ....model.turning_cylinder.lever import DimensionErrors, TurningCylinder
+
+_GRAVITY = 9.81  # m/s^2
+
+
+@dataclass(frozen=True)
+class LeverRequest:
+    """Machine, swing, cylinder and tolerances that are asked about."""
+
+    machine: LeverMachine
+    swing: LeverSwing
+    cylinder: Cylinder
+    errors: DimensionErrors
+
+
+def lever_request(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    *,
+    swing: Swing | None,
+    words: Mapping[str, str] | None = None,
+    frame_angle: float = -0.5 * math.pi,
+    pin_angle: float = 0.0,
+    mass: float = 0.0,
+    centre: float | None = None,
+    centre_across: float = 0.0,
+    gravity: float | None = None,
+    length_tolerance: float | None = None,
+    **inputs: Any,
+) -> LeverRequest:
+    """Return the request from a machine and inputs by name, SI. words: the interface's names for the inputs.
+
+    The crank is the lever, the rod the distance of the pivots. swing: swing of the job. Raises `InputError` for missing
+    inputs and a swing with a dead point, `AssemblyError` where the linkage does not close.
+    """
+    labels = dict(words or {})
+    if mass and centre is None:
+        raise InputError(
+            f"a carried mass needs its place on the lever; got {mass:.6g} kg and no {labels.get('centre', 'centre')}; "
+            "give its distance from the pivot"
+        )
+    crank, frame, offset = (float(size) for size in (linkage.crank, linkage.rod, linkage.offset))
+    sizes = TurningCylinder(crank=crank, frame=frame, frame_angle=frame_angle, offset=offset, pin_angle=pin_angle)
+    design = design_of(mechanism, linkage)
+    body = LeverBody(
+        mass=float(design.crank_mass),
+        moment_along=float(design.crank_along),
+        moment_across=float(design.crank_across),
+        inertia=float(design.crank_inertia),
+    )
+    is_empty = mechanism == Mechanism(branch=mechanism.branch)
+    down = _GRAVITY if gravity is None and is_empty else gravity
+    cylinder = Cylinder(
+        closed_length=inputs.get("closed_length"),
+        stroke=inputs.get("cylinder_stroke"),
+        bore=inputs.get("bore"),
+        rod=inputs.get("piston_rod"),
+        supply_pressure=inputs.get("supply_pressure"),
+        seal_friction=inputs.get("seal_friction", 0.0),
+    )
+    lever_swing = _swing(mechanism, linkage, swing, labels, inputs)
+    sizes.require_swing(lever_swing.start, lever_swing.end)
+    shortest = min(float(sizes.length(angle)) for angle in (lever_swing.start, lever_swing.end))
+    long = cylinder.closed_length or shortest
+    machine = LeverMachine(
+        sizes=sizes,
+        lever=body.carrying(mass, centre or 0.0, centre_across),
+        barrel=UniformBar(mass=inputs.get("barrel_mass", 0.0), length=long),
+        piston_rod=UniformBar(mass=inputs.get("piston_rod_mass", 0.0), length=long),
+        gravity=mechanism.gravity if down is None else (0.0, -down),
+    )
+    if length_tolerance is None:
+        length_tolerance = 0.0 if swing is None else swing.actuator_tolerance
+    errors = DimensionErrors(
+        float(design.crank_error), float(design.rod_error), float(design.offset_error), length_tolerance
+    )
+    return LeverRequest(machine, lever_swing, cylinder, errors)
+
+
+def _swing(
+    mechanism: Mechanism, linkage: Linkage, swing: Swing | None, labels: Mapping[str, str], inputs: Mapping[str, Any]
+) -> LeverSwing:
+    """Return the requested swing; what is not given is that of the job."""
+    start, end = inputs.get("start"), inputs.get("end")
+    if swing is not None and (start is None or end is None):
+        of_job = placed(mechanism, linkage, swing)
+        start, end = (given if given is not None else own for given, own in ((start, of_job.start), (end, of_job.end)))
+    for name, angle in (("start", start), ("end", end)):
+        if angle is None:
+            raise InputError(
+                f"a lever swings from one angle to another; got no {labels.get(name, name)}; give both, or a job with "
+                "[motion]"
+            )
+    law: Law = inputs.get("law") or ("slow" if swing is None else swing.law)
+    duration = inputs.get("duration")
+    if duration is None and swing is not None and law != "slow":
+        duration = swing.duration
+    assert start is not None
+    assert end is not None
+    return LeverSwing(start, end, law, duration)
