@@ -14,17 +14,19 @@ _MAKERS = ("dataclasses", "copy")
 """Modules of Python that create objects again on behalf of callers."""
 
 
-def warn_user(sentence: str) -> None:
+def warn_user(sentence: str, *, through_callers: bool = False) -> None:
     """Warn with `InputWarning` at the line that calls the caller's module, if that line is a user's.
 
     There is no warning if this software itself calls: its numbers come from values with units, or have already been
-    checked.
+    checked. through_callers: whether its modules may only pass on what the user's line states.
     """
     frame, modules = inspect.currentframe(), list[str]()
     while frame is not None:
         modules.append(frame.f_globals.get("__name__", ""))
         frame = frame.f_back
     passed = {*modules[:2], *_MAKERS}
+    if through_callers:
+        passed |= {name for name in modules if name.partition(".")[0] == _OURS}
     level, module = next(((n, name) for n, name in enumerate(modules, 1) if name not in passed), (1, _OURS))
     if module.partition(".")[0] != _OURS:
         warnings.warn(sentence, InputWarning, stacklevel=level)

@@ -30,6 +30,7 @@ from .model import Job, job_with
 from .named_files import Files
 from .plain_numbers import PlainNumbers, plain_bounds, plain_values, read_noting
 from .problem_of_job import problem_of
+from .problem_order import first_problems
 from .schema import schema_of
 from .speed_profile import speeds_file, with_speeds
 from .target_motion import points_file, with_points
@@ -159,7 +160,7 @@ def parse_job(
         count = f"{len(sentences)} problems" if len(sentences) < LONGEST else "very many problems"
         heading = [count] if len(sentences) > 1 else []
         overflow = ["... and more"] if len(sentences) > MOST else []
-        raise JobError("\n  ".join([*heading, *sentences[:MOST], *overflow])) from None
+        raise JobError("\n  ".join([*heading, *first_problems(sentences, data), *overflow])) from None
     except InputError as error:  # a number that means another unit is a likely cause
         if isinstance(error, InfeasibleError) and isinstance(error.problem, Problem):
             doubts += plain_bounds(error.problem, data)

@@ -150,9 +150,10 @@ def _require_amount_name(text: str, name: str, unit: str, column_name: str, cust
     """Refuse a column without a name, and one that looks like a limit or a number of the job."""
     unit_text = f" ({unit})" if unit else ""
     misplaced = _MISPLACED.fullmatch(name)
-    if misplaced is not None and _is_known(misplaced["after"] or misplaced["before"], custom_names):
+    bare = (misplaced["after"] or misplaced["before"]) if misplaced is not None else ""
+    limited = _quantity_names().get(identifier(bare), bare)
+    if misplaced is not None and _is_known(limited, custom_names):
         word = _LIMIT[(misplaced["first"] or misplaced["last"]).casefold()]
-        limited = misplaced["after"] or misplaced["before"]
         raise JobError(
             f"{column_name}: min, max or equals must follow the quantity, in lower case; write {limited} "
             f"{word}{unit_text}"
@@ -177,7 +178,7 @@ def _require_amount_name(text: str, name: str, unit: str, column_name: str, cust
     key = identifier(name)
     if not key or not (name[0].isalpha() and key[0].isalpha()) or len(key) > LONGEST_NAME:
         raise JobError(f"{column_name}: {_RULE}; got neither; rename it, or let it begin with # to skip it")
-    peak = f"peak_{identifier(misplaced['after'] or '')}" if misplaced is not None else ""
+    peak = f"peak_{identifier(bare)}"
     near = [peak] if peak in _quantity_names() else difflib.get_close_matches(key, _quantity_names(), n=1, cutoff=_NEAR)
     if near:
         raise JobError(

@@ -17,6 +17,7 @@ from pydantic import ValidationError
 from ...objectives.units import SPACES, number_and_unit
 from .messages import SEVERAL, SINGLE, example_of, headings, key_of, keys_of, nodes_at, sentence_of
 from .model import Job
+from .problem_order import key_above
 from .schema import schema_of
 
 _LONGEST = 1000  # of a line that is read and edited
@@ -187,7 +188,7 @@ def with_lines(message: str, text: str) -> str:
     def numbered(match: re.Match[str]) -> str:
         key = match[2]
         while key and key not in lines:
-            key = re.sub(r"(\.| #)?[^.#]*$", "", key)
+            key = key_above(key)
         return f"{match[1]}line {lines[key]}, {match[2]}" if key else match[0]
 
     message = re.sub(r"(?m)^( *)([^\s:;=][^:;=\n]*)(?=: )", numbered, message)

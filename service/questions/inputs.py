@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, get_args
 
 from ...model.errors import InputError
+from ...model.input_warning import both_readings, warn_user
 from ...objectives.kinds import DisplayUnit, Kind
 
 if TYPE_CHECKING:
@@ -74,7 +75,8 @@ class Input:
     def read(self, raw: object, word: str) -> Any:
         """Return the SI value of a text with its unit or of a number; words are unchanged.
 
-        word: name of the input in the interface, with which error messages begin. Raises `InputError`.
+        word: name of the input in the interface, with which error messages begin. Raises `InputError`; warns of a
+        number that is only plausible in another unit.
         """
         from ...model.machine.loads.load import require_word
         from ...objectives.units import quote
@@ -87,6 +89,9 @@ class Input:
             return raw
         kind = replace(self.kind, example=self.usual or self.example or self.kind.example)
         value = parse_value(word, raw, kind, sign=self.sign)
+        if not isinstance(raw, str) and kind.believed is not None and abs(value) > kind.believed[1]:
+            doubt = both_readings(f"{word} =", value, kind.unit, self.unit.symbol, self.unit.factor)
+            warn_user(f"inputs of questions must be in SI: {doubt}", through_callers=True)
         if self.upper_limit is not None and value >= self.upper_limit:
             limit = f"{self.unit.factor * self.upper_limit:g} {self.unit.symbol}".rstrip()
             raise InputError(f"{word} must be less than {limit}; got {quote(raw)}; write it like {self.usual}")

@@ -117,6 +117,8 @@ def test_a_word_in_a_wrong_place_or_missing_is_told_with_the_header_that_helps(n
         ),
         ("price (EUR),price (USD)", 'got it and "price (EUR)", which are both read as price; leave out or rename one'),
         ("max torque (N m)", "did you mean peak_torque? rename it"),
+        ("torque max. (N m)", "did you mean peak_torque? rename it"),
+        ("max. peak torque (N m)", "must follow the quantity, in lower case; write peak_torque max (N m)"),
         (
             "price max (EUR)",
             'got "price", which is not one; name the column "price (EUR)" and bound price in [constraints]',

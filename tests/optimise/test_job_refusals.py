@@ -314,6 +314,15 @@ def test_very_many_problems_are_cut_short() -> None:
     assert lines[-1].strip() == "... and more"
 
 
+def test_of_many_problems_the_first_in_the_file_are_listed() -> None:
+    tables = tomllib.loads(SIEVE) | {f"key{n}": n for n in range(9)}
+    tables["mechanism"] = {"spead": 1, **tables["mechanism"], "speed": "300 mm"}
+    with pytest.raises(JobError) as caught:
+        parse_job(tables)
+    keys = [line.strip().split(":")[0] for line in str(caught.value).splitlines()]
+    assert keys == ["11 problems", "mechanism.spead", "mechanism.speed", *(f"key{n}" for n in range(6)), "... and more"]
+
+
 @pytest.mark.parametrize(
     ("data", "words"),
     [

@@ -167,7 +167,10 @@ def test_bibtex_says_what_the_citation_file_says(root: Path) -> None:
     fields = dict(re.findall(r"(\w+) += \{+([^}]+)\}+", entry))
     cited = (root / "CITATION.cff").read_text(encoding="utf-8")
     stated = dict(re.findall(r"^(?:  - )?(\w+): (\S.*)$", cited, re.MULTILINE))
-    assert fields == {"author": stated["name"], **{key: stated[key] for key in ("title", "version", "license")}}
+    preferred = dict(re.findall(r"^ +(?:- )?(\w+): (\S.*)$", cited.partition("preferred-citation:")[2], re.MULTILINE))
+    shared = {key: stated[key] for key in ("title", "version", "license")}
+    assert preferred == {"type": stated["type"], "name": stated["name"], "year": fields["year"], **shared}
+    assert fields == {"author": stated["name"], "year": preferred["year"], **shared}
     assert fields["version"] == slidercrank.__version__
 
 

@@ -15,7 +15,7 @@ import pytest
 from typer.testing import CliRunner
 
 import slidercrank as sc
-from slidercrank.model.errors import InputError, NotFound
+from slidercrank.model.errors import InputError, InputWarning, NotFound
 from slidercrank.optimise.problem import questions as announced
 from slidercrank.service.agents.call import Call
 from slidercrank.service.agents.questions import ask
@@ -353,6 +353,15 @@ def test_designs_without_an_answer_are_refused_as_elsewhere(solved: Solved) -> N
     for row in (99, -1, 1.0):
         with pytest.raises(InputError, match=f"a row must be one of the front's, which are rows 0 to 2; got {row}"):
             fronts.front(designs=3).ask("balance", row)  # type: ignore[arg-type]
+
+
+def test_a_number_that_probably_means_another_unit_is_warned_of() -> None:
+    front = fronts.front(designs=3)
+    rule = "^inputs of questions must be in SI: touch_distance = 12 is 12 m = 12000 mm; write 0.012 for 12 mm$"
+    with pytest.warns(InputWarning, match=rule) as caught, pytest.raises(InputError, match="got 12"):
+        front.ask("press", 1, touch_distance=12.0)
+    assert caught[0].filename == __file__
+    assert front.ask("press", 1, touch_distance=0.012) == front.ask("press", 1, touch_distance="12 mm")
 
 
 def test_an_unknown_question_of_a_client_is_refused_by_the_service(solved: Solved, client: Client) -> None:
