@@ -121,6 +121,7 @@ PICTURES: dict[str, Callable[[Path], None]] = {
     "exploring_front.gif": exploring,
     "feeder_knee.png": partial(knee, "feeder"),
     "press_knee.png": partial(knee, "press"),
+    "servo_press_knee.png": partial(knee, "servo_press"),
     "sieve_knee.png": partial(knee, "sieve"),
     "compressor_indicator.png": compressor,
     "compressor_cylinders.png": compressor,

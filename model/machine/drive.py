@@ -190,6 +190,25 @@ class Drive:
             )
         return self.motor
 
+    @property
+    def text(self) -> str:
+        """Gear, inertias and limits of the motor, as far as stated."""
+        braking = self.gear_efficiency if self.braking_efficiency is None else self.braking_efficiency
+        parts = [f"gear ratio {self.gear_ratio:.6g}"]
+        if self.is_lossy:
+            parts.append(f"efficiency {self.gear_efficiency:.6g} driving, {braking:.6g} braking")
+        if self.motor_inertia:
+            parts.append(f"rotor {self.motor_inertia:.6g} kg m^2")
+        if self.flywheel:
+            parts.append(f"flywheel {self.flywheel:.6g} kg m^2")
+        if self.greatest_torque is not None:
+            parts.append(f"greatest torque {self.greatest_torque:.6g} N m")
+        if self.rated_torque is not None:
+            parts.append(f"rated torque {self.rated_torque:.6g} N m")
+        if self.greatest_speed is not None:
+            parts.append(f"greatest speed {self.greatest_speed * 30.0 / math.pi:.6g} rpm")
+        return ", ".join(parts)
+
     def torque(self, crank_speed: ArrayLike, direction: float) -> Array:
         """Return the torque on the crank, N m, counter-clockwise, at crank speeds, rad/s.
 

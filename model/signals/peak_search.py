@@ -19,11 +19,10 @@ import numpy as np
 from ..arrays import Array, IntArray, Mask
 from ..quadrature import NODES, Samples, resolve, resolved_tail
 from .cycle_segments import Segments
+from .roots import find_roots
 
 _ROUGH = 1e-6  # greatest size of the last coefficients on a resolved panel, as a fraction of the curve's greatest size
 _DEEPEST = 8  # halvings of a panel
-_ITERATIONS = 80
-_CONVERGED = 1e-15
 _CONTINUOUS = 1e-11  # relative difference below which the two sides of a breakpoint count as continuous
 _SAME = 1e-7  # a flat top is not located better
 _ON_EDGE = 1e-13
@@ -163,33 +162,19 @@ class _Search:
     def refined(
         self, row: IntArray, probe: Array, begin: tuple[Array, Array, Array], end: tuple[Array, Array]
     ) -> tuple[Array, Array]:
-        """Return value and place of the maxima in brackets: roots of the slope by secants of Illinois.
+        """Return value and place of the maxima in brackets: roots of the slope.
 
         begin, end: place and slope at both ends of the brackets; at the beginning also the value.
         """
-        a, rise, value = (part.copy() for part in begin)
-        b, fall = (part.copy() for part in end)
-        at = a.copy()
-        active, side = np.arange(len(row)), np.zeros(len(row), dtype=np.int64)
-        for _ in range(_ITERATIONS):
-            if not len(active):
-                break
-            i = active
-            trial = a[i] + (b[i] - a[i]) * (rise[i] / (rise[i] - fall[i]))
-            middle = 0.5 * (a[i] + b[i])
-            trial = np.where((trial > a[i]) & (trial < b[i]), trial, middle)
-            curve = self.judged(self.curve.evaluate(row[i], probe[i], trial[:, None])[0][:, 0, :2])
-            moved = np.abs(trial - at[i])
-            value[i], at[i], slope = curve[:, 0], trial, curve[:, 1]
-            up = slope > 0.0
-            fall[i] = np.where(up & (side[i] == 1), 0.5 * fall[i], fall[i])
-            rise[i] = np.where(~up & (side[i] == -1), 0.5 * rise[i], rise[i])
-            a[i], rise[i] = np.where(up, trial, a[i]), np.where(up, slope, rise[i])
-            b[i], fall[i] = np.where(up, b[i], trial), np.where(up, fall[i], slope)
-            side[i] = np.where(up, 1, -1)
-            still = (slope != 0.0) & (moved > _CONVERGED) & (b[i] - a[i] > 2.0 * _CONVERGED)
-            active = i[still]
-        return value, at
+        place, rise, value = begin[0], begin[1], begin[2].copy()
+
+        def slope(brackets: IntArray, trial: Array) -> Array:
+            evaluated = self.curve.evaluate(row[brackets], probe[brackets], trial[:, None])[0][:, 0, :2]
+            curve = self.judged(evaluated)
+            value[brackets] = curve[:, 0]
+            return np.asarray(curve[:, 1])
+
+        return value, find_roots(slope, (place, rise), end)
 
     def breakpoint_maxima(self) -> _Tops:
         """Return the breakpoints that are maxima: kinks, jumps, and ends where the curve stops."""

@@ -23,6 +23,7 @@ from ..machine.numbers import numbers_of
 from ..machine.raw import Loads
 from ..machine.two_turns import TURN, cycle_turns, half_at, halves
 from .cycle_segments import Segments
+from .roots import find_roots
 from .shaft_curves import (
     TOUCH,
     VECTORS,
@@ -42,7 +43,6 @@ from .signals import Signal
 
 _NEAR = 1e-9  # rad: a breakpoint this near to the start of one of two turns may belong to either
 _CROSSED = 24  # panels of a turn in which a curve may change its sign, of 16 samples each
-_HALVINGS = 60
 _SIDE_STEP = 1e-12  # rad
 
 
@@ -252,13 +252,15 @@ class Shaft:
         angle = low[:, None] + width[:, None] * np.linspace(0.0, 1.0, 17)
         value = curve(row, probe, angle)
         panel, place = np.nonzero((value[:, :-1] < 0.0) != (value[:, 1:] < 0.0))
-        left, right, is_negative = angle[panel, place], angle[panel, place + 1], value[panel, place] < 0.0
-        for _ in range(_HALVINGS):
-            middle = 0.5 * (left + right)
-            same = (curve(row[panel], probe[panel], middle[:, None])[:, 0] < 0.0) == is_negative
-            left, right = np.where(same, middle, left), np.where(same, right, middle)
+        sign = np.where(value[panel, place] < 0.0, -1.0, 1.0)
+        begin, end = ((angle[panel, at], sign * value[panel, at]) for at in (place, place + 1))
+
+        def fall(brackets: IntArray, trial: Array) -> Array:
+            rows = panel[brackets]
+            return np.asarray(sign[brackets] * curve(row[rows], probe[rows], trial[:, None])[:, 0])
+
+        at = np.mod(find_roots(fall, begin, end), self.period)
         zeros = np.zeros(len(panel), dtype=np.int64)
-        at = np.mod(0.5 * (left + right), self.period)
         return Breaks(row[panel], at, zeros + member, zeros, zeros + code, np.zeros(len(panel)), zeros)
 
     def rates(self, cuts: IntArray, probe: Array) -> Array:

@@ -19,6 +19,7 @@ DESIGNS = {
     "compressor": Design(29.81, 105.93, -11.43),
     "feeder": Design(37.62, 101.71, 31.78),
     "press": Design(26.8, 108.78, 47.02),
+    "servo_press": Design(26.6, 175.54, 79.99),
     "sieve": Design(137.0, 556.3, 110.86),
     "support": Design(1360.0, 2426.8, -600.0, 11.16, 101.16),
 }

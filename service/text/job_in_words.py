@@ -165,6 +165,8 @@ def _mechanism_lines(mechanism: Mechanism) -> list[str]:
         x, y = mechanism.gravity
         lines.append(f"gravity ({x:.6g}, {y:.6g}) m/s^2 along x and y")
     lines += [f"load: {load.text}" for load in mechanism.loads]
+    if mechanism.drive is not None:
+        lines.append(f"drive: {mechanism.drive.text}")
     lines += _friction(mechanism.friction)
     lines += _strength(mechanism.strength)
     if mechanism.branch == "crossed":

@@ -19,7 +19,7 @@ QUADRATURES = {
 }
 ITERATIONS = {
     "model/signals/turn_peaks.py": "peaks of one crank, compiled with the curves",
-    "model/signals/peak_search.py": "peaks of all else",
+    "model/signals/roots.py": "peaks of all else, and places where a curve changes its sign",
     "model/signals/screening.py": "peaks of very many designs in vector instructions, without breakpoints",
     "model/strength/stress_points.py": "samples a segment evenly; no iteration",
     "model/strength/stress_search.py": "over the place along a link, with the peak over the angle in closed form",

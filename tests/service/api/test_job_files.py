@@ -21,7 +21,7 @@ from slidercrank.service.jobs.job_toml import job_toml
 from tests.service.api.serving import refused
 
 TOML = {"Content-Type": "application/toml"}
-SHIPPED = ("feeder", "sieve", "support", "compressor", "press")
+SHIPPED = ("feeder", "sieve", "support", "compressor", "press", "servo_press")
 
 
 def shipped(root: Path) -> dict[str, Any]:
