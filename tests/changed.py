@@ -12,6 +12,7 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 from tests.imports import importers
@@ -45,6 +46,7 @@ def _is_test(file: Path) -> bool:
     return file.suffix == ".py" and file.name.startswith("test_")
 
 
+@cache
 def _is_quick(test: Path) -> bool:
     """Return whether a test file has tests that are not slow."""
     return not re.search(r"^pytestmark = .*mark\.slow\b", test.read_text(encoding="utf-8"), re.MULTILINE)
@@ -52,8 +54,14 @@ def _is_quick(test: Path) -> bool:
 
 def _tests_named_after(file: Path, root: Path) -> list[Path]:
     names = {file.stem, *file.parts[1:-1][-1:]} - {"__init__", "static", "lib"}
-    tests = (found for name in names for found in (root / "tests" / file.parts[0]).rglob(f"test_{name}*.py"))
-    return sorted(found.relative_to(root) for found in tests if _is_quick(found))
+    tests = _tests_under(root / "tests" / file.parts[0])
+    named = (test for test in tests if any(test.name.startswith(f"test_{name}") for name in names))
+    return sorted(test.relative_to(root) for test in named if _is_quick(test))
+
+
+@cache
+def _tests_under(folder: Path) -> list[Path]:
+    return [*folder.rglob("test_*.py")]
 
 
 def _words(file: Path) -> set[str]:
@@ -62,7 +70,12 @@ def _words(file: Path) -> set[str]:
 
 
 def _mentions(test: Path, words: set[str]) -> int:
-    return len(words & set(re.findall(r"\w+", test.read_text(encoding="utf-8"))))
+    return len(words & _words_in(test))
+
+
+@cache
+def _words_in(test: Path) -> set[str]:
+    return set(re.findall(r"\w+", test.read_text(encoding="utf-8")))
 
 
 def changed(branch: str, root: Path) -> list[Path]:
