@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum, auto
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,7 +38,7 @@ from .shaft_segments import GEAR, SUPPLY, Breaks, joined
 from .signals import Signal
 
 _CHUNK = 128  # designs
-_Stepped = NDArray[np.complex128]
+_Stepped = NDArray[np.complexfloating[Any, Any]]
 
 
 class MotorCurve(IntEnum):

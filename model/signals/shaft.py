@@ -166,14 +166,16 @@ class Shaft:
 
     def _items(self, row: IntArray, probe: Array, angle: Array, rate: Array | None = None) -> Evaluations:
         rate = np.zeros((len(row), self.numbers)) if rate is None else rate
-        return Evaluations(*map(np.ascontiguousarray, (row, probe, angle, rate, self.half(probe, row))))
+        contiguous = np.ascontiguousarray
+        half = self.half(probe, row)
+        return Evaluations(contiguous(row), contiguous(probe), contiguous(angle), contiguous(rate), contiguous(half))
 
     def _evaluate(self, curve: ShaftCurve, items: Evaluations, gradients: bool = False) -> CurveArrays:
         """Return a curve; where all forces vanish together, that beside that angle."""
         evaluated = self._run_kernel(curve, items, gradients)
         lost = np.asarray(~np.isfinite(evaluated.curve).all(axis=(1, 2)))
         if lost.any():
-            of_lost = Evaluations(*(column[lost] for column in items))
+            of_lost = Evaluations._make(column[lost] for column in items)
             nearby = of_lost.angle + np.copysign(_SIDE_STEP, of_lost.probe[:, None] - of_lost.angle)
             substitute = self._run_kernel(curve, of_lost._replace(angle=nearby), gradients)
             is_finite = np.asarray(np.isfinite(evaluated.curve[lost]).all(axis=2))

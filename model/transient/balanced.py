@@ -67,7 +67,7 @@ def balanced_speed(turn: PeriodicTurn, drive: Drive, motor: Torque, near: float)
             + f" ({static_torque:.6g} N m on the crank besides loads that change with speed); "
             + ("choose a stronger motor or a greater gear ratio" if weak else "extend the torque table")
         )
-    speeds_found = [float(brentq(surplus, speeds[i], speeds[i + 1])) for i in falls]
+    speeds_found = [float(brentq(lambda speed: float(surplus(speed)), speeds[i], speeds[i + 1])) for i in falls]
     return min(speeds_found, key=lambda speed: abs(speed - near)) if near else speeds_found[0]
 
 

@@ -203,9 +203,9 @@ def _locking(problem: Problem, tables: Mapping[str, Any]) -> str:
     return Remark(sentence, change)
 
 
-def _nearest_possible(problem: Problem, constraint: Constraint, ends: Ends) -> list[str]:
+def _nearest_possible(problem: Problem, constraint: Constraint, ends: Ends) -> list[Remark]:
     """Return, in words, the nearest possible value for a requirement beyond the ends of the possible range."""
-    sentences = []
+    sentences: list[Remark] = []
     for word, bound in constraint.sides:
         nearest = min(max(bound, ends[0]), ends[1])
         is_beyond = {"min": bound > nearest, "max": bound < nearest, "equals": True}[word]

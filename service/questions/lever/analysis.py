@@ -19,7 +19,6 @@ from ....objectives.kinds import ANGLE, FORCE, LENGTH, POWER, PRESSURE, RATIO, S
 from ....objectives.tables.swing_curves import POINTS
 from ...designs.display_units import rows_in
 from ...render.blocks import Block, NamedNumber, Text, named_number, number_list, recorded, sentence, words
-from ...runs.result import Row
 from ..record_types import Keys, Note
 from .request import LeverRequest, lever_request
 
@@ -121,7 +120,7 @@ def numbers(mechanism: Mechanism, _: Linkage, *, request: LeverRequest, **option
     """
     summary = summarise(request.machine, request.swing, request.cylinder, request.errors)
     sizes, swing = request.machine.sizes, request.swing
-    record: Row = {
+    record: dict[str, Any] = {
         "crank_mm": 1e3 * sizes.crank,
         "frame_mm": 1e3 * sizes.frame,
         "frame_angle_deg": math.degrees(sizes.frame_angle),

@@ -86,10 +86,10 @@ class Bodies:
             q -= change
             if np.abs(change).max() < 1e-15:
                 break
-        rows = self.constraints(q)[1].real
-        rate = np.linalg.solve(rows, driver * speed)
+        slopes = self.constraints(q)[1].real
+        rate = np.linalg.solve(slopes, driver * speed)
         bend = self.constraints(q + 1j * STEP * rate)[1].imag / STEP @ rate
-        matrix = np.block([[self.mass, rows.T], [rows, np.zeros((9, 9))]])
+        matrix = np.block([[self.mass, slopes.T], [slopes, np.zeros((9, 9))]])
         solved = np.linalg.solve(matrix, np.concatenate([self.weight, driver * acceleration - bend]))[9:]
         force = solved[0::2][:3] + 1j * solved[1::2][:3]
         return JointForces(-float(solved[8]), complex(force[2]), -complex(force[0]), -complex(force[1]), q.real)
