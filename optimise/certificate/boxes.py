@@ -1,4 +1,4 @@
-"""Bounds on all designs of a box at once: proof that none is feasible, and lower bounds on the objectives."""
+"""Bounds for all designs in a box: proof that none is feasible, and lower bounds on the objectives."""
 
 from __future__ import annotations
 
@@ -41,10 +41,10 @@ _SLACK = 1e-6  # relative, by how much computed dimensions may miss their range 
 class Bounded(Table):
     """Bounds that hold for the designs of n boxes.
 
-    alive: whether one may be feasible; what follows means nothing where not. lower, upper: (n, k), the part of the box
-    that holds all feasible ones. corner: (n, m), what no feasible one's minimised objectives are below, -inf where
-    nothing is known. smear: (n, k), what the width along each axis matters. trial: (n, k), a point that is feasible if
-    the box's linear part does not deceive.
+    alive: whether a design may be feasible; the other fields are meaningless otherwise. lower, upper: (n, k), the part
+    of the box that contains all feasible designs. corner: (n, m), lower bounds of their minimised objectives, -inf
+    where none is known. smear: (n, k), influence of the width along each axis. trial: (n, k), a point that is feasible
+    if the linear part of the box is accurate.
     """
 
     alive: Mask
@@ -170,7 +170,7 @@ class Boxes:
         return numbers_over_boxes(self.mechanism, [unknowns[name] for name in branch.names])
 
     def _closed(self, name: str, numbers: Numbers) -> tuple[Enclosure, Array | None, Array | None]:
-        """Return the forms of a quantity (n, forms), and what is known of it beside them: from below and above."""
+        """Return the forms of a quantity (n, forms), and further bounds from below and above."""
         quantity = self.problem.quantity(name)
         if is_swing_form(quantity):
             return swing_form(self.mechanism, quantity, numbers), None, None

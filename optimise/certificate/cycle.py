@@ -46,8 +46,8 @@ _ERRORS = (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
 def machines_of(mechanism: Mechanism, kind: Signal) -> tuple[Mechanism, ...]:
     """Return machines whose highest peak of a signal is that of the machine.
 
-    Each turn of a single crank's cycle of two turns is a machine of its own, and so is each cylinder of what does not
-    add up over them.
+    Each turn of a single crank's cycle of two turns is a separate machine. So is each cylinder, for a signal that does
+    not add up over the cylinders.
     """
     if not is_shaft(mechanism):
         return halves(mechanism) if kind.needs_forces and cycle_turns(mechanism) > 1 else (mechanism,)
@@ -69,7 +69,7 @@ Read = Callable[[Forces, Any, Any, Motion, Design], tuple[Any, Any]]
 
 
 class CycleCurve:
-    """One signal of a machine over boxes of designs. Without friction: its forces are no plain formula."""
+    """One signal of a machine over boxes of designs. Without friction, whose forces are not a plain formula."""
 
     least = False
     anywhere: tuple[float, ...] = (0.5 * math.pi,)
@@ -127,9 +127,9 @@ class CycleCurve:
     def sums(
         self, numbers: Numbers, angles: Array, middle: Array, read: Read | None = None
     ) -> list[tuple[Enclosure, Enclosure]]:
-        """Return the two components of the signal, or what is read from the joint forces instead, over all cylinders.
+        """Return the two components of the signal, or what `read` takes from joint forces, over all cylinders.
 
-        There are two pairs where it jumps at the angle, which only a single cylinder does, at its dead centre.
+        Two pairs where it jumps at the angle; only a single cylinder does, at its dead centre.
         """
         designs = [machine.design(numbers) for machine in self.machines]
         read = read or self._component
@@ -147,7 +147,7 @@ class CycleCurve:
     def _member_parts(
         self, member: Member, designs: list[tuple[Design, Any]], angles: Array, middle: Array, read: Read
     ) -> list[tuple[Enclosure, Enclosure]]:
-        """Return a cylinder's components at angles of the shaft: of both strokes where it jumps at the angle."""
+        """Return a cylinder's components at angles of the shaft: for both strokes if it jumps at the angle."""
         d = self._moving(designs[0][0], member, angles)
         local: Any = angles + member.lead
         sine: Any = np.sin(local)
@@ -163,7 +163,7 @@ class CycleCurve:
         outward = m.x_1 * (d.branch * self.mechanism.direction)
         place = (sine, cosine, local, m)
         if jump is not None and jump.any():
-            # The peak is the greater of what the curve tends to from either side, which are the two strokes.
+            # The peak is the greater limit of the curve from either side, which are the two strokes.
             sides = [
                 select(jump, interval(side, side, len(outward.slopes)), outward) for side in (jump + 0.0, -1.0 * jump)
             ]

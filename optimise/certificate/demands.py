@@ -1,4 +1,4 @@
-"""Loads of bars and pins over what bears them, enclosed over boxes of designs.
+"""Ratios of load to resistance for bars and pins, enclosed over boxes of designs.
 
 The greatest stress over the cycle is at least that at one place and angle, and the greatest force of a pin at least
 that at one angle. So a stress or a pressure is bounded from below, and a safety from above. The place is a fraction of

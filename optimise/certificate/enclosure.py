@@ -1,15 +1,15 @@
-"""Arithmetic that encloses a formula over a whole box of designs: linear part plus a bound on what is left.
+"""Arithmetic that encloses a formula over a whole box of designs: a linear part plus a bound on the remainder.
 
-Over a box with coordinates d in [-1, 1]^k, a number of every design is written as
+Over a box with coordinates d in [-1, 1]^k, a number of every design has the form
 
     value(d) in centre + slopes . d + [-rest, rest]        wherever the formula is defined,
 
 a Taylor model of first order (Makino and Berz, "Taylor models and other validated functional inclusion methods", Int.
-J. Pure Appl. Math. 4(4), 2003). Its excess over the true range shrinks with the square of the box. Each operation holds
-point by point, so it does not matter that a formula is undefined elsewhere in the box.
+J. Pure Appl. Math. 4(4), 2003). Its excess over the true range shrinks with the square of the box. Each operation is
+valid pointwise, so a formula may be undefined elsewhere in the box.
 
-The formulas of the model are plain functions that take whatever has +, -, *, / and NumPy's sqrt and arcsin: an
-`Enclosure` runs through them as a float does, so the physics is not written a second time.
+The formulas of the model are plain functions of any type with +, -, *, / and NumPy's sqrt and arcsin. They take an
+`Enclosure` as they take a float, so the physics is not written a second time.
 
 Rounding: every operation adds `UNIT` times the size of all that enters to the rest, eight times what IEEE doubles
 round it by; results are inflated by `INFLATION` of their size once more, for sines and other rounded numbers.
@@ -225,7 +225,7 @@ class Enclosure:
         return (self + 0.5 * np.pi).sin()
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
-        """Run NumPy's functions on enclosures: what formulas call, and arrays on the left of an operator."""
+        """Run NumPy's functions on enclosures, as formulas call them, and operators with an array on the left."""
         if method != "__call__" or options or ufunc not in _FUNCTIONS:
             return NotImplemented
         return _FUNCTIONS[ufunc](*inputs)

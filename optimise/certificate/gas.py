@@ -15,7 +15,7 @@ from .enclosure import UNIT, Enclosure, interval, select
 def gas_force(load: Cylinder, share: Enclosure, stroke: Enclosure, outward: Enclosure) -> Enclosure:
     """Return the force, N outward, for the piston's distance from its top as a share of the stroke.
 
-    outward: tells the stroke by its sign; where it is not certain the force lies between those of both.
+    outward: its sign determines the stroke; where that is uncertain, the force lies between those of both strokes.
     """
     sign = 1.0 if load.head == "inner dead centre" else -1.0
     low, high = outward.ends()

@@ -21,11 +21,11 @@ _MOST = 400_000  # boxes bounded: the same job gives the same answer unless the 
 
 
 def prove_infeasible(problem: Problem, *, seconds: float = SECONDS, poll: Callable[[], None] = lambda: None) -> bool:
-    """Return whether it is proven that no design of the job's ranges meets all its requirements.
+    """Return whether it is proven that no design within the job's ranges meets all its requirements.
 
     Requirements that cannot be bounded over a range of designs are not used: the others must contradict each other.
-    False when a design meets all of these, or when the budget ends first: then nothing is known. poll: called many
-    times a second; what it raises ends the search.
+    False if a design meets all of these, or if the time runs out first: then nothing is known. poll: called many times
+    a second; any error it raises ends the search.
     """
     start = time.perf_counter()
     unit_span = np.ones(len(problem.objectives))
@@ -56,7 +56,7 @@ def prove_infeasible(problem: Problem, *, seconds: float = SECONDS, poll: Callab
 
 
 def _requirement_evaluator(problem: Problem, branch: EliminationBranch) -> Evaluator:
-    """Return an evaluator that knows only the requirements that rule out boxes: what meets these is never ruled out."""
+    """Return an evaluator of the requirements that rule out boxes; no design that meets these is ever ruled out."""
     evaluator = Evaluator(problem, branch)
     evaluator.constraints = tuple(item for item in evaluator.constraints if is_usable(problem, item))
     return evaluator

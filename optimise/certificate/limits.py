@@ -37,7 +37,7 @@ class Limits:
             )
 
     def hold(self, constraint: Constraint, value: Enclosure, least: Array | None, greatest: Array | None) -> None:
-        """Require a constraint on the greatest of a quantity's parts; least, greatest: what else is known of it."""
+        """Require a constraint on the greatest part of a quantity. least, greatest: further bounds of it."""
         upper, lower = constraint.upper, constraint.lower
         if upper is not None:
             scale = abs(upper) or 1.0

@@ -1,4 +1,4 @@
-"""The search for a proof: open boxes, the set of designs that covers, what is known of it."""
+"""Search for a proof: open boxes, the covering set of designs, and the bounds so far."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def _exact_objectives(problem: Problem, dimensions: Array) -> Array:
 
 
 class Search:
-    """The branch and bound: open boxes, the set that covers, what is known of it."""
+    """Branch and bound: open boxes, the covering set of designs, and the bounds so far."""
 
     def __init__(
         self,
@@ -175,10 +175,10 @@ class Search:
     def _proven(self) -> float:
         return max(self.closed, float(self.tree.excess.max(initial=0.0)))
 
-    # ---- what it gives --------------------------------------------------------------------------------------------
+    # ---- the result -----------------------------------------------------------------------------------------------
 
     def certificate(self) -> Certificate:
-        """Return the certificate so far, its added designs polished and reduced to as few as it takes."""
+        """Return the certificate so far, with its added designs polished and reduced to as few as necessary."""
         tree, proven = self.tree, self._proven()
         needy = np.concatenate(self.needy)
         self._drop_redundant(needy)
@@ -190,7 +190,7 @@ class Search:
         if len(leads) and leads.max() > self.gap:
             farthest = int(np.argmax(leads))
             self._note(int(self.added.branch[farthest]), dimensions[farthest])
-        # Whoever is covered by an added design is covered by the front to the sum of both excesses.
+        # A point covered by an added design is covered by the front to the sum of both excesses.
         least = max(self.closed_by_front, float(excess(tree.corner, self.front).max(initial=0.0)))
         delivered = max(min(least, proven + float(leads.max(initial=0.0))), self.gap)
         status: Status = "cancelled" if self.stopped else "out of budget"
@@ -241,7 +241,7 @@ class Search:
             self.added = self.added[greedy_cover(needy, self.added.values, self.epsilon)]
 
     def _polish(self) -> None:
-        """Move added designs onto the front where that makes no objective worse: what they cover stays covered."""
+        """Move added designs onto the front if no objective gets worse, so that they still cover the same points."""
         if len(self.added) > _POLISHED:
             return
         for index, evaluator in enumerate(self.evaluators):

@@ -1,7 +1,7 @@
 """A quantity of a swing, enclosed over boxes of designs at chosen places of the swing.
 
 The greatest value of a curve over the swing is at least its value at any one place, and the least value is at most
-that. What is known in closed form, the travel of the slider and the angle of the crank, is bounded from both sides.
+that. Slider travel and crank angle are known in closed form and bounded from both sides.
 """
 
 from __future__ import annotations

@@ -24,7 +24,7 @@ class Tree(Table):
     """The open boxes of all branches.
 
     branch: (n,). lower, upper: (n, k), padded with zeros. corner: (n, m), scaled. excess: (n,).
-    counted_designs: (n,), number of designs that the excess counts. axis: (n,), the next to split; -1 where none is
+    counted_designs: (n,), number of designs that the excess counts. axis: (n,), the next axis to split; -1 if none is
     left. bounded: boxes bounded so far.
     """
 

@@ -21,21 +21,21 @@ Subject = TypeVar("Subject")
 Question = TypeVar("Question", bound=Hashable)
 Part = TypeVar("Part")
 Work = Callable[[Subject, Question, Array], Part]
-"""Work on rows, a function of a module: of the subject, what is asked, and rows (n, k). It judges each row by
-itself, to the last bit, so that chunks do not show."""
+"""Work on rows: a function of a module, of the subject, the question and rows (n, k). Each row is judged independently
+of the others, to the last bit, so that chunks do not affect the result."""
 
 CHUNK = 0.05
-"""s, that a chunk takes at least: sending it costs about 1 ms here, a few on a cluster."""
+"""Minimum time of a chunk, s: sending one costs about 1 ms here, and a few on a cluster."""
 _EACH = 4  # chunks for every worker, so that none waits long for the last one
 _FIRST = 4  # rows, of the first chunk of a kind: kernels are loaded and samples drawn with it
-_SURE = 0.5 * CHUNK  # s, after which a pace is believed
+_SURE = 0.5 * CHUNK  # s, after which a pace is reliable
 
 
 class Shared(Generic[Value]):
-    """A value that goes along with every chunk but is made only once in each process that works on them.
+    """A value that is sent with every chunk but created only once in each process that works on them.
 
-    A problem pickles into some kB, nothing next to a chunk of 50 ms. What costs is making it: functions of your own
-    start a process, samples are drawn.
+    A problem pickles into some kB, negligible next to a chunk of 50 ms. Creating it is costly: custom functions start a
+    process, and samples are drawn.
     """
 
     def __init__(self, value: Value) -> None:
@@ -44,7 +44,7 @@ class Shared(Generic[Value]):
 
     @cached_property
     def pickled(self) -> bytes:
-        """The value as bytes. Raises what pickle does for one that cannot leave this process."""
+        """The value as bytes. Raises the error of pickle if it cannot leave this process."""
         return pickle.dumps(self.value, protocol=pickle.HIGHEST_PROTOCOL)
 
     @property
@@ -83,10 +83,10 @@ class _Pace:
 
 @dataclass(frozen=True)
 class Chunked(Generic[Subject]):
-    """Does work on rows of one subject, on an engine where they are heavy.
+    """Does work on rows of one subject, on an engine if it is expensive.
 
-    Whether they are is measured: a batch leaves this process when two chunks of 50 ms are left of it and the engine
-    finds it worth it. What is done here and what elsewhere does not show in the results. poll: called between chunks.
+    That is measured: a batch leaves this process when at least two chunks of 50 ms remain and the engine considers it
+    worthwhile. Where the work is done does not affect the results. poll: called between chunks.
     """
 
     shared: Shared[Subject]
@@ -103,11 +103,11 @@ class Chunked(Generic[Subject]):
         kind: Hashable = None,
         together: bool = False,
     ) -> list[Part]:
-        """Return the parts of the work on rows (n, k), in order; a single part where it is light.
+        """Return the parts of the work on rows (n, k), in order; a single part if it is cheap.
 
-        kind: of work that takes alike for a row, what is asked if not given. together: rows are much quicker together
-        than one by one, so that they are not cut here, and into no more chunks than there are workers elsewhere. Raises
-        what the work, the engine and `poll` raise.
+        kind: kind of work that takes the same time for a row; the question if None. together: whether rows are much
+        quicker together than one by one. They are then not divided here, and elsewhere into at most one chunk for each
+        worker. Raises the errors of the work, the engine and `poll`.
         """
         n = len(rows)
         if n == 0 or (isinstance(self.engine, Serial) and self.poll is None):

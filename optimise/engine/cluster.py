@@ -1,4 +1,4 @@
-"""Evaluation on a Dask cluster; what is lost with a worker or with the scheduler is done again."""
+"""Evaluation on a Dask cluster; work lost with a worker or with the scheduler is repeated."""
 
 from __future__ import annotations
 
@@ -43,19 +43,19 @@ class Tls:
 
 
 class _Lost(Exception):
-    """The scheduler, or what it knew of this client."""
+    """The scheduler is lost, or its record of this client."""
 
 
 class Cluster:
-    """A Dask cluster that runs already, with the same versions of this software as here.
+    """A running Dask cluster with the same versions of this software as here.
 
-    It is connected to when it is first needed. Not to be used by several threads at once.
+    The connection is made when it is first needed. Not for concurrent use by several threads.
     """
 
     def __init__(self, address: str, *, tls: Tls | None = None, patience: float = PATIENCE) -> None:
         """Take the scheduler's address, "tcp://host:8786" or "tls://host:8786", and how long to wait for it, s.
 
-        Raises `InputError` for another kind of address, and for one that is encrypted without the files for it.
+        Raises `InputError` for any other kind of address, and for an encrypted one without the necessary files.
         """
         scheme, _, rest = address.partition("://")
         if scheme not in ("tcp", "tls") or "@" in rest or not rest.rpartition(":")[2].isdigit():
@@ -88,8 +88,8 @@ class Cluster:
     def map(self, function: Callable[[Item], Found], items: Sequence[Item], *, poll: Poll | None = None) -> list[Found]:
         """Return function(item) for every item; see `Engine`.
 
-        Raises `EngineError` when there is no scheduler or no worker for longer than the patience, when workers have
-        other versions, and for an item under which workers died again and again.
+        Raises `EngineError` if the scheduler or all workers are missing for longer than the patience, if workers have
+        other versions, and for an item that repeatedly kills its workers.
         """
         results: dict[int, Found] = {}
         killed = [0] * len(items)

@@ -1,4 +1,4 @@
-"""The protocol of what evaluates chunks, this process, several processes or a cluster; and this process."""
+"""Protocol of engines that evaluate chunks (this process, several processes or a cluster), and this process."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ Poll = Callable[[], None]
 
 
 class Engine(Protocol):
-    """Applies a function to items, somewhere, and gives the results in the items' order.
+    """Applies a function to items, wherever that runs, and returns the results in the order of the items.
 
-    The same function of the same item gives the same bits on every engine, on processors of the same kind.
+    A function of an item has the same bits on every engine, on processors of the same kind.
     """
 
     @property
     def workers(self) -> int:
-        """Number of items that are worked on at once, at least one."""
+        """Number of items that are processed concurrently, at least one."""
         ...
 
     def should_map(self, seconds: float) -> bool:
-        """Whether work that takes so long in this process, s, should rather be mapped.
+        """Whether work that takes this time, s, in this process should rather be mapped.
 
-        Asked of all that is heavy: an engine that takes time to start waits until that much of it was refused.
+        Called for all expensive work: an engine that is slow to start declines until the work declined outweighs that.
         """
         ...
 
     def map(self, function: Callable[[Item], Found], items: Sequence[Item], *, poll: Poll | None = None) -> list[Found]:
         """Return function(item) for every item, in order.
 
-        function: of a module, so that another process can import it. poll: called between items and while waiting; what
-        it raises ends the map. Raises that, what the function raises, and `EngineError` if the engine is lost. Work
-        lost with a worker is repeated without a report.
+        function: of a module, so that another process can import it. poll: called between items and while waiting; an
+        error that it raises ends the map. Raises that, the errors of the function, and `EngineError` if the engine is
+        lost. Work lost with a worker is silently repeated.
         """
         ...
 

@@ -31,7 +31,7 @@ class Processes:
     """
 
     def __init__(self, workers: int | None = None) -> None:
-        """Take how many, the number of processors if not given. Raises `InputError` for fewer than one."""
+        """Take the number of processes, that of the processors if not given. Raises `InputError` for fewer than one."""
         if workers is not None and workers < 1:
             raise InputError(
                 f"the number of processes must be at least one; got {workers}; leave it out for one per processor"
@@ -41,7 +41,7 @@ class Processes:
         self._refused = 0.0
 
     def should_map(self, seconds: float) -> bool:
-        """Whether so much work pays; see `Engine`."""
+        """Whether mapping work of this length pays; see `Engine`."""
         if self._pool is None:
             self._refused += seconds
         return self._pool is not None or self._refused >= _START

@@ -1,4 +1,4 @@
-"""Job files: what an engineer states, read, checked and turned into a `Problem`.
+"""Job files: an engineer's statement, read, checked and turned into a `Problem`.
 
 `load_job` reads a file (TOML or JSON), `parse_job` the same as a dict, `job_schema` describes it.
 """
@@ -49,14 +49,14 @@ def load_job(
 ) -> Problem:
     """Return the problem that a job file states, .toml or .json.
 
-    values: numbers to put in place of those that the file gives, by their paths ("mechanism.slider.mass").
-    allow_user_code: whether a job may name functions of its own ([quantity]); they run when the problem is solved, with
-    all that the user may do. Refuse them in jobs of others.
-    require_feasible: whether a job that no design can meet is refused. A search needs that; to look at a given design
-    it does not matter. A least above the greatest value of one formula is always refused.
+    values: numbers that replace those in the file, by their paths ("mechanism.slider.mass").
+    allow_user_code: whether a job may name Python functions ([quantity]); they run when the problem is solved, with all
+    the rights of the user. Refuse them in other people's jobs.
+    require_feasible: whether to refuse a job that no design can meet. A search needs that; the analysis of a given
+    design does not. A minimum above the maximum of the same formula is always refused.
 
-    Warns by `InputWarning` of what the job probably does not mean, such as a number without a unit; the `warnings` of
-    the problem are its sentences. Raises JobError, naming file, key, rule, value and remedy, for a file that cannot be
+    Warns with `InputWarning` about probable mistakes, such as a number without a unit; `warnings` of the problem has
+    the sentences. Raises JobError, naming file, key, rule, value and remedy, for a file that cannot be
     read, does not follow the schema, or contradicts itself; its subclass `InfeasibleError` if no design can meet it.
     """
     if not isinstance(path, str | PathLike):
@@ -99,7 +99,7 @@ def read_job(path: str | PathLike[str]) -> dict[str, Any]:
 def with_files(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
     """Return a job with the content of the files that it names in their place. Raises JobError.
 
-    files: the folder in which they lie, or their contents by name: texts, or bytes as they are on a disk.
+    files: the folder in which they lie, or their contents by name: texts, or the bytes on disk.
     """
     try:
         return with_catalogues(with_speeds(with_loads(with_points(data, files), files), files), files)

@@ -50,7 +50,7 @@ Amounts = Annotated[dict[str, Annotated[Any, _Read(RATIO)]], AfterValidator(_amo
 
 
 def kinds_of_amounts(options: Iterable[Mapping[str, Any]]) -> dict[str, Kind]:
-    """Return the kinds of the amounts of options, by name. options: their amounts; what is wrong is left out."""
+    """Return the kinds of the amounts of options, by name. options: their amounts; invalid ones are left out."""
     kinds: dict[str, Kind] = {}
     for amounts in options:
         for name, value in amounts.items():
@@ -61,7 +61,7 @@ def kinds_of_amounts(options: Iterable[Mapping[str, Any]]) -> dict[str, Kind]:
 
 
 def amounts_in(tables: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
-    """Return the amounts of options of a job, as far as they can be told."""
+    """Return the amounts of options of a job, as far as they can be read."""
     return (table_in(option, "amounts") for option in options_in(tables))
 
 

@@ -1,8 +1,7 @@
 """A catalogue as a table: the options of a choice, a row each, screened before anything is solved.
 
-Each row has its name, numbers of the job that come with it, limits, and amounts and texts that are kept with designs.
-Rows that lose in everything that is asked for are not searched; those of them that may be the least that serves a
-design, see `catalogue_screening`, stay as options that are only named.
+Each row has a name, numbers of the job, limits, and amounts and texts that are stored with designs. Dominated rows are
+not searched. Those that may be the smallest sufficient option for a design, see `catalogue_screening`, are only named.
 """
 
 from __future__ import annotations
@@ -39,11 +38,11 @@ _ARTICLE = re.compile(r"[+-]?0\d.*|\d{7,}")
 class Catalogue:
     """A catalogue after screening.
 
-    name: of the choice. options: as a job has them, the least first; those that lose only where they may be the least
-    that serves. rows: of the table. lost: rows that are not searched, each with the one that beats it. excluded: those
-    whose amounts the job does not allow, each with the reason. compared: what rows are compared in. idle: headers of
-    columns of which nothing is asked for. added: headers without min, max or equals, with what they are read as.
-    understood: what was read of the file, in words.
+    name: of the choice. options: as in a job file, the smallest first; dominated ones only if they may be the smallest
+    sufficient option. rows: of the table. lost: rows that are not searched, each with the one that dominates it.
+    excluded: those whose amounts the job does not allow, each with the reason. compared: criteria of the comparison.
+    idle: headers of columns that no requirement concerns. added: headers without min, max or equals, with their
+    interpretation. understood: summary of the file, in words.
     """
 
     options: list[dict[str, Any]]

@@ -1,4 +1,4 @@
-"""The first line of a catalogue: what each column holds, and in which unit."""
+"""The first line of a catalogue: meaning and unit of each column."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _RULE = (
 _GIVEN = {"motion", "proportions"}
 """Parts of a form that ask for a quantity which is to have some value: neither more nor less of it is better."""
 _NEAR = 0.85
-"""Names of columns nearer than this to a quantity are taken for misspelt ones."""
+"""Similarity above which the name of a column is taken for a misspelt quantity."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Column:
     added: bool = False
 
     def value(self, cell: str) -> str | float:
-        """Return a cell as a job has it."""
+        """Return a cell as a value of a job file."""
         return f"{cell} {self.unit}" if self.unit else float(cell)
 
     @property
@@ -142,7 +142,7 @@ def identifier(text: str) -> str:
 
 @cache
 def _quantity_names() -> dict[str, str]:
-    """Return the quantities by their names, and by their titles as such."""
+    """Return the names of the quantities, by name and by title."""
     return {identifier(quantity.title): name for name, quantity in FACTS.items()} | {name: name for name in FACTS}
 
 
@@ -219,7 +219,7 @@ def _limited_quantity(text: str, custom_names: frozenset[str]) -> tuple[str, Kin
 
 
 def _require_unit(unit: str, kind: Kind, column_name: str, head: str) -> None:
-    """Refuse a limit's unit that is none of its quantity. head: of the column, with the unit."""
+    """Refuse a unit that does not fit the limited quantity. head: heading of the column, with the unit."""
     if kind.unit and not unit:
         raise JobError(
             f"{column_name}: the heading has no unit; write, for example, {quote(f'{head} ({_unit(kind.example)})')}"

@@ -1,11 +1,11 @@
-"""Rows of a catalogue that are worth a search, and those that may be the least that serves a design.
+"""Screening of a catalogue: rows to search, and rows that may be the smallest sufficient option for a design.
 
-What is asked for of a row are its limits, as far as the constraints of the job do not hold already, and those amounts
-that are objectives or constraints. Of two rows with the same numbers of the job, where the first is nowhere worse in
-what is asked for, every design that the second allows is one of the first, as good in every objective. So the front of
-all rows is that of the first without the second, which loses. Of rows that are equal in all of it the least stays.
-Limits that are equalities compare with equal ones alone, and so do greatest values of quantities whose floor depends on
-them (see `violation.constraints_of`), and amounts that a formula names.
+Rows are compared in their limits, unless the constraints of the job are tighter, and in the amounts that are objectives
+or constraints. Consider two rows with the same numbers of the job, the first nowhere worse in this comparison. The
+first allows every design that the second allows, with objectives at least as good. The front of all rows therefore does
+not need the second, which is dominated. Of equal rows the smallest stays. Limits that are equalities are comparable
+only if equal. The same holds for maxima of quantities whose floor depends on them (see `violation.constraints_of`), and
+for amounts in a formula.
 """
 
 from __future__ import annotations
@@ -76,11 +76,11 @@ def _si(value: Any, column: Column) -> float | None:
 
 @dataclass(frozen=True)
 class Screened:
-    """Rows after screening. order: those that are searched or named, by their places, the least first.
+    """Rows after screening. order: places of the rows to search or name, the smallest first.
 
-    searched: those that are searched. lost: places of others, each with one that beats it. excluded: places of those
-    that lack an amount that is asked for, or have one that the job's own constraints exclude, each with the reason in
-    words; if these exclude every row, none. compared: what rows are compared in. requested: the amounts among it.
+    searched: places of the rows to search. lost: places of others, each with one that dominates it. excluded: places of
+    rows that lack a required amount, or have one that the job's constraints exclude, each with the reason in words;
+    empty if that excludes every row. compared: criteria of the comparison. requested: the amounts among them.
     """
 
     order: list[int]
@@ -94,10 +94,10 @@ class Screened:
 def screened(
     columns: Sequence[Column], rows: Sequence[list[str]], tables: Mapping[str, Any], file_name: str
 ) -> Screened:
-    """Return which rows to search, and which may be the least that serves a design.
+    """Return which rows to search, and which may be the smallest sufficient option.
 
-    columns: with cells that are checked. rows: cells. tables: of the job, which say what is asked for. file_name: what
-    messages begin with. Raises JobError if no row has all that is asked for.
+    columns: with checked cells. rows: cells. tables: of the job, with its requirements. file_name: beginning of
+    messages. Raises JobError if no row has all required amounts.
     """
     requests, constraints = _requirements_on_amounts(tables, columns), table_in(tables, "constraints")
     fixed, costs = list[Array](), list[Array]()

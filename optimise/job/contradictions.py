@@ -1,7 +1,7 @@
 """Contradictions within a job, found before anything runs.
 
-Only what is certain is refused: each test holds for every design within the ranges. Requirements that exclude each
-other in a subtler way the optimiser finds and reports.
+Only certain contradictions are refused: each test holds for every design within the ranges. The optimiser finds and
+reports subtler ones.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def _require_delivery(problem: Problem) -> None:
 def _why_nothing_delivered(part: Problem) -> str:
     """Return why a compressor of a problem without choices delivers in no design, or "".
 
-    What is left in the clearance must not fill the swept volume once it has expanded to the suction pressure. A stroke
+    The gas left in the clearance must not fill the swept volume once it has expanded to the suction pressure. A stroke
     is at most 2 sqrt(r l), that of e = l - r.
     """
     stroke_limits = [item.upper for item in part.constraints if item.quantity == STROKE.name and item.upper is not None]

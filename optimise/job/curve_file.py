@@ -42,7 +42,7 @@ class Head(NamedTuple):
 
 @dataclass(frozen=True)
 class Curve:
-    """Values over places, both in the units of their heads. notes: what was read and made of it, in words."""
+    """Values over places, both in the units of their headings. notes: how the file was read and converted, in words."""
 
     name: str
     argument_head: Head
@@ -168,7 +168,7 @@ def _only_head(table: TableFile, heads: list[Head], kinds: Sequence[Kind]) -> He
 
 
 def _in_rising_order(curve: Curve, table: TableFile) -> Curve:
-    """Return a curve whose places go up: turned round where they go down, over full turns where they begin again."""
+    """Return a curve with ascending places: reversed if they descend, continued over full turns if they start again."""
     at, values, notes = curve.arguments, curve.values, curve.notes
     steps = np.diff(at)
     if (steps < 0.0).sum() > (steps > 0.0).sum():
@@ -188,7 +188,7 @@ def _in_rising_order(curve: Curve, table: TableFile) -> Curve:
 
 
 def over_angle(curve: Curve, speed: float) -> Curve:
-    """Return a curve over time as one over the crank angle at a constant speed, rad/s; others as they are."""
+    """Return a curve over time as a curve over the crank angle at constant speed, rad/s; any other curve unchanged."""
     if curve.argument_head.kind is not TIME:
         return curve
     wrong = np.flatnonzero(np.diff(curve.arguments) < 0.0)

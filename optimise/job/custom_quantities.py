@@ -66,7 +66,7 @@ Title = Annotated[str, Field(max_length=60), AfterValidator(require_one_line)]
 
 
 class FunctionPart(Part):
-    """A Python function as a quantity; its name then stands in [objectives] and [constraints] like any other."""
+    """A Python function as a quantity, whose name may be used in [objectives] and [constraints]."""
 
     function: Annotated[str, Field(max_length=200), AfterValidator(_check_function)] = required(
         "module:function; the module lies beside the job file or is installed", "mymodule:greatest_jerk"
@@ -85,7 +85,7 @@ class FunctionPart(Part):
     )
 
     def build(self, name: str, folders: Iterable[str]) -> OwnQuantity:
-        """Return the quantity as the problem has it."""
+        """Return the quantity for the problem."""
         return OwnQuantity(
             name=name,
             function=self.function,
@@ -155,9 +155,9 @@ def formulas_of(parts: Parts) -> dict[str, formulas.Stated]:
 
 @dataclass(frozen=True)
 class Declared:
-    """The quantities that a job has besides those that every job has.
+    """The quantities that a job adds to the built-in ones.
 
-    tables: facts by name, for what [objectives] and [constraints] may say. installed: those from packages. formulas:
+    tables: facts by name, for the keys of [objectives] and [constraints]. installed: those from packages. formulas:
     names of formulas.
     """
 
@@ -169,7 +169,7 @@ class Declared:
 def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
     """Return the quantities that a job declares or names of installed packages; raises JobError for code not allowed.
 
-    Lenient otherwise: what is wrong in a declaration the validation of the job says.
+    Lenient otherwise: the validation of the job reports mistakes in a declaration.
     """
     parts = data.get("quantity", {})
     names = _formula_names(parts)

@@ -1,4 +1,4 @@
-"""Reading the bytes of a job file into tables, refusing everything that is no job file."""
+"""Reading of job files: bytes into tables. Refuses everything that is not a job file."""
 
 from __future__ import annotations
 
@@ -160,7 +160,7 @@ def require_few(tables: object) -> None:
 def require_plain(value: object, at: tuple[object, ...] = ()) -> None:
     """Refuse data of too many values or nested too deeply, keys that are not text, and nulls. Raises JobError.
 
-    at: where it stands in the job.
+    at: its path in the job.
     """
     if not at:
         if not isinstance(value, Mapping):

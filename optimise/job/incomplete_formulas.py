@@ -26,7 +26,7 @@ from .raw_tables import table_in
 from .variables import varying_in
 
 _MOST = 200
-"""Formulas of a job that are read, and names that are told."""
+"""Maximum number of formulas that are read, and of names that are reported."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def formula_names(tables: Mapping[str, Any]) -> list[FormulaName]:
 def stated_formulas(tables: Mapping[str, Any]) -> list[StatedFormula]:
     """Return the formulas of a job: named ones, keys of [constraints] and [objectives], and bounds.
 
-    Only the units are checked here, and the names: ranges and the machine may be missing still.
+    Checks only units and names: ranges and the machine may still be missing.
     """
     kinds = _Kinds(tables)
     return [_read_formula(key, text, kinds) for key, text in islice(_stated_formulas(tables, kinds), _MOST)]
@@ -98,7 +98,7 @@ def _part_title(name: str, part: Mapping[str, Any]) -> str:
 
 
 class _Kinds:
-    """Kinds of the names that formulas of a job may have. Raises nothing for what is incomplete: its kind is None."""
+    """Kinds of the names that formulas of a job may have. Incomplete names raise no error: their kind is None."""
 
     def __init__(self, tables: Mapping[str, Any]) -> None:
         with suppress(InputError):  # a table that is wrong, which the job says

@@ -1,4 +1,4 @@
-"""Notes on content of a job that is allowed, yet often not meant: told, not refused."""
+"""Notes on valid content of a job that is often a mistake: reported, not refused."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ _SPEED_WORDS = {"speed": "speed", "cycle_time": "time", "strokes_per_minute": "s
 def notes_of(data: Mapping[str, Any]) -> list[str]:
     """Return notes on the tables of a valid job, each a sentence: plain numbers, masses without gravity, screening.
 
-    And on a speed and tables that a swing does not have, and exponents of a liquid. What probably is another machine
-    than the one meant is among the warnings of the problem instead.
+    Also on a speed or tables that a swing ignores, and on exponents of a liquid. Signs of a machine other than the
+    intended one are warnings of the problem instead.
     """
     data, tables = with_options(data)
     job, plain = read_noting(job_with(declared(data, allowed=True)), data)

@@ -1,4 +1,4 @@
-"""Joints in a job file: what rubs, [friction], and the pin that is loose, [clearance]."""
+"""Joints in a job file: their friction, [friction], and the pin with clearance, [clearance]."""
 
 from __future__ import annotations
 

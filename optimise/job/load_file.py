@@ -24,7 +24,7 @@ def load_files(data: Mapping[str, Any]) -> list[str]:
 
 
 def with_loads(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
-    """Return a job with the points of its loads' files in place of the files. Raises `InputError`."""
+    """Return a job with each file of a load replaced by its points. Raises `InputError`."""
     job = dict(data)
     if load_files(data):
         job["load"] = [_fill_from_files(part, place, files, data) for place, part in enumerate(job["load"])]

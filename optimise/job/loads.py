@@ -53,12 +53,12 @@ class LoadPart(Checked[model.Load]):
     """A load."""
 
     def build(self) -> model.Load:
-        """Return the load as the model has it."""
+        """Return the load for the model."""
         return self.built
 
     @cached_property
     def built(self) -> model.Load:
-        """The load as the model has it, which takes a time where a table is long."""
+        """The load for the model; takes a moment for a long table."""
         return super().build()
 
 
@@ -111,7 +111,7 @@ def _refuse_file(file: str, **_: object) -> model.Load:
 
 
 PARTS = {table.key: _part_of_table(table) for kind in kinds() for table in kind.tables} | {"file": _file_part()}
-"""By the key that tells a kind of load, in the order in which kinds are told apart."""
+"""Tables of loads by the key that identifies the kind, in the order of the tests."""
 
 
 def _load_kinds_text() -> str:

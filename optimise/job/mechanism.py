@@ -73,7 +73,7 @@ _MASS = frozenset(MassLink.model_fields)
 
 
 def _one_way(value: object) -> object:
-    """Refuse a link that is no table, or is given both by section and by mass properties."""
+    """Refuse a link that is not a table, or has both a section and mass properties."""
     if isinstance(value, Part):
         return value
     if not isinstance(value, Mapping):

@@ -1,4 +1,4 @@
-"""The job: what a job file holds, key by key. Also the JSON body of a request. After reading, every value is in SI."""
+"""The job: the content of a job file, key by key. Also the JSON body of a request. Once read, every value is in SI."""
 
 from __future__ import annotations
 
@@ -162,7 +162,7 @@ class Job(Part):
         "objectives: the front shows the best compromises", EXAMPLE["objectives"]
     )
     robust: RobustPart | None = optional(
-        "objectives and constraints as they are within the tolerances", {"kind": "percentile", "share": 0.99}
+        "objectives and constraints within the tolerances", {"kind": "percentile", "share": 0.99}
     )
     sections: SectionsPart | None = optional(
         "material, pins and safety of crank and rod, for stress and safety and the sizing of sections", SECTIONS
@@ -170,7 +170,7 @@ class Job(Part):
     optimiser: OptimiserPart = optional("how to search", {"designs": 200, "seed": 1}, default=OptimiserPart())
 
     def machine(self) -> Mechanism:
-        """Return the machine of the job, its numbers as they are given."""
+        """Return the machine of the job with its numbers as stated."""
         mechanism = self.mechanism
         parts: dict[str, Any] = {
             "crank": mechanism.crank,

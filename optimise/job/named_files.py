@@ -13,11 +13,11 @@ from .table_file import TableFile, bytes_of, read_table, text_of
 Files = Path | Mapping[str, str | bytes]
 """The folder in which the files lie, or their contents by name."""
 MOST_POINTS = 10_000
-"""Points of a curve in a job, thinned ones if it comes from a file."""
+"""Maximum number of points of a curve in a job; a curve from a file is thinned to that."""
 LARGEST = 10_000_000
-"""Bytes of a file."""
+"""Maximum size of a file, bytes."""
 SOURCE = "source"
-"""Key of a table that was filled from a file: what was understood of it, in words; no part of the problem."""
+"""Key of a table filled from a file, with a summary of the file in words; not part of the problem."""
 
 
 def read_named_table(files: Files, key: str, file: str) -> TableFile:
@@ -40,7 +40,7 @@ def read_named_text(files: Files, key: str, file: str) -> str:
 
 
 def unread_file_error(file: str, instead: str) -> InputError:
-    """Return the refusal of a file that nobody read. instead: what may be given in its place."""
+    """Return the error for a file that was not read. instead: keys that may replace it."""
     return InputError(
         f"a file must lie beside the job file, or be sent with the job (API: files), and replaces {instead}; got file "
         f"{quote(file)}; send it, or give only the {instead}"

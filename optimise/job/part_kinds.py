@@ -1,4 +1,4 @@
-"""Parts of a job that come in kinds, told apart by a key that each kind alone has: loads, motors."""
+"""Parts of a job of several kinds, such as loads and motors. A key that no other kind has identifies each."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Kinds:
     synonyms: Mapping[str, str] = field(default_factory=dict)
 
     def require_one(self, value: object) -> object:
-        """Return the value; refuse one that is no table, of no kind, or of several kinds."""
+        """Return the value; refuse one that is not a table, or matches no kind or several kinds."""
         if isinstance(value, Part):
             return value
         if not isinstance(value, Mapping):

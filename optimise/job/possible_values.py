@@ -36,7 +36,7 @@ _ANY = Range(lower=0.0, upper=1.0)
 
 @dataclass(frozen=True, kw_only=True)
 class Box:
-    """Ranges of crank, rod and |offset|, m, and of offset / rod, narrowed by what must hold."""
+    """Ranges of crank, rod and |offset|, m, and of offset / rod, narrowed by the constraints."""
 
     crank: Range
     rod: Range
@@ -110,7 +110,7 @@ def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> B
 
 
 def _require_within(quantity: Quantity, constraint: Constraint, box: Box, problem: Problem) -> None:
-    """Raise InfeasibleError unless the constraint overlaps what is possible."""
+    """Raise InfeasibleError unless the constraint overlaps the possible values."""
     key, bounds = key_of(["constraints", quantity.name]), problem.common_bounds(quantity)
     if bounds is None:
         return

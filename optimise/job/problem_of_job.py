@@ -184,7 +184,7 @@ def _possible_variants(
 
 
 def _missing_amount(variant: Variant, required: Iterable[Quantity]) -> str | None:
-    """Return in words which amount that is asked for a variant does not have; None if there is no such."""
+    """Return in words which required amount a variant lacks; None if it lacks none."""
     amounts = dict(variant.amounts)
     return next(
         (f"no {quantity.title}, which the job requires" for quantity in required if quantity.name not in amounts), None
@@ -218,7 +218,7 @@ def _contradiction_of(
 
 
 def _bounds_text(constraints: Iterable[Constraint], quantity: Quantity) -> str:
-    """Return in words what constraints ask of a quantity."""
+    """Return in words the bounds that constraints set on a quantity."""
     sides = (side for item in constraints for side in item.sides)
     return " and ".join(
         f"{word} {bound * quantity.unit.factor:.6g} {quantity.unit.symbol}".rstrip() for word, bound in sides

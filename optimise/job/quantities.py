@@ -1,6 +1,6 @@
 """Constraints and objectives in a job file: one optional key for each quantity, its values in the unit's dimension.
 
-Beside the quantities [constraints] has `slow_stroke`, a word. Keys of both tables may be formulas too, and bounds.
+Besides the quantities, [constraints] has `slow_stroke`, a word. Keys of both tables and bounds may also be formulas.
 """
 
 from __future__ import annotations
@@ -141,7 +141,7 @@ _SENSES = '"minimise", "maximise" or { target = value }'
 
 
 def _check_sense(value: object) -> object:
-    """Refuse what is neither a known word nor a table."""
+    """Refuse a value that is neither a known word nor a table."""
     if isinstance(value, str):
         if value in SENSES and value != "target":
             return SENSES[value]
@@ -197,7 +197,7 @@ class _Table(Part):
 
     @model_serializer(mode="wrap")
     def _together(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Return the table as a job has it, its formulas among the other keys."""
+        """Return the table as in a job file, with its formulas among the other keys."""
         data: dict[str, Any] = handler(self)
         formulas: dict[str, Any] = data.pop("formulas", data.pop(_KEY, {}))
         return data | formulas
@@ -281,9 +281,9 @@ else:
 def constraints_of(
     part: ConstraintsPart, formulas: Formulas | None = None, key: str = "constraints."
 ) -> Iterator[Constraint]:
-    """Return the constraints of a job as the problem has them. formulas: of the job; without, its tables have none.
+    """Return the constraints of a job for the problem. formulas: of the job; None if its tables have none.
 
-    key: where they stand, for messages. Raises JobError for a wrong formula, and for bounds of it that leave nothing.
+    key: their key, for messages. Raises JobError for a wrong formula, and for bounds of one that exclude every value.
     """
     for name, bounds in _table_entries(part):
         if name == SLOW_STROKE:

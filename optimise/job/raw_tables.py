@@ -1,4 +1,4 @@
-"""Tables of a job that is not validated yet: what is missing, or of another type, counts as empty."""
+"""Tables of a job that is not validated yet: missing tables, and those of another type, count as empty."""
 
 from __future__ import annotations
 

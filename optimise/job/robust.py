@@ -1,4 +1,4 @@
-"""The table [robust] of a job file: objectives and constraints as they are within the tolerances."""
+"""The table [robust] of a job file: objectives and constraints within the tolerances."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ def schema_of(job: type[BaseModel]) -> dict[str, Any]:
 
 
 def _without_null(node: Any) -> Any:
-    """Return a schema without its nulls: a key that is not wanted is left out."""
+    """Return a schema without nulls: optional keys are left out instead."""
     if isinstance(node, list):
         return [_without_null(item) for item in node]
     if not isinstance(node, dict):

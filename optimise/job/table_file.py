@@ -1,10 +1,10 @@
 """Tables in text files, as loggers and spreadsheets of any language write them.
 
 The first line with content names the columns; a commented one does where no other line can. Empty lines and lines that
-begin with #, % or // are passed over. Between cells stand commas, semicolons, tabs, bars or blanks: the sign by which
-most lines have as many cells as the first, unless a line such as "sep=;" says it. A line of units may stand below the
-names. `csv` splits the cells. Its own
-`Sniffer`, which pandas uses too, takes a decimal comma for a separator and cannot name the line of a wrong cell.
+begin with #, % or // are skipped. Commas, semicolons, tabs, bars or blanks separate the cells: the sign with which most
+lines have as many cells as the first, unless a line such as "sep=;" states it. A line of units may follow the names.
+`csv` splits the cells. Its `Sniffer`, which pandas also uses, mistakes a decimal comma for a separator and cannot name
+the line of a wrong cell.
 """
 
 from __future__ import annotations
@@ -117,7 +117,7 @@ class _Portion:
 class TableFile:
     """A table that was read. name: of the file, for messages. heads: of its columns. notes: of separator and signs.
 
-    signs: the decimal one and the one that parts thousands, once numbers were asked for.
+    signs: decimal sign and thousands separator, known once numbers have been read.
     """
 
     name: str

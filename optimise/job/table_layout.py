@@ -1,4 +1,4 @@
-"""Where things stand in a table of a text file: separators, comments, title lines, names and units of columns."""
+"""Layout of a table in a text file: separators, comments, title lines, names and units of columns."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from ...objectives.units import is_value
 
 SEPARATORS = {"\t": "tabs", ";": "semicolons", "|": "bars", ",": "commas", " ": "blanks"}
-"""In the order of preference: a comma may be a decimal sign, and blanks stand within names."""
+"""In order of preference: a comma may be a decimal sign, and names may contain blanks."""
 MISSING = ("", "nan", "na", "n/a", "#n/a", "#nv", "null", "-")
-"""Cells without a number, in small letters."""
+"""Cells without a number, in lower case."""
 EXPONENT = r"(?:[eE][+-]?\d{1,3})?"
 _COMMENT = re.compile(r"\s*(?:#|%|//)+\s*")
 _SAID = re.compile(r'\s*"?sep=(\\t|.)"?\s*', re.IGNORECASE)
 SAMPLE = 200
-"""Lines by which separators and title lines are told apart."""
+"""Number of lines from which separators and title lines are inferred."""
 _LIKE_A_NUMBER = re.compile(rf"[+-]?[.,]?\d[\d.,]*{EXPONENT}", re.ASCII)
 _BLANKS = re.compile(r"(?<=\d)[ '\u2019\u00a0\u2007\u2009\u202f](?=\d{3}(?!\d))")
 """Signs that part thousands and mean nothing else."""
@@ -82,9 +82,9 @@ def separator_of(text: str) -> str:
 def title_lines(rows: Sequence[Sequence[str]]) -> int:
     """Return the number of rows above the names of the columns, such as title and date of a measurement.
 
-    0 where this is not certain. Names are the last row of texts above rows of numbers alone, one for each number. In
-    other tables they are the first row that has as many cells as all below it, none of them a number, if no row above
-    has so many.
+    0 where this is uncertain. The names are the last row of texts above rows that contain only numbers, one for each
+    number. In other tables they are the first row without numbers that has as many cells as all rows below it, if no
+    row above has as many.
     """
     first = next((n for n, row in enumerate(rows) if all(map(_is_number, row))), len(rows))
     if first < len(rows):

@@ -1,4 +1,4 @@
-"""The table [target_motion] of a job file: the wanted slider motion as points, given there or in a file."""
+"""The table [target_motion] of a job file: the desired slider motion as points, stated there or in a file."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .values import Angle, Checked, Length, Part, Source, optional, source
 
 
 class TargetMotionPart(Checked[TargetMotion]):
-    """A wanted motion of the slider as points; the deviations from it are the quantities motion_deviation(_rms)."""
+    """A desired motion of the slider as points; the deviations from it are the quantities motion_deviation(_rms)."""
 
     makes = TargetMotion
 
@@ -50,7 +50,7 @@ class TargetMotionPart(Checked[TargetMotion]):
     )
 
     def build(self) -> TargetMotion:
-        """Return the target motion as the model has it."""
+        """Return the target motion for the model."""
         if self.file is not None:
             raise unread_file_error(self.file, "points")
         if self.crank_angles is None or self.positions is None:

@@ -1,6 +1,6 @@
 """The types of the values in a job file: physical values, ranges and tolerances, read into SI.
 
-Each says in the JSON Schema what it accepts, and writes back what it reads: SI numbers are valid in a job too.
+Each states in the JSON Schema what it accepts, and can read what it writes: SI numbers are also valid in a job.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Variables and choices of a job file: [variables] and [[choice]].
 
-A variable other than the three dimensions is named by the path of a number that the job gives, as messages name it:
-`mechanism.slider.mass = ["0.5 kg", "2 kg"]`, or `load.1.force` for the first [[load]]. What the job gives there stays
-the value of analyses of single designs.
+A variable other than the three dimensions has the path of a number in the job as its name, as in messages:
+`mechanism.slider.mass = ["0.5 kg", "2 kg"]`, or `load.1.force` for the first [[load]]. The number in the job remains
+the value in analyses of single designs.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from .values import AnyRange, Part, PositiveRange, optional, required, retyped
 
 Table = dict[str, Any]
 EXAMPLE = {"peak_torque": {"max": "40 N m"}, "rms_torque": {"max": "22 N m"}}
-"""Of what an option may ask for."""
+"""Example of the limits of an option."""
 
 
 def _variable_table(table_name: str, example: dict[str, Any]) -> Any:
@@ -70,7 +70,7 @@ class VariablesPart(Part):
 
     @property
     def paths(self) -> dict[str, Any]:
-        """The numbers that vary besides the dimensions: path and what is given for it."""
+        """The numbers that vary besides the dimensions, as stated, by path."""
         return {path: leaf for root in ROOTS for path, leaf in leaves_of(getattr(self, root), root)}
 
 

@@ -1,8 +1,8 @@
 """From the paths in [variables] and [[choice]] to varying numbers of the machine and to variants of the problem.
 
-A path names a number of the job. What that number does to the machine is found by building the machine twice, with the
-number at both ends of its range, and comparing: every number of the machine that differs must be a factor times it. So
-each is read, and refused, by the rules of its own key, and any number that a job can hold may vary.
+A path names a number of the job. Its effect is found by building the machine twice, with the number at both ends of its
+range: every number of the machine that differs must be proportional to it. Each is thus read, and refused, by the rules
+of its own key, and any number of a job may vary.
 """
 
 from __future__ import annotations

@@ -2,18 +2,18 @@
 
     minimise  |F| + |M| / arm,   |.| the peak or the root mean square over the cycle,
 
-over the counterweight's moment c (within `most`) and what is added to the rod. F and M are affine in them
+over the counterweight's moment c (within `most`) and the balance mass on the rod. F and M are affine in them
 (`shaking_rows`), so that |F(theta)| <= tau is a second-order cone at every crank angle and the root mean square the
-norm of an affine vector. Peaks are over the continuum of angles: the programme is solved with a few, the exact peaks of
-what it leaves (`model.signals.peaks`, no grid) are added, until none exceeds those it has.
+norm of an affine vector. Peaks are over the continuum of angles. The programme is first solved with a few; then the
+exact peaks of its solution (`model.signals.peaks`, no grid) are added, until none is higher than those included.
 
-What is added to the rod is any body within a distance R of the crank pin: mass m, first moment b and inertia I are
-those of such a body exactly if
+The balance mass on the rod may be any body within a distance R of the crank pin. Mass m, first moment b and inertia I
+belong to such a body exactly if
 
     |b|^2 <= m I   (Cauchy and Schwarz)   and   I <= R^2 m,
 
-a convex cone again. Its mass has the effect of a counterweight towards the crank pin, which c undoes: of all answers
-with the same forces the one of least added mass is given.
+again a convex cone. Its mass acts like a counterweight towards the crank pin, which c can cancel. Of all solutions with
+the same forces, the result is the one with the least added mass.
 
 Known limits: without slider mass, or with a rod balance that puts the centre of rod and slider onto the crank pin, the
 force vanishes (R. S. Berkof and G. G. Lowen, "A new method for completely force balancing simple linkages", J.

@@ -1,8 +1,8 @@
-"""Words that tolerances and balances of least cost are asked for with."""
+"""Words for the options of tolerance allocation and balancing."""
 
 from typing import Literal
 
 Kind = Literal["worst case", "rss"]
-"""How errors add up."""
+"""How errors are combined."""
 Measure = Literal["peak", "rms"]
-"""What shaking is judged by over the cycle."""
+"""Measure of the shaking over the cycle."""

@@ -21,11 +21,11 @@ of that bar, K = 2). Each of these is at most one:
 
     static stress   n / S_y (N / (w d) + 6 M (1 + (4 / pi) u z) / (d w^2))
     fatigue         n (sigma_a / S_e + sigma_m / S_m) of the same stresses: amplitudes sigma_a and means sigma_m of the
-                    joints' loads, what comes of own mass and of compression as amplitude; S_m = S_u (Goodman) or S_y
+                    joints' loads, with the effects of own mass and compression as amplitude; S_m = S_u (Goodman) or S_y
                     (Soderberg): Shigley, "Mechanical Engineering Design", 9th ed., eq. 6-46 and 6-45
     buckling        n C / P in the plane, and the same with w and d exchanged out of it: Shigley eq. 4-43 with the end
-                    condition C = 1 of pinned ends, also out of the plane, where pins hold better than that; 1/4 for the
-                    crank, a cantilever
+                    condition C = 1 of pinned ends, also out of the plane, where pins are stiffer; 1/4 for the crank, a
+                    cantilever
     net section     n K F / (S_y (w - D) d), in the programme n K F / (S_y w d) + D / w, at each pin of diameter D, with
                     the stress concentration K of the eye; in fatigue K (F_a / S_e + F_m / S_m) of the axial load, own
                     mass as amplitude
@@ -35,9 +35,9 @@ of that bar, K = 2). Each of these is at most one:
     bearing         F / (D d p), the pressure on the projected area of each pin
 
 Amplitudes as peaks are safe because S_e <= S_m: for a sum of stresses, amplitudes A and means m, the amplitude is at
-most sum A and the peak at most sum A + sum m, and a / S_e + m / S_m = a (1/S_e - 1/S_m) + (a + m) / S_m. What else
-weakens the finished bar belongs in S_e (Shigley eq. 6-18). Not considered: shear, the shape of the eyes beyond their
-net section, pin bending, friction, bending out of the plane.
+most sum A and the peak at most sum A + sum m, and a / S_e + m / S_m = a (1/S_e - 1/S_m) + (a + m) / S_m. Other
+weakening of the finished bar belongs in S_e (Shigley eq. 6-18). Not considered: shear, the shape of the eyes beyond
+their net section, pin bending, friction, bending out of the plane.
 """
 
 from __future__ import annotations

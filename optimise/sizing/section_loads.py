@@ -1,9 +1,9 @@
 """Loads on crank and rod over the cycle, from the joints and from their own mass. Frictionless pins, rigid links.
 
-Joint forces come from the inverse dynamics of the whole machine with the sections in question, so they grow with them.
-The moment in the rod is that of its own mass only (inertia whip and weight): pins without friction carry none. For end
-accelerations a, b across the rod (less gravity) the load per length of a uniform bar, mass m' per length, is linear,
-and the moment of the bar on two supports at the share x of its length L
+Joint forces come from the inverse dynamics of the whole machine with these sections, so they increase with the
+sections. The moment in the rod is that of its own mass only (inertia whip and weight): pins without friction carry
+none. For end accelerations a, b across the rod (less gravity) the load per length of a uniform bar, mass m' per length,
+is linear, and the moment of the bar on two supports at the share x of its length L
 
     M(x) = -m' L^2 / 6 (a x (1 - x)(2 - x) + b x (1 - x)(1 + x))
 
@@ -70,7 +70,7 @@ class JointLoads:
 
 @dataclass(frozen=True)
 class Whip:
-    """Greatest accelerations of the rod over the cycle, less gravity: what its own mass makes of them.
+    """Greatest accelerations of the rod over the cycle, less gravity, as its own mass experiences them.
 
     moment: |M| / m' between the pins, m^3/s^2. across, along: of the pin centres, m/s^2. turning: angular, rad/s^2.
     spinning: square of the angular speed, 1/s^2.

@@ -36,8 +36,8 @@ _ITERATIONS = 60
 _CONVERGED = 1e-8  # relative change of the sections that ends the iteration
 _RADIUS = 1.0  # of the logarithms of the sections, in one iteration
 _ANYWHERE = 50.0
-_OVER = 1e-6  # overload that counts as none
-_ROUNDS, _ROUNDING = 20, 1e-9  # of widening eyes; what is left of an overload
+_OVER = 1e-6  # overload that is negligible
+_ROUNDS, _ROUNDING = 20, 1e-9  # of widening eyes; remaining overload
 _STEP = 1e-4  # relative, for central differences of the loads: error 1e-8 of them
 _EXACT = 1e-11  # of the solver
 _SLACK = 200.0  # percent of mass that one percent of overload counts as; far above any sensitivity
@@ -70,9 +70,9 @@ class Sections:
 def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, limits: SectionLimits) -> Sections:
     """Return the sections of crank and rod with the least mass that carry a machine's loads.
 
-    They replace what the mechanism has as crank and rod. Raises `InfeasibleError` if no section within the ranges
-    carries the loads, naming what fails, for arrays of linkages, and for friction, which would bend the bars at their
-    pins.
+    They replace crank and rod of the mechanism. Raises `InfeasibleError`, naming the limit that fails, if no section
+    within the ranges carries the loads; also for arrays of linkages, and for friction, which would bend the bars at
+    their pins.
     """
     require_frictionless(mechanism.friction, "section sizing")
     require_plain(replace(mechanism, arrangement=None), "section sizing")

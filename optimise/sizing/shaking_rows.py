@@ -1,18 +1,18 @@
 """Shaking force and moment as affine functions of the masses that balance them, with exact peaks and means.
 
-At constant crank speed w (`model.dynamics.inertia`, alpha = 0), with C the first moment of what is fixed to the crank,
-in its axes, R(theta) the turn into the frame, and for the rod m its mass, S its first moment and I its inertia about
-the crank pin:
+At constant crank speed w (`model.dynamics.inertia`, alpha = 0), with C the first moment of everything fixed to the
+crank, in its axes, R(theta) the turn into the frame, and for the rod m its mass, S its first moment and I its inertia
+about the crank pin:
 
     force  = w^2 R(theta) C + m r w^2 (cos theta, sin theta) - S_tt - m_slider a_B
     moment = -(A x S_tt + S x a_A + I phi_tt) + e m_slider a_B,    a_A = -w^2 A.
 
-Both are linear in C, m, S and I, and so affine in what a counterweight (c = mass times vector to its centre) and a mass
-added to the rod (m, b, I about the crank pin) put in. The moment about the pivot depends neither on c, whose force
-passes through the pivot, nor on m: only b and I change it. m does what a counterweight of moment m r towards the crank
-pin does. Not affine: mass and inertia as functions of a moment (m = |c| / radius, I = |c| radius). The counterweight's
-matter with an acceleration of the crank only, so that its mass follows afterwards for any radius; those on the rod are
-variables of their own (`balancing`).
+Both are linear in C, m, S and I, and so affine in the contributions of a counterweight (c = mass times vector to its
+centre) and a mass added to the rod (m, b, I about the crank pin). The moment about the pivot depends neither on c,
+whose force passes through the pivot, nor on m: only b and I change it. m acts like a counterweight of moment m r
+towards the crank pin. Not affine: mass and inertia as functions of a moment (m = |c| / radius, I = |c| radius). The
+counterweight's matter with an acceleration of the crank only, so that its mass follows afterwards for any radius; those
+on the rod are variables of their own (`balancing`).
 """
 
 from __future__ import annotations
@@ -32,15 +32,15 @@ from ...model.machine.links import Bar, Counterweight, Link, RigidLink
 from ...model.machine.mechanism import Mechanism
 
 NAMES = ("c along", "c across", "m", "b along", "b across", "I")
-"""Columns: counterweight's moment along and across the crank, kg m; of what is added to the rod, mass, kg, first moment
-along and across it, kg m, and inertia, kg m^2, about the crank pin."""
+"""Columns: the counterweight's moment along and across the crank, kg m. For the mass added to the rod: mass, kg, first
+moment along and across the rod, kg m, and inertia, kg m^2, about the crank pin."""
 _NODES = 192  # of the means, as in `model.signals.averages`
 
 
 def rows(mechanism: Mechanism, linkage: Linkage, angles: Array) -> tuple[Array, Array]:
     """Return force (2, k, 7), N, and moment (k, 7), N m, at crank angles (k,), rad.
 
-    The first column is what there is without counterweight, the others per unit of `NAMES`.
+    The first column is the shaking without a counterweight; the others are per unit of `NAMES`.
     """
 
     def curves(**masses: Any) -> Array:

@@ -1,4 +1,4 @@
-"""Tolerances with the least manufacturing cost that keep the position error within a limit.
+"""Tolerances of least manufacturing cost that keep the position error within a limit.
 
     minimise  sum_i c_i(t_i)   with   error(theta; t) <= limit at every crank angle of the working stroke,
                                       least_i <= t_i <= greatest_i,
@@ -8,17 +8,18 @@ y_i = t_i^p with p = 1 for the worst case and p = 2 for the root-sum-square. Bot
 
     sum_i |s_i(theta)|^p y_i <= limit^p - F(theta),
 
-where F holds what is given (clearances, tolerances without a cost), the bounds stay bounds, and the costs
-b_i y_i^(-k_i / p) are strictly convex: one convex programme for both, with one solution. Its constraints are one for
-each crank angle of a continuum. They are exchanged: the programme is solved with a few angles, the exact local peaks of
-the error that it leaves (`model.signals.peaks`, no grid) are added, until none exceeds the limit (R. Hettich and K. O.
-Kortanek, "Semi-infinite programming", SIAM Review 35(3), 1993, on exchange methods). The cone solver tells which angles
-and bounds are active, but finds tolerances of little weight in the cost to 1e-4 only; the optimality conditions
+where F contains the fixed contributions (clearances, tolerances without a cost), the bounds remain bounds, and the
+costs b_i y_i^(-k_i / p) are strictly convex: one convex programme for both, with a unique solution. It has one
+constraint for each crank angle of a continuum. An exchange method handles them: the programme is solved with a few
+angles, and the exact local peaks of the resulting error (`model.signals.peaks`, no grid) are added, until none exceeds
+the limit (R. Hettich and K. O. Kortanek, "Semi-infinite programming", SIAM Review 35(3), 1993, on exchange methods).
+The cone solver finds the active angles and bounds, but tolerances with little weight in the cost only to 1e-4. The
+optimality conditions
 
     k_i b_i t_i^(-k_i-1) = sum_j lambda_j p |s_i(theta_j)|^p t_i^(p-1)  for tolerances within their bounds,
     error(theta_j; t) = limit at the active peaks theta_j, which move with t,
 
-are then solved for t and lambda to rounding. In a convex programme they are sufficient: what meets them, with
+are then solved for t and lambda to rounding. In a convex programme they are sufficient: a point that meets them, with
 lambda >= 0 and no peak above the limit, is the optimum.
 """
 
@@ -47,7 +48,7 @@ ROUNDS = 60
 _NEAR = 1e-3  # relative excess below which the optimality conditions are tried
 _EXCESS = 1e-10  # relative, that the last round may leave
 _SOLVED = 1e-11  # of the optimality conditions, relative ...
-_MET = 1e-6  # ... and what is called optimal where they could not be solved
+_MET = 1e-6  # ... and for a point that counts as optimal although they could not be solved
 _AT_BOUND = 1e-6  # relative, in the cone solver's answer
 _CARRIES = 1e-6  # share of the multipliers that makes an angle active
 _TURN = 2.0 * math.pi
@@ -72,8 +73,8 @@ class Part:
 class Allocation:
     """Least-cost tolerances.
 
-    parts: the chosen tolerances. cost: their total cost. mechanism: the mechanism passed, with them. error: greatest
-    first-order position error with them, m. saving: decrease of the cost per m by which the limit is raised. angles:
+    parts: the chosen tolerances. cost: their total cost. mechanism: the given mechanism with these tolerances. error:
+    its greatest first-order position error, m. saving: decrease of the cost per m by which the limit is raised. angles:
     crank angles, rad, at which the limit is active, ascending; savings: contribution of each to `saving`. residual:
     relative residual of the optimality conditions. rounds: rounds of the exchange. converged: whether the error is
     within the limit to 1e-10 and the residual below 1e-6; otherwise this is the best point found.
