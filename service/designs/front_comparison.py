@@ -75,7 +75,8 @@ def _best(
         _with_unit(result.designs[row][objective.column], objective, system)
         for result, row in zip(results, rows, strict=True)
     ]
-    first = [n for n in range(len(names)) if least[n] <= least.min() + _SAME * span[index]]
+    shown = values[int(np.argmin(least))]  # what reads the same is the same
+    first = [n for n in range(len(names)) if least[n] <= least.min() + _SAME * span[index] or values[n] == shown]
     title = f"best {objective.title}"
     if len(first) == len(names):
         return f"{title}: all reach {values[0]}"

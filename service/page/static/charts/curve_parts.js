@@ -100,6 +100,7 @@ export function peaks(one, { x, y, abscissa }) {
   if (!extremeValues || extremeValues.low.value === extremeValues.high.value) return null;
   return /** @type {const} */ (["low", "high"]).map((end) => {
     const { angle, value } = extremeValues[end];
+    const size = Math.abs(value) < 1e-6 * Math.abs(y.high - y.low) ? 0 : value; // to every reader
     const pixel = x.at(abscissa.place(one, angle) ?? NaN);
     const share = (pixel - x.at(x.low)) / (x.at(x.high) - x.at(x.low));
     const anchor = share > 0.83 ? "end" : share < 0.11 ? "start" : "middle";
@@ -110,7 +111,7 @@ export function peaks(one, { x, y, abscissa }) {
       svg(
         "text",
         { x: pixel, y: y.at(value) + (end === "low" ? 13 : -5), "text-anchor": anchor },
-        `${ends ? "" : "≈ "}${text(value, "", 4)}`,
+        `${ends ? "" : "≈ "}${text(size, "", 4)}`,
       ),
     );
   });

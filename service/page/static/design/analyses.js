@@ -53,6 +53,8 @@ export function analyses(
   );
   /** @type {Page.Numbers | null} */
   let lengths = null;
+  /** @type {ReturnType<typeof question>[]} */
+  const begun = []; // of the sections
   let near = false; // whether the tabs are, or have been, in sight
 
   async function draw() {
@@ -116,7 +118,11 @@ export function analyses(
         { class: "panel" },
         lacks ? h("p", { class: "quiet" }, WITHOUT) : view.node,
       );
-      if (!lacks) whenNear(body, () => view.ask(), signal);
+      const begin = () => {
+        begun.push(view);
+        return view.ask(lengths);
+      };
+      if (!lacks) whenNear(body, begin, signal);
       return h("section", { class: name }, h("h2", {}, title), body);
     }),
   );
@@ -136,7 +142,9 @@ export function analyses(
     show(now) {
       const same = JSON.stringify(now) === JSON.stringify(lengths);
       lengths = now;
-      if (near && !same) draw();
+      if (same) return;
+      for (const view of begun) view.ask(now);
+      if (near) draw();
     },
   };
 }

@@ -13,7 +13,7 @@ export function focusLastStep(place) {
   if (words) first(place, `.design-head [aria-label="${words}"]`)?.focus({ preventScroll: true });
 }
 
-/** @typedef {{ job: string, number: number, named: HTMLElement, front: Api.Front, others: { number: number, name: string, series: number | string }[] }} Place */
+/** @typedef {{ job: string, number: number, named: HTMLElement, undo: HTMLElement, front: Api.Front, others: { number: number, name: string, series: number | string }[] }} Place */
 
 /** Return what the reader looks at, whichever design it is. */
 function currentView() {
@@ -21,8 +21,8 @@ function currentView() {
   return { over: query.get("over"), tab: query.get("tab") };
 }
 
-/** Return the head. named: the name of the design. @param {Place} place */
-export function designHead({ job, number, named, front, others }) {
+/** Return the head. named: the name of the design; undo: what goes back to it from a change. @param {Place} place */
+export function designHead({ job, number, named, undo, front, others }) {
   const beside = others.map((one) => one.number).join(",");
   const { place, count, before, after, listed } = neighbours(job, number, front.count);
   /** @param {number | null} to @param {string} words @param {string} sign */
@@ -60,14 +60,15 @@ export function designHead({ job, number, named, front, others }) {
           ` of ${front.count}${listed ? `, ${place}. of the ${count} in the list` : ""}`,
         ),
       ),
+      undo,
       step(before, "Previous design", "‹"),
       step(after, "Next design", "›"),
-      compare({ job, number, named, front, others }),
+      compare({ job, number, front, others }),
     ),
   );
 }
 
-/** @param {Place} place */
+/** @param {Pick<Place, "job" | "number" | "front" | "others">} place */
 function compare({ job, number, front, others }) {
   const numbers = others.map((one) => one.number);
   /** @param {number[]} list */

@@ -2,7 +2,7 @@
 
 import { fill, h } from "../lib/dom.js";
 import { link } from "../lib/address.js";
-import { text, unitOf, withUnit } from "../lib/numbers.js";
+import { text, unitOf, withPower, withUnit } from "../lib/numbers.js";
 import { headedRow, scrolled, scrolledTable } from "../lib/table.js";
 
 /** @typedef {{ name: string, series: number | string, row: Api.Row }} Shown A design of the tables. */
@@ -264,9 +264,7 @@ function quality(designs, columns) {
                 "data-key": "residual",
                 "data-value": row.residual === null ? "" : String(row.residual),
               },
-              row.residual === null
-                ? "not known"
-                : Number(row.residual).toExponential(1).replace("-", "−"),
+              row.residual === null ? "not known" : withPower(Number(row.residual), 2),
             ),
           ),
         ),

@@ -1,7 +1,7 @@
 /** The objectives of a design at a glance: value, and where it stands in the front. */
 
 import { fill, h } from "../lib/dom.js";
-import { withUnit } from "../lib/numbers.js";
+import { text, withUnit } from "../lib/numbers.js";
 import { helpLink } from "./numbers.js";
 import { rankInFront } from "./rank.js";
 
@@ -15,11 +15,12 @@ export function sense({ sense: way, target, unit }) {
 
 /**
  * Put the objectives of the design into `place`; front: values of every design by column; row: of the design; changed: of a what-if, see
- * `rankInFront`; whose: whose objectives they are, "" for those of the design that the page is of.
+ * `rankInFront`; before: the design itself, null unless it is changed; whose: whose objectives they are, "" for those of the design that
+ * the page is of.
  * @param {HTMLElement} place
- * @param {{ objectives: Api.Objective[], front: Api.Row[], row: Api.Row, changed: { broken: boolean } | null, whose: string, names: Record<string, string> }} options
+ * @param {{ objectives: Api.Objective[], front: Api.Row[], row: Api.Row, before: Api.Row | null, changed: { broken: boolean } | null, whose: string, names: Record<string, string> }} options
  */
-export function showObjectives(place, { objectives, front, row, changed, whose, names }) {
+export function showObjectives(place, { objectives, front, row, before, changed, whose, names }) {
   fill(
     place,
     whose && h("p", { class: "whose" }, whose),
@@ -41,6 +42,12 @@ export function showObjectives(place, { objectives, front, row, changed, whose, 
             "data-value": String(value),
             title: withUnit(value, objective.unit, ALL),
           },
+          before &&
+            h(
+              "span",
+              { class: "quiet was" },
+              `${text(before[objective.column], objective.unit, KEY)} → `,
+            ),
           withUnit(value, objective.unit, KEY),
         ),
         bar,

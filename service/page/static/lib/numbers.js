@@ -10,6 +10,11 @@ let suffixes = []; // units of the API, and how keys of values in them end, the 
 let titles = {}; // of columns whose keys say others
 /** @type {Record<string, string>} */
 const PRETTY = { deg: "°" };
+/** Signs of a power of ten, raised. @type {Record<string, string>} */
+const POWERS = {
+  "-": "⁻",
+  ...Object.fromEntries([..."⁰¹²³⁴⁵⁶⁷⁸⁹"].map((sign, digit) => [digit, sign])),
+};
 
 /** The system of units that the reader chose: "si" or "inch". @returns {"si" | "inch"} */
 export function system() {
@@ -128,13 +133,16 @@ export function text(value, unit = "", digits = 5) {
   if (shown === 0) return "0";
   const size = Math.abs(shown);
   if (size === Infinity) return shown > 0 ? "∞" : "−∞";
-  if (size >= 1e6 || size < 1e-4)
-    return shown
-      .toExponential(digits - 1)
-      .replace(/\.?0+e/, "e")
-      .replaceAll("-", "−");
+  if (size >= 1e6 || size < 1e-4) return withPower(shown, digits);
   const places = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
   return String(Number(shown.toFixed(Math.min(places, 12)))).replace("-", "−");
+}
+
+/** Return a number of a size that nobody counts zeros of: "2.48·10⁶". @param {number} value @param {number} digits */
+export function withPower(value, digits) {
+  const [factor, power] = value.toExponential(digits - 1).split("e");
+  const raised = power.replace(/./g, (sign) => POWERS[sign] ?? "");
+  return `${Number(factor)}·10${raised}`.replace("-", "−");
 }
 
 /**

@@ -3,7 +3,6 @@ import { FrontData } from "../front/data.js";
 import { badge } from "../jobs/states.js";
 import { go, keep, link } from "../lib/address.js";
 import { get, isAbort, statusOf } from "../lib/api.js";
-import { isConstant } from "../lib/constant.js";
 import { blocks } from "../lib/blocks.js";
 import { fill, h } from "../lib/dom.js";
 import { apiSystem, grouped, text, withUnit } from "../lib/numbers.js";
@@ -112,7 +111,7 @@ export async function show(place, { query, signal }) {
       return objective ? front.extremes[objective.quantity] : null;
     };
     /** @param {string} key @param {string} sense @param {number | null | undefined} target @returns {Api.Row[string][]} */
-    const best = (key, sense, target) =>
+    const bestValues = (key, sense, target) =>
       runs.map(({ front, data }) => {
         const objective = front.objectives.find((objective) => objective.column === key);
         if (objective) return data.cell(key, front.extremes[objective.quantity]);
@@ -122,7 +121,7 @@ export async function show(place, { query, signal }) {
     const rows = [...objectives.values()]
       .filter(({ column }) => runs.every(({ data }) => data.knows(column)))
       .map(({ column, sense, target }) => {
-        const values = best(column, sense, target);
+        const values = bestValues(column, sense, target);
         /** @param {Api.Row[string]} value */
         const rank = (value) =>
           typeof value !== "number"
@@ -132,8 +131,10 @@ export async function show(place, { query, signal }) {
               : sense === "maximise"
                 ? -value
                 : value;
-        const least = Math.min(...values.map(rank));
         const { unit } = known(column);
+        const [best] = [...values].sort((one, other) => rank(one) - rank(other));
+        /** Whether a value reads as the best one does. @param {Api.Row[string]} value */
+        const isBest = (value) => text(value, unit, 5) === text(best, unit, 5);
         return h(
           "tr",
           {},
@@ -147,8 +148,7 @@ export async function show(place, { query, signal }) {
               column,
               value,
               toDesign(runs[n].job.id, bestDesign(runs[n], column), text(value, unit, 5)),
-              isConstant(least, rank(value), target ?? 0) &&
-                values.some((other) => !isConstant(least, rank(other), target ?? 0))
+              isBest(value) && !values.every(isBest)
                 ? h("strong", { class: "best" }, " best")
                 : null,
             ),

@@ -14,6 +14,7 @@ import { designHead, focusLastStep } from "../design/head.js";
 import { playback } from "../mechanism/playback.js";
 import { inverseForm } from "../design/inverse.js";
 import { whatIf } from "../design/what_if.js";
+import { contents } from "../design/contents.js";
 import { bookmarkForm } from "../design/bookmark_form.js";
 import { placeOf } from "../charts/cycle.js";
 import { keep } from "../lib/address.js";
@@ -26,6 +27,16 @@ export const title = "Design";
 
 const SOON = 150; // ms
 const CYCLES = ["back and forth", "one turn", "two turns"];
+/** Where one goes within the view: parts, and what they are called. @type {[string, string][]} */
+const CONTENTS = [
+  ["stage", "Drawing"],
+  ["what-if", "What if?"],
+  ["rounding", "Round it"],
+  ["curves", "Curves"],
+  ["numbers", "All numbers"],
+  ["topics", "Extremes, tolerances"],
+  ["analyses", "Analyses"],
+];
 const LENGTHS = ["crank_mm", "rod_mm", "offset_mm"];
 
 /** Show the design that the address names. @param {HTMLElement} place @param {Page.Visit} options */
@@ -51,8 +62,14 @@ export async function show(place, { parts, query, signal }) {
 
   const objectives = front.objectives;
   const named = h("span", {});
+  const undo = h(
+    "button",
+    { type: "button", class: "undo", hidden: true, onclick: () => sliders.apply(main.row) },
+    `Back to design ${number}`,
+  );
   const shared = {
     named,
+    undo,
     job,
     number,
     front,
@@ -93,8 +110,9 @@ export async function show(place, { parts, query, signal }) {
   const rename = () => {
     const name = capital(changed?.name ?? own);
     named.textContent = name === `Design ${number}` ? name : `${name} · ${number}`;
+    undo.hidden = changed === null;
   };
-  const [ofPlace, ofWay, ofTopics] = Array.from({ length: 3 }, () =>
+  const [ofPlace, ofWay] = Array.from({ length: 2 }, () =>
     h(
       "p",
       { class: "quiet unchanged", hidden: true },
@@ -121,11 +139,11 @@ export async function show(place, { parts, query, signal }) {
       }),
       files.node,
     ),
-    places.objectives,
-    places.beyond,
     h(
       "div",
       { class: "design-columns" },
+      places.objectives,
+      places.beyond,
       h("div", {}, places.stage, ofPlace, places["trade-offs"], places.rounding),
       places["what-if"],
     ),
@@ -134,13 +152,18 @@ export async function show(place, { parts, query, signal }) {
     ofWay,
     places.inverse,
     places.numbers,
-    ofTopics,
     places.topics,
     places.analyses,
   );
   for (const name of ["stage", "what-if", "trade-offs", "rounding"])
     places[name].classList.add("panel");
   const machines = mechanismsPanel(places.stage, strip, angle, turns);
+  strip.append(
+    contents(
+      CONTENTS.map(([name, words]) => [words, places[name]]),
+      signal,
+    ),
+  );
   let over = query.get("over") ?? "";
   let tab = query.get("tab") ?? ""; // of the analyses
   const charts = overCycle(places.curves, {
@@ -203,6 +226,7 @@ export async function show(place, { parts, query, signal }) {
       objectives,
       front: rows,
       row: shown.row,
+      before: shown === main ? null : main.row,
       changed: shown === main ? null : { broken: Boolean(changed?.broken.length) },
       whose,
       names,
@@ -219,7 +243,7 @@ export async function show(place, { parts, query, signal }) {
         ),
       ),
     );
-    for (const note of [ofPlace, ofWay, ofTopics]) note.hidden = shown === main;
+    for (const note of [ofPlace, ofWay]) note.hidden = shown === main;
   };
   const draw = () => {
     const variant = changed?.cycle && {

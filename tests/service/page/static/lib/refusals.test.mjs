@@ -29,11 +29,11 @@ const LENGTHS =
 test("a refusal speaks of fields by their names, and of values with their units", () => {
   assert.equal(
     inWords(LENGTHS),
-    "Crank must be at least 0.0001\u00a0mm; got −1\u00a0mm; correct it. Rod must be at most 50800\u00a0mm; got 1e+6\u00a0mm; correct it",
+    "Crank must be at least 0.0001\u00a0mm; got −1\u00a0mm; correct it. Rod must be at most 50800\u00a0mm; got 1·10⁶\u00a0mm; correct it",
   );
   assert.equal(
     inWords('query slider_velocity_m_s: must be at most 1000000.0; got "2e6"; correct it'),
-    "Slider velocity must be at most 1e+6\u00a0m/s; got 2e+6\u00a0m/s; correct it",
+    "Slider velocity must be at most 1·10⁶\u00a0m/s; got 2·10⁶\u00a0m/s; correct it",
   );
   assert.equal(
     inWords("body name: is missing, but required; add it"),

@@ -1,0 +1,38 @@
+/** The table of contents of a long view: it says where the reader is, and goes elsewhere. */
+
+import { h } from "../lib/dom.js";
+
+/**
+ * Return a choice of the parts of a view, which follows as the reader scrolls.
+ * @param {[string, HTMLElement][]} parts their titles, and where they are, from the top @param {AbortSignal} signal
+ */
+export function contents(parts, signal) {
+  const choice = h(
+    "select",
+    {
+      class: "contents",
+      "aria-label": "Go to",
+      onchange: () => {
+        const [, part] = parts[choice.selectedIndex];
+        part.scrollIntoView({ block: "start" });
+        part.tabIndex = -1;
+        part.focus({ preventScroll: true });
+      },
+    },
+    parts.map(([title]) => h("option", {}, title)),
+  );
+  /** @type {Set<Element>} */
+  const seen = new Set();
+  const watcher = new IntersectionObserver(
+    (entries) => {
+      for (const { target, isIntersecting } of entries)
+        isIntersecting ? seen.add(target) : seen.delete(target);
+      const here = parts.findIndex(([, part]) => seen.has(part));
+      if (here >= 0) choice.selectedIndex = here;
+    },
+    { rootMargin: "-10% 0px -60% 0px" }, // what stands in the upper third of the screen
+  );
+  for (const [, part] of parts) watcher.observe(part);
+  signal.addEventListener("abort", () => watcher.disconnect(), { once: true });
+  return choice;
+}
