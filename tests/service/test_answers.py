@@ -60,6 +60,10 @@ def some_inputs(
         timed = random.random() < 0.6
         more = {"law": "harmonic", "duration": float(random.uniform(0.2, 2.0))} if timed else {}
         return {"start": start, "end": start + 0.7, "driver": str(random.choice(["crank", "slider"])), **more}
+    if question.name == "lever":
+        ends = {"start": float(random.uniform(-1.0, -0.6)), "end": float(random.uniform(0.2, 0.6)), "law": "slow"}
+        carried = {"mass": 40.0, "centre": crank, "bore": 0.05, "piston_rod": 0.03}
+        return ends | (carried if random.random() < 0.5 else {"length_tolerance": 1e-4})
     if question.name == "law":
         return {"objective": str(random.choice(["peak torque", "rms torque"]))}
     if question.name == "inverse":

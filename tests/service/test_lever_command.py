@@ -99,6 +99,12 @@ def test_answers_of_random_levers_are_as_declared_and_the_same_in_inches(pytestc
     assert answers >= 4
 
 
+def test_the_pivot_of_the_cylinder_lies_farthest_from_both_dead_points_by_default(command: Command) -> None:
+    record = answered(command, *TIPPER[:4], *TIPPER[5:], "--pin-angle", "10 deg")
+    assert record["frame_angle_deg"] == pytest.approx(15.0 + 10.0 - 90.0)
+    assert record["dead_point_margin_deg"] == pytest.approx(90.0 - 35.0)
+
+
 @pytest.mark.parametrize(
     ("given", "sentence"),
     [

@@ -14,8 +14,8 @@ QUESTION = DesignQuestion(
             "frame_angle",
             ANGLE,
             "Direction of the cylinder's pivot",
-            "Direction from the lever's pivot O to the cylinder's pivot A, counter-clockwise from +x.",
-            usual="-90 deg",
+            "Direction from O to the cylinder's pivot A. [default: 90 deg behind the pin in the middle of the swing]",
+            example="-60 deg",
         ),
         Input(
             "start",

@@ -36,7 +36,7 @@ def lever_request(
     *,
     swing: Swing | None,
     words: Mapping[str, str] | None = None,
-    frame_angle: float = -0.5 * math.pi,
+    frame_angle: float | None = None,
     pin_angle: float = 0.0,
     mass: float = 0.0,
     centre: float | None = None,
@@ -56,6 +56,9 @@ def lever_request(
             f"a carried mass needs its place on the lever; got {mass:.6g} kg and no {labels.get('centre', 'centre')}; "
             "give its distance from the pivot"
         )
+    lever_swing = _swing(mechanism, linkage, swing, labels, inputs)
+    if frame_angle is None:  # farthest from both dead points
+        frame_angle = 0.5 * (lever_swing.start + lever_swing.end) + pin_angle - 0.5 * math.pi
     crank, frame, offset = (float(size) for size in (linkage.crank, linkage.rod, linkage.offset))
     sizes = TurningCylinder(crank=crank, frame=frame, frame_angle=frame_angle, offset=offset, pin_angle=pin_angle)
     design = design_of(mechanism, linkage)
@@ -75,7 +78,6 @@ def lever_request(
         supply_pressure=inputs.get("supply_pressure"),
         seal_friction=inputs.get("seal_friction", 0.0),
     )
-    lever_swing = _swing(mechanism, linkage, swing, labels, inputs)
     sizes.require_swing(lever_swing.start, lever_swing.end)
     shortest = min(float(sizes.length(angle)) for angle in (lever_swing.start, lever_swing.end))
     long = cylinder.closed_length or shortest

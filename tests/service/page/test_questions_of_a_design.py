@@ -144,6 +144,7 @@ def test_a_topic_shows_what_the_service_writes_in_either_system(opened: tuple[Pa
         ("allocate", {"limit_mm": 0.3}, lambda record: record["error_mm"]),
         ("counterweight", {"radius_mm": 50.8}, lambda record: record["after"]["peak_shaking_force_N"]),
         ("law", {"greatest_speed_rpm": 400.0}, lambda record: record["peak_torque_Nm"]),
+        ("lever", {"start_deg": -20.0, "end_deg": 50.0}, lambda record: record["travel_mm"]),
         ("sections", {}, lambda record: record["crank_width_mm"]),
         ("swing", {"start_deg": 40.0, "end_deg": 70.0}, lambda record: record["travel_mm"]),
     ],
