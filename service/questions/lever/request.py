@@ -10,6 +10,7 @@ from typing import Any
 from ....model.cycle.cycle import design_of
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
+from ....model.machine.design import Design
 from ....model.machine.mechanism import Mechanism
 from ....model.swing.swing import Swing, placed
 from ....model.swing.swing_types import Law
@@ -36,13 +37,6 @@ def lever_request(
     *,
     swing: Swing | None,
     words: Mapping[str, str] | None = None,
-    frame_angle: float | None = None,
-    pin_angle: float = 0.0,
-    mass: float = 0.0,
-    centre: float | None = None,
-    centre_across: float = 0.0,
-    gravity: float | None = None,
-    length_tolerance: float | None = None,
     **inputs: Any,
 ) -> LeverRequest:
     """Return the request from a machine and inputs by name, SI. words: the interface's names for the inputs.
@@ -50,26 +44,18 @@ def lever_request(
     The crank is the lever, the rod the distance of the pivots. swing: swing of the job. Raises `InputError` for missing
     inputs and a swing with a dead point, `AssemblyError` where the linkage does not close.
     """
-    labels = dict(words or {})
-    if mass and centre is None:
-        raise InputError(
-            f"a carried mass needs its place on the lever; got {mass:.6g} kg and no {labels.get('centre', 'centre')}; "
-            "give its distance from the pivot"
-        )
+    labels, pin_angle = dict(words or {}), inputs.get("pin_angle", 0.0)
     lever_swing = _swing(mechanism, linkage, swing, labels, inputs)
-    if frame_angle is None:  # farthest from both dead points
-        frame_angle = 0.5 * (lever_swing.start + lever_swing.end) + pin_angle - 0.5 * math.pi
-    crank, frame, offset = (float(size) for size in (linkage.crank, linkage.rod, linkage.offset))
-    sizes = TurningCylinder(crank=crank, frame=frame, frame_angle=frame_angle, offset=offset, pin_angle=pin_angle)
-    design = design_of(mechanism, linkage)
-    body = LeverBody(
-        mass=float(design.crank_mass),
-        moment_along=float(design.crank_along),
-        moment_across=float(design.crank_across),
-        inertia=float(design.crank_inertia),
+    sizes = TurningCylinder(
+        crank=float(linkage.crank),
+        frame=float(linkage.rod),
+        # By default farthest from both dead points.
+        frame_angle=inputs.get("frame_angle", 0.5 * (lever_swing.start + lever_swing.end) + pin_angle - 0.5 * math.pi),
+        offset=float(linkage.offset),
+        pin_angle=pin_angle,
     )
-    is_empty = mechanism == Mechanism(branch=mechanism.branch)
-    down = _GRAVITY if gravity is None and is_empty else gravity
+    sizes.require_swing(lever_swing.start, lever_swing.end)
+    design = design_of(mechanism, linkage)
     cylinder = Cylinder(
         closed_length=inputs.get("closed_length"),
         stroke=inputs.get("cylinder_stroke"),
@@ -78,22 +64,45 @@ def lever_request(
         supply_pressure=inputs.get("supply_pressure"),
         seal_friction=inputs.get("seal_friction", 0.0),
     )
-    sizes.require_swing(lever_swing.start, lever_swing.end)
-    shortest = min(float(sizes.length(angle)) for angle in (lever_swing.start, lever_swing.end))
-    long = cylinder.closed_length or shortest
+    closed = cylinder.closed_length or min(float(sizes.length(angle)) for angle in (lever_swing.start, lever_swing.end))
     machine = LeverMachine(
         sizes=sizes,
-        lever=body.carrying(mass, centre or 0.0, centre_across),
-        barrel=UniformBar(mass=inputs.get("barrel_mass", 0.0), length=long),
-        piston_rod=UniformBar(mass=inputs.get("piston_rod_mass", 0.0), length=long),
-        gravity=mechanism.gravity if down is None else (0.0, -down),
+        lever=_lever(design, labels, inputs),
+        barrel=UniformBar(mass=inputs.get("barrel_mass", 0.0), length=closed),
+        piston_rod=UniformBar(mass=inputs.get("piston_rod_mass", 0.0), length=closed),
+        gravity=_gravity(mechanism, inputs.get("gravity")),
     )
-    if length_tolerance is None:
-        length_tolerance = 0.0 if swing is None else swing.actuator_tolerance
     errors = DimensionErrors(
-        float(design.crank_error), float(design.rod_error), float(design.offset_error), length_tolerance
+        float(design.crank_error),
+        float(design.rod_error),
+        float(design.offset_error),
+        inputs.get("length_tolerance", 0.0 if swing is None else swing.actuator_tolerance),
     )
     return LeverRequest(machine, lever_swing, cylinder, errors)
+
+
+def _lever(design: Design, labels: Mapping[str, str], inputs: Mapping[str, Any]) -> LeverBody:
+    """Return the crank of a design with what the lever carries besides."""
+    mass, centre = inputs.get("mass", 0.0), inputs.get("centre")
+    if mass and centre is None:
+        raise InputError(
+            f"a carried mass needs its place on the lever; got {mass:.6g} kg and no {labels.get('centre', 'centre')}; "
+            "give its distance from the pivot"
+        )
+    body = LeverBody(
+        mass=float(design.crank_mass),
+        moment_along=float(design.crank_along),
+        moment_across=float(design.crank_across),
+        inertia=float(design.crank_inertia),
+    )
+    return body.carrying(mass, centre or 0.0, inputs.get("centre_across", 0.0))
+
+
+def _gravity(mechanism: Mechanism, downward: float | None) -> tuple[float, float]:
+    """Return the given gravity, else that of a job, else that of the earth."""
+    if downward is None and mechanism != Mechanism(branch=mechanism.branch):
+        return mechanism.gravity
+    return 0.0, -(_GRAVITY if downward is None else downward)
 
 
 def _swing(
