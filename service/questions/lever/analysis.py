@@ -108,7 +108,7 @@ LeverNumbers = Annotated[
 def prepare(
     mechanism: Mechanism, linkage: Linkage, *, cancelled: Any = None, request: LeverRequest | None = None, **inputs: Any
 ) -> dict[str, Any]:
-    """Return what is asked, once for numbers, curves and figure. inputs: by name, in SI, with `swing` and `words`."""
+    """Return the request, once for numbers, curves and figure. inputs: by name, in SI, with `swing` and `words`."""
     return {"request": request or lever_request(mechanism, linkage, **inputs)}
 
 

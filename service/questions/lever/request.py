@@ -1,4 +1,4 @@
-"""What is asked of a lever: numbers that are not given come from the job."""
+"""Request for a lever: numbers that are not given come from the job."""
 
 from __future__ import annotations
 
