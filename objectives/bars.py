@@ -159,7 +159,7 @@ class BarPeak(OfBars):
 
     @abstractmethod
     def demands(self, mechanism: Mechanism) -> list[Demand]:
-        """Return what loads the bars."""
+        """Return the loads on the bars."""
 
     def criteria(self, mechanism: Mechanism) -> Criteria:
         """Return p and q of the greatest p sigma - q sigma: by default greatest tension and greatest compression."""

@@ -1,4 +1,4 @@
-"""Loads on the pins: bearing pressure and shear at the greatest force in a turn, rubbing and wear over a cycle."""
+"""Loads on the pins: bearing pressure and shear at the greatest force, rubbing and wear over a cycle."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Drive of the crank: a motor with its torque over speed and its limits, a gear, and the inertias turning with it.
+"""Drive of the crank: a motor with its torque over speed and limits, a gear, and inertias turning with it.
 
 Motor speed and motor torque are positive in the motor's intended direction. A `Drive` converts this to the crank's
 direction, which is that of the mechanism's speed.

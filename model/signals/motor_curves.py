@@ -60,7 +60,7 @@ _KINKS = {GEAR: MotorCurve.THROUGH_GEAR, SUPPLY: MotorCurve.SUPPLIED}
 
 
 class _Numbers(NamedTuple):
-    """Numbers of the drive train, (n, 1 + v): complex, stepped in the place and in each number of the design."""
+    """Numbers of the drive train, (n, 1 + v): complex, stepped in place and in each number of a design."""
 
     speed: _Stepped
     acceleration: _Stepped

@@ -59,7 +59,7 @@ class Screened:
 
 
 class Screening(NamedTuple):
-    """What is screened: signals, angles per turn, whether these are crowded, and the machine's numbers.
+    """Subject of a screening: signals, angles per turn, whether these are crowded, and the machine's numbers.
 
     columns: slots of the raw numbers that designs set.
     """

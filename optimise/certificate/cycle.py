@@ -99,7 +99,7 @@ class CycleCurve:
         return np.where(np.isfinite(angles), angles, 0.0)
 
     def enclose(self, numbers: Numbers, places: Array, middle: Array) -> Enclosure:
-        """Return the signal (n, p) at crank angles (n, 1) for numbers (n, 1) and middle designs (n, 3 + k).
+        """Return the signal (n, p) at crank angles (n, 1): numbers (n, 1), middle designs (n, 3 + k).
 
         It has two parts where it may jump at the angle, and three where a table steps. The rest is not a number where
         the angle does not count in all of the box.

@@ -118,7 +118,7 @@ def problem_of(
 
 
 def _machine_of(job: Job, motion: Swing | None) -> Mechanism:
-    """Return the machine of a job; raise an error for a target, numbers or quantities that its motion does not take."""
+    """Return the machine of a job. Raise an error for a target, numbers or quantities that its motion excludes."""
     paths = job.variables.paths
     require_target(job.target_motion, job.objectives, job.constraints)
     chosen = {path for part in job.choice for option in part.option for path in option.paths}

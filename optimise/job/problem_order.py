@@ -26,7 +26,7 @@ def first_problems(sentences: list[str], tables: Mapping[str, Any]) -> list[str]
 
 
 def key_above(key: str) -> str:
-    """Return the key of the table or list that a key is in, "" for one at the top of the file."""
+    """Return the key of the table or list that contains a key, "" at the top of the file."""
     return re.sub(r"(\.| #)?[^.#]*$", "", key)
 
 

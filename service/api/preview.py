@@ -88,7 +88,7 @@ class AllowedModel(BaseModel):
 
 
 class MotionModel(BaseModel):
-    """The slider over a turn of the crank at the speed of the job, else at 1 rad/s, evenly spaced from 0 deg."""
+    """Slider motion over a turn at the speed of the job, else at 1 rad/s, evenly spaced from 0 deg."""
 
     crank_angle_deg: list[float]
     slider_position_mm: list[float]

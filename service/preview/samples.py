@@ -1,4 +1,4 @@
-"""Samples of the designs that a job allows; equalities are met exactly, and so is a value within each narrow band."""
+"""Samples of the designs that a job allows; equalities are met exactly, as is a value in each narrow band."""
 
 from __future__ import annotations
 

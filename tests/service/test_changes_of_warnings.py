@@ -1,4 +1,4 @@
-"""The change beside a warning: applied to the job, the warning is gone, in the check as on the command line."""
+"""The change beside a warning: once applied to the job, the warning is gone, also on the command line."""
 
 from __future__ import annotations
 

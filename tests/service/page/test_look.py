@@ -1,4 +1,4 @@
-"""A lecture on one mechanism: its lengths typed, dragged by mouse and keyboard, shared as a link, taken to a search."""
+"""View of one mechanism: lengths typed, dragged by mouse and keyboard, shared as a link, taken to a search."""
 
 from __future__ import annotations
 
