@@ -109,7 +109,8 @@ class CycleCurve:
             for angles in self.angles_at_steps(numbers, places, middle)
             for pair in self.sums(numbers, angles, middle)
         ]
-        return reduce(side_by_side, [np.sqrt(x * x + y * y) if self.kind in VECTORS else magnitude(x) for x, y in sums])
+        sizes: list[Enclosure] = [np.sqrt(x * x + y * y) if self.kind in VECTORS else magnitude(x) for x, y in sums]
+        return reduce(side_by_side, sizes)
 
     def angles_at_steps(self, numbers: Numbers, angles: Array, middle: Array) -> list[Array]:
         """Return angles (n, 1) and, if loads step, angles on both sides of them.
@@ -124,9 +125,7 @@ class CycleCurve:
         away = np.minimum(width / np.maximum(pace, 1e-3 * r) + width / r + _SIDE_STEP, _FARTHEST)
         return [angles, angles - away, angles + away]
 
-    def sums(
-        self, numbers: Numbers, angles: Array, middle: Array, read: Read | None = None
-    ) -> list[tuple[Enclosure, Enclosure]]:
+    def sums(self, numbers: Numbers, angles: Array, middle: Array, read: Read | None = None) -> list[tuple[Any, Any]]:
         """Return the two components of the signal, or what `read` takes from joint forces, over all cylinders.
 
         Two pairs where it jumps at the angle; only a single cylinder does, at its dead centre.
@@ -134,7 +133,7 @@ class CycleCurve:
         designs = [machine.design(numbers) for machine in self.machines]
         read = read or self._component
         parts = [self._member_parts(member, designs, angles, middle, read) for member in self.members]
-        sums = []
+        sums: list[tuple[Any, Any]] = []
         for pairs in zip(*parts, strict=True):
             xs, ys = zip(*pairs, strict=True)
             sums.append((sum(xs[1:], xs[0]), sum(ys[1:], ys[0])))

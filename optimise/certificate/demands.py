@@ -98,14 +98,15 @@ class DemandCurve:
             return peak * scale / size
         size = 0.5 * (size + magnitude(size))
         rest = np.where(peak.ends()[0] > 0.0, peak.rest, np.nan)
-        return size * scale / Enclosure(peak.centre, peak.slopes, rest, peak.empty)
+        value: Enclosure = size * scale / Enclosure(peak.centre, peak.slopes, rest, peak.empty)
+        return value
 
 
 def demand_curves(mechanism: Mechanism, quantity: BarPeak) -> list[DemandCurve]:
     """Return the curves of which a quantity is the greatest or the least value."""
     single = single_cylinder(mechanism)
     turns = halves(single) if cycle_turns(single) > 1 else (single,)
-    curves = []
+    curves: list[DemandCurve] = []
     for demand in quantity.demands(mechanism):
         peaks: list[CycleCurve]
         if isinstance(demand.peak, str):
