@@ -75,10 +75,11 @@ class Boxes:
         self.mechanism = problem.mechanism
         self.lean = math.cos((1.0 - _SLACK) * least)
         usable = [c for c in constraints if is_usable(problem, c)]
-        self.costly = [c for c in usable if self._curves_of(c.quantity)]
-        self.cheap = [c for c in usable if c not in self.costly]
-        names = [item.quantity for item in self.costly] + [item.quantity for item in self.objectives]
-        self.curves = {name: curves for name in names if (curves := self._curves_of(name))}
+        curves = {item.quantity: self._curves_of(item.quantity) for item in (*usable, *self.objectives)}
+        self.costly = sorted((c for c in usable if curves[c.quantity]), key=lambda c: len(curves[c.quantity]))
+        self.cheap = [c for c in usable if not curves[c.quantity]]
+        names = [item.quantity for item in (*self.costly, *self.objectives)]
+        self.curves = {name: curves[name] for name in names if curves[name]}
         self.swing = None if problem.motion is None else SwingBoxes(self.mechanism, problem.motion, slow=True)
 
     def _curves_of(self, name: str) -> Sequence[Curve]:
@@ -103,17 +104,19 @@ class Boxes:
             limits.add((r + e * self.branch.sign - l) / l if self.swing is None else self.swing.opening(numbers))
             for constraint in self.cheap:
                 limits.hold(constraint, *self._closed(constraint.quantity, numbers))
-            rows = np.flatnonzero(limits.alive)
-            middle, places = self._places(rows, lower, upper)
-            part = {slot: _select_boxes(value, rows) for slot, value in numbers.items()}
-            curves = {
-                name: _scatter_boxes(_enclose_curves(curves_of_quantity, part, places[name], middle), rows, n)
-                for name, curves_of_quantity in self.curves.items()
-            }
-            for constraint in self.costly:
-                least = self.curves[constraint.quantity][0].least
-                side = {"lower": constraint.lower} if least else {"upper": constraint.upper}
-                limits.hold_curve(Constraint(quantity=constraint.quantity, **side), curves[constraint.quantity])
+            middle = self.branch.dimensions(0.5 * (lower + upper))
+            moves = moving(self.mechanism, self.problem.motion, middle)
+            curves: dict[str, Enclosure] = {}
+            for name, curves_of_quantity in self.curves.items():
+                rows = np.flatnonzero(limits.alive)  # earlier constraints leave fewer
+                part = {slot: _select_boxes(value, rows) for slot, value in numbers.items()}
+                enclosed = _enclose_curves(curves_of_quantity, part, middle[rows], moves[rows])
+                curves[name] = _scatter_boxes(enclosed, rows, n)
+                for constraint in self.costly:
+                    if constraint.quantity == name:
+                        side = "lower" if curves_of_quantity[0].least else "upper"
+                        held = Constraint(quantity=name, **{side: getattr(constraint, side)})
+                        limits.hold_curve(held, curves[name])
             low, high = limits.contracted()
             corner, smear = np.zeros((n, len(self.objectives))), 0.0 * lower
             for column, objective in enumerate(self.objectives):
@@ -195,21 +198,6 @@ class Boxes:
         least, highest = least - _ROUNDED * np.abs(least), highest + _ROUNDED * np.abs(highest)
         return value, np.where(np.isnan(least), -np.inf, least), np.fmin(greatest, highest)
 
-    def _places(self, rows: IntArray, lower: Array, upper: Array) -> tuple[Array, dict[str, list[Array]]]:
-        """Return the middle designs of some boxes and the places of their peaks; any where the middle does not move.
-
-        The places are those of each curve of a quantity.
-        """
-        middle = self.branch.dimensions(0.5 * (lower[rows] + upper[rows]))
-        moves = moving(self.mechanism, self.problem.motion, middle)
-        places_by_name = {}
-        for name, curves in self.curves.items():
-            places_by_name[name] = [np.tile(curve.anywhere, (len(rows), 1)) for curve in curves]
-            for places, curve in zip(places_by_name[name], curves, strict=True):
-                if moves.any():
-                    places[moves] = curve.places(middle[moves])
-        return middle, places_by_name
-
 
 def _curve_bound(value: Enclosure, low: Array, high: Array, *, least: bool) -> Array:
     """Return a lower bound on minimised peaks or, with `least`, on negated least values."""
@@ -217,9 +205,17 @@ def _curve_bound(value: Enclosure, low: Array, high: Array, *, least: bool) -> A
     return np.asarray(-highest.min(axis=1) if least else lowest.max(axis=1))
 
 
-def _enclose_curves(curves: Sequence[Curve], part: Numbers, places: list[Array], middle: Array) -> Enclosure:
-    """Return the curves of a quantity side by side, of which the greatest or least bounds its own."""
-    enclosures = [curve.enclose(part, at, middle) for curve, at in zip(curves, places, strict=True)]
+def _enclose_curves(curves: Sequence[Curve], part: Numbers, middle: Array, moves: Mask) -> Enclosure:
+    """Return the curves of a quantity side by side, of which the greatest or least bounds its own.
+
+    They are enclosed where the middle designs have their peaks, at any place where the middle does not move.
+    """
+    enclosures = []
+    for curve in curves:
+        places = np.tile(curve.anywhere, (len(middle), 1))
+        if moves.any():
+            places[moves] = curve.places(middle[moves])
+        enclosures.append(curve.enclose(part, places, middle))
     return reduce(side_by_side, enclosures)
 
 
