@@ -126,7 +126,7 @@ def test_the_motor_is_that_of_an_independent_model_with_rotor_and_lossy_gear(see
 
 
 def test_a_steady_torque_on_the_crank_is_that_of_the_gear_by_hand() -> None:
-    """20 N m at the crank through 7 : 1; 90 % driving, 80 % braking; 10 rad/s at the crank."""
+    """20 N m and 10 rad/s at the crank, through 7 : 1; 90 % driving, 80 % braking."""
     nothing = RigidLink(mass=0.0)
     for torque, wanted in ((-20.0, 20.0 / 7.0 / 0.9), (20.0, -20.0 / 7.0 * 0.8)):
         load = CrankTorque(torque=torque)
@@ -142,7 +142,7 @@ def test_a_steady_torque_on_the_crank_is_that_of_the_gear_by_hand() -> None:
 
 
 def test_a_rotor_alone_needs_the_torque_of_its_acceleration() -> None:
-    """w^2 p p' of p = 1 + 0.2 cos theta: greatest where 0.2 (2 cos^2 - 1) + cos = 0."""
+    """The product p p' of p = 1 + 0.2 cos theta is greatest where 0.2 (2 cos^2 - 1) + cos = 0."""
     nothing, profile = RigidLink(mass=0.0), Harmonics(cosines=(0.2,))
     drive = replace(LOSSY, flywheel=0.0, copper_loss=None, recovery=1.0)
     machine = Mechanism(speed=-10.0, crank=nothing, rod=nothing, speed_profile=profile, drive=drive)

@@ -89,3 +89,24 @@ def test_a_bad_drive_is_refused_in_one_clear_message(drive: dict[str, Any], word
     message = str(caught.value)
     assert all(word in message for word in words), message
     assert len(message.splitlines()) == 1
+
+
+def test_numbers_of_the_drive_vary_and_come_with_the_motor_of_a_choice() -> None:
+    motors = [
+        {"name": "small", "values": {"drive.motor_inertia": "2 kg cm^2", "drive.rated_torque": "2 N m"}},
+        {"name": "large", "values": {"drive.motor_inertia": "8 kg cm^2", "drive.rated_torque": "5 N m"}},
+    ]
+    problem = parse_job(
+        SMALL
+        | {
+            "drive": {"gear_ratio": 10, "motor_inertia": "1 kg cm^2", "rated_torque": "1 N m"},
+            "variables": SMALL["variables"] | {"drive.gear_ratio": [5, 20]},
+            "choice": [{"name": "motor", "option": motors}],
+            "constraints": {"thermal_use": {"max": 1.0}},
+        }
+    )
+    assert [(item.paths, item.lower, item.upper) for item in problem.mechanism.varying] == [
+        (("drive.gear_ratio",), 5.0, 20.0)
+    ]
+    drives = [problem.part(index).mechanism.drive for index in range(2)]
+    assert [drive and (drive.motor_inertia, drive.rated_torque) for drive in drives] == [(2e-4, 2.0), (8e-4, 5.0)]
