@@ -45,10 +45,12 @@ _COMMANDS = (
     *("check", "schema", "quantities", "front", "export", "report", "cases"),
     *("serve", "submit", "jobs", "watch", "cancel", "resume", "delete", "worker", "mcp", "doctor"),
 )
-_MODULES = {"check": "job", "schema": "job", "front": "runs", "watch": "submit"}
+_MODULES = {"watch": "submit"}
 _MODULES |= dict.fromkeys(("inverse", "swing", "lever", "allocate", "balance", "law", "sections"), "question_commands")
 _MODULES |= dict.fromkeys(("like", "round", "certify", "compare", "sweep"), "front_or_job_commands")
-_MODULES |= dict.fromkeys(("serve", "worker"), "serving")
+_MODULES |= dict.fromkeys(("check", "schema", "quantities"), "job_files")
+_MODULES |= dict.fromkeys(("front", "export", "report"), "designs_of_run")
+_MODULES |= dict.fromkeys(("serve", "worker", "mcp"), "serving")
 _MODULES |= dict.fromkeys(("jobs", "cancel", "resume", "delete"), "queue")
 """Modules of the commands that have none of their own name."""
 

@@ -15,6 +15,10 @@ import numpy as np
 from ...model.errors import InfeasibleError, InputError, JobError
 from ...model.machine.links import Bar
 from ...model.machine.loads.compressor import Compressor
+from ...model.machine.mechanism import Mechanism
+from ...model.machine.varying import number_at
+from ...objectives.bars import LINKS, NEAR
+from ...objectives.link_strength import LinkStress
 from ...objectives.proportions import STROKE
 from ...objectives.swing_quantity import SwingQuantity
 from ...objectives.time_ratio import TIME_RATIO
@@ -29,7 +33,6 @@ from ..search.elimination import require_slow_side, signs
 from .linear_contradictions import require_compatible
 from .messages import key_of
 from .options import require_options
-from .pins import require_eyes_wider_than_pins
 from .possible_values import Box, require_reachable
 
 
@@ -76,6 +79,45 @@ def _require_one_density(problem: Problem) -> None:
                 f"{100.0 * _ONE_MATERIAL:.0f} % of that; got "
                 f"{bar.density:.6g} kg/m^3 and sections.material.density = {density:.6g} kg/m^3; make them equal"
             )
+
+
+def require_eyes_wider_than_pins(problem: Problem) -> None:
+    """Raise `InfeasibleError` if stresses are requested and no choice has eyes wider than their pins."""
+    names = {*(item.quantity for item in problem.constraints), *(item.quantity for item in problem.objectives)}
+    stresses = [item for item in map(problem.quantity, names) if isinstance(item, LinkStress)]
+    if not stresses:
+        return
+    refused = []
+    for part in problem.parts():
+        links = {link for item in stresses for link in item.bars(part.mechanism)}
+        reasons = [reason for link in sorted(links) for reason in _too_thick(part.mechanism, link)]
+        if not reasons:
+            return
+        refused.append(reasons[0])
+    raise InfeasibleError(refused[0])
+
+
+def _too_thick(mechanism: Mechanism, link: str) -> list[str]:
+    """Return why the eyes of a link have no net section, whatever the numbers that vary."""
+    width = max(_number_range(mechanism, f"{link}.width"))
+    return [
+        f"mechanism.{link}.width: a bar must be wider than the pins in its eyes; got "
+        f"{1e3 * width:.6g} mm at most and sections.pins.{pin} of {1e3 * least:.6g} mm at least; widen the bar or take "
+        "a thinner pin"
+        for pin in (NEAR, LINKS[link].far)
+        if (least := min(_number_range(mechanism, f"strength.{pin}"))) >= width
+    ]
+
+
+def _number_range(mechanism: Mechanism, path: str) -> tuple[float, ...]:
+    """Return the ends between which a number of a machine may vary, or its only value."""
+    for item in mechanism.varying:
+        for set_path, factor in item.sets:
+            if set_path == path:
+                return factor * item.lower, factor * item.upper
+    value = number_at(mechanism.nominal, path)
+    assert value is not None
+    return (value,)
 
 
 def _require_delivery(problem: Problem) -> None:

@@ -35,7 +35,7 @@ from .throttle import RateLimit
 PREFIX = "/api/v1"
 _PARTS = (
     *("jobs", "submissions", "job_files", "preview", "events", "fronts", "active_limits", "what_if", "analysis"),
-    *("design_questions", "front_questions", "rounding", "wish", "bookmarks", "design_files", "figures", "exports"),
+    *("design_questions", "front_questions", "wish", "bookmarks", "design_files", "figures", "exports"),
     *("quantities", "health"),
 )
 """Modules of the endpoints, in the order of their description."""

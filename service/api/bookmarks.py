@@ -17,7 +17,7 @@ from ..designs.display_units import rows_in
 from ..designs.judged_requirements import ranges_of
 from ..designs.stored_designs import StoredDesign, design_of, stored_design
 from ..runs.result import csv_text, json_ready
-from ..store.bookmarks import Bookmark, bookmarks_of, keep_design, remove_bookmark, update_bookmark
+from ..store.remarks import Bookmark, bookmarks_of, keep_design, remove_bookmark, update_bookmark
 from .computing import QuickRoute
 from .exports import download, file_responses
 from .fronts import Cells, ColumnModel, column_models

@@ -16,7 +16,7 @@ from ..drawings.shapes import Drawing
 from ..drawings.svg import svg_file
 from ..runs.run_folder import slug
 from ..store import Store
-from ..store.bookmarks import bookmarks_of
+from ..store.remarks import bookmarks_of
 from .computing import LongRoute
 from .exports import SEALED, download, file_responses
 from .figures import require_figures

@@ -13,7 +13,7 @@ from pydantic import BaseModel, Field
 from ...model.errors import InputError, NotFound
 from ...objectives.kinds import System
 from ..runs.run_folder import slug
-from ..store.bookmarks import Bookmark, bookmarks_of
+from ..store.remarks import Bookmark, bookmarks_of
 from .computing import LongRoute
 from .exports import SEALED, file_responses
 from .models import UnitsParameter

@@ -14,8 +14,7 @@ from pydantic import BaseModel, Field
 
 from ...model.linkage.linkage import Linkage
 from ...optimise.problem.problem import Problem
-from ..presets.designs import DESIGNS, Design
-from ..presets.jobs import shipped_jobs
+from ..presets.jobs import DESIGNS, Design, shipped_jobs
 from .computing import QuickRoute
 from .cycle import OutlinesModel, outlines_model
 from .job_requests import EXAMPLE, TOML, RequestedJob, problem_of_tables, requested_job

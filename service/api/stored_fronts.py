@@ -27,7 +27,7 @@ from ..jobs.submission import LONGEST_WAIT, bounded, parse_allowed
 from ..runs.result import Result, Row
 from ..runs.run_folder import slug
 from ..store import Job, Store
-from ..store.bookmarks import Bookmark, bookmarks_of
+from ..store.remarks import Bookmark, bookmarks_of
 from .models import PLAIN_DIGITS, JobNumber
 from .settings import StoreDep, part_of_app
 

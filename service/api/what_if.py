@@ -8,15 +8,14 @@ from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
 from ...model.errors import InputError
-from ..designs.changed_design import variation_of, with_numbers
+from ..designs.changed_design import hold_equalities, variation_of, with_numbers
 from ..designs.columns import all_columns
 from ..designs.design_curves import LEAST, MOST
-from ..designs.hold_equalities import hold_equalities
 from ..designs.judged_requirements import quantity_names, ranges_of, requirements_of, speed_rpm
 from ..designs.violations import violated_by, violations_in_words
 from ..questions.design_analysis import with_undefined_values
 from ..runs.result import json_ready
-from ..store.bookmarks import bookmarks_of
+from ..store.remarks import bookmarks_of
 from .computing import QuickRoute
 from .cycle import CurvesModel, CycleModel, cycle_model
 from .fronts import Cells, ColumnModel, OfDesign, Violated, Violations, column_models

@@ -11,7 +11,7 @@ from ..designs.columns import all_columns
 from ..jobs.front_wish_history import stated_wishes
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..questions.wish.analysis import answered
-from ..store.wishes import note_wish, wishes_of
+from ..store.remarks import note_wish, wishes_of
 from .computing import LongRoute
 from .fronts import Cells, ColumnModel, column_models
 from .input_parameters import body_of

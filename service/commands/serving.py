@@ -1,4 +1,4 @@
-"""`slidercrank serve` and `slidercrank worker`: the API with its workers, and workers alone, on this machine."""
+"""`slidercrank serve`, `worker` and `mcp`: the API with its workers, workers alone, and a server for agents."""
 
 from __future__ import annotations
 
@@ -16,16 +16,19 @@ import typer
 
 from ...model.errors import InputError
 from ...model.extras import required
-from ..jobs.stores import Address, open_store, store_address
+from ..jobs.stores import STORE_VARIABLE, Address, open_store, store_address
 from ..resources.memory import size_of
-from ..text.options import AllowQuantity
-from ..text.screen import print_output
+from ..runs.run_folder import runs_place
+from ..text.options import AllowQuantity, Runs
+from ..text.screen import print_message, print_output
 from ..workers.engines import EngineOptions
 from ..workers.logs import Format, set_up_logs
-from .ending import Interruption
+from .ending import INTERRUPTED, Interruption
+from .optimise import SEARCH
 
 if TYPE_CHECKING:
     from ..workers.worker_process import WorkerSettings
+
 
 TOKEN_VARIABLE = "SLIDERCRANK_TOKEN"
 _SHORTEST = 16
@@ -216,3 +219,24 @@ def _token(token: str | None, without_token: bool, host: str) -> tuple[str | Non
             "characters; leave it out for a random one"
         )
     return token, False
+
+
+def mcp(runs: Runs = None, allow_quantity: AllowQuantity = None) -> None:
+    """Serve agents over the Model Context Protocol, on standard input and output, until the input ends.
+
+    The agent's client starts it. Runs and the store are read and written in the folder of runs; other messages go to
+    standard error. Ctrl-C stops it, and a running search keeps the designs found so far.
+    """
+    required("mcp", "serving agents needs")
+    from ...model.kernel.disk import compile_ahead
+    from ..agents.server import serve
+
+    compile_ahead(*SEARCH)
+    os.environ.pop(STORE_VARIABLE, None)
+    serve(runs_place(runs).absolute(), frozenset(allow_quantity or ()), interrupted=_leave)
+
+
+def _leave() -> None:
+    """End immediately: a thread still reads standard input."""
+    print_message("slidercrank: interrupted")
+    os._exit(INTERRUPTED)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ...optimise.decisions.wishes import Wish
     from ...optimise.front.front import ParetoFront
     from ..store import Store
-    from ..store.wishes import MadeWish, Wished
+    from ..store.remarks import MadeWish, Wished
 
 
 def stated_wishes(front: ParetoFront, wishes: Sequence[Wish]) -> dict[str, tuple[str, float | None]]:
@@ -38,7 +38,7 @@ def words_of(front: ParetoFront, stated: Wished) -> dict[str, str]:
 
 def wishes_of_run(folder: Path) -> list[MadeWish]:
     """Return the wishes for the run in a folder, latest first; none for a run without a job."""
-    from ..store.wishes import wishes_of
+    from ..store.remarks import wishes_of
 
     with _job(folder) as store_and_job:
         return wishes_of(*store_and_job) if store_and_job else []
@@ -46,7 +46,7 @@ def wishes_of_run(folder: Path) -> list[MadeWish]:
 
 def keep_wish(folder: Path, wishes: Wished, design: int | None) -> bool:
     """Record a wish for the run in a folder; return whether the run has a job to store it with."""
-    from ..store.wishes import note_wish
+    from ..store.remarks import note_wish
 
     with _job(folder) as store_and_job:
         if store_and_job:

@@ -1,10 +1,10 @@
-"""Tables of the shipped jobs."""
+"""The job files that ship, and a design of the front of each."""
 
 from __future__ import annotations
 
 from functools import cache
 from importlib.resources import as_file, files
-from typing import Any
+from typing import Any, NamedTuple
 
 from .. import presets
 
@@ -19,3 +19,23 @@ def shipped_jobs() -> dict[str, dict[str, Any]]:
 
     with as_file(files(presets)) as folder:
         return {file.stem: read_job(file) for file in sorted(folder.glob("*.toml"))}
+
+
+class Design(NamedTuple):
+    """Lengths, mm, and the crank angles between which a crank swings, deg; None for full rotation."""
+
+    crank_mm: float
+    rod_mm: float
+    offset_mm: float
+    from_deg: float | None = None
+    to_deg: float | None = None
+
+
+DESIGNS = {
+    "compressor": Design(29.81, 105.93, -11.43),
+    "feeder": Design(37.62, 101.71, 31.78),
+    "press": Design(26.8, 108.78, 47.02),
+    "servo_press": Design(26.6, 175.54, 79.99),
+    "sieve": Design(137.0, 556.3, 110.86),
+    "support": Design(1360.0, 2426.8, -600.0, 11.16, 101.16),
+}

@@ -15,7 +15,7 @@ from ..runs.result import Result
 from .subject import Alternative
 
 if TYPE_CHECKING:
-    from ..store.bookmarks import Bookmark
+    from ..store.remarks import Bookmark
 
 
 def alternatives_of(bookmarks: Iterable[Bookmark], problem: Problem, result: Result) -> list[Alternative]:
@@ -34,7 +34,7 @@ def bookmarks_of_run(folder: Path) -> list[Bookmark]:
     """Return the bookmarks of a run on the disk, from the store that solved it; none without such a store."""
     if not has_store(None, folder.parent):
         return []
-    from ..store.bookmarks import bookmarks_of
+    from ..store.remarks import bookmarks_of
 
     with open_store(None, folder.parent) as store:
         job = store.find(folder.name)

@@ -21,7 +21,7 @@ from ..render.numerals import rounded
 from ..runs.result import Cell, Result, Row
 
 if TYPE_CHECKING:
-    from ..store.bookmarks import Bookmark
+    from ..store.remarks import Bookmark
 
 
 @dataclass(frozen=True, kw_only=True)

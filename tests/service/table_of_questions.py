@@ -42,12 +42,11 @@ FORMS = {"round": "rounded", "certify": "certificate", "compare": "comparison"}
 """Names in the API and its client, where they are not those of the commands."""
 BESIDE = {
     "compare": "service/designs/front_comparison.py",
-    "round": "service/api/rounding.py",
     "wish": "service/commands/wish.py service/api/wish.py service/jobs/front_wish_history.py",
 }
 """Modules that serve a single question, beside its folder. What serves several ones is in the row of the service."""
 UNDECLARED = {
-    "check": ("job", "service/preview/preview.py service/commands/job.py service/api/preview.py"),
+    "check": ("job", "service/preview/preview.py service/commands/job_files.py service/api/preview.py"),
     "what-if": ("design", "service/designs/changed_design.py service/api/what_if.py"),
     "trade-offs": ("design", "service/designs/trade_offs.py"),
 }

@@ -19,7 +19,7 @@ from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.objectives.tables.curve_extremes import curve_extremes
-from slidercrank.service.figures.curves import cycle_curves as curves_of_figure
+from slidercrank.service.figures.datasheet import cycle_curves as curves_of_figure
 from slidercrank.service.figures.panels import draw_panel_figure
 from slidercrank.service.questions.discovery import TOPICS
 from slidercrank.service.questions.extremes import analysis as extremes

@@ -24,8 +24,7 @@ from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.problem.requirements import Objective
-from slidercrank.service.figures.curves import Curves, cycle_curves
-from slidercrank.service.figures.datasheet import design_datasheet
+from slidercrank.service.figures.datasheet import Curves, cycle_curves, design_datasheet
 from slidercrank.service.figures.design_marks import marks
 from slidercrank.service.figures.front import draw_front
 from slidercrank.service.figures.panel_figure import Panel, panel_in_units

@@ -17,7 +17,7 @@ from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.model.signals.first_greatest import angle_in_cycle, first_greatest
 from slidercrank.objectives.tables.analysis import columns_of
 from slidercrank.objectives.tables.curve_extremes import curve_extremes
-from slidercrank.service.figures.curves import cycle_curves
+from slidercrank.service.figures.datasheet import cycle_curves
 from slidercrank.service.questions.cylinders import analysis as cylinders
 from slidercrank.service.questions.motor import analysis as motor
 from slidercrank.service.questions.uneven_speed import analysis as uneven_speed

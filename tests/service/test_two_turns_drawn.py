@@ -15,7 +15,7 @@ from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
-from slidercrank.service.figures.curves import cycle_curves
+from slidercrank.service.figures.datasheet import cycle_curves
 from slidercrank.service.figures.panel_figure import PanelFigure, sampled_turn
 from slidercrank.service.questions.cylinders import analysis as cylinders
 from slidercrank.service.questions.extremes import analysis as extremes

@@ -16,7 +16,6 @@ from ....optimise.decisions.compare import compare
 from ...designs.choice_options import minimised_values
 from ...designs.display_units import objective_in
 from ...designs.front_comparison import comparison_sentences
-from ...jobs.job_differences import differences
 from ...render.blocks import Block, Phrase, Sentence, Table, Text, Value, column, heading, note, sentence
 from ...runs.result import Result, StoredObjective, objective_record
 from ..front_or_job_question import Answer
@@ -25,7 +24,9 @@ if TYPE_CHECKING:
     from ....optimise.decisions.compare import Comparison
     from .runs import ComparedRun
 
+
 _SYSTEMS: tuple[System, ...] = ("metric", "inch")
+_LEFT_OUT = ("name", "description")
 
 
 def analyse(runs: Sequence[ComparedRun], *, tolerance: float = 1e-6, **_: Any) -> Answer:
@@ -205,3 +206,31 @@ def _differences(names: Sequence[str], places: Sequence[tuple[str, Sequence[str 
     columns = (column(head, left=True) for head in ("Place in the job", *names))
     rows = ((place, *(value or "–" for value in values)) for place, values in places)
     return [title, Table(tuple(columns), tuple(rows))]
+
+
+def differences(jobs: Sequence[Mapping[str, Any]]) -> list[tuple[str, tuple[str | None, ...]]]:
+    """Return the places where the tables of jobs differ, such as "load.1.force", with the value in each job.
+
+    The value is None if a job has nothing there. Names and descriptions are omitted.
+    """
+    flat = [dict(_leaves(job, "")) for job in jobs]
+    places = dict.fromkeys(place for leaves in flat for place in leaves)
+    rows = [(place, tuple(leaves.get(place) for leaves in flat)) for place in places]
+    return [(place, values) for place, values in rows if place not in _LEFT_OUT and len(set(values)) > 1]
+
+
+def _leaves(value: Any, place: str) -> list[tuple[str, str]]:
+    """Return the values within a table, each with its place. Lists of tables count from 1; ranges are "a to b"."""
+    if isinstance(value, Mapping):
+        return [leaf for key, part in value.items() for leaf in _leaves(part, f"{place}.{key}" if place else str(key))]
+    if isinstance(value, list | tuple) and any(isinstance(part, Mapping) for part in value):
+        return [leaf for number, part in enumerate(value, 1) for leaf in _leaves(part, f"{place}.{number}")]
+    if isinstance(value, list | tuple):
+        return [(place, (" to " if len(value) == 2 else ", ").join(map(_text, value)))]
+    return [(place, _text(value))]
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value:.12g}" if isinstance(value, float) else str(value)

@@ -17,7 +17,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.optimise.decisions.compare import compare
 from slidercrank.service.client import Client
 from slidercrank.service.designs.front_comparison import NEAR
-from slidercrank.service.jobs.job_differences import differences
+from slidercrank.service.questions.compare.analysis import differences
 from slidercrank.service.store import Store
 from tests.service import fronts
 from tests.service.api.fixed_front import API, Solved, client_of, put_in

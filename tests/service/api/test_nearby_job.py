@@ -11,7 +11,7 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.optimise.job import parse_job
-from slidercrank.service.designs.nearby_job import job_near_lengths
+from slidercrank.service.designs.following_jobs import job_near_lengths
 from slidercrank.service.store import Store
 from slidercrank.service.store.backup import back_up
 from tests.service import fronts

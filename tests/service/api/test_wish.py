@@ -16,7 +16,7 @@ from slidercrank.service.cli import app as command_line
 from slidercrank.service.client import Client
 from slidercrank.service.store import Store
 from slidercrank.service.store.backup import back_up
-from slidercrank.service.store.wishes import MOST_WISHES, note_wish
+from slidercrank.service.store.remarks import MOST_WISHES, note_wish
 from tests.service.api.fixed_front import Solved, client_of, served
 
 AT = {"time_ratio": "1.3", "transmission_angle": "50 deg"}

@@ -13,7 +13,7 @@ from playwright.sync_api import Page, Request, expect
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.runs.result import StoredObjective
 from slidercrank.service.store import Store
-from slidercrank.service.store.bookmarks import keep_design
+from slidercrank.service.store.remarks import keep_design
 from tests.service import fronts
 from tests.service.api.fixed_front import Solved, put_in
 from tests.service.page.accessibility import require_accessible

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from slidercrank.service.store import Store
 from slidercrank.service.store.backup import back_up
-from slidercrank.service.store.bookmarks import keep_design, update_bookmark
+from slidercrank.service.store.remarks import keep_design, update_bookmark
 from tests.service.api.fixed_front import Solved
 from tests.service.conftest import Command
 

@@ -13,8 +13,8 @@ import pytest
 
 from slidercrank.model.errors import InputError, QueueFull
 from slidercrank.service.store import Artefact, Job, State, Store
-from slidercrank.service.store.bookmarks import keep_design
 from slidercrank.service.store.listing import Order
+from slidercrank.service.store.remarks import keep_design
 from tests.service.store.contents import (
     TABLES,
     add,

@@ -1,4 +1,4 @@
-"""`slidercrank export`: the designs of a run as a table, and one of them as a drawing or an animation."""
+"""`slidercrank front`, `export` and `report`: the designs of a run, on the screen and as files."""
 
 from __future__ import annotations
 
@@ -9,18 +9,79 @@ from typing import Annotated
 import typer
 
 from ...model.errors import InputError
+from ...objectives.column_keys import key_in
 from ...objectives.count_text import counted
 from ...objectives.kinds import ANGLE
+from ..designs.columns import find_columns
 from ..designs.selection import no_match_message, numbered_rows, result_part
 from ..motion.design_file import ENDINGS, design_file
 from ..runs.result import csv_text, json_text
-from ..runs.run_folder import write_file
+from ..runs.run_folder import slug, write_file
 from ..runs.stored_runs import problem_of
 from ..text.design_options import Selection
-from ..text.options import Angle, File, Output, Run, Runs, Units, option_value, require_ending
-from ..text.screen import print_message, print_output, show_activity
-from .ending import end_without_design
+from ..text.options import Angle, File, Json, Output, Rows, Run, Runs, Units, option_value, require_ending
+from ..text.screen import console, print_message, print_output, show_activity
+from ..text.tables import ROWS, show_design, show_front, show_result, show_violated
+from .ending import NoDesigns, end_without_design
+from .optimise import show_files
 from .run_choice import Choice, Where, result_in_units, run_of
+
+
+def front(
+    run: Run,
+    *,
+    selection: Selection,
+    columns: Annotated[
+        str | None, typer.Option(metavar="NAMES"), "Quantities or columns to show, separated by commas."
+    ] = None,
+    rows: Rows = ROWS,
+    choice: Choice,
+    runs: Runs = None,
+    units: Units = "metric",
+    json: Json = False,
+) -> None:
+    """Show the front of a run, part of it, or one design chosen from it.
+
+    --knee, --topsis and --lexicographic choose among the designs that meet --where; --design names one.
+    """
+    folder, result = run_of(run, runs)
+    if not result.designs:
+        raise NoDesigns(result)
+    chosen_columns = find_columns(columns, list(result.designs[0])) if columns else None
+    chosen, conditions = selection.rows(result), selection.where
+    picked = choice.row(result, chosen) if choice.design is None else choice.number(result, run, conditions) - 1
+    if picked is not None:
+        chosen = [picked]
+    shows_trade_offs = not conditions and (
+        json or not (selection.sorts or columns or picked is not None or rows != ROWS)
+    )
+    result = result_in_units(result, units, folder if shows_trade_offs else None)
+    listed_columns = names = None
+    if chosen_columns is not None:
+        listed_columns = find_columns(
+            ",".join(key_in(column.key, units)[0] for column in chosen_columns), list(result.designs[0])
+        )
+        names = [column.key for column in listed_columns]
+    if json:
+        record = result_part(result, chosen).record(names)
+        print_output(json_text(record if picked is None else {**record, "number": picked + 1}))
+    elif picked is not None:
+        screen = console()
+        screen.print(f"{result.name}: design {picked + 1} of {len(result.designs)}", style="bold", soft_wrap=True)
+        show_design(screen, result.designs[picked], only=names)
+        of_one = {key: excess[picked] for key, excess in result.violated.items() if excess[picked] > 0.0}
+        show_violated(screen, of_one, result.designs[picked])
+    elif not (conditions or selection.sorts or columns or rows != ROWS):
+        show_result(console(), result)
+        show_files(folder)
+    elif chosen:
+        screen = console()
+        count = "" if len(chosen) == len(result.designs) else f"{len(chosen)} of "
+        screen.print(f"{result.name}: {count}{counted(len(result.designs), 'design')}", style="bold", soft_wrap=True)
+        show_front(screen, result, chosen, columns=listed_columns, limit=rows)
+    if not chosen:
+        end_without_design(no_match_message(result, conditions or []))
+
 
 _FILES = {f"--{name}": endings for name, endings in ENDINGS.items()}
 """Options that write one design, and how their files may end."""
@@ -123,3 +184,39 @@ def export(
     for file, content in contents.items():
         write_file(file, content)
         print_message(f"{file}: design {number}")
+
+
+def report(
+    run: Run,
+    *,
+    choice: Choice,
+    where: Where = None,
+    out: Annotated[
+        File,
+        "File to write: HTML, or PDF if its name ends in .pdf. [default: <run>-design-<NO>.html in the current folder]",
+    ] = None,
+    pdf: Annotated[bool, "Write PDF instead of HTML."] = False,
+    measured: Annotated[File, "CSV file of measured curves to compare with, as for `analyse`."] = None,
+    runs: Runs = None,
+    units: Units = "metric",
+) -> None:
+    """Write a design review report: job, front, the design with all its values, tolerances, versions.
+
+    The HTML report is one self-contained file without scripts, to view and print in a browser.
+    """
+    if out is not None and pdf and out.suffix.lower() in (".html", ".htm"):
+        raise InputError(f"with --pdf the file name must end in .pdf; got --out {out}; rename it, or leave --pdf out")
+    require_ending("--out", out, ".html", ".htm", ".pdf")
+    folder, result = run_of(run, runs)
+    number = choice.number(result, run, where)
+    pdf = pdf or (out is not None and out.suffix.lower() == ".pdf")
+    ending = "pdf" if pdf else "html"
+    file = out if out is not None else Path(f"{slug(folder.name)}-design-{number}.{ending}")
+    with show_activity("writing the report"):
+        from ..designs.measured_file import measured_text
+        from ..report.run_report import run_report
+
+        text = None if measured is None else measured_text(measured)
+        content = run_report(folder, result, number, pdf=pdf, units=units, measured=text)
+    write_file(file, content)
+    print_message(f"report: {file}")

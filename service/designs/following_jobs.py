@@ -1,4 +1,4 @@
-"""Active constraints of the designs of a front, and the job with wider limits."""
+"""Jobs that follow from a front: its active constraints with wider limits, and a search near one of its designs."""
 
 from __future__ import annotations
 
@@ -22,6 +22,8 @@ _REST = 1e-6
 _WIDER = 0.25  # of a range
 _FURTHER = 0.1  # of a bound
 _LONGEST_NAME = 80  # of a job
+SHARE = 0.1
+"""Of a length, on either side of it."""
 Side = Literal["lower", "upper"]
 _WORDS: dict[Side, str] = {"lower": "at least", "upper": "at most"}
 
@@ -106,9 +108,7 @@ def widen_limits(
         else:
             job.setdefault(table, {}).setdefault(path, {})["min" if side == "lower" else "max"] = text
         changes.append(f"{limit.title} {_WORDS[side]} {_with_unit(value, limit.unit)}")
-    name = f"{tables['name']}, {', '.join(changes)}"
-    job["name"] = name if len(name) <= _LONGEST_NAME else tables["name"]
-    return job
+    return _renamed(job, ", ".join(changes))
 
 
 def _limits(part: Problem, tables: Mapping[str, Any]) -> list[Limit]:
@@ -184,3 +184,32 @@ def _round(value: float, step: float) -> float:
 
 def _with_unit(value: float, unit: str) -> str:
     return f"{value:.6g} {unit}".rstrip()
+
+
+def job_near_lengths(
+    problem: Problem, tables: Mapping[str, Any], lengths: tuple[float, float, float], *, share: float = SHARE
+) -> dict[str, Any]:
+    """Return the tables of a job whose crank, rod and offset vary around lengths, mm. Lengths that the job fixes stay.
+
+    share: fraction of each length, on either side; for the offset at least that fraction of the crank. Raises
+    `InputError` if the job fixes all three.
+    """
+    part = problem.parts()[0]
+    free = [name for name in DIMENSIONS if (bounds := getattr(part, name)).lower < bounds.upper]
+    if not free:
+        raise InputError("a search near a design needs a variable length; this job fixes all three; give one a range")
+    job = deepcopy(dict(tables))
+    length_of = dict(zip(DIMENSIONS, lengths, strict=True))
+    for name in free:
+        margin = share * max(abs(length_of[name]), length_of[DIMENSIONS[0]])
+        if name != DIMENSIONS[2]:
+            margin = share * length_of[name]
+        job["variables"][name] = [f"{length_of[name] - margin:.6g} mm", f"{length_of[name] + margin:.6g} mm"]
+    sizes = ", ".join(f"{length_of[name]:.4g}" for name in DIMENSIONS)
+    return _renamed(job, f"near {sizes} mm")
+
+
+def _renamed(job: dict[str, Any], change: str) -> dict[str, Any]:
+    """Return a job with a change in its name, unless that grows too long."""
+    name = f"{job['name']}, {change}"
+    return job | {"name": name} if len(name) <= _LONGEST_NAME else job
