@@ -179,6 +179,7 @@ def test_no_sample_of_the_press_is_less_stressed_or_safer_than_its_box(width: fl
     assert check(of_press(SAFETIES + STRESSES), width, count=200, inside=100) > 15_000
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("machine", ["all loads", "cylinders", "two turns", "crossed, clockwise"])
 @pytest.mark.parametrize("width", [0.1, 0.004])
 def test_no_sample_of_bars_under_any_load_is_less_stressed_or_safer_than_its_box(machine: str, width: float) -> None:
