@@ -73,10 +73,14 @@ def best_by_collocation(
 
     dead_centres: inner and outer one, rad. least, greatest: crank speed, rad/s. intervals: of a stroke.
     """
-    inertia, slope, held, travel = machine.functions()
+    count = DEGREE * intervals
+    inertia, slope, held, travel = (function.map(count) for function in machine.functions())
     way = 1.0 if machine.speed > 0.0 else -1.0
-    points = np.append(0.0, casadi.collocation_points(DEGREE, "radau"))
-    derivative, _, weights = casadi.collocation_coeff(list(points[1:]))
+    points = casadi.collocation_points(DEGREE, "radau")
+    derivative, _, weights = casadi.collocation_coeff(points)
+    each = casadi.DM.eye(intervals)
+    by_start, by_inside = casadi.kron(each, derivative[0, :]), casadi.kron(each, derivative[1:, :])
+    places = (np.arange(intervals)[:, None] + np.array(points)).ravel() / intervals
     opti = casadi.Opti()
     mean = 2.0 * np.pi / cycle_time
     size = max(1.0, abs(machine.outward) * machine.crank)
@@ -91,28 +95,22 @@ def best_by_collocation(
         opti.set_initial(duration, passed / (2.0 * np.pi))
         opti.subject_to(duration >= 0.02)
         step = duration * cycle_time / intervals
-        start_phi = phi
-        state = casadi.vertcat(start_phi, speed_at_start)
-        for k in range(intervals):
-            inside = opti.variable(2, DEGREE)
-            torque = opti.variable(1, DEGREE)
-            for j in range(DEGREE):
-                opti.set_initial(inside[0, j], start_phi + passed * (k + points[j + 1]) / intervals)
-                opti.set_initial(inside[1, j], 1.0)
-            full = casadi.horzcat(state, inside)
-            rates = full @ derivative
-            for j in range(DEGREE):
-                theta, speed = inner + way * inside[0, j], inside[1, j] * mean
-                load = way * held(theta) - way * force * travel(theta)
-                gain = (torque[j] * size - load - 0.5 * way * slope(theta) * speed**2) / inertia(theta)
-                opti.subject_to(rates[0, j] == step * speed)
-                opti.subject_to(rates[1, j] * mean == step * gain)
-                squares += weights[j] * step * torque[j] ** 2
-            opti.subject_to(opti.bounded(least / mean, inside[1, :].T, greatest / mean))
-            bound = peak if torque_limit is None else torque_limit / size
-            opti.subject_to(bound >= torque.T)
-            opti.subject_to(-bound <= torque.T)
-            state = inside[:, -1]
+        inside, torque = opti.variable(2, count), opti.variable(1, count)
+        opti.set_initial(inside[0, :], phi + passed * places)
+        opti.set_initial(inside[1, :], 1.0)
+        starts = casadi.horzcat(casadi.vertcat(phi, speed_at_start), inside[:, DEGREE - 1 : -1 : DEGREE])
+        rates = starts @ by_start + inside @ by_inside
+        theta, speed = inner + way * inside[0, :], inside[1, :] * mean
+        load = way * held(theta) - way * force * travel(theta)
+        gain = (torque * size - load - 0.5 * way * slope(theta) * speed**2) / inertia(theta)
+        opti.subject_to(step * speed.T == rates[0, :].T)
+        opti.subject_to(step * gain.T == rates[1, :].T * mean)
+        squares += step * ((torque**2) @ casadi.repmat(weights, intervals, 1))
+        opti.subject_to(opti.bounded(least / mean, inside[1, :].T, greatest / mean))
+        bound = peak if torque_limit is None else torque_limit / size
+        opti.subject_to(bound >= torque.T)
+        opti.subject_to(-bound <= torque.T)
+        state = inside[:, -1]
         phi += passed
         opti.subject_to(state[0] == phi)
         speed_at_start = state[1]
