@@ -109,6 +109,10 @@ class Programme:
         """Return the time of a turn, s, by Simpson's rule; K (2, n), J: at starts and middles."""
         return float(self.slowness @ np.sqrt(self.energy_unit / energies.ravel())) * self.time_unit
 
+    def size_of(self, aim: Aim) -> float:
+        """Return the objective in SI that is 1 in the programme."""
+        return {"peak torque": self.unit, "cycle time": self.time_unit, "rms torque": self.unit**2}.get(aim, 1.0)
+
     def solve(self, aim: Aim, needs: Requirement) -> Solution | None:
         """Return the solution; None if there is none, or the solver finds none."""
         cone = _Cone(self)
@@ -128,7 +132,7 @@ class Programme:
                 return None
         if cone.torque.value is None or "infeasible" in problem.status:
             return None
-        size = {"peak torque": self.unit, "cycle time": self.time_unit, "rms torque": self.unit**2}.get(aim, 1.0)
+        size = self.size_of(aim)
         n = len(self.turn.width)
         duals = np.array([side.dual_value for side in sides] or np.zeros((4, n))).reshape(2, 2, n) * size / self.unit
         multipliers = Multipliers(

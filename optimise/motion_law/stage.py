@@ -24,6 +24,7 @@ from .programme import Aim, Margins, Multipliers, Programme, Requirement, Soluti
 
 _RENEWALS = 20
 _CONVERGED = 1e-6
+_NOTHING = 1e-8  # of what is 1 in a programme: ten times what its solution may be wrong by
 _TIE = 1e-4  # of the peak torque
 _EQUAL = 1e-7  # of the cycle time
 _MARGIN = 2e-7  # of a limit
@@ -172,7 +173,8 @@ class _Search:
             solution = self.programme.solve(aim, least)
             if solution is None:
                 break
-            converged = last is not None and abs(last.value - solution.value) <= _CONVERGED * abs(solution.value)
+            least_change = max(_CONVERGED * abs(solution.value), _NOTHING * self.programme.size_of(aim))
+            converged = last is not None and abs(last.value - solution.value) <= least_change
             last, reference = solution, solution.energies
             if converged:
                 break
