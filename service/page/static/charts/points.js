@@ -6,7 +6,8 @@ import { headed } from "../front/columns.js";
 import { nearest } from "./by_pointer.js";
 import { range, scale } from "./scale.js";
 
-const [WIDTH, HEIGHT] = [560, 340];
+/** Width and height that a picture has in its own units, unless told. @type {Page.Point} */
+const SIZE = [560, 340];
 const NEAR = 14; // pixels of the picture
 const AREA = { left: 76, right: 14, top: 12, bottom: 46 };
 /** @type {((x: number, y: number) => SVGElement)[]} */
@@ -24,8 +25,10 @@ const SHAPES = [
  * @param {{ points: Api.Row[string][][], name?: string }[]} series @param {Page.Heading} x @param {Page.Heading} y @param {string} label
  * @param {[Page.Range, Page.Range] | null} held
  * @param {{ at: (series: number | null, point: number) => void, open: (series: number, point: number) => void }} [handlers]
+ * @param {Page.Point} [size] width and height of the picture
  */
-export function points(series, x, y, label, held = null, handlers = undefined) {
+export function points(series, x, y, label, held = null, handlers = undefined, size = SIZE) {
+  const [width, height] = size;
   const drawn = series.map((one) => one.points.filter(isPoint));
   const places = drawn.flat();
   /** @param {0 | 1} index @param {Page.Heading} column @param {number} start @param {number} end */
@@ -34,13 +37,13 @@ export function points(series, x, y, label, held = null, handlers = undefined) {
     const { low, high } = held?.[index] ?? range(values);
     return scale(low, high, start, end);
   };
-  const across = axis(0, x, AREA.left, WIDTH - AREA.right);
-  const up = axis(1, y, HEIGHT - AREA.bottom, AREA.top);
-  const bottom = HEIGHT - AREA.bottom;
+  const across = axis(0, x, AREA.left, width - AREA.right);
+  const up = axis(1, y, height - AREA.bottom, AREA.top);
+  const bottom = height - AREA.bottom;
   const middle = (AREA.top + bottom) / 2;
   const picture = svg(
     "svg",
-    { class: "points", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": label },
+    { class: "points", viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": label },
     across.ticks.map((tick) => [
       svg("path", { class: "grid", d: `M${across.at(tick)} ${AREA.top}V${bottom}` }),
       svg(
@@ -50,15 +53,15 @@ export function points(series, x, y, label, held = null, handlers = undefined) {
       ),
     ]),
     up.ticks.map((tick) => [
-      svg("path", { class: "grid", d: `M${AREA.left} ${up.at(tick)}H${WIDTH - AREA.right}` }),
+      svg("path", { class: "grid", d: `M${AREA.left} ${up.at(tick)}H${width - AREA.right}` }),
       svg("text", { x: AREA.left - 7, y: up.at(tick) + 4, "text-anchor": "end" }, up.text(tick)),
     ]),
     svg(
       "text",
       {
         class: "title",
-        x: (AREA.left + WIDTH - AREA.right) / 2,
-        y: HEIGHT - 6,
+        x: (AREA.left + width - AREA.right) / 2,
+        y: height - 6,
         "text-anchor": "middle",
       },
       headed(x),
@@ -114,9 +117,10 @@ function pointed(picture, series, place, { at, open }) {
   /** @param {MouseEvent} event */
   const under = ({ clientX, clientY }) => {
     const box = picture.getBoundingClientRect();
+    const { width, height } = picture.viewBox.baseVal;
     const [x, y] = [
-      ((clientX - box.left) * WIDTH) / box.width,
-      ((clientY - box.top) * HEIGHT) / box.height,
+      ((clientX - box.left) * width) / box.width,
+      ((clientY - box.top) * height) / box.height,
     ];
     const found = nearest(
       all.length,

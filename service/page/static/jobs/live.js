@@ -83,27 +83,27 @@ export function watch(place, job, { signal, changed }) {
       why,
     ),
     h(
+      "section",
+      { class: "panel so-far", "aria-labelledby": "so-far-title" },
+      h("h2", { id: "so-far-title" }, "Front so far"),
+      pickers,
+      front,
+    ),
+    h(
       "div",
       { class: "growing" },
-      h(
-        "section",
-        { class: "panel", "aria-labelledby": "so-far-title" },
-        h("h2", { id: "so-far-title" }, "Front so far"),
-        pickers,
-        front,
-      ),
       h(
         "section",
         { class: "panel", "aria-labelledby": "history-title" },
         h("h2", { id: "history-title" }, "Hypervolume of the front"),
         curve,
       ),
-    ),
-    h(
-      "section",
-      { class: "panel", "aria-labelledby": "log-title" },
-      h("h2", { id: "log-title" }, "Log"),
-      log,
+      h(
+        "section",
+        { class: "panel", "aria-labelledby": "log-title" },
+        h("h2", { id: "log-title" }, "Log"),
+        log,
+      ),
     ),
   );
 
@@ -275,8 +275,16 @@ export function watch(place, job, { signal, changed }) {
         columns[axes.y],
         `The front so far: ${counted(frontPoints.length, "design")}`,
         [heldRange("x", 0), heldRange("y", 1)],
+        undefined,
+        sizeIn(front.clientWidth),
       ),
     );
+  }
+
+  /** Return the size of a picture that fills its place, and the screen in height. @param {number} width @returns {Page.Point} */
+  function sizeIn(width) {
+    const wide = Math.max(width, 560);
+    return [wide, Math.round(Math.max(340, Math.min(0.61 * wide, 0.52 * innerHeight)))];
   }
 
   /** @param {Api.Job} now */
