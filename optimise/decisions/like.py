@@ -23,7 +23,7 @@ from ...model.input_warning import warn_user
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage_values import in_both_units
 from ..front.dominance import dominating
-from ..front.front import ParetoFront, pair, require_front
+from ..front.front import ParetoFront, lower_and_upper, require_front
 from ..front.hypervolume import scaling
 from ..front.stationarity import STATIONARY
 from ..job.messages import key_of
@@ -110,7 +110,7 @@ def like(
                 f"a requirement for like must be a Constraint; got {item!r}; write it like "
                 'Constraint(quantity="time_ratio", lower=1.2)'
             )
-    ranges = {name: pair(name, ends) for name, ends in (ranges or {}).items()}
+    ranges = {name: lower_and_upper(name, ends) for name, ends in (ranges or {}).items()}
     front.part(row)  # refuses an unknown row
     ends = (np.array(ranges.get(name, ()), dtype=np.float64) for name in DIMENSIONS)
     if (doubt := in_both_units(ends)) is not None:

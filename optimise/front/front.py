@@ -261,7 +261,7 @@ class ParetoFront:
             raise InputError(f"a pick needs a front with designs; this one is empty: {self.message}")
         keep, ranges = np.ones(len(self), dtype=bool), []
         for column, ends in bounds.items():
-            least, greatest = pair(column, ends)
+            least, greatest = lower_and_upper(column, ends)
             values = self.columns[column] if column in self.columns else self._evaluate(column)
             if values.dtype.kind not in "fiu":
                 raise InputError(f"bounds may only be on numbers; got {column}, a column of words; see front.designs")
@@ -446,7 +446,7 @@ def _cheapest(slopes: Array, owner: Array, active: Array, b: int, m: int) -> Arr
     return solution[k : k + m]
 
 
-def pair(name: str, ends: object) -> tuple[float | None, float | None]:
+def lower_and_upper(name: str, ends: object) -> tuple[float | None, float | None]:
     """Return least and greatest value for a name, None for open. Raises `InputError` unless ends are such a pair."""
     bounds = tuple(ends) if isinstance(ends, tuple | list) else ()
     if len(bounds) != 2 or not all(end is None or (isinstance(end, Real) and not math.isnan(end)) for end in bounds):

@@ -85,7 +85,7 @@ def numbers() -> Numbers:
         "greatest_rod_angle": 90.0 - math.degrees(float(feeder.least_transmission_angle)),
         "rotating_mass": rotating,
         "reciprocating_mass": reciprocating,
-        **_torques(),
+        **_greatest_torques(),
     }
     ends = EXPERIMENT.at([math.pi, 0.0], speed=EXPERIMENT_SPEED).slider_acceleration
     series = series_acceleration(EXPERIMENT, [math.pi, 0.0], speed=EXPERIMENT_SPEED)
@@ -148,7 +148,7 @@ def formulas(t: float, e: float) -> dict[str, float]:
     }
 
 
-def _torques() -> dict[str, float]:
+def _greatest_torques() -> dict[str, float]:
     """Return greatest torques, N m: exact ones and those of the paper's formula."""
     torques: dict[str, float] = {}
     machine = Mechanism(speed=SPEED, slider_mass=masses()[1])  # as the paper: all mass that moves, on the slider
@@ -156,8 +156,10 @@ def _torques() -> dict[str, float]:
         name = f"{1e3 * offset:.0f}"
         designs = np.array([[CRANK, ROD, -offset]])
         torques[f"torque_{name}"] = float(find_peaks(machine, Signal.TORQUE, designs).values[0, 0])
-        torques[f"formula_s_{name}"] = _greatest(partial(formula_torque, offset), 0.0, _TURN)
-        torques[f"formula_20_{name}"] = _greatest(partial(formula_torque, offset, as_equation_20=True), 0.0, _TURN)
+        torques[f"formula_s_{name}"] = _greatest_magnitude(partial(formula_torque, offset), 0.0, _TURN)
+        torques[f"formula_20_{name}"] = _greatest_magnitude(
+            partial(formula_torque, offset, as_equation_20=True), 0.0, _TURN
+        )
     for offset in OFFSETS[1:]:
         inner, outer = (float(angle) for angle in linkage(offset).dead_centre_angles)
         strokes = {
@@ -165,11 +167,11 @@ def _torques() -> dict[str, float]:
             "return": (outer, outer + (inner - outer) % _TURN),
         }
         for stroke, ends in strokes.items():
-            torques[f"{stroke}_torque_{1e3 * offset:.0f}"] = _greatest(partial(exact_torque, offset), *ends)
+            torques[f"{stroke}_torque_{1e3 * offset:.0f}"] = _greatest_magnitude(partial(exact_torque, offset), *ends)
     return torques
 
 
-def _greatest(curve: Callable[[Array], Array], start: float, end: float) -> float:
+def _greatest_magnitude(curve: Callable[[Array], Array], start: float, end: float) -> float:
     """Return the greatest magnitude of a smooth curve over an interval: sampled, then refined between samples."""
     from scipy.optimize import minimize_scalar
 

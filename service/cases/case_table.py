@@ -41,9 +41,9 @@ def show_case(screen: Console, case: Case, *, full: bool) -> None:
         if rest:
             folded += len(cells)
             name = first.what.partition(" at ")[0]
-            rows.add_row(name, f"{len(cells)} rows", "", first.unit, f"{_counted(cells)}{note}")
+            rows.add_row(name, f"{len(cells)} rows", "", first.unit, f"{_verdicts_text(cells)}{note}")
         else:
-            exact = "-" if first.exact is None else _like(first)
+            exact = "-" if first.exact is None else _digits_as_printed(first)
             rows.add_row(first.what, first.printed or "-", exact, first.unit, f"{first.verdict}{note}")
     print_table(screen, rows)
     for index, reason in enumerate(reasons, start=1):
@@ -62,12 +62,12 @@ def counted(rows: Sequence[Row]) -> str:
 _PLURAL = {"agrees": "agree", "misprint": "misprints", "differs": "differ"}
 
 
-def _counted(rows: Sequence[Row]) -> str:
+def _verdicts_text(rows: Sequence[Row]) -> str:
     verdicts = {row.verdict for row in rows}
     return f"all {len(rows)}: {verdicts.pop()}" if len(verdicts) == 1 else counted(rows)
 
 
-def _like(row: Row) -> str:
+def _digits_as_printed(row: Row) -> str:
     """Return the exact value with three digits more than printed, nine without a printed value."""
     assert row.exact is not None
     digits = sum(character.isdigit() for character in (row.printed or "").partition("e")[0].lstrip("-+0."))

@@ -68,7 +68,7 @@ def read_case(number: int, numbers: Numbers) -> Case:
     """Return a case from its data file and the values by key."""
     text = files(__package__).joinpath("data", f"case_{number}.toml").read_text(encoding="utf-8")
     data = tomllib.loads(text)
-    rows = tuple(_row(entry, numbers) for entry in (*data["row"], *_table_rows(data)))
+    rows = tuple(_row_of_entry(entry, numbers) for entry in (*data["row"], *_table_rows(data)))
     return Case(number=number, title=data["title"], source=data["source"], given=data["given"], rows=rows)
 
 
@@ -96,7 +96,7 @@ def _table_rows(data: Mapping[str, Any]) -> list[dict[str, Any]]:
     ]
 
 
-def _row(entry: Mapping[str, Any], numbers: Numbers) -> Row:
+def _row_of_entry(entry: Mapping[str, Any], numbers: Numbers) -> Row:
     key, why = entry["key"], entry.get("why", "")
     exact, formula = numbers.exact.get(key), entry.get("formula", False)
     printed = f"{numbers.formulas[key]:.10g}" if formula else entry.get("printed")

@@ -90,16 +90,16 @@ def diagnose(address: str, runs: Path, *, named: bool = False) -> list[Check]:
     named: whether the address was specified; otherwise the store may be missing.
     """
     return [
-        *_store(address, named),
-        _writable("runs", runs),
+        *_check_store(address, named),
+        _check_writable("runs", runs),
         *([] if "://" in address else [_free_space("disk of the store", Path(address).parent)]),
         _free_space("disk of runs", runs),
         _check_compiled_model(),
-        _versions(),
+        _check_versions(),
     ]
 
 
-def _store(address: str, named: bool) -> Iterator[Check]:
+def _check_store(address: str, named: bool) -> Iterator[Check]:
     from ..store.address import file_of, has_content
     from ..store.database import Database
 
@@ -112,16 +112,16 @@ def _store(address: str, named: bool) -> Iterator[Check]:
             )
             fresh = f"no store at {file} yet; the first job creates it"
             yield Check("store", "problem", f"{text}docs/service.md") if named else Check("store", "ok", fresh)
-            yield _writable("place of the store", file.parent)
+            yield _check_writable("place of the store", file.parent)
             return
         with contextlib.closing(Database(address)) as database:
-            yield from () if file is None else _private(file)
-            yield from _database(address, database)
+            yield from () if file is None else _check_access(file)
+            yield from _check_database(address, database)
     except SlidercrankError as error:
         yield Check("store", "problem", str(error))
 
 
-def _private(file: Path) -> Iterator[Check]:
+def _check_access(file: Path) -> Iterator[Check]:
     """Check who may access the file of a store: it holds everything that a service's token protects."""
     from ..store.database import may_use, remedy_of_rights
 
@@ -133,7 +133,7 @@ def _private(file: Path) -> Iterator[Check]:
         yield Check("permissions", "note", text)
 
 
-def _database(address: str, database: Database) -> Iterator[Check]:
+def _check_database(address: str, database: Database) -> Iterator[Check]:
     from ..store.inspection import clock_ahead, damages, server_version
     from ..store.schema_version import strangers, versions
 
@@ -193,14 +193,14 @@ def _check_workers(address: str, now: float) -> Iterator[Check]:
     yield Check("leases", "note" if expired else "ok", text)
 
 
-def _existing(folder: Path) -> Path:
+def _nearest_existing(folder: Path) -> Path:
     """Return the folder, or its nearest existing parent."""
     return next((place for place in (folder, *folder.parents) if place.exists()), folder)
 
 
-def _writable(name: str, folder: Path) -> Check:
+def _check_writable(name: str, folder: Path) -> Check:
     try:
-        with tempfile.TemporaryFile(dir=_existing(folder)):
+        with tempfile.TemporaryFile(dir=_nearest_existing(folder)):
             pass
     except OSError as error:
         text = f"{folder} is not writable: {error.strerror or error}; change its permissions, or choose another folder"
@@ -209,7 +209,7 @@ def _writable(name: str, folder: Path) -> Check:
 
 
 def _free_space(name: str, folder: Path) -> Check:
-    free = shutil.disk_usage(_existing(folder.absolute())).free
+    free = shutil.disk_usage(_nearest_existing(folder.absolute())).free
     grade: Grade = "problem" if free < _LEAST_SPACE else "note" if free < _LITTLE_SPACE else "ok"
     remedy = "" if grade == "ok" else "; free some space: a full disk stops all writing"
     return Check(name, grade, f"{size_text(free)} free{remedy}")
@@ -228,7 +228,7 @@ def _check_compiled_model() -> Check:
     return Check("compiled model", grade, f"{text}; name a folder in NUMBA_CACHE_DIR")
 
 
-def _versions() -> Check:
+def _check_versions() -> Check:
     from importlib.metadata import PackageNotFoundError, version
 
     lines = [f"Python {platform.python_version()}"]

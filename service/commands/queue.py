@@ -60,7 +60,7 @@ def jobs(
     if json:
         print_output(json_text([job.record() for job in matching]))
     elif matching:
-        _show(console(), matching)
+        _show_jobs(console(), matching)
     else:
         print_message(
             f"slidercrank: no matching job in {printable_store_address(store)}"
@@ -98,14 +98,14 @@ def _print_job(job: Job, json: bool, state_text: str = "") -> None:
     print_output(json_text(job.record()) if json else f"job {job.id}: {job.name}, {text}\n")
 
 
-def _show(screen: Console, listed: list[Job]) -> None:
+def _show_jobs(screen: Console, listed: list[Job]) -> None:
     rows = table(">no.", "submitted", "job", "state", "progress or result", ruled=True, pad_edge=True)
     for column in rows.columns[:-1]:
         column.no_wrap = True
     for job in listed:
         submitted = time.strftime("%Y-%m-%d %H:%M", time.localtime(job.submitted))
         state = "stopping" if job.state == "running" and job.cancel_asked else job.state
-        rows.add_row(str(job.id), submitted, _short(job.name, 32), state, _short(_progress_or_result(job), 120))
+        rows.add_row(str(job.id), submitted, _shorten(job.name, 32), state, _shorten(_progress_or_result(job), 120))
     screen.print(rows)
 
 
@@ -124,6 +124,6 @@ def _progress_or_result(job: Job) -> str:
     return job.reason
 
 
-def _short(text: str, limit: int) -> str:
+def _shorten(text: str, limit: int) -> str:
     text = " ".join(text.split())
     return text if len(text) <= limit else f"{text[: limit - 3]}..."

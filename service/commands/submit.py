@@ -78,7 +78,7 @@ def submit(
             key=key,
             most_attempts=attempts,
             limits=limits,
-            source=_source(job),
+            source=_original_job(job),
             allowed_quantities=functions,
         )
         if not (watch and json):
@@ -113,7 +113,7 @@ def _print_worker_requirements(functions: Sequence[str], job: Path) -> None:
         )
 
 
-def _source(job: Path) -> Artefact | None:
+def _original_job(job: Path) -> Artefact | None:
     """Return the original job file; None if it names other files, which the job's tables contain."""
     from ...optimise.job import needed_files
     from ..store import Artefact
@@ -134,7 +134,7 @@ def _write_events(store: Store, job: Job, *, json: bool) -> int:
                     return EXIT_CODES["done"]
         ended = store.job(job.id)
         if not json:
-            _close(store, ended)
+            _write_front(store, ended)
     except KeyboardInterrupt:
         print_message(f"job {job.id} continues; stop it with: slidercrank cancel {job.id}")
         raise
@@ -205,7 +205,7 @@ def in_words(event: Event) -> str:
     return " ".join(str(text).split())
 
 
-def _close(store: Store, job: Job) -> None:
+def _write_front(store: Store, job: Job) -> None:
     """Write the front of an ended job, if there is one."""
     from ..text.tables import show_front
 

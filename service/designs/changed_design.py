@@ -92,11 +92,11 @@ def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Vari
         broken=unmet_columns(requirements_of(design.part), row)
         + (["slow_stroke"] if design.part.slow_stroke not in (None, row.get("slow_stroke")) else []),
         outside=unmet_columns(ranges_of(design.part), row),
-        **_dominance(result, row, minimised),
+        **_dominating_and_dominated(result, row, minimised),
     )
 
 
-def _dominance(result: Result, row: Row, minimised: Array) -> dict[str, list[int]]:
+def _dominating_and_dominated(result: Result, row: Row, minimised: Array) -> dict[str, list[int]]:
     """Return the positions of designs that dominate a row, and of those that it dominates."""
     from ...optimise.front.constant_numbers import column_ranges
 

@@ -55,19 +55,19 @@ def find_column(name: str, keys: Collection[str]) -> Column:
     sufficient = [other.removeprefix("choice_") for other in keys if other.startswith("choice_least_")]
     if any(plain.removeprefix("choice_").startswith(stem) for stem in sufficient):
         words = words.replace("least", "smallest sufficient", 1)
-    title = _titles().get(metric_key(key).removeprefix("slack_"), words)
+    title = _quantity_titles().get(metric_key(key).removeprefix("slack_"), words)
     return Column(
         key,
         f"slack of {title}" if slack else title,
         unit,
         factor,
         factor / split_unit(name)[2] if same is not None else None if unit else 1.0,
-        Group.DIMENSIONS if key in chosen_columns(keys) else _group(metric_key(key)),
+        Group.DIMENSIONS if key in chosen_columns(keys) else _group_of(metric_key(key)),
     )
 
 
 @functools.cache
-def _group(key: str) -> Group:
+def _group_of(key: str) -> Group:
     """Return the group that a metric column is shown in."""
     from ...objectives.peak_torque import PEAK_TORQUE
     from ...objectives.quantity import Group
@@ -85,12 +85,14 @@ def chosen_columns(keys: Iterable[str]) -> list[str]:
     """Return the columns of choices besides the dimensions: those between the offset and the quantities."""
     from_offset = itertools.dropwhile(lambda key: metric_key(key) != "offset_mm", keys)
     return list(
-        itertools.takewhile(lambda key: metric_key(key) not in _titles(), itertools.islice(from_offset, 1, None))
+        itertools.takewhile(
+            lambda key: metric_key(key) not in _quantity_titles(), itertools.islice(from_offset, 1, None)
+        )
     )
 
 
 @functools.cache
-def _titles() -> dict[str, str]:
+def _quantity_titles() -> dict[str, str]:
     """Return the titles of the columns of quantities, by their keys."""
     from ...objectives.registry import FACTS
 
@@ -115,7 +117,7 @@ def _key_of_name(name: str, keys: Collection[str]) -> str:
     if name in names:
         return names[name]
     # The key of a custom quantity has its unit after its name.
-    longer = [key for key in keys if name and key.startswith(f"{name}_") and metric_key(key) not in _titles()]
+    longer = [key for key in keys if name and key.startswith(f"{name}_") and metric_key(key) not in _quantity_titles()]
     if len(longer) == 1:
         return longer[0]
 

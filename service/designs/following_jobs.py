@@ -58,7 +58,7 @@ def active_limits(problem: Problem, result: Result, tables: Mapping[str, Any]) -
     Values that the job fixes, or requires exactly, are not limits: every design lies on them.
     """
     variants = range(max(1, len(problem.variants)))
-    limits = {variant: _limits(problem.part(variant), tables) for variant in variants}
+    limits = {variant: _limits_of(problem.part(variant), tables) for variant in variants}
     variants_of_designs = (
         (result.exact.variants if result.exact is not None else ()) if problem.variants else (0,) * len(result.designs)
     )
@@ -82,7 +82,7 @@ def widen_limits(
 
     Raises `InputError` for a limit that the job does not have, or that a number cannot replace.
     """
-    limits = {(limit.of, limit.side): limit for part in problem.parts() for limit in _limits(part, tables)}
+    limits = {(limit.of, limit.side): limit for part in problem.parts() for limit in _limits_of(part, tables)}
     job = deepcopy(dict(tables))
     changes = []
     for limit_path, side, value in new_values:
@@ -103,7 +103,7 @@ def widen_limits(
         text: str | float = f"{value:.12g} {limit.unit}" if limit.unit else value
         table, _, path = limit_path.partition(".")
         if table == "variables":
-            holder, key = _place(job[table], path)
+            holder, key = _table_and_key(job[table], path)
             holder[key] = [text, holder[key][1]] if side == "lower" else [holder[key][0], text]
         else:
             job.setdefault(table, {}).setdefault(path, {})["min" if side == "lower" else "max"] = text
@@ -111,13 +111,13 @@ def widen_limits(
     return _renamed(job, ", ".join(changes))
 
 
-def _limits(part: Problem, tables: Mapping[str, Any]) -> list[Limit]:
+def _limits_of(part: Problem, tables: Mapping[str, Any]) -> list[Limit]:
     """Return every limit of a problem without choices."""
     limits = []
-    for path, column, title, unit, low, high in _ranges(part):
+    for path, column, title, unit, low, high in _variable_ranges(part):
         if low == high:
             continue
-        holder, key = _place(tables.get("variables", {}), path)
+        holder, key = _table_and_key(tables.get("variables", {}), path)
         stated_range = holder.get(key)
         range_fields: dict[str, Any] = {
             "of": f"variables.{path}",
@@ -126,11 +126,11 @@ def _limits(part: Problem, tables: Mapping[str, Any]) -> list[Limit]:
             "unit": unit,
             "size": high - low,
         }
-        for side, value in _sides(low, high):
+        for side, value in _stated_sides(low, high):
             step = _WIDER * (high - low)
             if side == "lower" and value > 0.0:
                 step = min(step, _WIDER * value)  # a length stays one
-            wider = _round(value - step if side == "lower" else value + step, step)
+            wider = _round_to_step(value - step if side == "lower" else value + step, step)
             changed = wider if isinstance(stated_range, list | tuple) and len(stated_range) == 2 else None
             limits.append(Limit(side=side, value=value, wider=changed, **range_fields))
     for item in requirements_of(part):
@@ -138,9 +138,11 @@ def _limits(part: Problem, tables: Mapping[str, Any]) -> list[Limit]:
             continue
         stated = isinstance(tables.get("constraints", {}).get(item.quantity, {}), Mapping)
         named: dict[str, Any] = {"column": item.column, "title": item.title, "unit": item.unit}
-        for side, bound in _sides(item.lower, item.upper):
+        for side, bound in _stated_sides(item.lower, item.upper):
             step = _FURTHER * abs(bound)
-            changed = _round(bound - step if side == "lower" else bound + step, step) if stated and step else None
+            changed = (
+                _round_to_step(bound - step if side == "lower" else bound + step, step) if stated and step else None
+            )
             limits.append(
                 Limit(
                     of=f"constraints.{item.quantity}",
@@ -154,7 +156,7 @@ def _limits(part: Problem, tables: Mapping[str, Any]) -> list[Limit]:
     return limits
 
 
-def _ranges(part: Problem) -> list[tuple[str, str, str, str, float, float]]:
+def _variable_ranges(part: Problem) -> list[tuple[str, str, str, str, float, float]]:
     """Return the variables: place in [variables], column, title, unit, and both ends in that unit."""
     ranges = [(name, f"{name}_mm", name, "mm", getattr(part, name), 1e3) for name in DIMENSIONS]
     for item in part.mechanism.varying:
@@ -163,12 +165,12 @@ def _ranges(part: Problem) -> list[tuple[str, str, str, str, float, float]]:
     return [(path, *words, factor * ends.lower, factor * ends.upper) for path, *words, ends, factor in ranges]
 
 
-def _sides(lower: float | None, upper: float | None) -> list[tuple[Side, float]]:
+def _stated_sides(lower: float | None, upper: float | None) -> list[tuple[Side, float]]:
     ends: tuple[tuple[Side, float | None], ...] = (("lower", lower), ("upper", upper))
     return [(side, bound) for side, bound in ends if bound is not None]
 
 
-def _place(table: Any, path: str) -> tuple[Any, str]:
+def _table_and_key(table: Any, path: str) -> tuple[Any, str]:
     """Return the table that a path leads to, and the key there; a key may be in quotes."""
     while path not in table and "." in path:
         step, _, rest = path.partition(".")
@@ -176,7 +178,7 @@ def _place(table: Any, path: str) -> tuple[Any, str]:
     return table, path
 
 
-def _round(value: float, step: float) -> float:
+def _round_to_step(value: float, step: float) -> float:
     """Return a value rounded to half of the first digit of a step."""
     digit = 0.5 * 10.0 ** math.floor(math.log10(step))
     return float(f"{digit * round(value / digit):.12g}")

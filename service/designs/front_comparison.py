@@ -29,14 +29,15 @@ def comparison_sentences(names: Sequence[str], results: Sequence[Result], system
     names: names of the runs. results: results with designs. Only objectives that all runs share, in the same sense, are
     compared.
     """
-    shared = _shared(results)
+    shared = _shared_objectives(results)
     if not shared:
         return ["The runs share no objective, so they cannot be ranked"]
-    fronts = [_values(result, shared) for result in results]
+    fronts = [_minimised_shared(result, shared) for result in results]
     span = np.ptp(np.concatenate(fronts), axis=0)
     span[span == 0.0] = 1.0
     sentences = [
-        _best(names, results, objective, index, fronts, span, system) for index, objective in enumerate(shared)
+        _best_front_text(names, results, objective, index, fronts, span, system)
+        for index, objective in enumerate(shared)
     ]
     for a in range(len(names)):
         for b in range(len(names)):
@@ -47,19 +48,19 @@ def comparison_sentences(names: Sequence[str], results: Sequence[Result], system
     return sentences
 
 
-def _shared(results: Sequence[Result]) -> list[StoredObjective]:
+def _shared_objectives(results: Sequence[Result]) -> list[StoredObjective]:
     kinds = [{(item.quantity, item.sense, item.target): item for item in result.objectives} for result in results]
     return [item for key, item in kinds[0].items() if all(key in objectives for objectives in kinds[1:])]
 
 
-def _values(result: Result, shared: Sequence[StoredObjective]) -> Array:
+def _minimised_shared(result: Result, shared: Sequence[StoredObjective]) -> Array:
     """Return the shared objectives of a result (n, m), as they are minimised; infinite if undefined."""
     order = [item.quantity for item in result.objectives]
     values = minimised_values(result)[:, [order.index(item.quantity) for item in shared]]
     return np.asarray(np.where(np.isfinite(values), values, np.inf))
 
 
-def _best(
+def _best_front_text(
     names: Sequence[str],
     results: Sequence[Result],
     objective: StoredObjective,

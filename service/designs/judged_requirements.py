@@ -39,7 +39,7 @@ class Requirement:
 
     def missed_by(self, row: Row) -> float | None:
         """Return the amount by which a design misses it, zero if met; None for a design without the number."""
-        value = _number(row.get(self.column))
+        value = _number_or_none(row.get(self.column))
         if value is None:
             return None
         shortfall = 0.0 if self.lower is None else self.lower - value
@@ -137,16 +137,21 @@ def judge_rules(problem: Problem, row: Row, system: System = "metric") -> list[J
     lengths = ([rule for rule in ranges_of(part) if rule.quantity in DIMENSIONS] for part in problem.parts())
     alternatives = zip(*lengths, strict=True)  # of several, where it is chosen
     ranges = [min(same_length, key=lambda rule: rule.missed_by(row) or 0.0) for same_length in alternatives]
-    return [_judged(rule, row, system) for rule in (*ranges, *requirements_of(problem))]
+    return [_judge_rule(rule, row, system) for rule in (*ranges, *requirements_of(problem))]
 
 
-def _number(cell: Cell) -> float | None:
+def _number_or_none(cell: Cell) -> float | None:
     return float(cell) if isinstance(cell, int | float) and not math.isnan(cell) else None
 
 
-def _judged(rule: Requirement, row: Row, system: System) -> JudgedRule:
+def _judge_rule(rule: Requirement, row: Row, system: System) -> JudgedRule:
     missed = rule.missed_by(row)
     unit, factor = metric_unit_in(rule.unit, system)
-    numbers = {"lower": rule.lower, "upper": rule.upper, "value": _number(row.get(rule.column)), "missed_by": missed}
+    numbers = {
+        "lower": rule.lower,
+        "upper": rule.upper,
+        "value": _number_or_none(row.get(rule.column)),
+        "missed_by": missed,
+    }
     converted = {name: None if item is None else item * factor for name, item in numbers.items()}
     return JudgedRule(quantity=rule.quantity, title=rule.title, unit=unit, met=missed == 0.0, **converted)

@@ -35,7 +35,7 @@ class RowFormula:
 
     def evaluate(self, row: Row) -> float:
         """Return its value at a design, SI; NaN if undefined, such as a division by zero."""
-        leaves = {name: Values(_si(row, column), None) for name, column in self.columns}
+        leaves = {name: Values(_si_values(row, column), None) for name, column in self.columns}
         with np.errstate(all="ignore"):
             value = float(fold(self.node, Slopes(leaves, 1, 0, False)).values[0])
         endless = any(np.isinf(leaf.values[0]) for leaf in leaves.values())
@@ -55,7 +55,7 @@ def find_formula(text: str, keys: Collection[str]) -> Column | RowFormula:
             return replace(
                 stored_column, plain=None if stored_column.unit else 1.0
             )  # it was called by a name without its unit
-    columns = {name: _column(name, keys) for name in names_in(node)}
+    columns = {name: _column_of_name(name, keys) for name in names_in(node)}
     if not columns:
         raise InputError(
             f"a formula must contain a quantity or a column; got {written}, which is the same for every design; write "
@@ -67,7 +67,7 @@ def find_formula(text: str, keys: Collection[str]) -> Column | RowFormula:
     return RowFormula(written, node, tuple(columns.items()), kind_of_formula(node, kinds))
 
 
-def _column(name: str, keys: Collection[str]) -> Column:
+def _column_of_name(name: str, keys: Collection[str]) -> Column:
     """Return the column of a name in a formula; an extra variable may also be named by its path."""
     if "." not in name:
         return find_column(name, keys)
@@ -77,7 +77,7 @@ def _column(name: str, keys: Collection[str]) -> Column:
     return find_column(plain, keys)
 
 
-def _si(row: Row, column: Column) -> Array:
+def _si_values(row: Row, column: Column) -> Array:
     cell = row[column.key]
     if isinstance(cell, str):
         raise InputError(f"a formula may only contain numbers; got {column.key}, a column of words; leave it out")

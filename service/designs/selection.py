@@ -80,14 +80,14 @@ def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition
     _require_order(text, name, comparison, value)
     column, formula = _column_and_formula(name, keys)
     if formula is not None:
-        return Condition(column, comparison, _number(match, column), formula)
+        return Condition(column, comparison, _number_in_unit(match, column), formula)
     if isinstance(example[column.key], str):
         if comparison not in ("==", "!="):
             raise InputError(
                 f"{column.key} is a column of words and may only be compared with = or !=; got {comparison}"
             )
         return Condition(column, comparison, value.strip("\"'"))
-    return Condition(column, comparison, _number(match, column))
+    return Condition(column, comparison, _number_in_unit(match, column))
 
 
 def _require_order(text: str, name: str, comparison: str, value: str) -> None:
@@ -141,7 +141,7 @@ def parse_value(key: str, value: object, kind: Kind, *, sign: Any = "any") -> fl
         raise InputError(f"{key} {error}") from None
 
 
-def _number(match: re.Match[str], column: Column) -> float:
+def _number_in_unit(match: re.Match[str], column: Column) -> float:
     """Return the value in the column's unit; a missing unit is allowed only if the column's name has it."""
     from ...objectives.catalogue_amount import kind_of_amount
     from ...objectives.formula.formulas import is_formula
@@ -228,11 +228,11 @@ def no_match_message(result: Result, texts: Collection[str]) -> str:
     rows = result.designs
     conditions = " and ".join(text.strip() for text in texts)
     parsed = (parse_condition(text, list(rows[0]), rows[0]) for text in texts if rows)
-    reasons = dict.fromkeys(reason for condition in parsed if (reason := _never(condition, rows)))
+    reasons = dict.fromkeys(reason for condition in parsed if (reason := _why_never(condition, rows)))
     return "; ".join((f"none of the {counted(len(rows), 'design')} meets {conditions}", *reasons))
 
 
-def _never(condition: Condition, rows: Sequence[Row]) -> str | None:
+def _why_never(condition: Condition, rows: Sequence[Row]) -> str | None:
     """Return why a condition cannot hold for any design, whatever its value; None if another value may help."""
     name, cells = condition.column.key, [condition.cell(row) for row in rows]
     if all(order_key(cell)[0] for cell in cells):

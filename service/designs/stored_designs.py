@@ -54,8 +54,8 @@ def design_of(problem: Problem, row: Row) -> StoredDesign:
 
     Raises `RunError` for a row that does not belong to the problem.
     """
-    values = _values(row, _factors(problem.mechanism))
-    variant = _variant(problem, row, values)
+    values = _variable_values(row, _variable_factors(problem.mechanism))
+    variant = _matching_variant(problem, row, values)
     return StoredDesign(problem.part(variant), values, variant)
 
 
@@ -74,7 +74,7 @@ def front_of(problem: Problem, result: Result) -> ParetoFront:
     from .choice_options import minimised_values
 
     rows = [{name: math.nan if cell is None else cell for name, cell in row.items()} for row in result.designs]
-    exact = result.exact or _reconstructed(problem, result.designs)
+    exact = result.exact or _reconstruct_designs(problem, result.designs)
     factors = np.array([problem.quantity(objective.quantity).unit.factor for objective in result.objectives])
     return ParetoFront(
         problem=problem,
@@ -94,11 +94,11 @@ def front_of(problem: Problem, result: Result) -> ParetoFront:
     )
 
 
-def _reconstructed(problem: Problem, rows: Sequence[Row]) -> Exact:
+def _reconstruct_designs(problem: Problem, rows: Sequence[Row]) -> Exact:
     """Reconstruct the designs from their shown rows: everything but slopes, which have no piece and no unknown."""
-    sizes = _factors(problem.mechanism)
-    dimensions = [_values(row, sizes) for row in rows]
-    variants = [_variant(problem, *row_and_values) for row_and_values in zip(rows, dimensions, strict=True)]
+    sizes = _variable_factors(problem.mechanism)
+    dimensions = [_variable_values(row, sizes) for row in rows]
+    variants = [_matching_variant(problem, *row_and_values) for row_and_values in zip(rows, dimensions, strict=True)]
     nothing = np.zeros((0, 0))
     return Exact(
         np.array(dimensions).reshape(len(dimensions), len(sizes)),
@@ -108,18 +108,18 @@ def _reconstructed(problem: Problem, rows: Sequence[Row]) -> Exact:
     )
 
 
-def _variant(problem: Problem, row: Row, values: Sequence[float]) -> int:
+def _matching_variant(problem: Problem, row: Row, values: Sequence[float]) -> int:
     """Return the index of the variant with a design's labels; if several match, the one whose ranges fit best."""
     if not problem.variants:
         return 0
     labels = tuple(_cell(row, choice_field(name)) for name in problem.choices)
     matching = [index for index, variant in enumerate(problem.variants) if variant.labels == labels]
     if not matching:
-        raise _foreign(f"its job has nothing called {' with '.join(map(str, labels))}")
-    return min(matching, key=lambda index: _outside(problem.variants[index], values))
+        raise _foreign_run_error(f"its job has nothing called {' with '.join(map(str, labels))}")
+    return min(matching, key=lambda index: _distance_outside(problem.variants[index], values))
 
 
-def _outside(variant: Variant, values: Sequence[float]) -> float:
+def _distance_outside(variant: Variant, values: Sequence[float]) -> float:
     """Return how far values lie outside the ranges of a variant, as a fraction of each range."""
     ranges: tuple[Range | Varying, ...] = (variant.crank, variant.rod, variant.offset, *variant.mechanism.varying)
     return max(
@@ -128,13 +128,13 @@ def _outside(variant: Variant, values: Sequence[float]) -> float:
     )
 
 
-def _factors(mechanism: Mechanism) -> dict[str, float]:
+def _variable_factors(mechanism: Mechanism) -> dict[str, float]:
     """Return the columns of a design's variables, each with the factor from SI to its unit."""
     varying = (varying_column(item) for item in mechanism.varying)
     return {**_MILLIMETRES, **{key: unit.factor for key, unit in varying}}
 
 
-def _values(row: Row, factors: Mapping[str, float]) -> tuple[float, ...]:
+def _variable_values(row: Row, factors: Mapping[str, float]) -> tuple[float, ...]:
     return tuple(_si(row, key, factor) for key, factor in factors.items())
 
 
@@ -142,7 +142,7 @@ def _si(row: Row, key: str, factor: float) -> float:
     """Return the number whose product with the factor is exactly the shown value."""
     displayed = _cell(row, key)
     if not isinstance(displayed, float) or not math.isfinite(displayed):
-        raise _foreign(f"its {key} is {displayed}")
+        raise _foreign_run_error(f"its {key} is {displayed}")
     value = displayed / factor
     near = (value, math.nextafter(value, -math.inf), math.nextafter(value, math.inf))
     return next((item for item in near if factor * item == displayed), value)
@@ -150,9 +150,9 @@ def _si(row: Row, key: str, factor: float) -> float:
 
 def _cell(row: Mapping[str, Cell], key: str) -> Cell:
     if key not in row:
-        raise _foreign(f"it has no column {key}")
+        raise _foreign_run_error(f"it has no column {key}")
     return row[key]
 
 
-def _foreign(why: str) -> RunError:
+def _foreign_run_error(why: str) -> RunError:
     return RunError(f"a stored design must match its job; {why}; run the job again")

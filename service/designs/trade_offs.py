@@ -44,7 +44,7 @@ def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: Sy
         return front.trade_offs(row, system)
     values = np.array(design.values)
     for branch in elimination_branches(design.part):
-        point = _point(branch, values)
+        point = _unit_box_point(branch, values)
         if point is None:
             continue
         span = scaling(front.values)[1]
@@ -59,7 +59,7 @@ def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: Sy
     )
 
 
-def _point(branch: EliminationBranch, values: Array) -> Array | None:
+def _unit_box_point(branch: EliminationBranch, values: Array) -> Array | None:
     """Return the point of the unit box for a design, None if no point of the branch gives it."""
     if values[2] * branch.sign < 0.0:
         return None

@@ -31,7 +31,7 @@ def violated_by(mechanism: Mechanism, row: Row) -> dict[str, float]:
 
 def violations_in_words(violated: Mapping[str, float], row: Row) -> list[str]:
     """Return a sentence on each allowable value that a design violates. Row and sentences share a system of units."""
-    return [_sentence(key, row, excess, "is") for key, excess in violated.items()]
+    return [_violation_sentence(key, row, excess, "is") for key, excess in violated.items()]
 
 
 def front_violations_in_words(result: Result) -> list[str]:
@@ -41,11 +41,11 @@ def front_violations_in_words(result: Result) -> list[str]:
         worst = max(range(count), key=violated.__getitem__)
         broken = sum(excess > 0.0 for excess in violated)
         verb = f"in {broken} of {count} designs, at worst" if count > 1 else "is"
-        sentences.append(_sentence(key, result.designs[worst], violated[worst], verb))
+        sentences.append(_violation_sentence(key, result.designs[worst], violated[worst], verb))
     return sentences
 
 
-def _sentence(key: str, row: Row, excess: float, verb: str) -> str:
+def _violation_sentence(key: str, row: Row, excess: float, verb: str) -> str:
     """Return a violated allowable value in words: "shear of the crank pin is 642 MPa, 440 MPa more than ..."."""
     from ...objectives.registry import QUANTITIES
 

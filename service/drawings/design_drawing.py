@@ -128,7 +128,7 @@ def _swing_dimensions(
     drawn: SwingLook, angle: float, pin: Point, slider: Point, letters: Lettering, tolerances: Mapping[str, float]
 ) -> list[Shape]:
     """Return the skeleton and the dimension lines of a swing: the travel lies outside, the angle within."""
-    look, swing, height, bend = drawn.look, drawn.swing, letters.height, _bend(pin, slider)
+    look, swing, height, bend = drawn.look, drawn.swing, letters.height, _outer_side(pin, slider)
     left, low, _, high = drawn.extent
     through = (look.inner[0], low - 3.0 * height if drawn.bearing_below else high + 3.0 * height)
     travel = dimension("travel", look.inner, look.outer, through, 0.0, look=letters)
@@ -157,7 +157,7 @@ def _dimensions(
 
     left: left end of the drawing. body: outer edge of a body on the crank, on the side of the crank's dimension.
     """
-    height, bend = letters.height, _bend(pin, slider)
+    height, bend = letters.height, _outer_side(pin, slider)
     crank_side, rod_side = max(0.5 * look.crank_width, body) + 2.2 * height, 0.5 * look.rod_width + 2.2 * height
     crank, rod, offset = (tolerances.get(name, 0.0) for name in DIMENSIONS)
     shapes: list[Shape] = [
@@ -173,7 +173,7 @@ def _dimensions(
     return shapes
 
 
-def _bend(pin: Point, slider: Point) -> float:
+def _outer_side(pin: Point, slider: Point) -> float:
     """Return the side of crank and rod, 1 for the left, that is outside of the bend between them."""
     return -1.0 if pin[0] * (slider[1] - pin[1]) - pin[1] * (slider[0] - pin[0]) > 0.0 else 1.0
 

@@ -57,7 +57,7 @@ def document(drawing: Drawing) -> Document:
     _dimension_style(dxf, drawing)
     space = dxf.modelspace()
     for shape in drawing.shapes:
-        _add(dxf, space, shape)
+        _add_shape(dxf, space, shape)
     space.reset_extents((left, bottom, 0.0), (right, top, 0.0))
     space.reset_limits((left, bottom), (right, top))
     height = 1.05 * max(top - bottom, 0.6 * (right - left))
@@ -78,7 +78,7 @@ def _dimension_style(document: Document, drawing: Drawing) -> None:
     document.dimstyles.new(_STYLE, dxfattribs=values)
 
 
-def _add(document: Document, space: BaseLayout, shape: Shape) -> None:
+def _add_shape(document: Document, space: BaseLayout, shape: Shape) -> None:
     attributes: dict[str, Any] = {"layer": shape.layer.name}
     if isinstance(shape, Line):
         space.add_line(shape.start, shape.end, dxfattribs=attributes)
@@ -92,12 +92,12 @@ def _add(document: Document, space: BaseLayout, shape: Shape) -> None:
     elif isinstance(shape, Wedge):
         space.add_solid(shape.corners, dxfattribs=attributes)
     elif isinstance(shape, Label):
-        _label(space, shape, attributes)
+        _add_label(space, shape, attributes)
     else:
-        _dimension(document, space, shape, attributes)
+        _add_dimension(document, space, shape, attributes)
 
 
-def _label(space: BaseLayout, shape: Label, attributes: dict[str, Any]) -> None:
+def _add_label(space: BaseLayout, shape: Label, attributes: dict[str, Any]) -> None:
     # Without characters that would end its line or be taken for a code.
     plain = " ".join(shape.text.replace("%%", "% %").split()).replace("^", "^ ")
     text = space.add_text(plain, height=shape.height, rotation=shape.angle, dxfattribs=attributes)
@@ -106,11 +106,11 @@ def _label(space: BaseLayout, shape: Label, attributes: dict[str, Any]) -> None:
         text.dxf.halign, text.dxf.align_point = _ANCHORS[shape.anchor], shape.position
 
 
-def _dimension(document: Document, space: BaseLayout, shape: Dimension, attributes: dict[str, Any]) -> None:
+def _add_dimension(document: Document, space: BaseLayout, shape: Dimension, attributes: dict[str, Any]) -> None:
     """Add a dimension with the picture drawn here: that of ezdxf needs the fonts of the machine."""
     block = document.blocks.new_anonymous_block(type_char="D")
     for part in shape.parts:
-        _add(document, block, part)
+        _add_shape(document, block, part)
     label = next(part for part in shape.parts if isinstance(part, Label))
     styled = space.add_linear_dim(
         base=shape.through,
@@ -118,7 +118,7 @@ def _dimension(document: Document, space: BaseLayout, shape: Dimension, attribut
         p2=shape.end,
         angle=shape.angle,
         dimstyle=_STYLE,
-        override=_deviations(shape),
+        override=_tolerance_settings(shape),
         dxfattribs=attributes,
     )
     styled.commit()
@@ -128,7 +128,7 @@ def _dimension(document: Document, space: BaseLayout, shape: Dimension, attribut
     entity.dxf.actual_measurement = shape.length
 
 
-def _deviations(shape: Dimension) -> dict[str, Any]:
+def _tolerance_settings(shape: Dimension) -> dict[str, Any]:
     """Return the settings by which CAD writes a tolerance as it is written here."""
     if not shape.tolerance:
         return {}

@@ -154,11 +154,11 @@ def fixed_shapes(linkage: Linkage, look: Look, *, bearing_below: bool) -> list[S
         pin = (look.crank * math.cos(angle), look.crank * math.sin(angle))
         ghosts += link_shapes((layer,) * 3, pin, end, look)
         ghosts += [Circle(layer, point, 0.6 * look.pin) for point in (pin, end)]
-    walls = [line for barrel in look.barrels for line in _barrel(barrel, look.offset)]
+    walls = [line for barrel in look.barrels for line in _barrel_shapes(barrel, look.offset)]
     return [*axes(look), *paths, *ghosts, *rails(look), *bearing(look, is_below=bearing_below), *walls]
 
 
-def _barrel(barrel: Barrel, offset: float) -> list[Shape]:
+def _barrel_shapes(barrel: Barrel, offset: float) -> list[Shape]:
     """Return bore and head of a cylinder."""
     low, high = offset - 0.5 * barrel.bore, offset + 0.5 * barrel.bore
     corners = ((barrel.foot, low), (barrel.head, low), (barrel.head, high), (barrel.foot, high))

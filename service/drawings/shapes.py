@@ -161,7 +161,7 @@ def _extreme_points(shape: Shape) -> Iterable[Point]:
     if isinstance(shape, Arc):
         return shape.points
     if isinstance(shape, Outline):
-        return [point for side in pairs(shape) for point in _ends(*side)]
+        return [point for side in pairs(shape) for point in _box_corners(*side)]
     if isinstance(shape, Wedge):
         return shape.corners
     if isinstance(shape, Dimension):
@@ -178,7 +178,7 @@ def _extreme_points(shape: Shape) -> Iterable[Point]:
     ]
 
 
-def _ends(start: Point, end: Point, bulge: float) -> tuple[Point, ...]:
+def _box_corners(start: Point, end: Point, bulge: float) -> tuple[Point, ...]:
     """Return corners of a box around a side; for an arc, the box of its semicircle or less."""
     if not bulge:
         return start, end

@@ -62,41 +62,41 @@ def group(layer: Layer, size: float) -> str:
 def elements(shape: Shape) -> list[str]:
     """Return the elements that show a shape."""
     if isinstance(shape, Line):
-        return [f'<path d="M{_point(shape.start)}L{_point(shape.end)}"/>']
+        return [f'<path d="M{_point_text(shape.start)}L{_point_text(shape.end)}"/>']
     if isinstance(shape, Circle):
         x, y = shape.centre
         return [f'<circle cx="{_number(x)}" cy="{_number(-y)}" r="{_number(shape.radius)}"/>']
     if isinstance(shape, Arc):
         # Counter-clockwise here, where y points downward, is opposite to the flag.
-        start, end = _point(shape.point_at(shape.start)), _point(shape.point_at(shape.end))
+        start, end = _point_text(shape.point_at(shape.start)), _point_text(shape.point_at(shape.end))
         radius, large = _number(shape.radius), int(shape.end - shape.start > 180.0)
         return [f'<path d="M{start}A{radius} {radius} 0 {large} 0 {end}"/>']
     if isinstance(shape, Outline):
-        return [f'<path d="{_outline(shape)}"/>']
+        return [f'<path d="{_outline_svg(shape)}"/>']
     if isinstance(shape, Wedge):
-        corners = "L".join(_point(corner) for corner in shape.corners)
+        corners = "L".join(_point_text(corner) for corner in shape.corners)
         return [f'<path d="M{corners}Z" fill="{shape.layer.ink}" stroke="none"/>']
     if isinstance(shape, Label):
-        return [_label(shape)]
+        return [_label_svg(shape)]
     if isinstance(shape, Dimension):
         inner = [f"  {line}" for part in shape.parts for line in elements(part)]
         return [f'<g id="{shape.name}">', *inner, "</g>"]
     raise AssertionError(shape)
 
 
-def _outline(shape: Outline) -> str:
-    parts = [f"M{_point(shape.corners[0])}"]
+def _outline_svg(shape: Outline) -> str:
+    parts = [f"M{_point_text(shape.corners[0])}"]
     for start, end, bulge in pairs(shape):
         if not bulge:
-            parts.append(f"L{_point(end)}")
+            parts.append(f"L{_point_text(end)}")
             continue
         # The angle of an arc is 4 atan(bulge); y points downward here, so that left becomes right.
         radius = 0.5 * math.dist(start, end) / math.sin(2.0 * math.atan(abs(bulge)))
-        parts.append(f"A{_number(radius)} {_number(radius)} 0 0 {int(bulge < 0.0)} {_point(end)}")
+        parts.append(f"A{_number(radius)} {_number(radius)} 0 0 {int(bulge < 0.0)} {_point_text(end)}")
     return "".join(parts) + "Z"
 
 
-def _label(shape: Label) -> str:
+def _label_svg(shape: Label) -> str:
     x, y = _number(shape.position[0]), _number(-shape.position[1])
     turned = f' transform="rotate({_number(-shape.angle)} {x} {y})"' if shape.angle else ""
     # Capitals are 0.716 of the size of the font.
@@ -107,7 +107,7 @@ def _label(shape: Label) -> str:
     )
 
 
-def _point(point: Point) -> str:
+def _point_text(point: Point) -> str:
     return f"{_number(point[0])},{_number(-point[1])}"
 
 

@@ -68,14 +68,14 @@ def swing_look(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingLoo
     turning = [dead_angle for dead in dead_points(checked) for dead_angle in swing.occurrences(dead)]
     ways = [pin_positions(checked, angle)[1][0] for angle in (swing.start, swing.end, *turning)]
     slider_range = (min(ways), max(ways))
-    body = _body(mechanism, checked)
-    swept = _swept(checked, swing, body)
+    body = _body_centre(mechanism, checked)
+    swept = _swept_box(checked, swing, body)
     look = look_between(mechanism, checked, (ways[0], ways[1]), slider_range, swept)
-    cylinder = _cylinder(look) if swing.driver == "slider" else None
+    cylinder = _fitting_cylinder(look) if swing.driver == "slider" else None
     return SwingLook(checked, swing, look, cylinder, body)
 
 
-def _body(mechanism: Mechanism, linkage: Linkage) -> Point | None:
+def _body_centre(mechanism: Mechanism, linkage: Linkage) -> Point | None:
     crank = mechanism.crank
     if isinstance(crank, Bar) or not crank.mass:
         return None
@@ -88,7 +88,7 @@ def half_body(look: Look) -> float:
     return _BODY * look.crank
 
 
-def _swept(linkage: Linkage, swing: Swing, body: Point | None) -> tuple[float, float, float, float]:
+def _swept_box(linkage: Linkage, swing: Swing, body: Point | None) -> tuple[float, float, float, float]:
     """Return the box around the paths of the crank and its body, mm."""
     r = _MM * float(linkage.crank)
     angles = np.linspace(swing.start, swing.end, 181)
@@ -105,7 +105,7 @@ def _swept(linkage: Linkage, swing: Swing, body: Point | None) -> tuple[float, f
     return float(every[0].min()), float(every[1].min()), float(every[0].max()), float(every[1].max())
 
 
-def _cylinder(look: Look) -> Cylinder:
+def _fitting_cylinder(look: Look) -> Cylinder:
     """Return a cylinder of the required length, on the far side of the slider."""
     side = 1.0 if sum(look.slider_range) >= 0.0 else -1.0
     far = side * look.slider_range[1 if side > 0.0 else 0]
@@ -128,7 +128,7 @@ def swing_scenery(drawn: SwingLook) -> list[Shape]:
         ghosts += link_shapes((layer,) * 3, pin, slider, look)
         ghosts += [Circle(layer, point, 0.6 * look.pin) for point in (pin, slider)]
         if drawn.cylinder is not None:
-            ghosts.append(_push(layer, slider, drawn.cylinder, look))
+            ghosts.append(_piston_rod(layer, slider, drawn.cylinder, look))
     barrel = [] if drawn.cylinder is None else _barrel(drawn.cylinder, look)
     return [*axes(look), *ways, *ghosts, *rails(look), *bearing(look, is_below=drawn.bearing_below), *barrel]
 
@@ -136,7 +136,7 @@ def swing_scenery(drawn: SwingLook) -> list[Shape]:
 def swing_moving(drawn: SwingLook, angle: float) -> list[Shape]:
     """Return the cylinder's rod, the links with their pins and the body at a crank angle, rad."""
     pin, slider = pin_positions(drawn.linkage, angle)
-    pushed = [] if drawn.cylinder is None else [_push(on.ACTUATOR, slider, drawn.cylinder, drawn.look)]
+    pushed = [] if drawn.cylinder is None else [_piston_rod(on.ACTUATOR, slider, drawn.cylinder, drawn.look)]
     turned = [] if drawn.body is None else body_shapes(drawn.body, drawn.look, angle)
     return [*pushed, *moving_shapes(pin, slider, drawn.look), *turned]
 
@@ -159,7 +159,7 @@ def body_shapes(body: Point, look: Look, angle: float) -> list[Shape]:
     ]
 
 
-def _push(layer: Layer, slider: Point, cylinder: Cylinder, look: Look) -> Outline:
+def _piston_rod(layer: Layer, slider: Point, cylinder: Cylinder, look: Look) -> Outline:
     """Return the rod of the cylinder, from the slider to the barrel."""
     return box(
         layer,

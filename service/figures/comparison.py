@@ -64,13 +64,13 @@ def comparison_matrix(
     figure = new_figure(width, bottom + count * (side + _GAP) + _TOP + key)
     labels = [_label(objective) for objective in objectives[:MOST]]
     for panel, x_column, y_column in triangle(figure, labels, left=_LEFT, bottom=bottom, side=side, gap=_GAP):
-        _panel(panel, runs, x_column, y_column)
+        _draw_panel(panel, runs, x_column, y_column)
     height = figure.get_size_inches()[1]
     subtitle = f"the first {MOST} of {len(objectives)} objectives" if len(objectives) > MOST else ""
     heading(figure, title, subtitle, left=0.2)
     for line, note in enumerate(notes):
         write_text(figure, 0.2, notes_height - 0.1 - _NOTE * line, note, fontsize=SMALL, va="center")
-    handles = [Line2D([], [], **_style(index)) for index in range(len(runs))]
+    handles = [Line2D([], [], **_line_style(index)) for index in range(len(runs))]
     labels = [f"{run.label}, {counted(len(run.values), 'design')}" for run in runs]
     legend_at(figure, 0.2, height - _TOP, handles, labels)
     return figure
@@ -110,16 +110,16 @@ def robustness_figure(front: ParetoFront) -> Figure | None:
     return comparison_matrix(runs, axes, title=f"{front.problem.name}: nominal and robust front", notes=notes)
 
 
-def _panel(panel: Axes, runs: Sequence[PlottedRun], x_column: int, y_column: int) -> None:
+def _draw_panel(panel: Axes, runs: Sequence[PlottedRun], x_column: int, y_column: int) -> None:
     style_axes(panel)
     for index, run in enumerate(runs):
-        panel.plot(run.values[:, x_column], run.values[:, y_column], **_style(index), zorder=2 + 0.01 * index)
+        panel.plot(run.values[:, x_column], run.values[:, y_column], **_line_style(index), zorder=2 + 0.01 * index)
     for column, set_limits in ((x_column, panel.set_xlim), (y_column, panel.set_ylim)):
         values = np.concatenate([run.values[:, column] for run in runs])
         set_limits(padded_limits(values.min(), values.max()))
 
 
-def _style(index: int) -> dict[str, Any]:
+def _line_style(index: int) -> dict[str, Any]:
     fill, edge, marker = _STYLES[index]
     return {
         "marker": marker,

@@ -70,7 +70,7 @@ def design_datasheet(
     draw_mechanism(picture, mechanism, linkage, system)
     caption = "Drawn where the transmission angle is least; dead centres in grey outline."
     write_text(figure, _LEFT, _TABLE + 0.18, caption, fontsize=SMALL, color=MUTED)
-    rows = _rows(numbers, bold or {})
+    rows = _table_rows(numbers, bold or {})
     tall = max(_ROWS, math.ceil(len(rows) / 2))
     for column in range(2):
         x, y = _LEFT + 2.95 * column, _TABLE - 0.12
@@ -95,7 +95,7 @@ def design_datasheet(
     return figure
 
 
-def _rows(numbers: Mapping[str, Any], objectives: Mapping[str, str]) -> list[tuple[str, str]]:
+def _table_rows(numbers: Mapping[str, Any], objectives: Mapping[str, str]) -> list[tuple[str, str]]:
     """Return column and title of the table's entries: all objectives, and as many others as fit."""
 
     def has_value(key: str) -> bool:

@@ -28,10 +28,10 @@ def draw_mechanism(axes: Axes, mechanism: Mechanism, linkage: Linkage, system: S
     (left, low, right, high), size = look.extent, look.size
     pin, slider = pin_positions(linkage, least_transmission_crank_angle(linkage))
     paint(axes, [*fixed_shapes(linkage, look, bearing_below=pin[1] > 0.0), *moving_shapes(pin, slider, look)])
-    _rotation(axes, look.crank * linkage.sign, mechanism.speed * linkage.sign)
+    _draw_rotation(axes, look.crank * linkage.sign, mechanism.speed * linkage.sign)
     _transmission_angle(axes, pin, slider, math.degrees(float(linkage.least_transmission_angle)))
-    _stroke(axes, look, size, system)
-    _offset(axes, left, look.offset, size, system)
+    _dimension_stroke(axes, look, size, system)
+    _dimension_offset(axes, left, look.offset, size, system)
     scale_bar(axes, left, low - 0.13 * size, size, system)
     show_rectangle(axes, left - 0.1 * size, low - 0.17 * size, right + 0.03 * size, high + 0.14 * size)
 
@@ -41,7 +41,7 @@ def least_transmission_crank_angle(linkage: Linkage) -> float:
     return math.pi * (0.5 if float(linkage.offset) < 0.0 else 1.5)
 
 
-def _rotation(axes: Axes, r: float, speed: float) -> None:
+def _draw_rotation(axes: Axes, r: float, speed: float) -> None:
     """Show the direction of rotation on the crank circle, away from the slider.
 
     r, speed: with reversed sign on the crossed branch.
@@ -88,29 +88,29 @@ def _annotate(axes: Axes, text: str, at: Point, away: Point, colour: str, **styl
     axes.annotate(text, xy=at, xytext=away, textcoords="offset points", fontsize=SMALL, color=colour, zorder=8, **style)
 
 
-def _stroke(axes: Axes, look: Look, size: float, system: System) -> None:
+def _dimension_stroke(axes: Axes, look: Look, size: float, system: System) -> None:
     """Dimension the stroke on the side of the guide that is away from the crank pivot."""
     (inner, e), (outer, _) = look.inner, look.outer
     side = 1.0 if e >= 0.0 else -1.0
     y = e + side * (0.9 * look.slider_size + 0.5 * (look.block - look.slider_size) + 0.035 * size)
     for x in (inner, outer):
         axes.plot([x, x], [e, y + side * 0.015 * size], color=BLUE, linewidth=0.6, zorder=2)
-    _arrow(axes, (inner, y), (outer, y))
+    _draw_arrow(axes, (inner, y), (outer, y))
     text, middle = f"stroke {length(abs(outer - inner), system)}", (0.5 * (inner + outer), y)
     _annotate(axes, text, middle, (0, 3.0 * side), BLUE, ha="center", va="bottom" if side > 0.0 else "top")
 
 
-def _offset(axes: Axes, left: float, e: float, size: float, system: System) -> None:
+def _dimension_offset(axes: Axes, left: float, e: float, size: float, system: System) -> None:
     """Dimension the offset, unless it is too small to draw arrows in."""
     if abs(e) < 0.06 * size:
         return
     x = left - 0.045 * size
-    _arrow(axes, (x, 0.0), (x, e))
+    _draw_arrow(axes, (x, 0.0), (x, e))
     text = f"offset {length(e, system)}"
     _annotate(axes, text, (x, 0.5 * e), (-3.0, 0.0), BLUE, ha="right", va="center", rotation=90)
 
 
-def _arrow(axes: Axes, start: Point, end: Point) -> None:
+def _draw_arrow(axes: Axes, start: Point, end: Point) -> None:
     style = {"arrowstyle": "<|-|>,head_length=0.35,head_width=0.13", "color": BLUE, "linewidth": 0.8}
     axes.annotate("", xy=end, xytext=start, arrowprops={**style, "shrinkA": 0, "shrinkB": 0}, zorder=6)
 

@@ -91,8 +91,8 @@ def draw_panel(axes: Axes, panel: Panel, system: System = "metric", *, has_x_tit
     if panel.level is not None:
         name, level = panel.level
         axes.axhline(level, color=style.MUTED, linewidth=1.1, linestyle=(0, (6, 2, 1, 2)), label=name)
-    _scale(axes, panel)
-    _name(axes, panel)
+    _scale_axes(axes, panel)
+    _name_points(axes, panel)
     ink = style.VERMILION if any(line.points for line in panel.lines) else style.MUTED
     style.title_panel(axes, str(panel.title), str(panel.note), ink)
     axes.tick_params(labelbottom=has_x_title)
@@ -114,12 +114,12 @@ _PLACES = tuple(
 """Places for a name, points from what it names; the first is taken unless another is clearer."""
 
 
-def _name(axes: Axes, panel: Panel) -> None:
+def _name_points(axes: Axes, panel: Panel) -> None:
     """Write each name beside its point, where it overlaps least with other names and lines."""
     if not panel.names:
         return
     axes.apply_aspect()
-    drawn = np.concatenate([axes.transData.transform(_dense(line)) for line in panel.lines])
+    drawn = np.concatenate([axes.transData.transform(_dense_points(line)) for line in panel.lines])
     label_boxes: list[Bbox] = []
     for text, x, y in panel.names:
         axes.plot(x, y, marker="o", markersize=2.6, color=style.INK, zorder=5)
@@ -150,14 +150,14 @@ def _name(axes: Axes, panel: Panel) -> None:
         label_boxes.append(best[1].get_window_extent())
 
 
-def _dense(line: Line) -> Array:
+def _dense_points(line: Line) -> Array:
     """Return points (m, 2) close to each other along a line."""
     at = np.linspace(0.0, len(line.x) - 1.0, 60 * len(line.x))
     index = np.arange(len(line.x))
     return np.stack([np.interp(at, index, line.x), np.interp(at, index, line.y)], axis=1)
 
 
-def _scale(axes: Axes, panel: Panel) -> None:
+def _scale_axes(axes: Axes, panel: Panel) -> None:
     if panel.equal:
         axes.set_aspect("equal", adjustable="datalim")
         axes.margins(0.12)

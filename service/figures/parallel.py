@@ -39,7 +39,7 @@ def parallel_coordinates(front: ParetoFront, system: System = "metric") -> Figur
     panel.set_ylim(0, 1)
     panel.axis("off")
 
-    ends = [_range(axis) for axis in axes]
+    ends = [_axis_ends(axis) for axis in axes]
     heights = np.stack(
         [(axis.values - low) / (high - low) for axis, (low, high) in zip(axes, ends, strict=True)], axis=1
     )
@@ -72,8 +72,8 @@ def parallel_coordinates(front: ParetoFront, system: System = "metric") -> Figur
         _draw_axis(panel, position, axis, "\n".join(titles[position]))
     heading_text = "objectives, up is better" if all(axis.better for axis in objectives) else "objectives"
     top = 1.0 + (head + 0.08) / _HEIGHT
-    _group(panel, 0, len(dimensions) - 1, top, "dimensions")
-    _group(panel, len(dimensions), len(axes) - 1, top, heading_text)
+    _name_axes_group(panel, 0, len(dimensions) - 1, top, "dimensions")
+    _name_axes_group(panel, len(dimensions), len(axes) - 1, top, heading_text)
     figure.legend(
         handles,
         [mark.label for mark in marked],
@@ -89,7 +89,7 @@ def parallel_coordinates(front: ParetoFront, system: System = "metric") -> Figur
     return figure
 
 
-def _range(axis: Axis) -> tuple[float, float]:
+def _axis_ends(axis: Axis) -> tuple[float, float]:
     """Return the values at the lower and the upper end; for objectives the better end is up."""
     low, high = padded_limits(axis.values.min(), axis.values.max(), 0.0 if axis.varies else 0.5)
     return (high, low) if axis.better < 0 else (low, high)
@@ -97,7 +97,7 @@ def _range(axis: Axis) -> tuple[float, float]:
 
 def _draw_axis(panel: Axes, position: int, axis: Axis, title: str) -> None:
     panel.plot([position, position], [0, 1], color=FRAME, linewidth=1.2, zorder=2, clip_on=False)
-    low, high = _range(axis)
+    low, high = _axis_ends(axis)
     if axis.varies:
         locator = MaxNLocator(6, steps=[1, 2, 2.5, 5, 10])
         ticks = np.asarray(locator.tick_values(min(low, high), max(low, high)))
@@ -126,7 +126,7 @@ def _draw_axis(panel: Axes, position: int, axis: Axis, title: str) -> None:
     panel.text(position, 1.0 + 0.24 / _HEIGHT, title, ha="center", va="bottom", fontsize=TEXT)
 
 
-def _group(panel: Axes, first: int, last: int, at: float, title: str) -> None:
+def _name_axes_group(panel: Axes, first: int, last: int, at: float, title: str) -> None:
     """Name a group of axes over their titles."""
     ends = [first - 0.35, last + 0.35]
     panel.plot(ends, [at, at], color=FRAME, linewidth=0.8, clip_on=False)

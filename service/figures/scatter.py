@@ -29,19 +29,19 @@ def scatter_matrix(front: ParetoFront, system: System = "metric") -> Figure:
     count = len(axes) - 1
     if count == 1:
         colour = max(dimension_axes(front, system), key=lambda axis: _spread(axis.values))
-        return _single(front, axes, colour, marked)
+        return _single_panel(front, axes, colour, marked)
     side = max(1.55, min(2.6, 8.4 / count))
     size = _LEFT + count * side + (count - 1) * _GAP + _RIGHT
     figure = new_figure(size, size - _LEFT - _RIGHT + _BOTTOM + _TOP)
     labels = [with_better_arrow(axis.title, axis.better) for axis in axes]
     for panel, x_column, y_column in triangle(figure, labels, left=_LEFT, bottom=_BOTTOM, side=side, gap=_GAP):
-        points = _panel(panel, axes[x_column], axes[y_column], axes[0].values, marked)
+        points = _draw_panel(panel, axes[x_column], axes[y_column], axes[0].values, marked)
     # The empty upper right: legend and colour scale. From five objectives on, two panels are free above one another.
     x = _LEFT + (2 if count > 3 else 1) * (side + _GAP) + 2.0 * _GAP
     y = _BOTTOM + (count - 1) * (side + _GAP) + side
     _colour_bar(figure, points, axes[0].title, x, y - 0.45)
-    _legend(figure, marked, x, y - 0.75)
-    _heading(figure, front, len(front.objectives))
+    _draw_legend(figure, marked, x, y - 0.75)
+    _draw_heading(figure, front, len(front.objectives))
     return figure
 
 
@@ -67,21 +67,21 @@ def triangle(
                 panel.set_xlabel(labels[column], fontsize=SMALL)
 
 
-def _single(front: ParetoFront, axes: list[Axis], colour: Axis, marked: list[Mark]) -> Figure:
+def _single_panel(front: ParetoFront, axes: list[Axis], colour: Axis, marked: list[Mark]) -> Figure:
     """Return the only panel of two objectives, coloured by the dimension that varies most."""
     figure = new_figure(8.8, 5.2)
     panel = add_axes(figure, _LEFT, _BOTTOM, 4.9, 5.2 - _BOTTOM - _TOP)
-    points = _panel(panel, axes[0], axes[1], colour.values, marked)
+    points = _draw_panel(panel, axes[0], axes[1], colour.values, marked)
     panel.set_xlabel(with_better_arrow(axes[0].title, axes[0].better), fontsize=TEXT)
     panel.set_ylabel(with_better_arrow(axes[1].title, axes[1].better), fontsize=TEXT)
     x, y = _LEFT + 5.2, 5.2 - _TOP
     _colour_bar(figure, points, colour.title, x, y - 0.45)
-    _legend(figure, marked, x, y - 0.75)
-    _heading(figure, front, 2)
+    _draw_legend(figure, marked, x, y - 0.75)
+    _draw_heading(figure, front, 2)
     return figure
 
 
-def _panel(panel: Axes, x_axis: Axis, y_axis: Axis, colour: np.ndarray, marked: list[Mark]) -> PathCollection:
+def _draw_panel(panel: Axes, x_axis: Axis, y_axis: Axis, colour: np.ndarray, marked: list[Mark]) -> PathCollection:
     style_axes(panel)
     points = panel.scatter(
         x_axis.values,
@@ -110,12 +110,12 @@ def _colour_bar(figure: Figure, points: PathCollection, title: str, x: float, y:
     bar.set_title(title, fontsize=SMALL, color=INK, loc="left", pad=4)
 
 
-def _legend(figure: Figure, marked: list[Mark], x: float, y: float) -> None:
+def _draw_legend(figure: Figure, marked: list[Mark], x: float, y: float) -> None:
     handles = [Line2D([], [], **mark.style) for mark in marked]
     legend_at(figure, x, y, handles, ["\n".join(mark.labels) for mark in marked], spacing=0.6)
 
 
-def _heading(figure: Figure, front: ParetoFront, objectives: int) -> None:
+def _draw_heading(figure: Figure, front: ParetoFront, objectives: int) -> None:
     text = f"Pareto front, {counted(len(front), 'design')}"
     if objectives > MOST:
         text += f"; the first {MOST} of {objectives} objectives"

@@ -74,7 +74,9 @@ def swing_panels(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> PanelF
     if not has_position_error(mechanism, swing):
         del curves["driven_error"]
     panels = [
-        _panel(curves[name], ways if name in ("drive", "power") else ways[:1]) for name in _DRAWN if name in curves
+        _panel_of_curve(curves[name], ways if name in ("drive", "power") else ways[:1])
+        for name in _DRAWN
+        if name in curves
     ]
     return PanelFigure(
         f"Swing driven at the {swing.driver}",
@@ -85,7 +87,7 @@ def swing_panels(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> PanelF
     )
 
 
-def _panel(curve: SwingCurve, ways: tuple[SwingCurves, ...]) -> Panel:
+def _panel_of_curve(curve: SwingCurve, ways: tuple[SwingCurves, ...]) -> Panel:
     values = [getattr(way, curve.attribute) for way in ways]
     differ = len(ways) > 1 and not np.allclose(values[0], values[1][::-1], equal_nan=True)
     lines = tuple(

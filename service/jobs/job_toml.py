@@ -20,13 +20,13 @@ def job_toml(tables: Mapping[str, Any]) -> str:
     Tables get a heading, nested tables stay in braces, as in the shipped jobs. Raises `JobError` for values that TOML
     cannot express: null, and numbers that are not finite.
     """
-    plain = [f"{_key(key)} = {_value(value)}" for key, value in tables.items() if not _is_table(value)]
+    plain = [f"{_key_toml(key)} = {_value_toml(value)}" for key, value in tables.items() if not _is_table(value)]
     parts = ["\n".join(plain)] if plain else []
     for key, value in tables.items():
         if isinstance(value, Mapping):
-            parts.append(_table(f"[{_key(key)}]", value))
+            parts.append(_table_toml(f"[{_key_toml(key)}]", value))
         elif _is_table(value):
-            parts += [_table(f"[[{_key(key)}]]", item) for item in value]
+            parts += [_table_toml(f"[[{_key_toml(key)}]]", item) for item in value]
     return "\n\n".join(parts) + "\n"
 
 
@@ -36,29 +36,31 @@ def _is_table(value: object) -> bool:
     )
 
 
-def _table(heading: str, table: Mapping[str, Any]) -> str:
-    return "\n".join([heading, *(f"{_key(key)} = {_value(value)}" for key, value in table.items())])
+def _table_toml(heading: str, table: Mapping[str, Any]) -> str:
+    return "\n".join([heading, *(f"{_key_toml(key)} = {_value_toml(value)}" for key, value in table.items())])
 
 
-def _key(key: str) -> str:
-    return key if _BARE.fullmatch(key) else _text(key)
+def _key_toml(key: str) -> str:
+    return key if _BARE.fullmatch(key) else _text_toml(key)
 
 
-def _value(value: Any) -> str:
+def _value_toml(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return _text(value)
+        return _text_toml(value)
     if isinstance(value, int):
         return str(value)
     if isinstance(value, float) and math.isfinite(value):
         return repr(value)
     if isinstance(value, Mapping):
         return (
-            "{ " + ", ".join(f"{_key(key)} = {_value(item)}" for key, item in value.items()) + " }" if value else "{}"
+            "{ " + ", ".join(f"{_key_toml(key)} = {_value_toml(item)}" for key, item in value.items()) + " }"
+            if value
+            else "{}"
         )
     if isinstance(value, list):
-        items = [_value(item) for item in value]
+        items = [_value_toml(item) for item in value]
         line = "[" + ", ".join(items) + "]"
         # Only a list may span several lines.
         return line if len(line) <= _WIDEST else "[\n" + "".join(f"    {item},\n" for item in items) + "]"
@@ -66,6 +68,6 @@ def _value(value: Any) -> str:
     raise JobError(f"a job may only contain texts, finite numbers, lists and tables; got {word}; leave the key out")
 
 
-def _text(text: str) -> str:
+def _text_toml(text: str) -> str:
     # JSON escapes are valid in TOML, except for characters beyond 16 bits, which stay unescaped, and DEL.
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

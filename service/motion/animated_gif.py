@@ -41,7 +41,7 @@ def animated_gif(
     `AssemblyError` for a linkage that does not rotate fully, or the errors of `require_swing`.
     """
     scene = _turn_scene(mechanism, linkage) if swing is None else _swing_scene(mechanism, linkage, swing)
-    frames = _frames(scene, f"{name}, {design}" if design else name)
+    frames = _draw_frames(scene, f"{name}, {design}" if design else name)
     out = io.BytesIO()
     options: dict[str, Any] = {"append_images": frames[1:], "duration": MILLISECONDS, "loop": 0, "optimize": False}
     frames[0].save(out, format="GIF", save_all=True, disposal=1, **options)
@@ -91,7 +91,7 @@ def _swing_scene(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> _Scene
     return _Scene(drawn.extent, drawn.look.size, swing_scenery(drawn), frames, "ends of the swing dashed")
 
 
-def _frames(scene: _Scene, title: str) -> list[Picture]:
+def _draw_frames(scene: _Scene, title: str) -> list[Picture]:
     from PIL import Image
 
     left, low, right, high = scene.extent

@@ -47,9 +47,9 @@ def player_page(
         summary=escape(play.summary),
         style=(_PLAYER / "player.css").read_text(encoding="utf-8"),
         script=(_PLAYER / "player.js").read_text(encoding="utf-8"),
-        data=_data(play),
+        data=_script_data(play),
         drawing=_drawing(play, title),
-        strips="\n".join(_strip(column, play) for column in play.columns),
+        strips="\n".join(_curve_strip(column, play) for column in play.columns),
         degrees=360 * play.turns,
         readout="\n".join(readout),
         control=play.words.control,
@@ -60,7 +60,7 @@ def player_page(
     return page.encode()
 
 
-def _data(play: Playback) -> str:
+def _script_data(play: Playback) -> str:
     """Return the data of the script as JSON that is safe within HTML."""
     curves = {
         column.key: [float(f"{value:.7g}") if math.isfinite(value) else None for value in column.values]
@@ -86,7 +86,7 @@ def _drawing(play: Playback, title: str) -> str:
     return "\n".join([*lines, "</svg>"])
 
 
-def _strip(column: CurveColumn, play: Playback) -> str:
+def _curve_strip(column: CurveColumn, play: Playback) -> str:
     """Return a small picture of a curve with the marks of a motion, and a line that the script moves."""
     marks = (angle / play.turns for angle in play.marks)
     finite = [value for value in column.values if math.isfinite(value)]
@@ -94,14 +94,14 @@ def _strip(column: CurveColumn, play: Playback) -> str:
     span = (abs(high) or 1.0) if is_constant((low, high)) else high - low
     lines = [f'<line class="dead" x1="{angle:.2f}" x2="{angle:.2f}" y1="0" y2="{_STRIP[1]:g}"/>' for angle in marks]
     if low < 0.0 < high:
-        zero = _height(0.0, low, span)
+        zero = _relative_height(0.0, low, span)
         lines.append(f'<line class="zero" x1="0" x2="{_STRIP[0]:g}" y1="{zero:.2f}" y2="{zero:.2f}"/>')
     path, pen = [], "M"
     step = _STRIP[0] / len(column.values)
     for place in range(len(column.values) + 1):
         value = column.values[place % len(column.values)]
         if math.isfinite(value):
-            path.append(f"{pen}{place * step:g} {_height(value, low, span):.2f}")
+            path.append(f"{pen}{place * step:g} {_relative_height(value, low, span):.2f}")
             pen = "L"
         else:
             pen = "M"
@@ -114,5 +114,5 @@ def _strip(column: CurveColumn, play: Playback) -> str:
     )
 
 
-def _height(value: float, low: float, span: float) -> float:
+def _relative_height(value: float, low: float, span: float) -> float:
     return 3.0 + (_STRIP[1] - 6.0) * (1.0 - (value - low) / span)

@@ -40,23 +40,23 @@ def locked_page(connection: HTTPConnection, *, wrong: bool = False) -> HTMLRespo
         address=escape(address),
         refused=_WRONG if wrong else "",
         icon=base64.b64encode((_STATIC / "icon.svg").read_bytes()).decode(),
-        style=_style(),
+        style=_page_style(),
         script=_SCRIPT,
     )
-    headers = {"WWW-Authenticate": "Bearer", "Content-Security-Policy": _policy()}
+    headers = {"WWW-Authenticate": "Bearer", "Content-Security-Policy": _content_policy()}
     return HTMLResponse(content, HTTPStatus.UNAUTHORIZED, headers)
 
 
 @cache
-def _style() -> str:
+def _page_style() -> str:
     """Return the style of all views, and that of this page: the style files require the token."""
     return (_STATIC / "style" / "shell.css").read_text(encoding="utf-8") + _STYLE
 
 
 @cache
-def _policy() -> str:
+def _content_policy() -> str:
     """Return the content security policy: only this exact style and script, and a form sent to the service."""
-    digests = (hashlib.sha256(text.encode()).digest() for text in (_style(), _SCRIPT))
+    digests = (hashlib.sha256(text.encode()).digest() for text in (_page_style(), _SCRIPT))
     style, script = (f"'sha256-{base64.b64encode(digest).decode()}'" for digest in digests)
     return (
         f"default-src 'none'; style-src {style}; script-src {script}; img-src data:; form-action 'self'; "

@@ -79,15 +79,15 @@ def possible(problem: Problem) -> Possible:
     """Return the values that the ranges of a problem of `partial_job.geometry` allow."""
     free = replace(problem, constraints=())
     box = designs_of(free, SAMPLES)
-    turning = _turns(box)
-    light, costly = _light(problem)
+    turning = _rotates_fully(box)
+    light, costly = _lengths_only(problem)
     screening = run_within(PATIENCE, lambda: screened(problem)) if costly else None
     designs, violation = screened(light) if screening is None else screening
     feasible = violation <= FEASIBLE
     if screening is None:
-        hardest = _hardest(light, box[turning])
+        hardest = _hardest_requirement(light, box[turning])
     else:
-        hardest = run_within(PATIENCE, lambda: _hardest(problem, box[turning][:BATCH]))
+        hardest = run_within(PATIENCE, lambda: _hardest_requirement(problem, box[turning][:BATCH]))
     return Possible(
         turning=float(turning.mean()),
         stroke=_possible_ends(light, "stroke"),
@@ -103,7 +103,7 @@ def possible(problem: Problem) -> Possible:
     )
 
 
-def _light(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
+def _lengths_only(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
     """Return the problem with the requirements on the dimensions alone, and the names of the others."""
     machine = massless_machine(problem.mechanism)
     closed = tuple(c for c in problem.constraints if is_closed(c.quantity))
@@ -121,7 +121,7 @@ def _slow_strokes(problem: Problem, designs: Array) -> tuple[str, ...]:
     return tuple(sorted(strokes - {"equal"} or strokes))
 
 
-def _turns(designs: Array) -> NDArray[np.bool_]:
+def _rotates_fully(designs: Array) -> NDArray[np.bool_]:
     crank, rod, offset = designs.T
     with np.errstate(invalid="ignore"):
         return np.asarray((crank > 0.0) & (rod > crank + np.abs(offset)))
@@ -134,15 +134,15 @@ def _possible_ends(problem: Problem, name: str) -> Ends | None:
     if name == "transmission_angle":
         constraints = (*constraints, Constraint(quantity=name, lower=_FLATTEST))
     alone = replace(problem, constraints=constraints)
-    ends = [_ends(alone, name, branch, index) for index, branch in enumerate(elimination_branches(alone))]
+    ends = [_ends_on_branch(alone, name, branch, index) for index, branch in enumerate(elimination_branches(alone))]
     pairs = [pair for pair in ends if pair is not None]
     return (min(low for low, _ in pairs), max(high for _, high in pairs)) if pairs else None
 
 
-def _ends(problem: Problem, name: str, branch: EliminationBranch, index: int) -> Ends | None:
+def _ends_on_branch(problem: Problem, name: str, branch: EliminationBranch, index: int) -> Ends | None:
     """Return the least and the greatest value on a branch, sampled ever more closely around the best."""
     points = np.concatenate([first_samples(SAMPLES, len(branch.free), 1, index), *_on_edges(problem, branch)])
-    values = _values(problem, name, branch.dimensions(points)[:, :3])
+    values = _closed_form_values(problem, name, branch.dimensions(points)[:, :3])
     if not np.isfinite(values).any():
         return None
     random = generator(1, 100 + index)
@@ -156,15 +156,15 @@ def _ends(problem: Problem, name: str, branch: EliminationBranch, index: int) ->
             step = width * random.standard_normal(children.shape)
             stays = random.random(children.shape) < _STAYS  # extremes lie on faces and edges; moves follow these
             children = np.clip(children + np.where(stays, 0.0, step), 0.0, 1.0)
-            child_values = _values(problem, name, branch.dimensions(children)[:, :3])
+            child_values = _closed_form_values(problem, name, branch.dimensions(children)[:, :3])
             best = np.concatenate([best[rows], children])
             merits = np.concatenate([merits[rows], np.where(np.isfinite(child_values), sign * child_values, -np.inf)])
         start = best[np.argsort(-merits, kind="stable")[:_POLISHED]]
-        ends.append(sign * max(float(merits.max()), _polished(problem, name, branch, sign, start)))
+        ends.append(sign * max(float(merits.max()), _polished_extreme(problem, name, branch, sign, start)))
     return ends[0], ends[1]
 
 
-def _polished(problem: Problem, name: str, branch: EliminationBranch, sign: float, start: Array) -> float:
+def _polished_extreme(problem: Problem, name: str, branch: EliminationBranch, sign: float, start: Array) -> float:
     """Return the greatest `sign` times a closed-form quantity near points (n, k) of a branch; -inf if there is none.
 
     All requirements of the problem hold except its own.
@@ -189,20 +189,20 @@ def _on_edges(problem: Problem, branch: EliminationBranch) -> Iterator[Array]:
             rest = (*problem.constraints[:place], edge, *problem.constraints[place + 1 :])
             for branch_on_edge in elimination_branches(replace(problem, constraints=rest)):
                 designs = branch_on_edge.dimensions(first_samples(_ON_EDGE, len(branch_on_edge.free), 1, place))[:, :3]
-                designs = designs[_turns(designs) & _is_within_ranges(problem, designs)]
+                designs = designs[_rotates_fully(designs) & _is_within_ranges(problem, designs)]
                 if branch_on_edge.sign == branch.sign and len(designs):
                     columns = [np.abs(designs[:, DIMENSIONS.index(free)]) for free in branch.free]
                     points = (np.stack(columns, axis=1) - branch.lower) / (branch.upper - branch.lower)
                     yield np.clip(points, 0.0, 1.0)
 
 
-def _values(problem: Problem, name: str, designs: Array) -> Array:
+def _closed_form_values(problem: Problem, name: str, designs: Array) -> Array:
     """Return a closed-form quantity of designs (n, 3); NaN without rotation or beyond a dimensional requirement."""
     values = np.full(len(designs), np.nan)
-    rows = np.flatnonzero(_turns(designs) & _is_within_ranges(problem, designs))
+    rows = np.flatnonzero(_rotates_fully(designs) & _is_within_ranges(problem, designs))
     for constraint in problem.constraints:
         constrained = QUANTITIES[constraint.quantity].evaluate(problem.mechanism, designs[rows]).values
-        rows = rows[_meets(constraint, constrained)]
+        rows = rows[_meets_constraint(constraint, constrained)]
     values[rows] = QUANTITIES[name].evaluate(problem.mechanism, designs[rows]).values
     return values
 
@@ -218,7 +218,7 @@ def _is_within_ranges(problem: Problem, designs: Array) -> NDArray[np.bool_]:
     return good
 
 
-def _meets(constraint: Constraint, values: Array) -> NDArray[np.bool_]:
+def _meets_constraint(constraint: Constraint, values: Array) -> NDArray[np.bool_]:
     good = ~np.isnan(values)
     if constraint.lower is not None:
         good &= values >= constraint.lower - _CLOSE * abs(constraint.lower)
@@ -227,11 +227,13 @@ def _meets(constraint: Constraint, values: Array) -> NDArray[np.bool_]:
     return np.asarray(good)
 
 
-def _hardest(problem: Problem, designs: Array) -> tuple[str, float] | None:
+def _hardest_requirement(problem: Problem, designs: Array) -> tuple[str, float] | None:
     """Return the requirement, equalities aside, that the fewest designs meet, and their fraction."""
     shares = {
         constraint.quantity: float(
-            _meets(constraint, QUANTITIES[constraint.quantity].evaluate(problem.mechanism, designs).values).mean()
+            _meets_constraint(
+                constraint, QUANTITIES[constraint.quantity].evaluate(problem.mechanism, designs).values
+            ).mean()
         )
         for constraint in constraints_of(problem)
         if not constraint.equality and len(designs)

@@ -39,7 +39,7 @@ def geometry(tables: Mapping[str, Any], full_problem: Problem | None) -> Problem
     if ranges is None or table_in(tables, "motion").get("kind") == "swing":
         return None
     stated = table_in(tables, "mechanism")
-    machine = _turning(stated) if full_problem is None else full_problem.part(0).mechanism.nominal
+    machine = _massless_machine(stated) if full_problem is None else full_problem.part(0).mechanism.nominal
     with_machine = full_problem is not None and sum(len(load.knots()[0]) for load in machine.loads) <= _MOST_POINTS
     problem = Problem(
         name="preview",
@@ -49,7 +49,7 @@ def geometry(tables: Mapping[str, Any], full_problem: Problem | None) -> Problem
         offset=ranges["offset"],
         objectives=(Objective(quantity="stroke", sense="minimise"),),
     )
-    readable = _constraints(requirements, with_machine=with_machine)
+    readable = _checkable_constraints(requirements, with_machine=with_machine)
     constraints = tuple(c for c in readable if not problem.quantity(c.quantity).undefined_because([machine]))
     if not with_machine:
         problem = replace(problem, mechanism=massless_machine(machine))
@@ -83,7 +83,7 @@ def is_closed(name: str) -> bool:
     return name in QUANTITIES and QUANTITIES[name].of_dimensions
 
 
-def _turning(mechanism: Mapping[str, Any]) -> Mechanism:
+def _massless_machine(mechanism: Mapping[str, Any]) -> Mechanism:
     """Return a massless machine with the crank speed that a job states, else 1 rad/s."""
     branch: Branch = "crossed" if mechanism.get("branch") == "crossed" else "open"
     for keys in ((*SPEED_KEYS, "direction", "speed_profile"), (*SPEED_KEYS, "direction")):
@@ -104,7 +104,7 @@ def ranges_of(tables: Mapping[str, Any]) -> dict[str, Range] | None:
         return None
 
 
-def _constraints(stated: Mapping[str, Any], *, with_machine: bool) -> Iterator[Constraint]:
+def _checkable_constraints(stated: Mapping[str, Any], *, with_machine: bool) -> Iterator[Constraint]:
     """Yield the requirements that can be read and checked within a moment."""
     for name, bounds in stated.items():
         if name not in QUANTITIES or not (with_machine or is_closed(name)):

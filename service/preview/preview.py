@@ -69,8 +69,8 @@ def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
     try:
         require_few(tables)
     except InputError as error:
-        return Look(_places(error), None, None, None, [], [])
-    look = _findings(tables, read)
+        return Look(_mistakes_in(error), None, None, None, [], [])
+    look = _find_problems(tables, read)
     formulas = stated_formulas(tables)
     wrong = look.wrong if look.problem is not None else _with_formulas(look.wrong, formulas)
     swing = possible_swing(tables, look.problem)
@@ -94,7 +94,7 @@ def _with_formulas(wrong: list[Wrong], formulas: list[StatedFormula]) -> list[Wr
     ]
 
 
-def _findings(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> Look:
+def _find_problems(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> Look:
     """Return the findings about a job except its formulas."""
     try:
         stated = geometry(tables, None)
@@ -116,7 +116,7 @@ def _findings(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Pro
         if not sentences_by_name and stated is not None:
             stated = geometry(tables, full_problem)
     except InputError as error:
-        wrong += _places(error)
+        wrong += _mistakes_in(error)
     if sentences_by_name:
         full_problem = None
     if stated is None:
@@ -133,7 +133,7 @@ def _findings(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Pro
     )
 
 
-def _places(error: InputError) -> list[Wrong]:
+def _mistakes_in(error: InputError) -> list[Wrong]:
     """Return the mistakes in the sentences of an error, each with its place in the job."""
     mistakes = []
     for line in str(error).split("\n  "):
@@ -161,7 +161,7 @@ def infeasibility_sentences(
         if name in constraints and ends is not None:
             sentences += _nearest_possible(problem, constraints[name], ends)
     if possible_values.turning == 0.0:
-        sentences.append(_locking(problem, tables))
+        sentences.append(_locking_sentence(problem, tables))
     elif possible_values.sampled and possible_values.feasible == 0.0 and not sentences:
         hardest = ""
         if possible_values.hardest is not None and possible_values.hardest[1] < 1.0:
@@ -176,7 +176,7 @@ def infeasibility_sentences(
     return sentences
 
 
-def _locking(problem: Problem, tables: Mapping[str, Any]) -> str:
+def _locking_sentence(problem: Problem, tables: Mapping[str, Any]) -> str:
     """Return a sentence on ranges in which no crank rotates fully: the rod that is missing, and the remedy."""
     crank, rod, offset = problem.crank, problem.rod, problem.offset
     nearest_line = 0.0 if offset.lower <= 0.0 <= offset.upper else min(abs(offset.lower), abs(offset.upper))

@@ -89,10 +89,10 @@ def possible_swing(tables: Mapping[str, Any], full_problem: Problem | None) -> P
     named = requirement_names(tables)
     unchecked = () if screening is not None else tuple(name for name in named if name != SWING_TRANSMISSION_ANGLE.name)
     designs, violation = screened(light) if screening is None else screening
-    return _possible(swing, light, designs, violation, unchecked)
+    return _possible_swing(swing, light, designs, violation, unchecked)
 
 
-def _possible(
+def _possible_swing(
     swing: Swing, light: Problem, designs: Array, violation: Array, unchecked: tuple[str, ...]
 ) -> PossibleSwing:
     sign = -1.0 if light.mechanism.nominal.branch == "crossed" else 1.0

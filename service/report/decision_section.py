@@ -28,7 +28,11 @@ def decision_section(subject: Subject) -> Section | None:
     numbers = [*columns, *(find_column(item.column, list(rows[0])) for item in objectives)]
     heads = tuple(f"{column.title}, {unit_text(column.unit)}" if column.unit else column.title for column in numbers)
     cells = tuple(
-        (alternative.bookmark.name, *(rounded(row[column.key]) for column in numbers), _words(alternative, subject))
+        (
+            alternative.bookmark.name,
+            *(rounded(row[column.key]) for column in numbers),
+            _reason_and_misses(alternative, subject),
+        )
         for alternative, row in zip(ordered, rows, strict=True)
     )
     share = 0.6 / len(numbers)
@@ -46,7 +50,7 @@ def decision_section(subject: Subject) -> Section | None:
     return Section("Decision", tuple(blocks))
 
 
-def _words(alternative: Alternative, subject: Subject) -> str:
+def _reason_and_misses(alternative: Alternative, subject: Subject) -> str:
     """Return the reason, the note, and the requirements that a design misses."""
     titles = {**{f"{name}_mm": name for name in DIMENSIONS}, "slow_stroke": "slow stroke"}
     missed = [

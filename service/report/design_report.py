@@ -36,7 +36,7 @@ def design_report(subject: Subject, *, created: float | None = None) -> Report:
         subtitle=f"{'Decided design' if is_decided else 'Design report'} for review; run {subject.run}",
         date=when,
         sections=(
-            _summary(subject),
+            _summary_section(subject),
             *([] if decision is None else [decision]),
             job_section(subject),
             search_section(subject, when),
@@ -51,7 +51,7 @@ def design_report(subject: Subject, *, created: float | None = None) -> Report:
     )
 
 
-def _summary(subject: Subject) -> Section:
+def _summary_section(subject: Subject) -> Section:
     row = subject.row
     keys = {metric_key(key) for key in row}
     size_names = [item.name for item in (STROKE, ACTUATOR_TRAVEL, SWING_ANGLE) if item.field in keys]
@@ -62,7 +62,7 @@ def _summary(subject: Subject) -> Section:
         "Objectives": [f"{item.title} {measured(row[item.column], item.unit)}" for item in subject.result.objectives],
         "Choices": [_format_choice(subject, key) for key in chosen_columns(row)] if subject.problem.choices else [],
         "Beyond what is allowed": [unit_text(line) for line in subject.violated],
-        "Machine": _machine(subject),
+        "Machine": _machine_lines(subject),
         "What it is": _best_objectives(subject)
         if subject.changed is None
         else _change_sentences(subject, subject.changed),
@@ -79,7 +79,7 @@ def _format_choice(subject: Subject, key: str) -> str:
     return f"{title} {value}" if isinstance(value, str) else f"{title} {measured(value, unit)}"
 
 
-def _machine(subject: Subject) -> list[str]:
+def _machine_lines(subject: Subject) -> list[str]:
     """Return the lines on a design's machine that differ from the job's, due to variables or choices."""
     stated = machine_in_words(subject.problem, subject.problem.mechanism)
     lines = machine_in_words(subject.problem, subject.design.mechanism)

@@ -31,9 +31,9 @@ def design_section(subject: Subject) -> Section:
     return Section(
         subject.label[:1].upper() + subject.label[1:],
         (
-            *_rules(subject),
+            *_rule_blocks(subject),
             *(Paragraph(f"Beyond the allowable value: {unit_text(line)}.", "bad") for line in subject.violated),
-            *_optimality(subject),
+            *_optimality_blocks(subject),
             Picture(
                 "The design over a turn of the crank"
                 if subject.design.part.motion is None
@@ -50,7 +50,7 @@ def numbers_section(subject: Subject) -> Section:
     """Return every column of the design that its machine has, rounded and as stored."""
     columns, absent = _columns_of_machine(subject)
     lengths = _dimensions_with_tolerance(subject)
-    at_bound = {column.key for column in columns if column.key.startswith("slack_") and _active(subject, column)}
+    at_bound = {column.key for column in columns if column.key.startswith("slack_") and _is_active(subject, column)}
     row_without_noise = without_noise(subject.row)
     rows = tuple(
         (
@@ -120,14 +120,14 @@ def _dimensions_with_tolerance(subject: Subject) -> dict[str, str]:
     return texts
 
 
-def _rules(subject: Subject) -> list[Block]:
+def _rule_blocks(subject: Subject) -> list[Block]:
     slacks = [column for column in all_columns(subject.row) if column.key.startswith("slack_")]
     if not slacks:
         return [Paragraph("The job sets no requirements besides the ranges of the dimensions.", "note")]
     rows, all_met, bounds = [], True, _bounds_by_slack(subject)
     for column in slacks:
         slack, value = subject.row[column.key], subject.row.get(column.key.removeprefix("slack_"))
-        active = _active(subject, column)
+        active = _is_active(subject, column)
         is_met = active or (isinstance(slack, float) and slack >= 0.0)
         all_met = all_met and is_met
         state = "met, active" if active and is_met else "met" if is_met else "not met"
@@ -160,14 +160,14 @@ def _bounds_by_slack(subject: Subject) -> dict[str, str]:
     return bounds
 
 
-def _active(subject: Subject, column: Column) -> bool:
+def _is_active(subject: Subject, column: Column) -> bool:
     """Whether a slack is zero to rounding."""
     slack, value = subject.row[column.key], subject.row.get(column.key.removeprefix("slack_"))
     size = max(1.0, abs(value)) if isinstance(value, float) and math.isfinite(value) else 1.0
     return isinstance(slack, float) and abs(slack) <= _MET * size
 
 
-def _optimality(subject: Subject) -> list[Block]:
+def _optimality_blocks(subject: Subject) -> list[Block]:
     residual, status = subject.row.get("residual"), subject.row.get("status")
     blocks: list[Block] = []
     if subject.changed is not None:

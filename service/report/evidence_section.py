@@ -36,8 +36,8 @@ def tolerance_section(subject: Subject) -> Section | None:
         return None
     record = numbers(mechanism, linkage)
     blocks: tuple[Block, ...] = (
-        Facts(_facts(record, subject.system)),
-        _sources(record, subject.system),
+        Facts(_tolerance_facts(record, subject.system)),
+        _source_table(record, subject.system),
         Picture(
             "Position error over a turn", lambda: tolerances_figure(error_bands(mechanism, linkage), subject.system)
         ),
@@ -50,7 +50,7 @@ def tolerance_section(subject: Subject) -> Section | None:
     return Section("Tolerances", blocks)
 
 
-def _facts(record: Mapping[str, Any], system: System) -> dict[str, list[str]]:
+def _tolerance_facts(record: Mapping[str, Any], system: System) -> dict[str, list[str]]:
     def size_and_angle(name: str) -> str:
         size, angle = record[f"{name}_mm"], record[f"{name}_angle_deg"]
         if size is None:
@@ -71,7 +71,7 @@ def _facts(record: Mapping[str, Any], system: System) -> dict[str, list[str]]:
     }
 
 
-def _sources(record: PositionError, system: System) -> Table:
+def _source_table(record: PositionError, system: System) -> Table:
     unit, factor = metric_unit_in("mm", system)
     rows = tuple(
         (

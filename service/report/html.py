@@ -35,11 +35,11 @@ def html_file(report: Report) -> bytes:
 def _section_html(section: Section, place: int) -> list[str]:
     parts = [f'<section aria-labelledby="part-{place}">', f'<h2 id="part-{place}">{escape(section.title)}</h2>']
     for index, block in enumerate(section.blocks):
-        parts += _block(block, f"p{place}-{index}")
+        parts += _block_html(block, f"p{place}-{index}")
     return [*parts, "</section>"]
 
 
-def _block(block: Block, name: str) -> list[str]:
+def _block_html(block: Block, name: str) -> list[str]:
     if isinstance(block, Paragraph):
         kind = "" if block.tone == "plain" else f' class="{block.tone}"'
         return [f"<p{kind}>{escape(block.text)}</p>"]
@@ -49,11 +49,11 @@ def _block(block: Block, name: str) -> list[str]:
         )
         return [f'<dl class="facts">{"".join(rows)}</dl>']
     if isinstance(block, Table):
-        return _table(block)
-    return [f"<figure><figcaption>{escape(block.title)}</figcaption>", _picture(block, name), "</figure>"]
+        return _table_html(block)
+    return [f"<figure><figcaption>{escape(block.title)}</figcaption>", _picture_html(block, name), "</figure>"]
 
 
-def _table(table: Table) -> list[str]:
+def _table_html(table: Table) -> list[str]:
     def kind(place: int) -> str:
         return ' class="right"' if place in table.right else ""
 
@@ -71,16 +71,16 @@ def _table(table: Table) -> list[str]:
     return [*parts, "</tbody></table></div>"]
 
 
-def _picture(picture: Picture, name: str) -> str:
+def _picture_html(picture: Picture, name: str) -> str:
     label = escape(picture.title, quote=True)
     figure = picture.draw()
     if picture.raster:
         content = base64.b64encode(figure_bytes(figure, "png")).decode()
         return f'<img alt="{label}" src="data:image/png;base64,{content}">'
-    return _inline(figure_bytes(figure, "svg").decode(), label, name)
+    return _inline_svg(figure_bytes(figure, "svg").decode(), label, name)
 
 
-def _inline(text: str, label: str, name: str) -> str:
+def _inline_svg(text: str, label: str, name: str) -> str:
     """Return an SVG file as an element of a page, without its head and style, and with prefixed names."""
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)

@@ -48,12 +48,12 @@ def measured_section(subject: Subject, measured: Measured) -> Section:
             frozenset({1, 2, 3}),
         ),
         *(Paragraph(f"{line}.", "note") for line in file_notes(deviations_found)),
-        *_pictures(figure(mechanism, linkage, measured=measured), subject.system),
+        *_pictures_by_page(figure(mechanism, linkage, measured=measured), subject.system),
     )
     return Section("Measured curves", blocks)
 
 
-def _pictures(panel_figure: PanelFigure, system: System) -> list[Picture]:
+def _pictures_by_page(panel_figure: PanelFigure, system: System) -> list[Picture]:
     """Return pictures with as many panels as a page shows well."""
     parts = [panel_figure.panels[start : start + _PANELS] for start in range(0, len(panel_figure.panels), _PANELS)]
     return [

@@ -55,7 +55,7 @@ def _template_blocks(blocks: Sequence[Block], folder: Path, section: int) -> lis
     contents = []
     for number, (block, after) in enumerate(zip(blocks, (*blocks, None)[1:], strict=True)):
         if isinstance(block, Picture):
-            content = _drawn(block, folder / f"{section}-{number}")
+            content = _draw_picture(block, folder / f"{section}-{number}")
         elif isinstance(block, Paragraph):  # a note on a table stays with it
             content = {"tone": block.tone, "text": _unbreakable_text(block.text), "stays": isinstance(after, Table)}
         elif isinstance(block, Facts):
@@ -68,7 +68,7 @@ def _template_blocks(blocks: Sequence[Block], folder: Path, section: int) -> lis
     return contents
 
 
-def _drawn(picture: Picture, file: Path) -> dict[str, Any]:
+def _draw_picture(picture: Picture, file: Path) -> dict[str, Any]:
     """Draw a picture, and return its title, its file and its size, inches."""
     figure = picture.draw()
     width, height = map(float, figure.get_size_inches())

@@ -41,11 +41,11 @@ def full_places(error: OSError) -> str:
     """Return the places affected by a full-disk error: the one that it names, else those without free space."""
     if isinstance(error.filename, str | os.PathLike):
         return free_space_text(Path(error.filename))
-    places = [place for place in _written() if free(place) < LEAST]
+    places = [place for place in _other_folders() if free(place) < LEAST]
     return ", ".join(map(free_space_text, places)) or "a disk is full"
 
 
-def _written() -> list[Path]:
+def _other_folders() -> list[Path]:
     """Return further places that this software writes to: compiled kernels and temporary files."""
     from ... import model
 

@@ -166,13 +166,13 @@ def result_of(front: ParetoFront, run: str) -> Result:
             *front_warnings(front),
             *idle_rules(front.problem),
         ),
-        violated=_violated(front),
+        violated=_violated_columns(front),
         discrete=discrete_record(front),
         exact=Exact(front.dimensions, front.variants, front.goals, front.active),
     )
 
 
-def _violated(front: ParetoFront) -> dict[str, list[float]]:
+def _violated_columns(front: ParetoFront) -> dict[str, list[float]]:
     """Return the excess of designs over allowable values, by column."""
     excess_by_quantity = ((front.problem.quantity(name), excess) for name, excess in front.violated.items())
     return {
@@ -228,10 +228,10 @@ def rows_of(columns: Mapping[Any, Sequence[Any] | NDArray[Any]]) -> list[Row]:
     """Return the rows of a table given by columns, with Python's own numbers and strings in them."""
     keys = [str(key) for key in columns]
     cells = zip(*columns.values(), strict=True)
-    return [dict(zip(keys, map(_cell, row), strict=True)) for row in cells]
+    return [dict(zip(keys, map(_cell_of, row), strict=True)) for row in cells]
 
 
-def _cell(value: Any) -> Cell:
+def _cell_of(value: Any) -> Cell:
     if value is None or isinstance(value, str):
         return None if value is None else str(value)
     return float(value)
@@ -281,17 +281,17 @@ def csv_text(rows: Iterable[Row], *, spreadsheet: bool = False) -> str:
     out = io.StringIO()
     if rows:
         writer = csv.writer(out, lineterminator="\n")
-        writer.writerow([_inert(key) for key in rows[0]] if spreadsheet else rows[0])
+        writer.writerow([_inert_text(key) for key in rows[0]] if spreadsheet else rows[0])
         for row in rows:
             # The writer writes every number as repr does, None as nothing, and only NaN differs from itself.
             cells = ["" if cell != cell else cell for cell in row.values()]
             if spreadsheet:
-                cells = [_inert(cell) if isinstance(cell, str) else cell for cell in cells]
+                cells = [_inert_text(cell) if isinstance(cell, str) else cell for cell in cells]
             writer.writerow(cells)
     return out.getvalue()
 
 
-def _inert(text: str) -> str:
+def _inert_text(text: str) -> str:
     return f"'{text}" if text.startswith(_FORMULA) else text
 
 

@@ -72,7 +72,7 @@ class RunFolder:
             hidden.mkdir(mode=0o700)  # its log contains the command as typed
             try:
                 _write(hidden / MARK, f"Started {self.started}. The run continues, or was interrupted.\n")
-                self.path = _rename(hidden, place / run_name(name))
+                self.path = _rename_hidden(hidden, place / run_name(name))
             except BaseException:
                 shutil.rmtree(hidden, ignore_errors=True)
                 raise
@@ -195,7 +195,7 @@ def write_file(path: Path, content: str | bytes) -> None:
     with disk(path.parent):
         if path.exists() and not path.is_file():
             with path.open("wb") as stream:
-                stream.write(_bytes(content))
+                stream.write(_bytes_of(content))
         else:
             _write(path.resolve(), content)
 
@@ -223,7 +223,7 @@ def _lock(folder: Path) -> int | None:
     return handle
 
 
-def _rename(hidden: Path, target: Path) -> Path:
+def _rename_hidden(hidden: Path, target: Path) -> Path:
     for number in range(1, 10_000):
         path = target if number == 1 else target.with_name(f"{target.name}-{number}")
         try:
@@ -236,7 +236,7 @@ def _rename(hidden: Path, target: Path) -> Path:
     raise RunError(f"no free name for a run in {target.parent}; move old runs away")
 
 
-def _bytes(content: str | bytes) -> bytes:
+def _bytes_of(content: str | bytes) -> bytes:
     return content.encode(errors="surrogateescape") if isinstance(content, str) else content  # of paths
 
 
@@ -245,7 +245,7 @@ def _write(path: Path, content: str | bytes) -> None:
     draft = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         with draft.open("wb") as file:
-            file.write(_bytes(content))
+            file.write(_bytes_of(content))
             file.flush()
             os.fsync(file.fileno())
         if path.exists():

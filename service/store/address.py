@@ -26,11 +26,11 @@ def without_secrets(text: str) -> str:
     scheme, server, _ = value.partition("://")
     if not server:
         return f"{option}{equals}{HIDDEN}" if _MANGLED.match(value) else text
-    url = _parsed(value)
+    url = _parse_address(value)
     return option + equals + (f"{scheme}://{HIDDEN}" if url is None else address_without_secrets(url))
 
 
-def _parsed(text: str) -> URL | None:
+def _parse_address(text: str) -> URL | None:
     """Return a parsed address with "://"; None if it is unreadable or the end of its password is uncertain."""
     try:
         url = make_url(text)
@@ -59,7 +59,7 @@ def url_of(address: str | PathLike[str]) -> URL:
     text = str(address)
     if "://" not in text and not _MANGLED.match(text):
         return URL.create("sqlite", database=str(path_from_text(text)))
-    url = _parsed(text) or URL.create("unreadable")
+    url = _parse_address(text) or URL.create("unreadable")
     scheme = url.drivername.partition("+")[0]
     if scheme in ("postgresql", "postgres"):
         return url.set(drivername="postgresql+psycopg")

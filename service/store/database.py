@@ -73,7 +73,7 @@ class Database:
                 # The files beside it, of the write-ahead log, get its permissions. One that is there is left alone: to
                 # close it would end the locks that SQLite has on it for other connections of this process.
                 os.close(os.open(self._file, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o600))
-            self._known, self._open = _identity(self._file), may_use(self._file)
+            self._known, self._open = _file_identity(self._file), may_use(self._file)
             log, shared = (Path(f"{self._file}{end}") for end in ("-wal", "-shm"))
             if not self._open and log.exists() and not shared.exists():
                 raise StoreError(
@@ -87,7 +87,7 @@ class Database:
                 url = url.set(database=self._file.absolute().as_uri()).update_query_dict(unchanging)
         self._folder = Path(url.database or ".").parent if self.sqlite else None
         with self._translated_errors():
-            self.engine = _sqlite(url) if self.sqlite else _postgresql(url)
+            self.engine = _sqlite_engine(url) if self.sqlite else _postgresql_engine(url)
         self._reader = self.engine.execution_options(reading=True, **({} if self.sqlite else _SNAPSHOT))
         if self.sqlite and not alone:
             self._use_write_ahead_log()
@@ -154,7 +154,7 @@ class Database:
 
     def _require_file(self) -> None:
         """Raise `StoreError` if the file was deleted or replaced: further writes would be lost."""
-        if self._file is not None and _identity(self._file) != self._known:
+        if self._file is not None and _file_identity(self._file) != self._known:
             raise StoreError(
                 f"the file of a store must stay in place while it is used; {self.name} was deleted, moved or replaced; "
                 "put it back, or stop what uses it and start again"
@@ -206,7 +206,7 @@ class Database:
             )
 
 
-def _identity(file: Path) -> tuple[int, int] | None:
+def _file_identity(file: Path) -> tuple[int, int] | None:
     """Return device and inode of a file, which writing preserves; None if it does not exist."""
     try:
         status = file.stat()
@@ -228,7 +228,7 @@ def remedy_of_rights(path: Path) -> str:
     return f"chmod u+rw {path}, as the user who owns it"
 
 
-def _sqlite(url: URL) -> Engine:
+def _sqlite_engine(url: URL) -> Engine:
     engine = create_engine(url, connect_args={"timeout": _PATIENCE, "isolation_level": None}, **_POOL)
 
     @event.listens_for(engine, "connect")
@@ -244,7 +244,7 @@ def _sqlite(url: URL) -> Engine:
     return engine
 
 
-def _postgresql(url: URL) -> Engine:
+def _postgresql_engine(url: URL) -> Engine:
     options = " ".join(f"-c {name}={value}" for name, value in _POSTGRESQL.items())
     options_in_address = url.query.get("options", "")
     in_address = options_in_address if isinstance(options_in_address, str) else " ".join(options_in_address)
@@ -265,13 +265,13 @@ def _postgresql(url: URL) -> Engine:
     @event.listens_for(engine, "checkout")
     def prove(connection: Any, record: Any, _proxy: Any) -> None:
         # Not each time, as the pool itself would: that takes as long as the use of the connection.
-        if time.monotonic() - record.info.get("since", math.inf) > _IDLE and not _alive(engine, connection):
+        if time.monotonic() - record.info.get("since", math.inf) > _IDLE and not _is_alive(engine, connection):
             raise InvalidatePoolError  # makes the pool drop its connections and open a new one
 
     return engine
 
 
-def _alive(engine: Engine, connection: Any) -> bool:
+def _is_alive(engine: Engine, connection: Any) -> bool:
     try:
         return engine.dialect.do_ping(connection)
     except engine.dialect.loaded_dbapi.Error:

@@ -26,7 +26,9 @@ def damages(database: Database) -> list[str]:
     try:
         with database.reading() as connection:
             damage = _of_sqlite(connection) if database.sqlite else _of_postgresql(connection)
-            return damage or _miscounts(connection) or _damaged_results(connection)  # damaged data need not be counted
+            return (
+                damage or _jobs_with_miscounts(connection) or _damaged_results(connection)
+            )  # damaged data need not be counted
     except Unavailable:
         raise
     except StoreError as error:  # a file may be too damaged to be searched
@@ -75,7 +77,7 @@ def _of_postgresql(connection: Connection) -> list[str]:
     return [*damage, *(f"{name} is off: a crash can lose what was committed; switch it on" for name in off)]
 
 
-def _miscounts(connection: Connection) -> list[str]:
+def _jobs_with_miscounts(connection: Connection) -> list[str]:
     """Return the jobs with missing or surplus rows; one statement, so that all counts are of one moment."""
 
     def count(table: FromClause) -> ColumnElement[int]:

@@ -102,7 +102,7 @@ def keep_design(
             fixed = {"design": design, "variant": variant, "dimensions": json.dumps(dimensions), "at": now()}
             empty = {"name": f"Kept {number}", "note": "", "star": False, "decided": False, "reason": ""}
             connection.execute(insert(bookmarks).values(job=job, number=number, **fixed, **empty))
-        return _changed(connection, job, number, {name: value for name, value in remarks.items() if value})
+        return _change_bookmark(connection, job, number, {name: value for name, value in remarks.items() if value})
 
 
 def update_bookmark(store: Database, job: int, number: int, **remarks: Unpack[Remarks]) -> Bookmark:
@@ -110,7 +110,7 @@ def update_bookmark(store: Database, job: int, number: int, **remarks: Unpack[Re
     with store.writing() as connection:
         the_job(connection, job, lock=True)
         _the_bookmark(connection, job, number)
-        return _changed(connection, job, number, dict(remarks))
+        return _change_bookmark(connection, job, number, dict(remarks))
 
 
 def remove_bookmark(store: Database, job: int, number: int) -> None:
@@ -121,7 +121,7 @@ def remove_bookmark(store: Database, job: int, number: int) -> None:
         connection.execute(delete(bookmarks).where(_is_bookmark(job, number)))
 
 
-def _changed(connection: Connection, job: int, number: int, remarks: Mapping[str, Any]) -> Bookmark:
+def _change_bookmark(connection: Connection, job: int, number: int, remarks: Mapping[str, Any]) -> Bookmark:
     if remarks.get("decided"):
         connection.execute(update(bookmarks).where(bookmarks.c.job == job).values(decided=False))
     values = {name: plain(value) if isinstance(value, str) else value for name, value in remarks.items()}

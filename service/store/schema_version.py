@@ -26,7 +26,7 @@ def upgrade(database: Database) -> None:
     Raises `StoreError` if they come from a later release.
     """
     with database.reading() as connection:
-        if _version(connection) == LATEST:
+        if _stored_version(connection) == LATEST:
             return
     from alembic import command
 
@@ -34,14 +34,14 @@ def upgrade(database: Database) -> None:
     with database.writing() as connection:
         if not database.sqlite:
             connection.execute(text("SELECT pg_advisory_xact_lock(:lock)"), {"lock": LOCK})
-        version = _version(connection)
-        foreign = _strangers(connection, scripts)
+        version = _stored_version(connection)
+        foreign = _foreign_tables(connection, scripts)
         if foreign:
             raise StoreError(
                 f"a store must be a database of its own; {database.name} has tables of something else ({foreign}), and "
                 "gets none; name another one with --store"
             )
-        if not _knows(scripts, version):
+        if not _knows_version(scripts, version):
             raise StoreError(
                 f"the tables of a store must be of this release or an earlier one; {database.name} has version "
                 f"{version}, this software knows {LATEST}; install the release that made it"
@@ -53,8 +53,8 @@ def upgrade(database: Database) -> None:
 def versions(database: Database) -> tuple[str | None, str | None, bool]:
     """Return the version of the tables (None without any), that of this software, and whether it knows the former."""
     with database.reading() as connection:
-        version = _version(connection)
-    return version, LATEST, version == LATEST or _knows(_alembic()[1], version)
+        version = _stored_version(connection)
+    return version, LATEST, version == LATEST or _knows_version(_alembic()[1], version)
 
 
 def _alembic() -> tuple[Config, ScriptDirectory]:
@@ -70,24 +70,24 @@ def _alembic() -> tuple[Config, ScriptDirectory]:
 def strangers(database: Database) -> str:
     """Return, in words, the tables of a foreign database; an empty text for a store or an empty database."""
     with database.reading() as connection:
-        return _strangers(connection, _alembic()[1])
+        return _foreign_tables(connection, _alembic()[1])
 
 
-def _strangers(connection: Connection, scripts: ScriptDirectory) -> str:
-    version, names = _version(connection), set(inspect(connection).get_table_names())
+def _foreign_tables(connection: Connection, scripts: ScriptDirectory) -> str:
+    version, names = _stored_version(connection), set(inspect(connection).get_table_names())
     if version is not None:
-        strangers = set() if "jobs" in names or _knows(scripts, version) else names
+        strangers = set() if "jobs" in names or _knows_version(scripts, version) else names
     else:  # a database on a server may be shared, a file is not
         strangers = names if connection.dialect.name == "sqlite" else names & set(metadata.tables)
     listed = sorted(strangers)[:3]
     return ", ".join(listed) + (" and more" if len(strangers) > 3 else "")
 
 
-def _knows(scripts: ScriptDirectory, version: str | None) -> bool:
+def _knows_version(scripts: ScriptDirectory, version: str | None) -> bool:
     return version is None or version in {script.revision for script in scripts.walk_revisions()}
 
 
-def _version(connection: Connection) -> str | None:
+def _stored_version(connection: Connection) -> str | None:
     if not inspect(connection).has_table("alembic_version"):
         return None
     return connection.execute(text("SELECT version_num FROM alembic_version")).scalar()

@@ -135,7 +135,7 @@ def plain(text: str) -> str:
 
 def cells_of(row: Mapping[str, Cell]) -> str:
     """Return the cells of a design as a JSON array: infinities as "inf" and "-inf", undefined values as null."""
-    return text_of([_stored(cell) for cell in row.values()])
+    return text_of([_stored_cell(cell) for cell in row.values()])
 
 
 def rows_of(columns: Sequence[str], texts: Sequence[str]) -> list[Row]:
@@ -152,7 +152,7 @@ def rows_of(columns: Sequence[str], texts: Sequence[str]) -> list[Row]:
     if len(rows) != len(texts):
         raise ValueError(f"{len(texts)} designs are {len(rows)}")
     if "null" in array_text or 'inf"' in array_text:
-        rows = [map(_read, row) for row in rows]
+        rows = [map(_read_cell, row) for row in rows]
     return [dict(zip(columns, row, strict=True)) for row in rows]
 
 
@@ -174,23 +174,23 @@ def summary_of(result: Result) -> dict[str, Any]:
         "seconds": json_ready(result.seconds),
         "best": json_ready(best),
         "axes": axes,
-        "points": [[json_ready(row[axis], gaps=True) for axis in axes] for row in _spread(result.designs)],
+        "points": [[json_ready(row[axis], gaps=True) for axis in axes] for row in _evenly_spread(result.designs)],
     }
 
 
-def _spread(rows: Sequence[Row]) -> list[Row]:
+def _evenly_spread(rows: Sequence[Row]) -> list[Row]:
     """Return at most `_POINTS` evenly spread rows, including the first and the last."""
     count = min(len(rows), _POINTS)
     return [rows[i * (len(rows) - 1) // max(count - 1, 1)] for i in range(count)]
 
 
-def _stored(cell: Cell) -> Cell:
+def _stored_cell(cell: Cell) -> Cell:
     if isinstance(cell, float) and not math.isfinite(cell):
         return None if math.isnan(cell) else repr(cell)
     return cell
 
 
-def _read(cell: Any) -> Cell:
+def _read_cell(cell: Any) -> Cell:
     if cell is None:
         return math.nan
     return float(cell) if cell in ("inf", "-inf") else cell

@@ -39,8 +39,8 @@ _MOST_VALUES = 6  # values of a variable that are all shown
 def summarise(problem: Problem) -> dict[str, Any]:
     """Return a job in words: name, given, loads, tolerances, costs, variables, rules, objectives, warnings, search.
 
-    Each is a list of lines except name, search, the degrees of freedom, the floors, see `_floors`, and the changes that
-    settle warnings, see `changes_of`.
+    Each is a list of lines except name, search, the degrees of freedom, the floors, see `_default_floors`, and the
+    changes that settle warnings, see `changes_of`.
     """
     branch = elimination_branches(problem)[0]
     settings = problem.settings
@@ -54,23 +54,23 @@ def summarise(problem: Problem) -> dict[str, Any]:
     ]
     return {
         "name": problem.name,
-        "given": [*_motion(problem), *_machine(problem), *_custom_lines(problem)],
+        "given": [*_motion_lines(problem), *_machine_lines(problem), *_custom_lines(problem)],
         "loads": problem.mechanism.load_texts,
-        "tolerances": _tolerances(problem.mechanism),
-        "costs": [] if problem.costs is None else [_cost(*item) for item in problem.costs.by_name.items()],
+        "tolerances": _tolerance_lines(problem.mechanism),
+        "costs": [] if problem.costs is None else [_cost_text(*item) for item in problem.costs.by_name.items()],
         "variables": [
-            *(f"{name} {_lengths(problem, name)}" for name in DIMENSIONS),
-            *(_varying(item) for item in problem.mechanism.varying),
-            *(_values(problem, item) for item in problem.discrete),
-            *_choices(problem),
+            *(f"{name} {_length_text(problem, name)}" for name in DIMENSIONS),
+            *(_varying_text(item) for item in problem.mechanism.varying),
+            *(_values_text(problem, item) for item in problem.discrete),
+            *_choice_lines(problem),
         ],
         "rules": [
             *([f"slow stroke {problem.slow_stroke}"] if problem.slow_stroke else []),
-            *(_rule(constraint, problem) for constraint in constraints_of(problem)),
-            *_limits(problem),
+            *(_rule_text(constraint, problem) for constraint in constraints_of(problem)),
+            *_limit_lines(problem),
         ],
-        "floors": _floors(problem),
-        "objectives": [_objective(objective, problem) for objective in problem.objectives],
+        "floors": _default_floors(problem),
+        "objectives": [_objective_text(objective, problem) for objective in problem.objectives],
         "unknowns": 3 + len(problem.mechanism.varying),
         "degrees_of_freedom": _degrees_of_freedom(branch),
         "eliminated": list(branch.eliminated),
@@ -113,7 +113,7 @@ def _degrees_of_freedom(branch: EliminationBranch) -> int:
     return len(branch.free) - equalities
 
 
-def _machine(problem: Problem) -> list[str]:
+def _machine_lines(problem: Problem) -> list[str]:
     """Return the machine of a problem line by line, with the ranges of its variables."""
     low, high = (machine_in_words(problem, end) for end in problem.mechanism.ends)
     if len(low) != len(high):  # a number that is zero at one end leaves its line out
@@ -123,10 +123,10 @@ def _machine(problem: Problem) -> list[str]:
 
 def machine_in_words(problem: Problem, mechanism: Mechanism) -> list[str]:
     """Return a machine of a problem line by line: the stated machine, or that of a design."""
-    return [*_speed(problem, mechanism), *_mechanism_lines(mechanism)]
+    return [*_speed_lines(problem, mechanism), *_mechanism_lines(mechanism)]
 
 
-def _speed(problem: Problem, mechanism: Mechanism) -> list[str]:
+def _speed_lines(problem: Problem, mechanism: Mechanism) -> list[str]:
     if problem.motion is not None:
         return []
     if not mechanism.speed:
@@ -147,7 +147,7 @@ def _mechanism_lines(mechanism: Mechanism) -> list[str]:
         lines.append(f"speed over the crank angle: {mechanism.speed_profile.text}; quantities follow this profile")
     if mechanism.acceleration:
         lines.append(f"crank acceleration {mechanism.acceleration:.6g} rad/s^2")
-    lines += [f"{name}: {_link(getattr(mechanism, name))}" for name in ("crank", "rod")]
+    lines += [f"{name}: {_link_text(getattr(mechanism, name))}" for name in ("crank", "rod")]
     if mechanism.counterweight.mass:
         weight = mechanism.counterweight
         lines.append(
@@ -167,14 +167,14 @@ def _mechanism_lines(mechanism: Mechanism) -> list[str]:
     lines += [f"load: {load.text}" for load in mechanism.loads]
     if mechanism.drive is not None:
         lines.append(f"drive: {mechanism.drive.text}")
-    lines += _friction(mechanism.friction)
-    lines += _strength(mechanism.strength)
+    lines += _friction_lines(mechanism.friction)
+    lines += _strength_lines(mechanism.strength)
     if mechanism.branch == "crossed":
         lines.append("crossed branch")
     return lines
 
 
-def _motion(problem: Problem) -> list[str]:
+def _motion_lines(problem: Problem) -> list[str]:
     swing = problem.motion
     if swing is None:
         return []
@@ -210,7 +210,7 @@ def _custom_lines(problem: Problem) -> list[str]:
     ]
 
 
-def _link(link: Link) -> str:
+def _link_text(link: Link) -> str:
     if isinstance(link, Bar):
         return f"bar {1e3 * link.width:.6g} x {1e3 * link.depth:.6g} mm (width x depth), {link.density:.6g} kg/m^3"
     if not link.mass:
@@ -221,7 +221,7 @@ def _link(link: Link) -> str:
     return f"{link.mass:.6g} kg, mass centre {centre}{centre_across}, inertia {inertia}"
 
 
-def _friction(friction: Friction) -> list[str]:
+def _friction_lines(friction: Friction) -> list[str]:
     lines = [f"friction in the guide: coefficient {friction.guide:.6g}"] if friction.guide else []
     for name in ("crank_pivot", "crank_pin", "slider_pin"):
         pin = getattr(friction, name)
@@ -233,7 +233,7 @@ def _friction(friction: Friction) -> list[str]:
     return lines
 
 
-def _strength(strength: Strength | None) -> list[str]:
+def _strength_lines(strength: Strength | None) -> list[str]:
     """Return material, pins, and assessment of stresses; empty for a machine without [sections]."""
     if strength is None:
         return []
@@ -242,7 +242,7 @@ def _strength(strength: Strength | None) -> list[str]:
     pins = {name.replace("_", " "): getattr(strength, name) for name in ("crank_pivot", "crank_pin", "slider_pin")}
     lines = [
         f"material of crank and rod: {strength.material.density:.6g} kg/m^3",
-        *(f"{name} of the material: {_pressure(value)}" for name, value in numbers.items()),
+        *(f"{name} of the material: {_pressure_text(value)}" for name, value in numbers.items()),
         f"pins: {', '.join(f'{name} {1e3 * value:.6g} mm' for name, value in pins.items())}",
         f"stress concentration of the eyes: {strength.eye_concentration:.6g}",
         f"mean stresses in fatigue: by {strength.criterion.capitalize()}",
@@ -252,13 +252,13 @@ def _strength(strength: Strength | None) -> list[str]:
     return lines
 
 
-def _pressure(value: float) -> str:
+def _pressure_text(value: float) -> str:
     return f"{1e-9 * value:.6g} GPa" if value >= 1e10 else f"{1e-6 * value:.6g} MPa"
 
 
-def _tolerances(mechanism: Mechanism) -> list[str]:
+def _tolerance_lines(mechanism: Mechanism) -> list[str]:
     tolerances = mechanism.tolerances
-    lines = [f"{name} {text}" for name in DIMENSIONS if (text := _tolerance(getattr(tolerances, name)))]
+    lines = [f"{name} {text}" for name in DIMENSIONS if (text := _tolerance_text(getattr(tolerances, name)))]
     if tolerances.crank_angle.absolute:
         lines.append(f"crank angle {math.degrees(tolerances.crank_angle.absolute):.6g} deg")
     for name in ("crank_pivot", "crank_pin", "slider_pin", "guide"):
@@ -271,12 +271,12 @@ def _tolerances(mechanism: Mechanism) -> list[str]:
     return lines
 
 
-def _tolerance(tolerance: Tolerance) -> str:
+def _tolerance_text(tolerance: Tolerance) -> str:
     parts = ((1e3 * tolerance.absolute, "mm"), (100.0 * tolerance.fraction, "%"))
     return " + ".join(f"{value:.6g} {unit}" for value, unit in parts if value)
 
 
-def _cost(name: str, cost: Cost) -> str:
+def _cost_text(name: str, cost: Cost) -> str:
     factor, unit = (math.degrees(1.0), "deg") if name == "crank_angle" else (1e3, "mm")
     power = "" if cost.exponent == 1.0 else f"^{cost.exponent:.6g}"
     fixed = f"{cost.fixed:.6g} + " if cost.fixed else ""
@@ -286,21 +286,21 @@ def _cost(name: str, cost: Cost) -> str:
     return ", ".join([text, *ends])
 
 
-def _lengths(problem: Problem, name: str) -> str:
+def _length_text(problem: Problem, name: str) -> str:
     """Return the range of a dimension, or all its choices."""
     ranges = sorted({(getattr(part, name).lower, getattr(part, name).upper) for part in problem.variants})
     if len(ranges) < 2:
-        return _range(getattr(problem, name))
+        return _length_range_text(getattr(problem, name))
     return f"{', '.join(f'{1e3 * lower:.6g}' for lower, _ in ranges)} mm, one of these"
 
 
-def _varying(item: Varying) -> str:
+def _varying_text(item: Varying) -> str:
     unit = varying_column(item)[1]
     ends = f"{unit.factor * item.lower:.6g} to {unit.factor * item.upper:.6g} {unit.symbol}".rstrip()
     return f"{item.name} {ends}"
 
 
-def _values(problem: Problem, item: Discrete) -> str:
+def _values_text(problem: Problem, item: Discrete) -> str:
     """Return the values of a discrete variable: its rule, its first and last values."""
     unit = columns_of_numbers(problem.mechanism.varying)[item.name][1]
     values = [f"{unit.factor * value:.6g}" for value in item.values]
@@ -308,13 +308,15 @@ def _values(problem: Problem, item: Discrete) -> str:
     return f"{item.name} {item.rule}: {counted(len(values), 'value')}, {', '.join(few)} {unit.symbol}".rstrip()
 
 
-def _choices(problem: Problem) -> list[str]:
+def _choice_lines(problem: Problem) -> list[str]:
     """Return the options of each choice that a design can have, and the number of their combinations."""
     lines = []
     idle = {label for label, _ in impossible_options(problem)}
     possible = [variant for variant in problem.variants if ", ".join(variant.labels) not in idle]
     for place, name in enumerate(problem.choices):
-        options = dict.fromkeys(_option(name, variant.labels[place], variant.mechanism.speed) for variant in possible)
+        options = dict.fromkeys(
+            _option_text(name, variant.labels[place], variant.mechanism.speed) for variant in possible
+        )
         lines.append(f"{name}: {', '.join(options)}")
     count = len(possible)
     if count > 1:
@@ -322,7 +324,7 @@ def _choices(problem: Problem) -> list[str]:
     return lines
 
 
-def _option(name: str, label: str, speed: float) -> str:
+def _option_text(name: str, label: str, speed: float) -> str:
     """Return an option as the job states it, a speed in rpm too. speed: crank speed, rad/s."""
     rpm = f"{speed * 30.0 / math.pi:.6g} rpm"
     return f"{label} ({rpm})" if name == "speed" and label != rpm else label
@@ -331,25 +333,25 @@ def _option(name: str, label: str, speed: float) -> str:
 _MOST_LISTED = 12  # combinations whose limits are listed individually
 
 
-def _limits(problem: Problem) -> list[str]:
+def _limit_lines(problem: Problem) -> list[str]:
     """Return the limits for each combination of choices, such as the limits of a gearmotor."""
     limited = [variant for variant in problem.variants if variant.limits]
     if len(limited) > _MOST_LISTED:
         return [f"limits set by {len(limited)} combinations of choices"]
     return [
-        f"with {' and '.join(variant.labels)}: {_rule(limit, problem, is_stated=True)}"
+        f"with {' and '.join(variant.labels)}: {_rule_text(limit, problem, is_stated=True)}"
         for variant in limited
         for limit in variant.limits
     ]
 
 
-def _range(bounds: Range) -> str:
+def _length_range_text(bounds: Range) -> str:
     if bounds.fixed:
         return f"{1e3 * bounds.lower:.6g} mm, fixed"
     return f"{1e3 * bounds.lower:.6g} to {1e3 * bounds.upper:.6g} mm"
 
 
-def _rule(constraint: Constraint, problem: Problem, *, is_stated: bool = False) -> str:
+def _rule_text(constraint: Constraint, problem: Problem, *, is_stated: bool = False) -> str:
     """Return a constraint in words. is_stated: whether it certainly comes from the job."""
     quantity = problem.quantity(constraint.quantity)
     is_stated = is_stated or constraint in problem.constraints
@@ -369,7 +371,7 @@ def _rule(constraint: Constraint, problem: Problem, *, is_stated: bool = False) 
     return f"{quantity.title} {bounds} (default, as the job sets none)"
 
 
-def _floors(problem: Problem) -> list[dict[str, Any]]:
+def _default_floors(problem: Problem) -> list[dict[str, Any]]:
     """Return the least allowed values of quantities with a default: quantity, value, unit, whether it is default."""
     floors = []
     for constraint in constraints_of(problem):
@@ -383,7 +385,7 @@ def _floors(problem: Problem) -> list[dict[str, Any]]:
     return floors
 
 
-def _objective(objective: Objective, problem: Problem) -> str:
+def _objective_text(objective: Objective, problem: Problem) -> str:
     quantity = problem.quantity(objective.quantity)
     if objective.target is None:
         return f"{objective.sense} {quantity.title}"

@@ -90,7 +90,9 @@ def for_typer(command: Callable[..., None]) -> Callable[..., None]:
             types = get_type_hints(groups[name], include_extras=True)
             field_options = [(field.name, field.default, types[field.name]) for field in fields(groups[name])]
         options += [
-            inspect.Parameter(option, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=_helped(option, hint))
+            inspect.Parameter(
+                option, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=_option_with_help(option, hint)
+            )
             for option, default, hint in field_options
         ]
 
@@ -107,7 +109,7 @@ def for_typer(command: Callable[..., None]) -> Callable[..., None]:
     return run
 
 
-def _helped(name: str, hint: Any) -> Any:
+def _option_with_help(name: str, hint: Any) -> Any:
     """Return the annotation of an option for typer, with its help in the option."""
     kind, *options = get_args(hint)
     if not isinstance(options[-1], str):

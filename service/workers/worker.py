@@ -193,19 +193,19 @@ def _end(claim: Claim, solve: Callable[[], None]) -> None:
         raise
     except OSError as error:
         if not is_full(error):
-            _stumble(claim, error)
+            _fail_and_retry(claim, error)
             return
         claim.hand_back(f"waits: Disk full: {full_places(error)}", delay=_FULL)
         _log.warning("handed back: %s; trying again in %g s", full_places(error), _FULL)
     except Exception as error:  # noqa: BLE001 - whatever it is, the job and not the worker ends
-        _stumble(claim, error)
+        _fail_and_retry(claim, error)
     except BaseException:
         with contextlib.suppress(LeaseLost, StoreError):  # the interruption matters more
             claim.hand_back("its worker was interrupted; another one continues")
         raise
 
 
-def _stumble(claim: Claim, error: Exception) -> None:
+def _fail_and_retry(claim: Claim, error: Exception) -> None:
     trace = "".join(traceback.format_exception(error)).encode(errors="replace")
     claim.write_files(Artefact(name="error.txt", media_type="text/plain", content=trace))
     reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
@@ -216,10 +216,10 @@ def _stumble(claim: Claim, error: Exception) -> None:
 def _solve(
     store: Store, claim: Claim, budget: Budget, terms: Terms, engine: Engine | None, heartbeat: Heartbeat, stop: Stop
 ) -> None:
-    _load(claim, 0)
+    _report_loading(claim, 0)
     from ...optimise.solve import solve
 
-    _load(claim, 1)
+    _report_loading(claim, 1)
     problem = parse_allowed(store.tables(claim.job.id), terms.allowed_quantities)
     problem = bounded(problem, min(LONGEST_CALL, budget.limits.seconds or LONGEST_CALL))
 
@@ -268,7 +268,7 @@ def front_progress(problem: Problem, values: Array) -> dict[str, Any]:
     return {"columns": [quantity.field for quantity in quantities], "points": (ordered[rows] * factors).tolist()}
 
 
-def _load(claim: Claim, parts: int) -> None:
+def _report_loading(claim: Claim, parts: int) -> None:
     """Report how much of a search is loaded, with the earlier numbers and front of the job."""
     from ...optimise.front.progress import LOADING, Progress
 

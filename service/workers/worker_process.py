@@ -64,7 +64,7 @@ def main() -> int:
     stop = threading.Event()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: stop.set())
-    line = _line()
+    line = _first_line()
     if not line:
         return 0
     settings = WorkerSettings.read(line)
@@ -73,7 +73,7 @@ def main() -> int:
         os.nice(NICENESS)
     threading.Thread(target=_wait_for_end, args=(stop, settings.terms.grace), daemon=True).start()
     try:
-        store = _opened(settings, stop)
+        store = _open_store(settings, stop)
         if store is None:
             return 0
         with store:
@@ -93,7 +93,7 @@ def main() -> int:
     return 0
 
 
-def _opened(settings: WorkerSettings, stop: threading.Event) -> Store | None:
+def _open_store(settings: WorkerSettings, stop: threading.Event) -> Store | None:
     """Return the store as soon as it can be reached; None if stopped before."""
     away = False
     while not stop.is_set():
@@ -109,7 +109,7 @@ def _opened(settings: WorkerSettings, stop: threading.Event) -> Store | None:
     return None
 
 
-def _line() -> bytes:
+def _first_line() -> bytes:
     """Return the first line of standard input, or nothing. Unbuffered: nothing may hold its lock at the end."""
     line = b""
     while not line.endswith(b"\n"):

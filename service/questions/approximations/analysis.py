@@ -79,13 +79,13 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Approximations:
     return {
         "rotating_mass_kg": rotating,
         "reciprocating_mass_kg": reciprocating,
-        "exact_peak_acceleration_m_s2": _peak(comparison.acceleration),
-        "exact_peak_torque_Nm": _peak(comparison.torque),
+        "exact_peak_acceleration_m_s2": _greatest_size(comparison.acceleration),
+        "exact_peak_torque_Nm": _greatest_size(comparison.torque),
         "offset_mm": (1e3 * offsets.offset + 0.0).tolist(),  # of a negative offset the first one is -0.0
         "accelerations": [
             {
                 "name": name,
-                "peak_acceleration_m_s2": _peak(curve),
+                "peak_acceleration_m_s2": _greatest_size(curve),
                 "error_percent": _percent(relative_error(curve, comparison.acceleration)),
                 "error_over_offset_percent": list(map(_percent, offsets.accelerations[name].tolist())),
             }
@@ -94,7 +94,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Approximations:
         "torques": [
             {
                 "name": name,
-                "peak_torque_Nm": _peak(curve),
+                "peak_torque_Nm": _greatest_size(curve),
                 "error_percent": _percent(relative_error(curve, comparison.torque)),
                 "error_over_offset_percent": list(map(_percent, offsets.torques[name].tolist())),
             }
@@ -103,7 +103,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Approximations:
     }
 
 
-def _peak(curve: Array) -> float:
+def _greatest_size(curve: Array) -> float:
     return float(np.abs(curve).max())
 
 
@@ -116,10 +116,13 @@ def blocks(numbers: Approximations) -> list[Block]:
     offsets = [column(f"{100 * k // (_TABULATED - 1)} %") for k in range(_TABULATED)]
     columns = (column("model", left=True), column("peak"), column("unit", left=True), column("error"), *offsets)
     rows: list[tuple[Text, ...]] = []
-    rows.append(("slider acceleration, exact", *_exact(numbers, "exact_peak_acceleration_m_s2", ACCELERATION)))
-    rows += [_row(approximation, "peak_acceleration_m_s2", ACCELERATION) for approximation in numbers["accelerations"]]
-    rows.append(("inertia torque, exact", *_exact(numbers, "exact_peak_torque_Nm", TORQUE)))
-    rows += [_row(approximation, "peak_torque_Nm", TORQUE) for approximation in numbers["torques"]]
+    rows.append(("slider acceleration, exact", *_exact_row(numbers, "exact_peak_acceleration_m_s2", ACCELERATION)))
+    rows += [
+        _approximation_row(approximation, "peak_acceleration_m_s2", ACCELERATION)
+        for approximation in numbers["accelerations"]
+    ]
+    rows.append(("inertia torque, exact", *_exact_row(numbers, "exact_peak_torque_Nm", TORQUE)))
+    rows += [_approximation_row(approximation, "peak_torque_Nm", TORQUE) for approximation in numbers["torques"]]
     return [
         heading("Approximate models: inertia only, constant speed"),
         Table(columns, tuple(rows), ruled=True),
@@ -131,11 +134,11 @@ def blocks(numbers: Approximations) -> list[Block]:
     ]
 
 
-def _exact(numbers: Approximations, key: str, kind: Kind) -> tuple[Text, ...]:
+def _exact_row(numbers: Approximations, key: str, kind: Kind) -> tuple[Text, ...]:
     return recorded(numbers, key, digits=5), Unit(kind), *[""] * (1 + _TABULATED)
 
 
-def _row(approximation: Approximation, key: str, kind: Kind) -> tuple[Text, ...]:
+def _approximation_row(approximation: Approximation, key: str, kind: Kind) -> tuple[Text, ...]:
     errors = (approximation["error_percent"], *approximation["error_over_offset_percent"])
     cells = ("-" if percent is None else f"{percent:.3g} %" for percent in errors)
     return f"  {approximation['name']}", recorded(approximation, key, digits=5), Unit(kind), *cells

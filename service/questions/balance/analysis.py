@@ -47,7 +47,7 @@ class Shaking(Record):
 _CURVES = (("shaking_force", "N", Signal.SHAKING_FORCE), ("shaking_moment", "Nm", Signal.SHAKING_MOMENT))
 
 
-def _bare(mechanism: Mechanism) -> Mechanism | None:
+def _without_counterweight(mechanism: Mechanism) -> Mechanism | None:
     """Return the mechanism without its counterweight; None if it has none."""
     if not mechanism.counterweight.mass > 0.0:
         return None
@@ -62,9 +62,9 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Shaking:
     """
     if not MOTION.is_met(mechanism):
         raise InputError(MOTION.missing)
-    weight, bare = mechanism.counterweight, _bare(mechanism)
-    force, moment = (_shaken(mechanism, signal, linkage) for *_, signal in _CURVES)
-    force_bare, moment_bare = (None if bare is None else _shaken(bare, signal, linkage) for *_, signal in _CURVES)
+    weight, bare = mechanism.counterweight, _without_counterweight(mechanism)
+    force, moment = (_shaking_of(mechanism, signal, linkage) for *_, signal in _CURVES)
+    force_bare, moment_bare = (None if bare is None else _shaking_of(bare, signal, linkage) for *_, signal in _CURVES)
     return {
         "counterweight_kg": weight.mass,
         "counterweight_radius_mm": 1e3 * weight.radius,
@@ -86,12 +86,14 @@ class _Shaking(NamedTuple):
     rms: float
 
 
-def _shaken(mechanism: Mechanism, signal: Signal, linkage: Linkage) -> _Shaking:
+def _shaking_of(mechanism: Mechanism, signal: Signal, linkage: Linkage) -> _Shaking:
     rms = average(mechanism, signal, row_of(linkage)).rms[0]
     return _Shaking(peak(mechanism, signal, linkage), float(rms))
 
 
-def _curves(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float64]) -> ShakingCurves | MultiCylinderCurves:
+def _shaking_curves_of(
+    mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float64]
+) -> ShakingCurves | MultiCylinderCurves:
     """Return the shaking of all cylinders at crank angles (n,), rad."""
     if mechanism.arrangement is not None:
         return multi_cylinder_curves(mechanism, linkage, theta)
@@ -112,14 +114,14 @@ def blocks(numbers: Shaking) -> list[Block]:
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return shaking force and moment over the cycle, with and without the counterweight."""
-    theta, bare = sampled_turn(), _bare(mechanism)
-    degrees, now = np.degrees(theta), _curves(mechanism, linkage, theta)
+    theta, bare = sampled_turn(), _without_counterweight(mechanism)
+    degrees, now = np.degrees(theta), _shaking_curves_of(mechanism, linkage, theta)
     size, moment = (
         [Line("as it is", degrees, np.hypot(now.force_x, now.force_y))],
         [Line("as it is", degrees, now.moment)],
     )
     if bare is not None:
-        then = _curves(bare, linkage, theta)
+        then = _shaking_curves_of(bare, linkage, theta)
         size.append(Line("without counterweight", degrees, np.hypot(then.force_x, then.force_y), 1))
         moment.append(Line("without counterweight", degrees, then.moment, 1))
     force_x, force_y = Line("along the slider line", degrees, now.force_x), Line("across", degrees, now.force_y, 1)

@@ -45,10 +45,10 @@ def analyse(
         progress=report,
         cancelled=watch.cancelled,
     )
-    record = _record(certificate, front.problem)
+    record = _certificate_record(certificate, front.problem)
     return Answer(
         record=lambda units: record_in(record, units),
-        blocks=_blocks(certificate, front),
+        blocks=_certificate_blocks(certificate, front),
         is_satisfied=certificate.proven,
         message=certificate.message,
         search_result=certificate,
@@ -64,7 +64,7 @@ def _nothing_feasible(problem: Problem, seconds: float) -> Answer:
     return Answer(record=lambda _: dict(record), blocks=lines, is_satisfied=proven, message=message)
 
 
-def _record(certificate: Certificate, problem: Problem) -> dict[str, Any]:
+def _certificate_record(certificate: Certificate, problem: Problem) -> dict[str, Any]:
     """Return a certificate for JSON, metric; the added designs with all their numbers come last."""
     quantities = [problem.quantity(objective.quantity) for objective in problem.objectives]
     return {
@@ -98,7 +98,7 @@ def _by_number(values: Array | None, problem: Problem) -> dict[str, Any] | None:
     return {key: (unit.factor * value).tolist() for (key, unit), value in zip(columns, values, strict=True)}
 
 
-def _blocks(certificate: Certificate, front: ParetoFront) -> list[Block]:
+def _certificate_blocks(certificate: Certificate, front: ParetoFront) -> list[Block]:
     share = f", {certificate.open:,} open ({100.0 * certificate.remaining:.3g} % of it)" if certificate.open else ""
     blocks: list[Block] = [
         heading("{name}: {message}", name=front.problem.name, message=certificate.message),

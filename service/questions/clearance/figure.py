@@ -72,7 +72,7 @@ def clearance_figure(run: ClearanceRun, system: System = "metric") -> Figure:
     """Return slider motion and contact force over the last revolution of a run, and the path of the journal."""
     curves = loose_curves(run)
     figure = new_figure(12.4, 7.6)
-    title = words("{clearance}, {speed}", clearance=_clearance(run), speed=_speed(run))
+    title = words("{clearance}, {speed}", clearance=_clearance_text(run), speed=_speed_value(run))
     subtitle = f"turn {run.cycles} of the crank; solid: loose joint, dashed: ideal joints"
     heading(figure, format_text(title, system, printed=True), subtitle)
     position, velocity, acceleration = (_motion_panel(curves, kind) for kind in _TITLES)
@@ -85,7 +85,7 @@ def clearance_figure(run: ClearanceRun, system: System = "metric") -> Figure:
     contact = Panel("contact force", x_title, (force,), FORCE, turns=True, note=greatest)
     for row, panel in enumerate((contact, acceleration, velocity, replace(position, note=note))):
         draw_panel(add_axes(figure, 0.75, 0.55 + 1.62 * row, 6.7, 1.24), panel, system, has_x_title=row == 0)
-    draw_panel(add_axes(figure, 8.3, 2.65, 3.75, 3.75), _journal(curves, run.clearance.radius), system)
+    draw_panel(add_axes(figure, 8.3, 2.65, 3.75, 3.75), _journal_panel(curves, run.clearance.radius), system)
     if run.cycles > run.discard:
         for row, line in enumerate(_statistics_lines(summarise(run))):
             write_text(figure, 7.95, 1.8 - 0.2 * row, format_text(line, system, printed=True))
@@ -98,10 +98,12 @@ def speeds_figure(runs: Sequence[ClearanceRun]) -> PanelFigure:
     for run in runs:
         curves = loose_curves(run)
         first, *other_panels = (_motion_panel(curves, kind) for kind in _TITLES)
-        columns.append([replace(first, note=(_speed(run),)), *other_panels])
+        columns.append([replace(first, note=(_speed_value(run),)), *other_panels])
     panels = tuple(panel for row in zip(*columns, strict=True) for panel in row)
     subtitle = "solid: loose joint, dashed: ideal joints"
-    return PanelFigure(_clearance(runs[0]), subtitle, panels, columns=len(runs), width=4.05, height=1.82, stacked=True)
+    return PanelFigure(
+        _clearance_text(runs[0]), subtitle, panels, columns=len(runs), width=4.05, height=1.82, stacked=True
+    )
 
 
 def speed_runs(mechanism: Mechanism, linkage: Linkage, rpm: Sequence[float] = CASE_RPM) -> list[ClearanceRun]:
@@ -115,13 +117,13 @@ def speed_runs(mechanism: Mechanism, linkage: Linkage, rpm: Sequence[float] = CA
     ]
 
 
-def _clearance(run: ClearanceRun) -> Text:
+def _clearance_text(run: ClearanceRun) -> Text:
     clearance = run.clearance
     at = f"radial clearance {{radius}} at the {clearance.joint}"
     return words(at, radius=Value(float(clearance.radius), LENGTH, 4))
 
 
-def _speed(run: ClearanceRun) -> Value:
+def _speed_value(run: ClearanceRun) -> Value:
     return Value(float(run.mechanism.speed), ANGULAR_SPEED, 4)
 
 
@@ -135,7 +137,7 @@ def _motion_panel(curves: LooseCurves, kind: Kind) -> Panel:
     return Panel(_TITLES[kind], CRANK_ANGLE, lines, kind, turns=True, note=note)
 
 
-def _journal(curves: LooseCurves, radius: float) -> Panel:
+def _journal_panel(curves: LooseCurves, radius: float) -> Panel:
     """Return the path of the journal's centre, dots at contacts with the bearing, and the clearance circle."""
     turn, touching = np.linspace(0.0, 2.0 * math.pi, 361), curves.touching
     lines = (

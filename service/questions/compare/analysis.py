@@ -44,23 +44,23 @@ def analyse(runs: Sequence[ComparedRun], *, tolerance: float = 1e-6, **_: Any) -
     message = _objectives_message(solved)
     comparison = None
     if len(solved) > 1 and not message:
-        solved = [replace(run, result=_ordered(run.result, solved[0].result)) for run in solved]
+        solved = [replace(run, result=_reorder_objectives(run.result, solved[0].result)) for run in solved]
         values = [minimised_values(run.result) for run in solved]
         if all(np.isfinite(front).all() for front in values):
             comparison = compare(values, tolerance=tolerance)
     places = differences([run.tables for run in runs if run.tables is not None])
-    sentences = {system: _sentences(solved, system) for system in _SYSTEMS}
+    sentences = {system: _better_sentences(solved, system) for system in _SYSTEMS}
 
     def record(units: System) -> dict[str, Any]:
-        measures = {} if comparison is None else _measures(solved, comparison, units)
+        measures = {} if comparison is None else _front_measures(solved, comparison, units)
         found = [{"place": place, "values": list(values)} for place, values in places]
         return measures | {"sentences": sentences[units], "differences": found}
 
-    blocks = [] if comparison is None else [*_tables(solved, comparison), *_verdict(solved, comparison)]
-    blocks += _better(runs, sentences)
+    blocks = [] if comparison is None else [*_measure_tables(solved, comparison), *_verdict_blocks(solved, comparison)]
+    blocks += _better_blocks(runs, sentences)
     names = [run.name for run in runs if run.tables is not None]
     return Answer(
-        record=record, blocks=[*blocks, *_differences(names, places)], is_satisfied=not message, message=message
+        record=record, blocks=[*blocks, *_difference_table(names, places)], is_satisfied=not message, message=message
     )
 
 
@@ -77,7 +77,7 @@ def _key(objective: StoredObjective) -> tuple[str, str, float | None]:
     return objective.quantity, objective.sense, objective.target
 
 
-def _ordered(result: Result, first: Result) -> Result:
+def _reorder_objectives(result: Result, first: Result) -> Result:
     """Return a result with its objectives in the order of the first one."""
     by_key = {_key(item): item for item in result.objectives}
     return replace(result, objectives=tuple(by_key[_key(item)] for item in first.objectives))
@@ -90,14 +90,14 @@ def _objectives(result: Result, system: System = "metric") -> str:
     )
 
 
-def _sentences(solved: Sequence[ComparedRun], system: System) -> list[str]:
+def _better_sentences(solved: Sequence[ComparedRun], system: System) -> list[str]:
     """Return which run is better where, in words; nothing for a single run with designs."""
     if len(solved) < 2:
         return []
     return comparison_sentences([run.name for run in solved], [run.result for run in solved], system)
 
 
-def _better(runs: Sequence[ComparedRun], sentences: Mapping[System, Sequence[str]]) -> list[Block]:
+def _better_blocks(runs: Sequence[ComparedRun], sentences: Mapping[System, Sequence[str]]) -> list[Block]:
     """Return which run is better where as sentences; one that begins with the name of a folder keeps its letter."""
     folders = tuple(run.name for run in runs if isinstance(run.place, Path))
     texts = [
@@ -107,7 +107,7 @@ def _better(runs: Sequence[ComparedRun], sentences: Mapping[System, Sequence[str
     return [sentence("{text}.", text=Phrase(*pair)) for pair in zip(*texts, strict=True)]
 
 
-def _measures(solved: Sequence[ComparedRun], comparison: Comparison, units: System) -> dict[str, Any]:
+def _front_measures(solved: Sequence[ComparedRun], comparison: Comparison, units: System) -> dict[str, Any]:
     return {
         "objectives": [objective_record(objective_in(item, units)) for item in solved[0].result.objectives],
         "tolerance": comparison.tolerance,
@@ -134,7 +134,7 @@ def _measures(solved: Sequence[ComparedRun], comparison: Comparison, units: Syst
     }
 
 
-def _tables(solved: Sequence[ComparedRun], comparison: Comparison) -> list[Block]:
+def _measure_tables(solved: Sequence[ComparedRun], comparison: Comparison) -> list[Block]:
     """Return the measures of the fronts and of each pair as tables."""
     titles = ("run", "method", "seed", "designs", "in union front", "hypervolume", "% of union's", "evaluated")
     rows: list[tuple[Text, ...]] = [
@@ -162,12 +162,12 @@ def _tables(solved: Sequence[ComparedRun], comparison: Comparison) -> list[Block
             "extends to 1.1 ranges."
         ),
         Table((*columns, column("time", TIME)), tuple(rows), ruled=True),
-        *_pairs(coverage, [[Value(100.0 * value, decimals=1) for value in row] for row in comparison.coverage]),
-        *_pairs(epsilon, [[Value(value, digits=3) for value in row] for row in comparison.epsilon]),
+        *_pair_table(coverage, [[Value(100.0 * value, decimals=1) for value in row] for row in comparison.coverage]),
+        *_pair_table(epsilon, [[Value(value, digits=3) for value in row] for row in comparison.epsilon]),
     ]
 
 
-def _pairs(title: str, values: Sequence[Sequence[Value]]) -> list[Block]:
+def _pair_table(title: str, values: Sequence[Sequence[Value]]) -> list[Block]:
     """Return a number for each pair of runs, which their places in the list of runs name."""
     places = [str(index) for index in range(1, len(values) + 1)]
     rows: list[tuple[Text, ...]] = []
@@ -178,7 +178,7 @@ def _pairs(title: str, values: Sequence[Sequence[Value]]) -> list[Block]:
     return [heading(title), Table((column(), *map(column, places)), tuple(rows), ruled=True)]
 
 
-def _verdict(solved: Sequence[ComparedRun], comparison: Comparison) -> list[Block]:
+def _verdict_blocks(solved: Sequence[ComparedRun], comparison: Comparison) -> list[Block]:
     names = [run.name for run in solved]
     sentences = []
     open_pairs = 0
@@ -196,7 +196,7 @@ def _verdict(solved: Sequence[ComparedRun], comparison: Comparison) -> list[Bloc
     return [sentence("{text}", text=text) for text in sentences]
 
 
-def _differences(names: Sequence[str], places: Sequence[tuple[str, Sequence[str | None]]]) -> list[Block]:
+def _difference_table(names: Sequence[str], places: Sequence[tuple[str, Sequence[str | None]]]) -> list[Block]:
     """Return the differences between the jobs of runs as a table."""
     title = Sentence("What differs between the jobs", "heading", space_before=True)
     if len(names) < 2:

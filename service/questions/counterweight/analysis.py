@@ -143,8 +143,8 @@ def numbers(
             "centre_along_mm": 1e3 * rod.moment_along / rod.mass if weighs else None,
             "centre_across_mm": 1e3 * rod.moment_across / rod.mass if weighs else None,
         },
-        "before": _shaking(optimum.shaking_before),
-        "after": _shaking(optimum.shaking_after),
+        "before": _shaking_numbers(optimum.shaking_before),
+        "after": _shaking_numbers(optimum.shaking_after),
         "objective_N": optimum.objective,
         "least_possible_N": optimum.bound,
         "saving_N_per_kg": optimum.saving * optimum.radius,
@@ -159,7 +159,7 @@ def notes(numbers: BalanceNumbers) -> list[str]:
     return [] if numbers["converged"] else [f"not proven to be the best: {proven}"]
 
 
-def _shaking(shaking: Shaking) -> ShakingNumbers:
+def _shaking_numbers(shaking: Shaking) -> ShakingNumbers:
     return {
         "peak_shaking_force_N": shaking.peak_force,
         "peak_shaking_force_angle_deg": float(np.degrees(shaking.peak_force_angle)),
@@ -189,7 +189,7 @@ def blocks(numbers: BalanceNumbers) -> list[Block]:
     rod = numbers["rod_balance"]
     if rod is not None:
         lines += [
-            ("added to the rod", recorded(rod, "mass_kg"), _centre(rod)),
+            ("added to the rod", recorded(rod, "mass_kg"), _centre_text(rod)),
             ("its inertia about the crank pin", recorded(rod, "inertia_kg_m2"), ""),
         ]
     for name, unit in (("shaking_force", "N"), ("shaking_moment", "Nm")):
@@ -204,7 +204,7 @@ def blocks(numbers: BalanceNumbers) -> list[Block]:
     ]
 
 
-def _centre(rod: RodBalance) -> Text:
+def _centre_text(rod: RodBalance) -> Text:
     along_mm, across_mm = rod["centre_along_mm"], rod["centre_across_mm"]
     if along_mm is None or across_mm is None:
         return ""

@@ -83,30 +83,30 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Extremes:
     extremes = {curve.name: curve for curve in curve_extremes(mechanism, linkage)}
     locks = locking_reason(mechanism.friction, linkage)
     record: Extremes = {
-        "curves": {name: _entry(curve) for name, curve in extremes.items()},
-        "strokes": _strokes(mechanism, linkage, extremes.get("slider_velocity")),
+        "curves": {name: _curve_entry(curve) for name, curve in extremes.items()},
+        "strokes": _stroke_numbers(mechanism, linkage, extremes.get("slider_velocity")),
     }
     if locks:
         record["undefined_because"] = f"friction locks this design: {locks}"
     return record
 
 
-def _entry(curve: CurveExtremes) -> dict[str, Any]:
+def _curve_entry(curve: CurveExtremes) -> dict[str, Any]:
     entry: dict[str, Any] = {"title": curve.title}
     for word, extreme in (("least", curve.least), ("greatest", curve.greatest)):
         entry[f"{word}{curve.kind.metric.suffix}"] = finite_or_none(curve.kind.metric.factor * extreme.value)
-        entry |= _place(word, extreme)
+        entry |= _place_fields(word, extreme)
     return entry
 
 
-def _place(word: str, extreme: Extreme) -> dict[str, float | None]:
+def _place_fields(word: str, extreme: Extreme) -> dict[str, float | None]:
     return {
         f"{word}_at_crank_angle_deg": finite_or_none(math.degrees(extreme.crank_angle)),
         f"{word}_at_slider_position_mm": finite_or_none(1e3 * extreme.slider_position),
     }
 
 
-def _strokes(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | None) -> dict[str, Any]:
+def _stroke_numbers(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | None) -> dict[str, Any]:
     """Return crank angle, duration and greatest slider speed of both strokes, with ratios and differences.
 
     Durations are None for several cylinders with a speed profile, since they differ between cylinders.
@@ -134,7 +134,7 @@ def _strokes(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | N
         strokes[name] |= {
             "duration_s": duration,
             "greatest_speed_m_s": abs(extreme.value),
-            **_place("greatest_speed", extreme),
+            **_place_fields("greatest_speed", extreme),
         }
     fast, back = (strokes[name]["greatest_speed_m_s"] for name in _STROKES)
     outward_s, inward_s = durations
@@ -186,7 +186,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     )
     curves = {curve.name: curve.values for curve in defined_curves(mechanism, linkage, theta)}
     degrees = np.degrees(theta)
-    panels = tuple(_panel(extremes[name], degrees, curves[name]) for name in _PANELS if name in extremes)
+    panels = tuple(_curve_panel(extremes[name], degrees, curves[name]) for name in _PANELS if name in extremes)
     return PanelFigure(
         "Extreme values over the turn", dimensions(linkage), panels, columns=min(2, len(panels)), width=5.2
     )
@@ -196,7 +196,7 @@ def _ends(curve: CurveExtremes) -> tuple[Extreme, Extreme]:
     return curve.least, curve.greatest
 
 
-def _panel(curve: CurveExtremes, degrees: np.ndarray, values: np.ndarray) -> Panel:
+def _curve_panel(curve: CurveExtremes, degrees: np.ndarray, values: np.ndarray) -> Panel:
     lines = [Line("", degrees, values)]
     ends = [end for end in _ends(curve) if math.isfinite(end.crank_angle)]
     note: Text = "constant" if math.isfinite(curve.least.value) else "undefined where friction locks"

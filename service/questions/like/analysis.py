@@ -43,7 +43,7 @@ def analyse(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> 
         )
     after = rows_of(similar.columns)[0]
     record |= {"distance": float(distance(similar.values, values, span)[0]), "design": after, "before": before}
-    record["moved"] = {key: value for key in after if (value := _change(before, after, key)) is not None}
+    record["moved"] = {key: value for key in after if (value := _change_of(before, after, key)) is not None}
     title = heading(
         f"{{name}}: like design {row % len(front) + 1}, with {{where}}",
         name=front.problem.name,
@@ -51,7 +51,7 @@ def analyse(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> 
     )
     return Answer(
         record=lambda units: record_in(record, units),
-        blocks=[title, *_blocks(front, record, row)],
+        blocks=[title, *_like_blocks(front, record, row)],
         message=similar.message,
     )
 
@@ -70,7 +70,7 @@ def _added_constraints(texts: Sequence[str], row: Row, problem: Problem) -> tupl
                 f"like {_EXAMPLE}"
             )
         factor = 1e3 if name in DIMENSIONS else 1.0 if formula else problem.quantity(name).unit.factor
-        ends = common(ends_by_name.get(name, (None, None)), _ends(condition, factor, text))
+        ends = common(ends_by_name.get(name, (None, None)), _ends_of_condition(condition, factor, text))
         if ends is None:
             raise InputError(
                 f"the conditions on {name} must not contradict each other; got {text!r} last; leave one out"
@@ -85,7 +85,7 @@ def _added_constraints(texts: Sequence[str], row: Row, problem: Problem) -> tupl
     return constraints, ranges
 
 
-def _ends(condition: Condition, factor: float, text: str) -> Ends:
+def _ends_of_condition(condition: Condition, factor: float, text: str) -> Ends:
     """Return the bounds in a condition, SI. factor: one SI unit in the column's unit."""
     assert not isinstance(condition.value, str)
     value = condition.value / factor
@@ -95,7 +95,7 @@ def _ends(condition: Condition, factor: float, text: str) -> Ends:
     return ends
 
 
-def _change(before: Row, after: Row, key: str) -> float | None:
+def _change_of(before: Row, after: Row, key: str) -> float | None:
     """Return the change of a number; None if it is not a quantity or has no finite change."""
     old, new = before.get(key), after[key]
     if key == "residual" or not isinstance(old, float) or not isinstance(new, float):
@@ -104,7 +104,7 @@ def _change(before: Row, after: Row, key: str) -> float | None:
     return change if math.isfinite(change) else None
 
 
-def _blocks(front: ParetoFront, record: Mapping[str, Any], row: int) -> list[Block]:
+def _like_blocks(front: ParetoFront, record: Mapping[str, Any], row: int) -> list[Block]:
     before, after, moved = record["before"], record["design"], record["moved"]
     objectives = {front.problem.quantity(item.quantity).field for item in front.objectives}
     keys = [key for key in moved if not key.startswith("slack_")]

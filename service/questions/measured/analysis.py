@@ -68,11 +68,11 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> De
         "rows_without_crank_angle": measured.without_angle,
         "crank_angle_from_time": measured.by_time,
         "left_out": list(measured.left_out),
-        "curves": {deviation.name: _entry(deviation) for deviation in found_deviations},
+        "curves": {deviation.name: _deviation_entry(deviation) for deviation in found_deviations},
     }
 
 
-def _entry(deviation: Deviation) -> dict[str, Any]:
+def _deviation_entry(deviation: Deviation) -> dict[str, Any]:
     def value(name: str, number: float | None) -> dict[str, float | None]:
         return {f"{name}{unit.suffix}": None if number is None else finite_or_none(unit.factor * number)}
 
@@ -144,7 +144,9 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> Pan
     """Return a panel for each measured curve: computed, also shifted to fit, samples, and the largest deviation."""
     degrees = np.degrees(np.mod(measured.crank_angle, cycle_turns(mechanism) * 2.0 * np.pi))
     panels = tuple(
-        _panel(deviation, _curves(mechanism, linkage, deviation), degrees, measured.values[deviation.name])
+        _deviation_panel(
+            deviation, _computed_curves(mechanism, linkage, deviation), degrees, measured.values[deviation.name]
+        )
         for deviation in deviations(mechanism, linkage, measured.crank_angle, measured.values)
     )
     subtitle = words(
@@ -154,7 +156,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> Pan
     return PanelFigure("Measured and computed", subtitle, panels, columns=min(2, len(panels)), width=5.2)
 
 
-def _curves(mechanism: Mechanism, linkage: Linkage, deviation: Deviation) -> list[Line]:
+def _computed_curves(mechanism: Mechanism, linkage: Linkage, deviation: Deviation) -> list[Line]:
     """Return the computed curve, and, if there is a fit, the curve shifted to the samples."""
 
     def line(style: int, angle: float, value: float) -> Line:
@@ -168,7 +170,7 @@ def _curves(mechanism: Mechanism, linkage: Linkage, deviation: Deviation) -> lis
     return [line(0, 0.0, 0.0), *([] if fit is None else [line(DASHED, fit.crank_angle, fit.value)])]
 
 
-def _panel(deviation: Deviation, computed: list[Line], at: Array, samples: Array) -> Panel:
+def _deviation_panel(deviation: Deviation, computed: list[Line], at: Array, samples: Array) -> Panel:
     finite = np.flatnonzero(np.isfinite(samples))
     drawn = finite[np.unique(np.linspace(0, len(finite) - 1, min(len(finite), _DRAWN)).astype(np.intp))]
     lines = [*computed, Line("", at[drawn], samples[drawn], style=SAMPLES)]

@@ -88,12 +88,12 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Motor:
 def _least_inertia(mechanism: Mechanism, linkage: Linkage) -> tuple[float, float]:
     """Return the least moving inertia and its crank angle, rad; the first of equal values."""
     angles_sampled = np.linspace(0.0, TURN, _SAMPLES, endpoint=False)
-    values, step = _inertia(mechanism, linkage, angles_sampled), TURN / _SAMPLES
+    values, step = _moving_inertia(mechanism, linkage, angles_sampled), TURN / _SAMPLES
     dips = np.flatnonzero((values <= np.roll(values, 1)) & (values <= np.roll(values, -1)))
     size, rise = values.max(), np.abs(values - np.roll(values, 1)).max()
     minima = [
         minimize_scalar(
-            lambda angle: float(_inertia(mechanism, linkage, angle)[0]),
+            lambda angle: float(_moving_inertia(mechanism, linkage, angle)[0]),
             bounds=(lowest - step, lowest + step),
             method="bounded",
             options={"xatol": 1e-10},
@@ -105,7 +105,7 @@ def _least_inertia(mechanism: Mechanism, linkage: Linkage) -> tuple[float, float
     return float(min(at.fun for at in minima)), angle_in_cycle(float(first.x), TURN)
 
 
-def _inertia(mechanism: Mechanism, linkage: Linkage, angle: Any) -> Any:
+def _moving_inertia(mechanism: Mechanism, linkage: Linkage, angle: Any) -> Any:
     """Return the moving inertia of all cylinders at crank angles (n,), rad."""
     curves = (
         shaking_curves(cylinder.mechanism, linkage, angle + cylinder.lead) for cylinder in cylinders_of(mechanism)
@@ -142,7 +142,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     torque = (multi_cylinder_curves if several else cycle)(mechanism, linkage, theta).torque
     averages = average_torque(mechanism, design)
     rms, mean = float(averages.rms[0]), float(averages.mean[0] * mechanism.speed * mean_speed_ratio(mechanism))
-    inertia = Line("inertia", degrees, _inertia(mechanism, linkage, theta))
+    inertia = Line("inertia", degrees, _moving_inertia(mechanism, linkage, theta))
     usual = float(average(mechanism, Signal.REFLECTED_INERTIA, design).mean[0])
     power = Line("power", degrees, torque * crank_speed(mechanism, theta)[0])
     levels = (None, None) if locks else (("RMS over time", rms), ("mean over time", mean))

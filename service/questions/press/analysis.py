@@ -69,13 +69,13 @@ def numbers(
     values without a dwell distance. Raises `InputError` without a touch distance or a torque, and for distances that
     the stroke does not reach.
     """
-    touch, torque = _touch(mechanism, touch_distance), _torque(mechanism, linkage, rated_torque)
+    touch, torque = _touch_distance(mechanism, touch_distance), _rated_or_peak_torque(mechanism, linkage, rated_torque)
     distances = touch * np.arange(1, _ROWS + 1) / _ROWS
     angles, travels = _angles_before_dead_centre(mechanism, linkage, distances)
-    speed = _speed(mechanism)
+    speed = _crank_speed(mechanism)
     speeds = speed * travels if speed else None
     dwell = mechanism.slider.dwell if dwell_distance is None else dwell_distance
-    dwelling = None if dwell is None else _dwell(mechanism, linkage, dwell)
+    dwelling = None if dwell is None else _dwell_angle(mechanism, linkage, dwell)
     return {
         "dead_centre": mechanism.slider.dead_centre,
         "rated_torque_Nm": torque,
@@ -95,12 +95,12 @@ def numbers(
     }
 
 
-def _speed(mechanism: Mechanism) -> float:
+def _crank_speed(mechanism: Mechanism) -> float:
     """Return the magnitude of the crank speed, rad/s; 0 with a speed profile, where it varies."""
     return abs(mechanism.speed) if mechanism.speed_profile is None else 0.0
 
 
-def _touch(mechanism: Mechanism, distance: float | None) -> float:
+def _touch_distance(mechanism: Mechanism, distance: float | None) -> float:
     touch = mechanism.slider.touch if distance is None else distance
     if touch is None:
         raise InputError(
@@ -110,7 +110,7 @@ def _touch(mechanism: Mechanism, distance: float | None) -> float:
     return touch
 
 
-def _torque(mechanism: Mechanism, linkage: Linkage, rated: float | None) -> float:
+def _rated_or_peak_torque(mechanism: Mechanism, linkage: Linkage, rated: float | None) -> float:
     torque = float(PEAK_TORQUE.evaluate(mechanism, row_of(linkage)).values[0]) if rated is None else rated
     if not torque > 0.0:
         raise InputError(
@@ -128,7 +128,7 @@ def _angles_before_dead_centre(
     return before_dead_centre(mechanism, row_of(linkage)[0], distances)
 
 
-def _dwell(mechanism: Mechanism, linkage: Linkage, distance: float) -> float:
+def _dwell_angle(mechanism: Mechanism, linkage: Linkage, distance: float) -> float:
     _require_stroke(distance, float(linkage.stroke))
     near = replace(mechanism, slider=replace(mechanism.slider, dwell=distance))
     return float(DWELL_ANGLE.evaluate(near, row_of(linkage)).values[0])
@@ -180,13 +180,13 @@ def figure(
     mechanism: Mechanism, linkage: Linkage, *, touch_distance: float | None = None, rated_torque: float | None = None
 ) -> PanelFigure:
     """Return available force and slider speed over the distance before the dead centre."""
-    touch, torque = _touch(mechanism, touch_distance), _torque(mechanism, linkage, rated_torque)
+    touch, torque = _touch_distance(mechanism, touch_distance), _rated_or_peak_torque(mechanism, linkage, rated_torque)
     distances = touch * np.arange(1, _SAMPLES + 1) / _SAMPLES
     _, travels = _angles_before_dead_centre(mechanism, linkage, distances)
     drawn = slice(_SAMPLES // _ROWS - 1, None)  # nearer, the force goes to infinity
     forces = Line("", distances[drawn], (torque / travels)[drawn])
     panels = [Panel("available force", _CAPTION, (forces,), FORCE, LENGTH)]
-    speed = _speed(mechanism)
+    speed = _crank_speed(mechanism)
     if speed:
         speeds = Line("", distances[drawn], (speed * travels)[drawn])
         panels.append(Panel("slider speed", _CAPTION, (speeds,), SPEED, LENGTH))

@@ -45,7 +45,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Delivery:
     reason = FLOW.undefined_because([mechanism])
     if reason:
         raise InputError(reason)
-    alone = _pressures(mechanism)
+    alone = _with_pressures_only(mechanism)
     return {
         "flow_L_min": VOLUME_FLOW.metric.factor * _value(FLOW, mechanism, linkage),
         "flow_ripple": _value(FLOW_RIPPLE, mechanism, linkage) if _is_even(mechanism) else None,
@@ -63,12 +63,12 @@ def _is_even(mechanism: Mechanism) -> bool:
     return not FLOW_RIPPLE.undefined_because([mechanism])
 
 
-def _pressures(mechanism: Mechanism) -> Mechanism:
+def _with_pressures_only(mechanism: Mechanism) -> Mechanism:
     """Return the machine with only the pressures in its cylinders."""
     return replace(massless(mechanism), loads=tuple(load for load in mechanism.loads if isinstance(load, Cylinder)))
 
 
-def _flows(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+def _flow_curves(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float64]) -> list[NDArray[np.float64]]:
     """Return the flow of each liquid cylinder, m^3/s, at crank angles of the shaft, rad."""
     flows = []
     pumps = [(pump.area, 1.0 if pump.head == "outer dead centre" else -1.0) for pump in pumps_of(mechanism).values()]
@@ -94,11 +94,11 @@ def blocks(numbers: Delivery) -> list[Block]:
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return the flow per cylinder and in total, for a liquid, and the pressure torque."""
     shaft = mechanism if mechanism.arrangement else replace(mechanism, arrangement=Arrangement(phases=(0.0,)))
-    alone = _pressures(shaft)
+    alone = _with_pressures_only(shaft)
     theta = sampled_turn(multi_cylinder_breakpoints(alone, linkage))
     degrees, panels = np.degrees(theta), []
     if _is_even(mechanism):
-        flows = _flows(shaft, linkage, theta)
+        flows = _flow_curves(shaft, linkage, theta)
         single = [
             Line("each" if k == 0 else "", degrees, flow, FAINT) for k, flow in enumerate(flows) if len(flows) > 1
         ]

@@ -58,14 +58,14 @@ def search(
     named = texts_by_name(allow, words["allow"], _ALLOW.form, _ALLOW.example)
     allowed = {metric_key(name): amount for name, amount in named.items()}
     for at in front.rounding(row, steps, count=count, allow=allowed):
-        yield _answered(at, row) if isinstance(at, Rounded) else at
+        yield _rounded_result(at, row) if isinstance(at, Rounded) else at
 
 
-def _answered(rounded: Rounded, row: int) -> Answer:
-    record = _record(rounded)
+def _rounded_result(rounded: Rounded, row: int) -> Answer:
+    record = _rounding_record(rounded)
     return Answer(
         record=lambda units: _record_in(units, record, rounded),
-        blocks=_blocks(rounded, record, row) if len(rounded) else [],
+        blocks=_rounding_blocks(rounded, record, row) if len(rounded) else [],
         is_satisfied=rounded.is_met,
         message=rounded.message,
         notes=rounded.notes,
@@ -98,12 +98,12 @@ def steps_of(texts: Sequence[str], part: Problem, key: str) -> dict[str, float]:
             raise InputError(
                 f"{key} may give each step only once; got {variable or 'that of all lengths'} twice; leave out one"
             )
-        steps[variable] = _step(value, kinds[variable] if variable else LENGTH, key)
+        steps[variable] = _read_step(value, kinds[variable] if variable else LENGTH, key)
     every = steps.pop("", None)
     return (dict.fromkeys(DIMENSIONS, every) if every is not None else {}) | steps
 
 
-def _step(text: str, kind: Kind, key: str) -> float:
+def _read_step(text: str, kind: Kind, key: str) -> float:
     """Return a step, SI, read as in a job."""
     from ....optimise.job.grids import step_of
 
@@ -111,7 +111,7 @@ def _step(text: str, kind: Kind, key: str) -> float:
     return step_of(text, lambda given: parse_value(key, str(given), small, sign="positive"))
 
 
-def _record(rounded: Rounded) -> dict[str, Any]:
+def _rounding_record(rounded: Rounded) -> dict[str, Any]:
     """Return the answer as JSON, metric."""
     part = rounded.problem
     original: dict[str, Any] = {
@@ -161,7 +161,7 @@ def _record_in(units: System, record: dict[str, Any], rounded: Rounded) -> dict[
     return converted
 
 
-def _blocks(rounded: Rounded, record: dict[str, Any], row: int) -> list[Block]:
+def _rounding_blocks(rounded: Rounded, record: dict[str, Any], row: int) -> list[Block]:
     """Return the designs as the columns of a table, and the requirements that each misses or nearly misses."""
     original, designs, steps = record["given"], record["designs"], record["steps"]
     step_texts = [
@@ -191,7 +191,7 @@ def _blocks(rounded: Rounded, record: dict[str, Any], row: int) -> list[Block]:
         heading(f"{{name}}: design {row + 1}, rounded: {{steps}}", name=name, steps=joined(step_texts)),
         Table((*heads, *numbers), tuple(rows), ruled=True, space_before=True),
         *(
-            Sentence(words(f"{number}: {{requirements}}", requirements=_requirements(design, rounded)))
+            Sentence(words(f"{number}: {{requirements}}", requirements=_requirements_text(design, rounded)))
             for number, design in enumerate(designs, 1)
         ),
         *([Sentence(Phrase(rounded.message, rounded.message_in("inch")), space_before=True)] if rounded.is_met else []),
@@ -202,7 +202,7 @@ def _format_loss(value: float) -> Value:
     return Value(value if math.isfinite(value) else None, digits=2, sign=True, missing="-")
 
 
-def _requirements(design: Mapping[str, Any], rounded: Rounded) -> Text:
+def _requirements_text(design: Mapping[str, Any], rounded: Rounded) -> Text:
     """Return in words the requirements that a design misses, or the tightest requirement."""
     if design["misses"]:
         missed = joined([_format_miss(miss, rounded.problem) for miss in design["misses"]], " and ")

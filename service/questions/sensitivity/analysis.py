@@ -90,14 +90,14 @@ def blocks(numbers: Sensitivity) -> list[Block]:
         kind = next((kind for kind in DISPLAYED_KINDS if kind.metric.symbol == row["unit"]), RATIO)
         cells: list[Text] = []
         for name in DIMENSIONS:
-            slope = _derivative(row, f"{name}_per_mm", _per_length(kind), 4)
-            percent = words("({percent} %)", percent=_derivative(row, f"{name}_percent", RATIO, 3))
+            slope = _derivative_text(row, f"{name}_per_mm", _per_length(kind), 4)
+            percent = words("({percent} %)", percent=_derivative_text(row, f"{name}_percent", RATIO, 3))
             cells += [slope, "" if row[f"{name}_percent"] is None else percent]
             kinks = kinks or isinstance(slope, tuple)
         value = Value(row["value"] / kind.metric.factor, kind, 5)
         rows.append((row["title"], value, Unit(kind), *cells))
         if any(row[f"{name}_tolerance"] for name in DIMENSIONS):
-            changes = (_derivative(row, f"{name}_tolerance", kind, 4) for name in DIMENSIONS)
+            changes = (_derivative_text(row, f"{name}_tolerance", kind, 4) for name in DIMENSIONS)
             tolerance_rows.append((row["title"], *changes, Unit(kind)))
     heads = [head for name in DIMENSIONS for head in (column(name), column())]
     columns = column("quantity", left=True), column("value"), column("unit", left=True), *heads
@@ -124,7 +124,7 @@ def _per_length(kind: Kind) -> Kind:
     )
 
 
-def _derivative(row: dict[str, Any], key: str, kind: Kind, digits: int) -> Text:
+def _derivative_text(row: dict[str, Any], key: str, kind: Kind, digits: int) -> Text:
     """Return a derivative as text; both one-sided ones at a kink of the quantity."""
 
     def value(number: float | None) -> Value:

@@ -136,7 +136,7 @@ def blocks(numbers: StaticForces) -> list[Block]:
     }
     rows = zip(*(recorded_all(numbers, key, digits=4, missing="unbounded") for key in columns), strict=True)
     result_blocks: list[Block] = [
-        heading("Static forces, without masses and friction ({load})", load=_load(numbers)),
+        heading("Static forces, without masses and friction ({load})", load=_load_text(numbers)),
         Table(tuple(columns.values()), tuple(rows), ruled=True),
     ]
     for force, key in (
@@ -154,7 +154,7 @@ def blocks(numbers: StaticForces) -> list[Block]:
     return [*result_blocks, least]
 
 
-def _load(numbers: StaticForces) -> Text:
+def _load_text(numbers: StaticForces) -> Text:
     if numbers["load"] == _JOB_LOADS:
         return _JOB_LOADS
     return words("{load}, constant, positive outward", load=recorded_all(numbers, "load_N")[0])

@@ -70,7 +70,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> StrengthNumbers:
     of each eye with its crank angle, and `violated` as for a design. None: an undefined quantity; the safety factor of
     an uncompressed bar is infinite. Raises `InputError` for a machine without material and pins.
     """
-    _require(mechanism)
+    _require_section(mechanism)
     design = row_of(linkage)
     record: dict[str, Any] = {}
     for quantity in QUANTITIES.values():
@@ -80,7 +80,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> StrengthNumbers:
             value = float(quantity.unit.factor * quantity.evaluate(mechanism, design).values[0])
             record[quantity.field] = None if missing_value_reason(quantity, value, mechanism, linkage) else value
     eyes, cycle = eye_stresses(mechanism, design), TURN * cycle_turns(mechanism)
-    bars: dict[str, dict[str, Any]] = {name: _extremes(mechanism, linkage, name) for name in _bars(mechanism)}
+    bars: dict[str, dict[str, Any]] = {name: _bar_extremes(mechanism, linkage, name) for name in _bar_names(mechanism)}
     for name, bar in bars.items():
         for pin, (stress, angle) in eyes[name].items():
             bar[f"eye_at_{pin}_MPa"] = finite_or_none(1e-6 * stress)
@@ -88,16 +88,16 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> StrengthNumbers:
     return record | {"violated": violated_by(mechanism, record), "bars": bars}
 
 
-def _require(mechanism: Mechanism) -> None:
+def _require_section(mechanism: Mechanism) -> None:
     if reason := STATIC_SAFETY.lacks(mechanism, "undefined"):
         raise InputError(f"strength needs material and pins for crank and rod: {reason}")
 
 
-def _bars(mechanism: Mechanism) -> list[str]:
+def _bar_names(mechanism: Mechanism) -> list[str]:
     return [name for name in LINKS if isinstance(getattr(mechanism, name), Bar)]
 
 
-def _extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str, float | None]:
+def _bar_extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str, float | None]:
     """Return the greatest stresses along a bar without its eyes, with locations; None for a sign that never occurs."""
     extremes: dict[str, float | None] = {}
     cycle = TURN * cycle_turns(mechanism)
@@ -149,9 +149,9 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
 
     Raises `InputError` for a machine without material and pins, and for a design that friction locks.
     """
-    _require(mechanism)
+    _require_section(mechanism)
     panels: list[Panel] = []
-    for name in _bars(mechanism):
+    for name in _bar_names(mechanism):
         stress = bar_stress(mechanism, LINKS[name].part, row_of(linkage))
         if not len(stress.theta):
             raise InputError("friction locks the design, so its stresses are undefined; reduce its friction")

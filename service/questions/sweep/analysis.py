@@ -52,20 +52,20 @@ def analyse(
     lengths = [
         usual[name] if name in usual else length_option(name, None, problem, words.__getitem__) for name in DIMENSIONS
     ]
-    names = [name for text in of for name in _names(text)]
+    names = [name for text in of for name in _split_names(text)]
     quantities = [problem.quantity(name) for name in names]
     table = sweep(problem.mechanism.nominal, np.array(lengths), axes, names, custom=problem.own)
     rows = rows_of(table.to_dict("list"))
     stuck = [row["reason"] for row in rows if row["reason"]]
     return Answer(
         record=lambda units: {"rows": rows_in(rows, units)},
-        blocks=[_table(rows, axes, quantities)],
+        blocks=[_sweep_table(rows, axes, quantities)],
         notes=[f"{len(stuck)} of {len(rows)} have no value; the first: {stuck[0]}"] if stuck else [],
         search_result=(table, axes, quantities),
     )
 
 
-def _names(text: str) -> list[str]:
+def _split_names(text: str) -> list[str]:
     """Return the parts between commas; commas within brackets belong to a function."""
     parts, depth = [""], 0
     for sign in text:
@@ -77,7 +77,7 @@ def _names(text: str) -> list[str]:
     return [part.strip() for part in parts if part.strip()]
 
 
-def _table(rows: Sequence[Row], axes: Sequence[Axis], quantities: Sequence[Quantity]) -> Table:
+def _sweep_table(rows: Sequence[Row], axes: Sequence[Axis], quantities: Sequence[Quantity]) -> Table:
     """Return a row for each point, from metric rows."""
 
     def value(row: Row, quantity: Quantity) -> Value:

@@ -93,11 +93,11 @@ def sweep_figure(
             nowhere: Any = {"transform": panel.transAxes, "ha": "center", "color": MUTED, "fontsize": TEXT}
             panel.text(0.5, 0.5, "no value anywhere", **nowhere)
         elif len(drawn) == 1:
-            _line(panel, grids[drawn[0]], values)
+            _draw_line(panel, grids[drawn[0]], values)
             note = "shaded: no value"
         else:
             scale = add_axes(figure, left + _WIDTH - 1.6, foot, 0.13, _SIDE)
-            _contour(panel, scale, grids, values)
+            _draw_contour(panel, scale, grids, values)
             panel.set_ylabel(titles[1][0], fontsize=TEXT)
             note = "grey: no value"
         title_panel(panel, with_unit(item.title, symbol), note if missing.any() else "")
@@ -110,7 +110,7 @@ def _axis_title(axis: Axis, system: System) -> tuple[str, float]:
     return with_unit(axis.parameter, symbol), factor
 
 
-def _line(panel: Axes, x: Array, values: Array) -> None:
+def _draw_line(panel: Axes, x: Array, values: Array) -> None:
     few = {"marker": "o", "markersize": 3.5} if len(x) <= 40 else {}
     panel.plot(x, values, color=BLUE, linewidth=1.5, **few)  # type: ignore[arg-type]
     panel.set_xlim(padded_limits(x.min(), x.max(), 0.02))
@@ -121,7 +121,7 @@ def _line(panel: Axes, x: Array, values: Array) -> None:
         panel.axvspan(low, high, color=SHADE, linewidth=0, zorder=0)
 
 
-def _contour(panel: Axes, scale: Axes, grids: list[Array], values: Array) -> None:
+def _draw_contour(panel: Axes, scale: Axes, grids: list[Array], values: Array) -> None:
     panel.set_facecolor(SHADE)
     panel.grid(False)
     masked: Any = np.ma.masked_invalid(values.T)

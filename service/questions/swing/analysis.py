@@ -67,20 +67,20 @@ _PLACES = {"at_crank_angle_deg": _Place, "at_slider_position_mm": _Place}
 _KINDS = (*KINDS, ANGULAR_SPEED, ANGULAR_ACCELERATION)
 
 
-def _places(name: str, *, way: bool = True) -> dict[str, Any]:
+def _place_keys(name: str, *, way: bool = True) -> dict[str, Any]:
     """Return the keys for the location of a value."""
     return {f"{name}_{place}": kind for place, kind in (_PLACES | ({"way": _Way} if way else {})).items()}
 
 
-def _optional(keys: dict[str, Any]) -> dict[str, Any]:
+def _optional_keys(keys: dict[str, Any]) -> dict[str, Any]:
     return {key: NotRequired[kind] for key, kind in keys.items()}
 
 
 _CURVE = {
     "title": str,
     **keys_of_kinds(("least", "greatest"), _KINDS),
-    **_places("least"),
-    **_places("greatest"),
+    **_place_keys("least"),
+    **_place_keys("greatest"),
 }
 _Curve = Annotated[
     dict[str, Any], Keys("SwingExtremes", "Minimum and maximum of a curve over both strokes.", _CURVE, 9)
@@ -101,9 +101,9 @@ SwingNumbers = Annotated[
             **{f"{end}_slider_position_mm": float for end in ("start", "end")},
             "travel_mm": float,
             "least_transmission_angle_deg": float,
-            **_places("least_transmission_angle", way=False),
+            **_place_keys("least_transmission_angle", way=False),
             **keys_of_kinds(("peak_drive",), _DRIVES),
-            **_places("peak_drive"),
+            **_place_keys("peak_drive"),
             **keys_of_kinds(_ENDS, _DRIVES),
             "holds_by_friction": bool,
             "energy_forth_J": _Known,
@@ -111,11 +111,11 @@ SwingNumbers = Annotated[
             "stored_energy_J": _Known,
             "efficiency": Annotated[float | None, Note("null where neither way is driven")],
             "peak_power_W": NotRequired[_Known],
-            **_optional(_places("peak_power")),
+            **_optional_keys(_place_keys("peak_power")),
             **keys_of_kinds(("slider_position_error",), (LENGTH,)),
             **keys_of_kinds(("crank_position_error",), (ANGLE,)),
-            **_optional(_places("slider_position_error", way=False)),
-            **_optional(_places("crank_position_error", way=False)),
+            **_optional_keys(_place_keys("slider_position_error", way=False)),
+            **_optional_keys(_place_keys("crank_position_error", way=False)),
             "extremes": Annotated[dict[str, _Curve], Note("by curve")],
             "notes": Annotated[list[str], Note("what is undefined or left out, and why")],
         },
@@ -192,10 +192,10 @@ def swing_record(mechanism: Mechanism, summary: SwingSummary) -> SwingNumbers:
         record |= _value_and_place(
             f"{driven_side(swing)}_position_error{error.suffix}", summary.position_error, error.factor
         )
-    return record | {"extremes": _extremes(mechanism, summary), "notes": _notes(mechanism, summary)}
+    return record | {"extremes": _curve_extremes(mechanism, summary), "notes": _swing_notes(mechanism, summary)}
 
 
-def _extremes(mechanism: Mechanism, summary: SwingSummary) -> dict[str, Any]:
+def _curve_extremes(mechanism: Mechanism, summary: SwingSummary) -> dict[str, Any]:
     """Return title, least and greatest values of each curve over both strokes, with locations; null if undefined.
 
     Zero loads, errors without tolerances and forces without a cause are omitted.
@@ -230,7 +230,7 @@ def _value_and_place(key: str, at: SwingPoint, factor: float, *, way: bool = Fal
     }
 
 
-def _notes(mechanism: Mechanism, summary: SwingSummary) -> list[str]:
+def _swing_notes(mechanism: Mechanism, summary: SwingSummary) -> list[str]:
     notes = []
     if summary.locked is not None:
         way = "on the return stroke" if summary.locked.back else "on the forward stroke"
@@ -257,7 +257,7 @@ def swing_numbers(record: Mapping[str, Any]) -> list[NamedNumber]:
         name, _ = kind_of_key(key)
         is_excluded = isinstance(value, str | list | dict | bool) or key == "duration_s"
         if not is_excluded and "_at_crank_angle" not in name and "_at_slider_position" not in name:
-            lines.append((_TITLES.get(name, name.replace("_", " ")), recorded(record, key), _place(record, name)))
+            lines.append((_TITLES.get(name, name.replace("_", " ")), recorded(record, key), _place_text(record, name)))
     return [*lines, ("held by friction alone, everywhere", "yes" if record["holds_by_friction"] else "no", "")]
 
 
@@ -267,7 +267,7 @@ def blocks(record: Mapping[str, Any]) -> list[Block]:
     return [*number_list(swing_title(record), swing_numbers(record)), title, extremes_table(record["extremes"])]
 
 
-def _place(record: Mapping[str, Any], name: str) -> Text:
+def _place_text(record: Mapping[str, Any], name: str) -> Text:
     if record.get(f"{name}_at_crank_angle_deg") is None:
         return ""
     return words(

@@ -148,7 +148,7 @@ def numbers(
             "percentiles_greatest_mm": {
                 f"{percent:g}": 1e3 * value for percent, value in (() if spread is None else spread.percentiles)
             },
-            "histogram": _histogram(simulation.greatest),
+            "histogram": _error_histogram(simulation.greatest),
         },
         "yields": [
             {
@@ -164,7 +164,7 @@ def numbers(
     }
 
 
-def _histogram(greatest: np.ndarray) -> Histogram | None:
+def _error_histogram(greatest: np.ndarray) -> Histogram | None:
     """Return edges, mm, and counts of the machines that rotate fully; None without any."""
     turning = 1e3 * greatest[np.isfinite(greatest)]
     if not len(turning) or not turning.max() > 0.0:
@@ -213,10 +213,10 @@ def blocks(numbers: PositionError) -> list[Block]:
                 "more widely, as the random machines show."
             )
         )
-    return [*result_blocks, _sources(numbers["contributions"])]
+    return [*result_blocks, _source_table(numbers["contributions"])]
 
 
-def _sources(contributions: list[Contribution]) -> Table:
+def _source_table(contributions: list[Contribution]) -> Table:
     rows = []
     for row in contributions:
         limit = recorded(row, "limit_deg" if row["limit_mm"] is None else "limit_mm", digits=4)

@@ -61,7 +61,7 @@ UnevenSpeed = Annotated[
 ]
 
 
-def _require(mechanism: Mechanism) -> None:
+def _require_profile(mechanism: Mechanism) -> None:
     if mechanism.speed_profile is None:
         raise InputError(
             "an uneven speed needs a speed profile; the speed of this job is constant; add to the job for example "
@@ -71,7 +71,7 @@ def _require(mechanism: Mechanism) -> None:
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> UnevenSpeed:
     """Return speeds, period and peaks with the profile, and the peaks at constant speed. Raises without a profile."""
-    _require(mechanism)
+    _require_profile(mechanism)
     profile, even = (
         speed_profile_cycle(machine, linkage) for machine in (mechanism, replace(mechanism, speed_profile=None))
     )
@@ -119,7 +119,7 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return speed, torque and shaking force over a revolution, with the profile and at constant speed."""
-    _require(mechanism)
+    _require_profile(mechanism)
     knots = np.mod(speed_knots(mechanism), 2.0 * np.pi)
     theta = sampled_turn(breakpoints(mechanism, linkage), knots, turns=cycle_turns(mechanism))
     degrees = np.degrees(theta)

@@ -42,7 +42,7 @@ def answered(wished: Wished, at: Mapping[str, object]) -> Answer:
             "possible": wished.possible,
             "sentences": wished.sentences(units),
             "achievement": json_ready(wished.value),
-            "objectives": [_outcome(outcome, units) for outcome in wished.outcomes],
+            "objectives": [_outcome_record(outcome, units) for outcome in wished.outcomes],
             "design": json_ready(row_in(rows[0], units)) if rows else None,
         }
 
@@ -50,7 +50,7 @@ def answered(wished: Wished, at: Mapping[str, object]) -> Answer:
     title = heading("{name}: wished {told}", name=wished.found.problem.name, told=description)
     return Answer(
         record=record,
-        blocks=[title, *(_blocks(wished, rows[0]) if rows else [])],
+        blocks=[title, *(_wish_blocks(wished, rows[0]) if rows else [])],
         is_satisfied=bool(rows),
         message=wished.message,
         search_result=wished,
@@ -68,7 +68,7 @@ def sentences(wished: Wished) -> list[Phrase]:
     return [Phrase(*pair) for pair in zip(wished.sentences("metric"), wished.sentences("inch"), strict=True)]
 
 
-def _blocks(wished: Wished, row: Mapping[str, Any]) -> list[Block]:
+def _wish_blocks(wished: Wished, row: Mapping[str, Any]) -> list[Block]:
     """Return the answer in words, then the design as a table."""
     head, *outcomes = sentences(wished)
     begin = f"{head.metric[0].upper()}{head.metric[1:]}:"
@@ -89,7 +89,7 @@ def _blocks(wished: Wished, row: Mapping[str, Any]) -> list[Block]:
     ]
 
 
-def _outcome(outcome: Outcome, units: System) -> dict[str, Any]:
+def _outcome_record(outcome: Outcome, units: System) -> dict[str, Any]:
     quantity = outcome.quantity
     unit, factor = metric_unit_in(quantity.unit.symbol, units)
     numbers = {name: getattr(outcome, name) for name in ("wished", "reached", "before", "short", "changed")}
