@@ -75,10 +75,11 @@ class Boxes:
         self.mechanism = problem.mechanism
         self.lean = math.cos((1.0 - _SLACK) * least)
         usable = [c for c in constraints if is_usable(problem, c)]
-        curves = {item.quantity: self._curves_of(item.quantity) for item in (*usable, *self.objectives)}
+        objective_names = [objective.quantity for objective in self.objectives]
+        curves = {name: self._curves_of(name) for name in (*(c.quantity for c in usable), *objective_names)}
         self.costly = sorted((c for c in usable if curves[c.quantity]), key=lambda c: len(curves[c.quantity]))
         self.cheap = [c for c in usable if not curves[c.quantity]]
-        names = [item.quantity for item in (*self.costly, *self.objectives)]
+        names = (*(c.quantity for c in self.costly), *objective_names)
         self.curves = {name: curves[name] for name in names if curves[name]}
         self.swing = None if problem.motion is None else SwingBoxes(self.mechanism, problem.motion, slow=True)
 

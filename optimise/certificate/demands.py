@@ -65,7 +65,7 @@ class StressCurve(CycleCurve):
         pairs = list(product(highs, stresses(second)))
         return reduce(side_by_side, (high * p - low * q for p, q in self.criteria for high, low in pairs))
 
-    def _stress(self, state: tuple[Any, ...], number: Callable[[int], Any], share: Array, side: Array) -> Any:
+    def _stress(self, state: tuple[Any, Any, Any, Any, Any], number: Callable[[int], Any], share: Array, side: Array) -> Any:
         """Return the stress at the location, in an eye times w - D. state: arguments of `stress_along` up to forces."""
         location = self.location
         slot = Raw.ROD_WIDTH if location.part == ROD else Raw.CRANK_WIDTH
@@ -94,11 +94,13 @@ class DemandCurve:
         """Return the value (n, p) at the places of peaks; not a number where the peak may not be positive."""
         peak, (_, section, scale, _) = self.peak.enclose(numbers, places, middle), self.demand
         size: Any = 1.0 if section is None else section(raw_number(self.peak.mechanism, numbers))
-        if not self.least:
-            return peak * scale / size
-        size = 0.5 * (size + magnitude(size))
-        rest = np.where(peak.ends()[0] > 0.0, peak.rest, np.nan)
-        value: Enclosure = size * scale / Enclosure(peak.centre, peak.slopes, rest, peak.empty)
+        value: Enclosure
+        if self.least:
+            size = 0.5 * (size + magnitude(size))
+            rest = np.where(peak.ends()[0] > 0.0, peak.rest, np.nan)
+            value = size * scale / Enclosure(peak.centre, peak.slopes, rest, peak.empty)
+        else:
+            value = peak * scale / size
         return value
 
 

@@ -154,7 +154,7 @@ def infeasibility_sentences(
     Some are a `Remark`, with the change that settles it. fixed_names: names of the extra variables, which have one
     value in the samples. tables: those of the job.
     """
-    sentences = []
+    sentences: list[str] = []
     constraints = {constraint.quantity: constraint for constraint in problem.constraints}
     for name in ("stroke", "time_ratio", "transmission_angle"):
         ends: Ends | None = getattr(possible_values, name)
