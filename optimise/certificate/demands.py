@@ -65,7 +65,9 @@ class StressCurve(CycleCurve):
         pairs = list(product(highs, stresses(second)))
         return reduce(side_by_side, (high * p - low * q for p, q in self.criteria for high, low in pairs))
 
-    def _stress(self, state: tuple[Any, Any, Any, Any, Any], number: Callable[[int], Any], share: Array, side: Array) -> Any:
+    def _stress(
+        self, state: tuple[Any, Any, Any, Any, Any], number: Callable[[int], Any], share: Array, side: Array
+    ) -> Any:
         """Return the stress at the location, in an eye times w - D. state: arguments of `stress_along` up to forces."""
         location = self.location
         slot = Raw.ROD_WIDTH if location.part == ROD else Raw.CRANK_WIDTH
