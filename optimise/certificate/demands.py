@@ -59,11 +59,15 @@ class StressCurve(CycleCurve):
             near_steps = self.angles_at_steps(numbers, angles, middle)
             return [stress for at in near_steps for stress, _ in self.sums(numbers, at, middle, read)]
 
-        highs = stresses(first)
-        if not any(p and q for p, q in self.criteria):  # then both angles are the same
-            return reduce(side_by_side, (high * (p - q) for p, q in self.criteria for high in highs))
-        pairs = list(product(highs, stresses(second)))
-        return reduce(side_by_side, (high * p - low * q for p, q in self.criteria for high, low in pairs))
+        highs = stresses(first) if any(p for p, _ in self.criteria) else []
+        lows = stresses(second) if any(q for _, q in self.criteria) else []
+        values: list[Enclosure] = []
+        for p, q in self.criteria:
+            if p and q:
+                values += [high * p - low * q for high, low in product(highs, lows)]
+            else:  # each has an angle of its own; the other angle of a place is not that of a peak
+                values += [high * p for high in highs] if p else [-low * q for low in lows]
+        return reduce(side_by_side, values)
 
     def _stress(
         self, state: tuple[Any, Any, Any, Any, Any], number: Callable[[int], Any], share: Array, side: Array

@@ -29,7 +29,7 @@ from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.certificate.boundable import unbounded_reason
 from slidercrank.optimise.certificate.boxes import Boxes
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.problem.requirements import Objective
+from slidercrank.optimise.problem.requirements import Constraint, Objective
 from slidercrank.optimise.problem.violation import FEASIBLE, minimised
 from slidercrank.optimise.search.elimination import EliminationBranch, elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
@@ -177,6 +177,13 @@ def of_press(names: Sequence[str]) -> Problem:
 def test_no_sample_of_the_press_is_less_stressed_or_safer_than_its_box(width: float) -> None:
     """The widest boxes hold eyes whose pin is wider than the bar: no safety is positive there."""
     assert check(of_press(SAFETIES + STRESSES), width, count=200, inside=100) > 15_000
+
+
+def test_a_box_of_one_press_is_bounded_by_its_own_stresses_and_safeties() -> None:
+    """Of designs whose pins fit into their bars; the others have no positive safety."""
+    given = of_press(SAFETIES + STRESSES)
+    fits = Constraint(quantity="static_safety", lower=1e-3)
+    assert_close_to_designs(replace(given, constraints=(*given.constraints, fits)), 40, 1e-6)
 
 
 @pytest.mark.slow
