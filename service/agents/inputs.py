@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 from pydantic import Field
 
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
 from ...objectives.units import quote
+from ...optimise.front.front import ParetoFront
 from ...optimise.job.model import Job as JobModel
+from ...optimise.problem.problem import Problem
 from ...optimise.problem.questions import SUBJECTS
 from ..designs.choice_options import require_single_choice
 from ..designs.columns import find_column
@@ -31,12 +35,6 @@ from ..questions.inputs import read_inputs
 from ..text.options import Dimensions, Rows, Units
 from ..text.tables import ROWS
 from .call import Call, Job, tables_of
-
-if TYPE_CHECKING:
-    from ...model.linkage.linkage import Linkage
-    from ...model.machine.mechanism import Mechanism
-    from ...optimise.front.front import ParetoFront
-    from ...optimise.problem.problem import Problem
 
 _TABLES = ", ".join(f"{name} ({field.description})" for name, field in JobModel.model_fields.items())
 _TOPIC_WORDS = [f"{name} ({topic.shows})" for name, topic in TOPICS.items()]

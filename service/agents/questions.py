@@ -6,16 +6,18 @@ import inspect
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from pydantic import Field
 
 from ...model.errors import InputError, NotFound, RunError
 from ...model.file_names import path_text
+from ...objectives.kinds import System
 from ...objectives.units import closest
 from ...optimise.job.messages import nodes_at, toml
 from ...optimise.job.model import Job
 from ...optimise.job.schema import schema_of
+from ...optimise.problem.problem import Problem
 from ...optimise.problem.questions import SUBJECTS
 from ..designs.quantity_facts import facts_of_all
 from ..designs.rotating_crank import require_rotating_crank
@@ -27,14 +29,9 @@ from ..questions.design_question import DesignQuestion
 from ..questions.discovery import ALL, DESIGN_QUESTIONS, FRONT_OR_JOB_QUESTIONS, QUESTIONS
 from ..questions.front_or_job_question import FrontOrJobQuestion, SearchListener
 from ..questions.record_types import schema_of as schema_of_record
+from ..render.blocks import Block
 from .call import Call, ToolResult, tables_of, text_of
-from .inputs import Design, Files, JobInput, TopicRequest
-
-if TYPE_CHECKING:
-    from ...objectives.kinds import System
-    from ...optimise.problem.problem import Problem
-    from ..render.blocks import Block
-    from .inputs import Machine
+from .inputs import Design, Files, JobInput, Machine, TopicRequest
 
 _MOST_RUNS = 20
 _OF_TOPIC = ("name", "title", "help", "usual", "example", "required")

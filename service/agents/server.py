@@ -11,7 +11,10 @@ import threading
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from anyio.streams.memory import MemoryObjectReceiveStream
+from mcp.server.session import ServerSession
 
 from ...model.errors import SlidercrankError
 from ...model.extras import NamingExtra
@@ -31,9 +34,6 @@ with NamingExtra("serving agents needs"):
     from mcp_types import PaginatedRequestParams as Page
     from mcp_types import Tool as Declared
 
-if TYPE_CHECKING:
-    from anyio.streams.memory import MemoryObjectReceiveStream
-    from mcp.server.session import ServerSession
 
 _log = logging.getLogger(__name__)
 TOOLS = (

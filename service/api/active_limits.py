@@ -15,7 +15,9 @@ from .stored_fronts import FrontDep
 
 router = APIRouter(route_class=QuickRoute, tags=["fronts"])
 
-LIMIT_PATH = Annotated[str, Field(max_length=500, description="its place in the job", examples=["variables.rod"])]
+LIMIT_PATH = Annotated[
+    str, Field(max_length=500, description="path of the limit in the job", examples=["variables.rod"])
+]
 Side = Literal["lower", "upper"]
 
 
@@ -40,7 +42,7 @@ class ActiveLimitsModel(BaseModel):
     """The limits on which designs of a front rest, those with most designs first."""
 
     job: int = Field(examples=[7])
-    count: int = Field(description="of all designs", examples=[100])
+    count: int = Field(description="number of all designs", examples=[100])
     limits: list[LimitModel]
 
 

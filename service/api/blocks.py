@@ -18,7 +18,9 @@ _SYSTEMS: tuple[System, ...] = ("metric", "inch")
 class NumberModel(BaseModel):
     """A number in a system of units. digits: significant ones. decimals: digits after the point instead."""
 
-    number: float | Literal["inf", "-inf"] | None = Field(description="null where it is not defined", examples=[280.0])
+    number: float | Literal["inf", "-inf"] | None = Field(
+        description="value; null where it is not defined", examples=[280.0]
+    )
     unit: str = Field(examples=["mm"])
     digits: int = Field(examples=[6])
     decimals: int | None = Field(examples=[None])

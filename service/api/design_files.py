@@ -41,7 +41,7 @@ CrankAngle = Annotated[
         ge=-360.0,
         le=360.0,
         allow_inf_nan=False,
-        description="where the linkage is drawn: at 60 deg if left out, half-way where it swings",
+        description="crank angle of the drawing; 60 deg if left out, the middle of a swing",
         examples=[60.0],
     ),
 ]

@@ -53,7 +53,7 @@ def _drawn(request: RequestedDesign, key: str, kind: Literal["png", "svg"], draw
 
 
 TopicName = Annotated[
-    str, Path(pattern=r"^[a-z_]+$", max_length=100, description="of the list of topics", examples=["balance"])
+    str, Path(pattern=r"^[a-z_]+$", max_length=100, description="name from the list of topics", examples=["balance"])
 ]
 
 

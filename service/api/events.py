@@ -177,11 +177,15 @@ async def list_events(
     request: Request,
     number: JobNumber,
     store: StoreDep,
-    after: Annotated[int, Query(ge=0, le=LARGEST, description="events after this number"), PLAIN_DIGITS] = 0,
-    limit: Annotated[int, Query(ge=1, le=1000, description="at most this many, per page of JSON"), PLAIN_DIGITS] = 1000,
+    after: Annotated[
+        int, Query(ge=0, le=LARGEST, description="number of an event; only later ones are returned"), PLAIN_DIGITS
+    ] = 0,
+    limit: Annotated[
+        int, Query(ge=1, le=1000, description="maximum number of events per page of JSON"), PLAIN_DIGITS
+    ] = 1000,
     last_event_id: Annotated[
         int | None,
-        Header(ge=0, le=LARGEST, description="the same as `after`, as browsers send it to reconnect"),
+        Header(ge=0, le=LARGEST, description="same as `after`, as browsers send it to reconnect"),
         PLAIN_DIGITS,
     ] = None,
 ) -> Response:

@@ -46,7 +46,7 @@ Name = Annotated[
     Path(
         pattern=r"^[a-z0-9_]+$",
         max_length=100,
-        description="of the list of figures, or design_ and the number of a design",
+        description="name from the list of figures, or design_ and the number of a design",
         examples=["scatter_matrix"],
     ),
 ]

@@ -126,7 +126,7 @@ class ComparisonModel(BaseModel):
 
 @router.get("/comparison", tags=["fronts"])
 def compare_runs(
-    job: Annotated[list[_Number], Query(min_length=2, max_length=MOST, description="its number; repeatable")],
+    job: Annotated[list[_Number], Query(min_length=2, max_length=MOST, description="number of a job; repeatable")],
     store: StoreDep,
     fronts: FrontsDep,
     given: ComparisonInputs,

@@ -66,8 +66,8 @@ class ColumnModel(BaseModel):
     key: str = Field(examples=["peak_torque_Nm"])
     title: str = Field(examples=["peak drive torque"])
     unit: str = Field(examples=["N m"])
-    group: str = Field("", description="in which it is shown; none for a curve", examples=["Drive"])
-    group_place: int = Field(0, description="of the group among the others", examples=[3])
+    group: str = Field("", description="group in which it is shown; none for a curve", examples=["Drive"])
+    group_place: int = Field(0, description="position of the group among the others", examples=[3])
 
 
 ViolatedOfAll = Annotated[
@@ -108,15 +108,17 @@ class FrontModel(BaseModel):
     )
     knee: int | None = Field(description="position of the knee, counted from 0", examples=[41])
     trade_offs: list[str] = Field(
-        description="at the knee", examples=[["1 deg more least transmission angle costs 0.8 N m more peak torque"]]
+        description="trade-offs at the knee, in words",
+        examples=[["1 deg more least transmission angle costs 0.8 N m more peak torque"]],
     )
     strokes_differ: bool = Field(False, description="whether a stroke of a design is loaded more than the other")
-    warnings: list[str] = Field([], description="about possible mistakes, in words", examples=[[]])
+    warnings: list[str] = Field([], description="warnings about possible mistakes, in words", examples=[[]])
     violated: ViolatedOfAll = {}
     violations: Violations
     discrete: dict[str, Any] | None = Field(
         None,
-        description="how designs of discrete values were found, and the best of each objective with continuous ones",
+        description="method by which designs of discrete values were found, and the best of each objective "
+        "with continuous ones",
         examples=[{"how": "exact", "combinations": 9720, "judged": 9720, "values": {"crank": "multiples of 0.5 mm"}}],
     )
 
@@ -173,7 +175,7 @@ class ColumnsModel(BaseModel):
     count: int = Field(description="number of designs on the front", examples=[100])
     columns: list[ColumnModel]
     values: dict[str, list[float | str | None]] = Field(
-        description="by the key of the column, one of every design",
+        description="values by the key of the column, one for each design",
         examples=[{"crank_mm": [40.0, 41.5], "slow_stroke": ["inward", "inward"]}],
     )
 
@@ -193,7 +195,9 @@ def pick_design(
     knee: Annotated[
         bool,
         BeforeValidator(lambda given: given == "" or given),
-        Query(description="the nearest to the ideal, objectives by their range"),
+        Query(
+            description="whether to choose the design nearest to the ideal, with objectives relative to their ranges"
+        ),
     ] = False,
     topsis: Annotated[
         str | None,
@@ -228,12 +232,15 @@ def list_designs(
     where: Where = [],  # noqa: B006 - the framework copies it
     sort: Annotated[
         str | None,
-        Query(max_length=200, description="a quantity or column: best first for an objective, else smallest first"),
+        Query(
+            max_length=200,
+            description="quantity or column to sort by: best first for an objective, else smallest first",
+        ),
     ] = None,
-    reverse: Annotated[bool, Query(description="reverse the order")] = False,
+    reverse: Annotated[bool, Query(description="whether to reverse the order")] = False,
     columns: Columns = None,
-    offset: Annotated[int, Query(ge=0, le=2**31, description="skip this many designs"), PLAIN_DIGITS] = 0,
-    limit: Annotated[int, Query(ge=1, le=MOST_ROWS, description="at most this many designs"), PLAIN_DIGITS] = 100,
+    offset: Annotated[int, Query(ge=0, le=2**31, description="number of designs to skip"), PLAIN_DIGITS] = 0,
+    limit: Annotated[int, Query(ge=1, le=MOST_ROWS, description="maximum number of designs"), PLAIN_DIGITS] = 100,
 ) -> DesignsModel:
     """Give the designs that meet all conditions, in the order of the front unless sorted."""
     result = stored_front.result

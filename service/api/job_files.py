@@ -44,7 +44,7 @@ class PresetModel(BaseModel):
     name: str = Field(examples=["feeder"])
     title: str = Field(examples=["Feeder with rod = 3.2 offset"])
     sentence: str = Field(examples=["Quick-return feeder, 80 to 90 mm of stroke at 2400 rpm."])
-    job: dict[str, Any] = Field(description="its tables", examples=[EXAMPLE])
+    job: dict[str, Any] = Field(description="tables of the job", examples=[EXAMPLE])
     design: PresetDesign
 
 
@@ -102,10 +102,10 @@ class Understood(BaseModel):
     name: str = Field(examples=["Feeder"])
     given: list[str] = Field(examples=[["crank speed 2400 rpm (counter-clockwise)"]])
     loads: list[str] = Field(
-        description="of each load its size, sign, effect and range",
+        description="size, sign, effect and range of each load",
         examples=[["200 N inward, resists the outward stroke, throughout"]],
     )
-    files: list[str] = Field(description="what was read from each file that the job names", examples=[[]])
+    files: list[str] = Field(description="summary of each file that the job names", examples=[[]])
     tolerances: list[str] = Field(examples=[["crank 0.05 mm"]])
     costs: list[str] = Field(examples=[[]])
     variables: list[str] = Field(examples=[["crank 20 to 60 mm"]])
@@ -115,9 +115,9 @@ class Understood(BaseModel):
     unknowns: int = Field(examples=[3])
     degrees_of_freedom: int = Field(examples=[2])
     eliminated: list[str] = Field(examples=[["rod_to_offset"]])
-    warnings: list[str] = Field(description="about possible mistakes", examples=[[]])
-    changes: list[ChangeModel] = Field(description="that settle warnings", examples=[[]])
-    notes: list[str] = Field(description="on what is often forgotten", examples=[[]])
+    warnings: list[str] = Field(description="warnings about possible mistakes", examples=[[]])
+    changes: list[ChangeModel] = Field(description="changes that settle warnings", examples=[[]])
+    notes: list[str] = Field(description="notes on what is often forgotten", examples=[[]])
     search: str = Field(examples=["auto, at most 100 designs, seed 1"])
 
 

@@ -36,14 +36,14 @@ EXAMPLE = {
     "optimiser": {"designs": 20, "seed": 1},
 }
 """A job that can be solved."""
-Priority = Annotated[int, Field(ge=-1000, le=1000, description="higher ones are solved first")]
+Priority = Annotated[int, Field(ge=-1000, le=1000, description="priority; jobs with higher ones are solved first")]
 IdempotencyKey = Annotated[
     str | None,
     Header(
         min_length=1,
         max_length=255,
         pattern="^[!-~]+$",
-        description="of this submission: sent again with it, the same job is answered and none is added",
+        description="key of this submission: sent again with the same key, it adds no job and returns the earlier one",
         examples=["4c7a1f0e-feeder"],
     ),
 ]
@@ -53,9 +53,11 @@ IdempotencyKey = Annotated[
 class RequestedLimits(BaseModel, extra="forbid", strict=True):
     """Limits that a client asks for a job; the service's own hold where one is left out."""
 
-    seconds: float | None = Field(None, gt=0, le=LARGEST, description="of its search, s", examples=[600])
-    evaluations: int | None = Field(None, gt=0, le=LARGEST, description="designs that its search evaluates")
-    memory_bytes: int | None = Field(None, gt=0, le=LARGEST, description="of its worker")
+    seconds: float | None = Field(None, gt=0, le=LARGEST, description="time limit of the search, s", examples=[600])
+    evaluations: int | None = Field(
+        None, gt=0, le=LARGEST, description="maximum number of designs that the search evaluates"
+    )
+    memory_bytes: int | None = Field(None, gt=0, le=LARGEST, description="memory limit of the worker, bytes")
 
 
 class Submission(BaseModel, extra="forbid", strict=True):
@@ -74,7 +76,7 @@ class Submission(BaseModel, extra="forbid", strict=True):
         None,
         ge=1,
         le=LARGEST,
-        description="the job that it is a changed copy of, left out once that is gone",
+        description="number of the job of which it is a changed copy; omitted once that is deleted",
         examples=[1],
     )
 
@@ -84,11 +86,11 @@ class Clone(BaseModel, extra="forbid", strict=True):
 
     changes: dict[str, Any] = Field(
         default_factory=dict,
-        description="to the tables of the job, as a JSON merge patch (RFC 7396): null takes a key away",
+        description="changes to the tables of the job, as a JSON merge patch (RFC 7396): null removes a key",
         examples=[{"name": "Feeder, heavier", "mechanism": {"slider": {"mass": "2.5 kg"}}}],
     )
-    priority: Priority | None = Field(None, description="that of the job if left out")
-    limits: RequestedLimits | None = Field(None, description="those of the job if left out")
+    priority: Priority | None = Field(None, description="priority; that of the job if left out")
+    limits: RequestedLimits | None = Field(None, description="limits; those of the job if left out")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -35,12 +35,14 @@ FileName = Annotated[str, InPath(max_length=255, description="one of the files o
 @router.get("/jobs", response_model=JobPage)
 def list_jobs(
     store: StoreDep,
-    state: Annotated[list[State], Query(description="only of these states")] = [],  # noqa: B006 - FastAPI copies it
-    name: Annotated[str, Query(max_length=200, description="only those whose name contains this")] = "",
+    state: Annotated[list[State], Query(description="states of the jobs to list")] = [],  # noqa: B006 - FastAPI copies it
+    name: Annotated[str, Query(max_length=200, description="part of the name of the jobs to list")] = "",
     before: Annotated[
-        int | None, Query(ge=1, le=LARGEST, description="only those that follow the job with this number"), PLAIN_DIGITS
+        int | None,
+        Query(ge=1, le=LARGEST, description="number of a job; only those that follow it are listed"),
+        PLAIN_DIGITS,
     ] = None,
-    limit: Annotated[int, Query(ge=1, le=1000, description="at most this many jobs"), PLAIN_DIGITS] = 100,
+    limit: Annotated[int, Query(ge=1, le=1000, description="maximum number of jobs"), PLAIN_DIGITS] = 100,
     sort: Annotated[
         Order, Query(description="state: waiting and running ones first; decided: those decided first")
     ] = "newest",

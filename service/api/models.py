@@ -31,7 +31,7 @@ JobNumber = Annotated[int, Path(ge=1, le=LARGEST, description="the number of a j
 """A path parameter."""
 Count = Annotated[int, Field(ge=0)]
 UnitsParameter = Annotated[
-    System, Query(description="of what is given; in the inch system keys such as crank_mm become crank_in")
+    System, Query(description="system of units of the answer; in the inch system keys such as crank_mm become crank_in")
 ]
 """A query parameter."""
 
@@ -43,17 +43,17 @@ class ResponseModel(BaseModel, frozen=True):
 class JobLimits(ResponseModel):
     """Limits of a job on time, evaluations and memory; null is no limit."""
 
-    seconds: float | None = Field(description="of its search, s")
-    evaluations: int | None = Field(description="designs that its search evaluates")
-    memory_bytes: int | None = Field(description="of its worker")
+    seconds: float | None = Field(description="time limit of the search, s")
+    evaluations: int | None = Field(description="maximum number of designs that the search evaluates")
+    memory_bytes: int | None = Field(description="memory limit of the worker, bytes")
 
 
 class FrontProgress(ResponseModel):
     """Some designs of the front that a search has by now, objectives only."""
 
-    columns: list[str] = Field(description="of the objectives, as the designs will have them")
+    columns: list[str] = Field(description="columns of the objectives, as the designs will have them")
     points: list[list[float | None]] = Field(
-        description="at most 64 designs: values by column; of an objective with a target its distance from that"
+        description="values by column of at most 64 designs; for an objective with a target its distance from that"
     )
 
 
@@ -62,10 +62,10 @@ class RowProgress(ResponseModel):
 
     stage: str
     round: int
-    rounds: int = Field(description="how many are planned")
+    rounds: int = Field(description="number of planned rounds")
     feasible: int = Field(description="designs that meet every constraint")
-    step: int = Field(default=0, description="how far the stage is, in a long one between two rounds")
-    steps: int = Field(default=0, description="how far it goes; 0 at the end of a round")
+    step: int = Field(default=0, description="current step of the stage, in a long one between two rounds")
+    steps: int = Field(default=0, description="number of steps of the stage; 0 at the end of a round")
 
 
 class JobProgress(RowProgress):
@@ -77,7 +77,9 @@ class JobProgress(RowProgress):
         "not comparable between jobs"
     )
     seconds: float | None
-    front: FrontProgress | None = Field(default=None, description="after the latest round; null where none is known")
+    front: FrontProgress | None = Field(
+        default=None, description="front after the latest round; null where none is known"
+    )
 
 
 class RowSummary(ResponseModel):
@@ -94,24 +96,24 @@ class JobSummary(RowSummary):
     evaluations: Count
     seconds: float | None
     axes: list[str] = Field(description="the columns of the points")
-    points: list[list[float | str | None]] = Field(description="at most 64 designs of the front")
+    points: list[list[float | str | None]] = Field(description="values by column of at most 64 designs of the front")
 
 
 class JobRow(ResponseModel):
     """State of a job in a list. Times are seconds since 1970, UTC."""
 
-    id: int = Field(ge=1, description="its number", examples=[1])
+    id: int = Field(ge=1, description="number of the job", examples=[1])
     name: str = Field(examples=["Feeder"])
     state: State
     reason: str = Field(description="reason for this state, a sentence; may be empty")
-    priority: int = Field(description="higher ones are solved first")
+    priority: int = Field(description="priority; jobs with higher ones are solved first")
     cancel_asked: bool
     submitted: float
     started: float | None
     finished: float | None
-    worker: str | None = Field(description="who solves it")
+    worker: str | None = Field(description="name of the worker that solves it")
     events: Count = Field(description="the number of its last event")
-    progress: RowProgress | None = Field(description="while it runs")
+    progress: RowProgress | None = Field(description="progress while it runs")
     summary: RowSummary | None
     decision: str | None = Field(None, description="name of the design decided for", examples=["Round numbers"])
 
@@ -119,34 +121,38 @@ class JobRow(ResponseModel):
 class JobStateModel(JobRow, title="Job"):
     """State of a job. Times are seconds since 1970, UTC."""
 
-    key: str | None = Field(description="of its submission")
+    key: str | None = Field(description="key of its submission")
     run: str = Field(description="the name of its run folder, wherever it is exported")
-    attempts: Count = Field(description="since it last went forward")
+    attempts: Count = Field(description="number of attempts since it last progressed")
     most_attempts: Count
     limits: JobLimits
-    due: float = Field(description="it is not started before")
+    due: float = Field(description="time before which it is not started")
     lease_until: float | None
-    records: Count = Field(description="that it can go on from")
+    records: Count = Field(description="number of records from which it can continue")
     progress: JobProgress | None
     summary: JobSummary | None
-    origin: int | None = Field(None, description="the job that it is a changed copy of, which may be gone")
+    origin: int | None = Field(
+        None, description="number of the job of which it is a changed copy, which may be deleted"
+    )
 
 
 class JobPage(ResponseModel):
     """Some jobs in the order that was asked for."""
 
     jobs: list[JobRow]
-    workers: str = Field(description="the workers in a line", examples=["2 workers, 1 busy, 3 waiting"])
-    next: int | None = Field(description="`before` of the next page; null on the last one")
+    workers: str = Field(description="summary of the workers", examples=["2 workers, 1 busy, 3 waiting"])
+    next: int | None = Field(description="number to give as `before` for the next page; null on the last one")
 
 
 class FrontPoints(ResponseModel):
     """Some designs of the front of a job, for a small picture; no points where no front is known."""
 
     job: int = Field(examples=[1])
-    columns: list[str] = Field(description="of the first two objectives, or of the only one", examples=[["time_ratio"]])
+    columns: list[str] = Field(
+        description="columns of the first two objectives, or of the only one", examples=[["time_ratio"]]
+    )
     points: list[list[float | str | None]] = Field(
-        description="at most 64 designs: values by column, while it runs as in its progress", examples=[[[1.25]]]
+        description="values by column of at most 64 designs; those of its progress while it runs", examples=[[[1.25]]]
     )
 
 
@@ -169,11 +175,13 @@ class EventPage(ResponseModel):
     """Some events of a job, in order."""
 
     events: list[EventModel]
-    last: Count = Field(description="`after` of the next page")
+    last: Count = Field(description="number to give as `after` for the next page")
 
 
 class JobFiles(ResponseModel):
     """The files of a job."""
 
     files: list[str] = Field(examples=[["job.toml", "versions.json"]])
-    exports: list[str] = Field(description="what its front is given as, /jobs/{number}/export.csv", examples=[["csv"]])
+    exports: list[str] = Field(
+        description="formats in which its front is exported, as at /jobs/{number}/export.csv", examples=[["csv"]]
+    )

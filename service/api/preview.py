@@ -112,7 +112,7 @@ class ExampleModel(BaseModel):
     stroke_mm: float
     slider_ends_mm: tuple[float, float] = Field(examples=[(59.2, 139.6)])
     dead_centres_deg: tuple[float, float] = Field(examples=[(189.6, 4.1)])
-    time_ratio: float | None = Field(description="null if cylinders differ", examples=[1.2])
+    time_ratio: float | None = Field(description="time ratio; null if cylinders differ", examples=[1.2])
     least_transmission_angle_deg: float
     motion: MotionModel
 
@@ -146,14 +146,16 @@ class SwingPreview(BaseModel):
     feasible_share: of the sampled designs that meet all requirements which were checked.
     """
 
-    from_deg: float | None = Field(description="of the example; null without one", examples=[11.16])
-    to_deg: float | None = Field(description="of the example; null without one", examples=[101.16])
+    from_deg: float | None = Field(description="start of the example's swing; null without one", examples=[11.16])
+    to_deg: float | None = Field(description="end of the example's swing; null without one", examples=[101.16])
     closing_share: float = Field(examples=[0.6])
-    travel_mm: Ends | None = Field(description="null where nothing makes the swing", examples=[[1900.0, 2400.0]])
+    travel_mm: Ends | None = Field(
+        description="travel of the slider; null where none makes the swing", examples=[[1900.0, 2400.0]]
+    )
     feasible_share: float = Field(examples=[0.3])
     sampled: int = Field(examples=[512])
     unchecked: list[str] = Field(examples=[[]])
-    example: SwingExample | None = Field(description="null where nothing makes the swing")
+    example: SwingExample | None = Field(description="a linkage that makes the swing; null where none does")
 
 
 class FormulaModel(BaseModel):
@@ -172,19 +174,23 @@ class NameModel(BaseModel):
 
     name: str = Field(examples=["clearance"])
     title: str = Field(examples=["clearance beside the crank"])
-    unit: str | None = Field(description="null while it is not known", examples=["mm"])
+    unit: str | None = Field(description="unit; null while it is not known", examples=["mm"])
 
 
 class PreviewModel(BaseModel):
     """Findings about a job while it is being written."""
 
     wrong: list[WrongModel]
-    understood: Understood | None = Field(description="what was understood, once nothing is wrong")
-    allowed: AllowedModel | None = Field(description="null while the ranges cannot be read")
-    example: ExampleModel | None = Field(description="null where nothing turns fully")
-    swing: SwingPreview | None = Field(description="of a job whose crank swings, once swing and ranges can be read")
-    formulas: list[FormulaModel] = Field(description="of the job, in their order", examples=[[]])
-    names: list[NameModel] = Field(description="that its formulas may have beside /quantities", examples=[[]])
+    understood: Understood | None = Field(description="the job as it was understood, once nothing is wrong")
+    allowed: AllowedModel | None = Field(description="values that the ranges allow; null while these cannot be read")
+    example: ExampleModel | None = Field(description="a linkage within the ranges; null where none rotates fully")
+    swing: SwingPreview | None = Field(
+        description="values that a swing allows, once swing and ranges can be read; null for a rotating crank"
+    )
+    formulas: list[FormulaModel] = Field(description="formulas of the job, in their order", examples=[[]])
+    names: list[NameModel] = Field(
+        description="names that its formulas may contain besides those of /quantities", examples=[[]]
+    )
 
 
 @router.post("/preview")

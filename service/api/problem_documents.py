@@ -49,7 +49,7 @@ class Problem(BaseModel):
 
     type: Literal["about:blank", "infeasible"] = Field(
         "about:blank",
-        description="infeasible: the request is valid, but no design can meet it; about:blank: the status says all",
+        description="infeasible for a valid request that no design can meet; about:blank where the status says all",
     )
     title: str = Field(description="the status in words", examples=["Not Found"])
     status: int = Field(description="the HTTP status", examples=[404])

@@ -29,10 +29,10 @@ class QuantityModel(BaseModel):
     column: str = Field(examples=["stroke_mm"])
     title: str = Field(examples=["stroke"])
     unit: str = Field(examples=["mm"])
-    kind: str = Field(description="of value", examples=["length"])
-    group: str = Field(description="that it is shown in", examples=["Motion"])
+    kind: str = Field(description="kind of its values", examples=["length"])
+    group: str = Field(description="group in which it is shown", examples=["Motion"])
     sentence: str = Field(examples=["The stroke is the distance of the slider between its two dead centres."])
-    advice: str = Field(description='what is usual; "" if there is nothing to say')
+    advice: str = Field(description='usual values; "" if there is nothing to say')
     formula: str = Field(examples=["S = sqrt((l+r)^2 - e^2) - sqrt((l-r)^2 - e^2)"])
     section: str = Field(examples=["2. Closed forms"])
     source: str
@@ -44,7 +44,7 @@ class QuantityModel(BaseModel):
     allowed_by: str = Field(description='origin of its allowable value; "" without one', examples=[""])
     offered: list[str] = Field(description="parts of a form that offer it", examples=[["motion"]])
     motion: str = Field(
-        description="of the crank to which it applies, turn or swing; empty for either", examples=["turn"]
+        description="motion of the crank to which it applies, turn or swing; empty for either", examples=["turn"]
     )
 
 

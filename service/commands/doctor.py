@@ -64,8 +64,8 @@ def doctor(
 
 
 def _back_up(store: str | None, runs: Path | None, target: Path) -> None:
-    from ..store.backup import back_up
     from ..store.database import Database
+    from ..store.upkeep import back_up
 
     if not has_store(store, runs):
         raise NotFound(
@@ -134,8 +134,8 @@ def _check_access(file: Path) -> Iterator[Check]:
 
 
 def _check_database(address: str, database: Database) -> Iterator[Check]:
-    from ..store.inspection import clock_ahead, damages, server_version
     from ..store.schema_version import strangers, versions
+    from ..store.upkeep import clock_ahead, damages, server_version
 
     if not database.sqlite:
         database.require_ready()

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
+from ...objectives.kinds import Kind
+from ...objectives.tables.measured import Measured, columns_of, measured_from
+from ...objectives.units import symbol_in, to_si
 from ...optimise.job.table_file import bytes_of, read_table, text_of
-
-if TYPE_CHECKING:
-    from ...model.linkage.linkage import Linkage
-    from ...model.machine.mechanism import Mechanism
-    from ...objectives.kinds import Kind
-    from ...objectives.tables.measured import Measured
 
 _LARGEST = 300_000_000  # bytes: millions of rows
 _NAME = "a measured file"
@@ -27,8 +25,6 @@ def measured_text(path: Path) -> str:
 
 def read_measured(text: str, mechanism: Mechanism, linkage: Linkage) -> Measured:
     """Return the samples of a file's text. Raises `InputError` if it is not a table, or has impossible values."""
-    from ...objectives.tables.measured import columns_of, measured_from
-
     table = read_table(text, _NAME, ragged=True)
     names = [name for name in table.heads if name]
     curve_names = columns_of(names, mechanism, linkage, _any_unit)
@@ -41,7 +37,5 @@ def read_measured(text: str, mechanism: Mechanism, linkage: Linkage) -> Measured
 
 def _any_unit(text: str, kind: Kind) -> float | None:
     """Return the size of any unit known to jobs, in SI; None for a unit of another kind."""
-    from ...objectives.units import symbol_in, to_si
-
     symbol = symbol_in(text.replace("_", " "), kind)
     return None if symbol is None else to_si(f"1 {symbol}", kind)

@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from ....model.arrays import Array
 from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.kinds import LENGTH
 from ....objectives.tables.varying_column import columns_of_numbers
+from ....optimise.certificate.certificate import Certificate, Step
 from ....optimise.certificate.certify import certify_designs
 from ....optimise.certificate.defaults import EPSILON, SECONDS
 from ....optimise.certificate.infeasible import prove_infeasible
+from ....optimise.front.front import ParetoFront
+from ....optimise.problem.problem import Problem
 from ...designs.display_units import record_in
 from ...render.blocks import Block, Value, heading, joined, sentence, words
 from ...runs.result import rows_of
 from ..front_or_job_question import Answer, SearchListener
-
-if TYPE_CHECKING:
-    from ....model.arrays import Array
-    from ....optimise.certificate.certificate import Certificate, Step
-    from ....optimise.front.front import ParetoFront
-    from ....optimise.problem.problem import Problem
 
 _MOST_NOTES = 8
 

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
 from ....optimise.decisions.like import Ends, common, distance, nearest
+from ....optimise.front.front import ParetoFront
 from ....optimise.front.hypervolume import scaling
+from ....optimise.problem.problem import Problem
 from ....optimise.problem.requirements import Constraint
 from ...designs.display_units import record_in
 from ...designs.judged_requirements import quantity_names
@@ -21,10 +23,6 @@ from ...runs.result import Row, rows_of
 from ..design_table import title_and_unit
 from ..front_or_job_question import Answer
 from . import QUESTION
-
-if TYPE_CHECKING:
-    from ....optimise.front.front import ParetoFront
-    from ....optimise.problem.problem import Problem
 
 _EXAMPLE = f"{QUESTION.inputs[0].flag} {QUESTION.inputs[0].example}"
 

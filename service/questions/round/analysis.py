@@ -11,7 +11,7 @@ from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.column_keys import key_in, metric_key, split_unit
 from ....objectives.kinds import LENGTH, SMALL_LENGTH, Kind, System, metric_unit_in
-from ....objectives.units import quote
+from ....objectives.units import kind_of, quote
 from ....optimise.front.progress import stage_text
 from ....optimise.front.rounded import Rounded, drop_conversion_rounding
 from ...designs.columns import find_column
@@ -77,7 +77,6 @@ def steps_of(texts: Sequence[str], part: Problem, key: str) -> dict[str, float]:
     """Return the steps by name, SI. key: name of the input, for messages. Raises `InputError`."""
     from ....model.machine.numbers import unit_of
     from ....objectives.tables.varying_column import varying_column
-    from ....objectives.units import kind_of
 
     kinds = dict.fromkeys(DIMENSIONS, LENGTH)
     names = {name: name for name in DIMENSIONS} | {f"{name}_mm": name for name in DIMENSIONS}

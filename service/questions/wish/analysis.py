@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ....objectives.kinds import System, metric_unit_in
 from ....optimise.decisions.wish import Wishes
+from ....optimise.decisions.wished import Outcome, Wished
+from ....optimise.front.front import ParetoFront
 from ...designs.display_units import row_in
 from ...render.blocks import Block, Phrase, Sentence, Table, Text, column, heading, recorded, words
 from ...runs.result import json_ready, rows_of
 from ..design_table import title_and_unit
 from ..front_or_job_question import Answer
-
-if TYPE_CHECKING:
-    from ....optimise.decisions.wished import Outcome, Wished
-    from ....optimise.front.front import ParetoFront
 
 
 def analyse(front: ParetoFront, *, row: int | None, at: Mapping[str, object], **_: Any) -> Answer:

@@ -12,7 +12,7 @@ import httpx
 import pytest
 
 from slidercrank.service.store import Store
-from slidercrank.service.store.backup import back_up
+from slidercrank.service.store.upkeep import back_up
 from tests.service import fronts
 from tests.service.api.fixed_front import API, Solved, client_of, put_in
 

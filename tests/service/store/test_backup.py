@@ -10,9 +10,8 @@ import pytest
 
 from slidercrank.model.errors import InputError, StoreError
 from slidercrank.service.store import Store
-from slidercrank.service.store.backup import back_up
 from slidercrank.service.store.database import Database
-from slidercrank.service.store.inspection import damages
+from slidercrank.service.store.upkeep import back_up, damages
 from tests.service.store.contents import add, everything, progress, result, same, search_record, taken
 
 
