@@ -28,6 +28,8 @@ TOLD = [name for name in TOPICS if name not in MISSING]
 THREE_DIGITS = 5e-3
 """Relative: of a number that the service writes with three digits, and the page with those of the whole number."""
 NUMBER = re.compile(r"[-+]?\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?")
+POWER = re.compile("·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
+RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 ANSWER = """node => [...node.children].flatMap(one => one.matches(".scroll")
   ? [...one.querySelectorAll("tr")].map(row => [...row.cells].map(cell => cell.textContent))
   : [[one.textContent]])"""
@@ -45,7 +47,8 @@ def opened(pages: Pages, tmp_path_factory: pytest.TempPathFactory) -> Iterator[t
 
 
 def plain(text: str) -> tuple[str, list[float]]:
-    """Return a text without its numbers, and these."""
+    """Return a text without its numbers, and these; the page writes powers of ten as 2.3·10⁻⁵."""
+    text = POWER.sub(lambda found: f"e{found[1].translate(RAISED)}", text)
     text = text.replace("\u00a0", " ").replace("−", "-").strip()
     numbers = [float(one.replace(",", "")) for one in NUMBER.findall(text)]
     return " ".join(NUMBER.sub("#", text).split()), numbers

@@ -57,9 +57,7 @@ export function analyses(
   const begun = []; // of the sections
   let near = false; // whether the tabs are, or have been, in sight
 
-  async function draw() {
-    const { name, shows, command, view } = listed[chosen];
-    const isOfDesign = chosen < listed.length - ofFront.length;
+  function drawTabs() {
     fill(
       tabs,
       listed.map((one, n) =>
@@ -79,7 +77,14 @@ export function analyses(
         ),
       ),
     );
-    panel.setAttribute("aria-labelledby", `tab-${name}`);
+    panel.setAttribute("aria-labelledby", `tab-${listed[chosen].name}`);
+  }
+
+  async function draw() {
+    const { shows, command, view } = listed[chosen];
+    const isOfDesign = chosen < listed.length - ofFront.length;
+    near = true;
+    drawTabs();
     fill(
       panel,
       h(
@@ -128,14 +133,8 @@ export function analyses(
   );
   if (!swings) {
     fill(places.tabs, h("h2", {}, "Analyses"), tabs, panel);
-    whenNear(
-      panel,
-      () => {
-        near = true;
-        return draw();
-      },
-      signal,
-    );
+    drawTabs();
+    whenNear(panel, async () => near || (await draw()), signal);
   }
   return {
     /** @param {Page.Numbers | null} now */
