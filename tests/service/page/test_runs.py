@@ -11,6 +11,7 @@ import pytest
 from playwright.sync_api import Page, Request, expect
 
 from slidercrank.service.jobs.submission import submit
+from slidercrank.service.presets.jobs import shipped_jobs
 from slidercrank.service.runs.result import StoredObjective
 from slidercrank.service.store import Store
 from slidercrank.service.store.remarks import keep_design
@@ -35,7 +36,7 @@ def test_an_empty_store_leads_to_a_new_run(open_page: Open, store: Store) -> Non
     page = open_page(store)
     expect(page.get_by_role("heading", name="No runs yet")).to_be_visible()
     machines = page.get_by_role("navigation", name="Shipped machines").get_by_role("link")
-    expect(machines).to_have_count(5)
+    expect(machines).to_have_count(len(shipped_jobs()))
     require_accessible(page)
     expect(machines.filter(has_text="Air compressor").locator("path.cylinder")).to_have_count(1)
     expect(machines.filter(has_text="Tilting support").locator("g.body:not([hidden])")).to_have_count(1)
