@@ -279,11 +279,12 @@ def test_a_job_file_comes_in_and_goes_out_the_same(
     form: Open, store: Store, pytestconfig: pytest.Config, shipped: dict[str, Any], tmp_path: Path
 ) -> None:
     page = form(store, "#/new", expected=("422",))
+    title = page.get_by_label("name", exact=True).first  # own quantities have one too
     for name in shipped:
         file = pytestconfig.rootpath / "runs" / f"{name}.toml"
         job = tomllib.loads(file.read_text())
         page.get_by_label("Job file to import").set_input_files(file)
-        expect(page.get_by_label("name", exact=True)).to_have_value(job["name"])
+        expect(title).to_have_value(job["name"])
         for kind, read in (("TOML", tomllib.loads), ("JSON", json.loads)):
             with page.expect_download() as begun:
                 page.get_by_role("button", name=f"Download {kind}").click()
@@ -293,7 +294,7 @@ def test_a_job_file_comes_in_and_goes_out_the_same(
             assert read(saved.read_text()) == job
         page.get_by_role("button", name="Start over").click()
         page.get_by_label("Job file to import").set_input_files(saved)
-        expect(page.get_by_label("name", exact=True)).to_have_value(job["name"])
+        expect(title).to_have_value(job["name"])
         assert text_of(page) == job
     before = text_of(page)
     bad = tmp_path / "bad.toml"
