@@ -82,8 +82,8 @@ declare namespace Page {
     sliderEnds: Point;
     /** Of the crank in a cycle; 0 of a swing forth and back. */
     turns: number;
-    /** Extremes of its curves between their points too, by column; places in the cycle. Without them they are those of the points. */
-    exact?: Record<string, Ends>;
+    /** Extremes of its curves between their points too, by column; places in the cycle. Without them they are those of the points; null: none is shown. */
+    exact?: Record<string, Ends | null>;
     /** Of its drawings: piston, cylinders, actuator, body on the crank. */
     outlines?: Api.Outlines;
     /** Of the cycle; null where it has no speed. */

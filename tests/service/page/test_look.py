@@ -22,8 +22,15 @@ def fact(page: Page, name: str) -> Locator:
     return page.locator(f".facts dt:text-is('{name}') + dd")
 
 
+def require_no_mechanism(page: Page) -> None:
+    for part in (".machines svg", ".curves .chart", ".facts", "text=Search from here"):
+        expect(page.locator(part).first).to_be_hidden()
+
+
 def drag(page: Page, grip: Locator, right: float, down: float) -> None:
-    box = grip.bounding_box()
+    handle = grip.element_handle()
+    handle.wait_for_element_state("stable")  # charts that have just been drawn may move it
+    box = handle.bounding_box()
     assert box is not None
     # Where nothing lies over the guide: near its outer end.
     x = box["x"] + box["width"] * (0.98 if "guide" in (grip.get_attribute("aria-label") or "").lower() else 0.5)
@@ -76,12 +83,40 @@ def test_a_lecture_drags_a_mechanism_until_it_locks_and_starts_a_search_from_it(
     needed = number(page, "Crank") + number(page, "Offset")
     expect(page.get_by_role("alert")).to_contain_text(f"lengthen the rod by more than {needed - 60.0:g} mm")
     expect(page.get_by_role("link", name="Search from here")).to_be_hidden()
-    page.get_by_label("Rod", exact=True).fill("long")
-    expect(page.get_by_role("alert")).to_contain_text("“long” is not a valid length")
+    drag(page, guide, 0.0, -800.0)  # no further than the links reach
+    assert needed < number(page, "Offset") < number(page, "Crank") + 60.0
+    expect(page.locator(".curves .chart").first).to_be_hidden()
+    offset = page.get_by_label("Offset", exact=True)
+    offset.fill("-300")
+    expect(page.get_by_role("alert")).to_contain_text("cannot be assembled: the offset, −300 mm, must be less than")
+    require_no_mechanism(page)
+    page.goto(shared)
+    page.reload()
+    for typed in ("NaN", "0", "-50", ""):
+        offset.fill("30")
+        expect(page.locator(".curves .chart .curve")).to_have_count(4)
+        expect(fact(page, "Stroke")).to_be_visible()
+        page.get_by_label("Crank", exact=True).fill(typed)
+        expect(page.get_by_label("Crank", exact=True)).to_have_accessible_description(re.compile("length"))
+        require_no_mechanism(page)
+        offset.fill("31")  # another field that is right does not bring the old crank back
+        require_no_mechanism(page)
+        assert f"crank_mm={typed}" in page.url if typed else "crank_mm" not in page.url
+        page.get_by_label("Crank", exact=True).fill("40")
+        expect(page.get_by_role("alert")).to_have_text("")
+
+    page.goto(f"{shared.split('#')[0]}#/look?crank_mm=abc&rod_mm=-5&offset_mm=NaN")
+    page.reload()
+    for title, text in (("Crank", "abc"), ("Rod", "-5"), ("Offset", "NaN")):
+        field = page.get_by_label(title, exact=True)
+        expect(field).to_have_value(text)
+        expect(field).to_have_attribute("aria-invalid", "true")
+        expect(field).to_have_accessible_description(re.compile(re.escape(text)))
+    require_no_mechanism(page)
 
     page.goto(shared)
     page.reload()
-    stroke = fact(page, "Stroke").inner_text()
+    expect(fact(page, "Stroke")).to_be_visible()
     lengths = [number(page, title) for title in ("Crank", "Rod", "Offset")]
     page.get_by_role("link", name="Search from here").press("Enter")
     ready(page)
@@ -90,5 +125,7 @@ def test_a_lecture_drags_a_mechanism_until_it_locks_and_starts_a_search_from_it(
         low, high = (float(end.split()[0]) for end in job["variables"][name])
         assert low < length < high
     assert job["mechanism"]["speed"] == "-90 rpm"
-    assert float(job["constraints"]["stroke"]["equals"].split()[0]) == pytest.approx(float(stroke.split()[0]), rel=1e-3)
+    r, l, e = lengths
+    exact = math.sqrt((l + r) ** 2 - e**2) - math.sqrt((l - r) ** 2 - e**2)
+    assert float(job["constraints"]["stroke"]["equals"].split()[0]) == pytest.approx(exact, rel=1e-7)
     assert list(store.jobs()) == []

@@ -91,11 +91,12 @@ export function line(one, { x, y, abscissa }) {
 }
 
 /**
- * Return the marks of least and greatest value of a curve. Those of its points alone are said to be about that.
+ * Return the marks of least and greatest value of a curve, none if they are unknown. Those of its points alone are said to be about that.
  * @param {Drawn} one @param {Pen} pen
  */
 export function peaks(one, { x, y, abscissa }) {
   const { values, ends, series } = one;
+  if (ends === null) return null;
   const extremeValues = ends ?? extremes(values);
   if (!extremeValues || extremeValues.low.value === extremeValues.high.value) return null;
   return /** @type {const} */ (["low", "high"]).map((end) => {
@@ -124,6 +125,7 @@ export function peaks(one, { x, y, abscissa }) {
 export function summary(words, unit, series, key, abscissa) {
   const each = series.map((one) => {
     const { name, curves, exact } = one;
+    if (exact?.[key] === null) return name;
     const extremeValues = exact?.[key] ?? extremes(curves[key]);
     if (!extremeValues) return `${name}: not defined`;
     /** @param {{ value: number, angle: number }} options */

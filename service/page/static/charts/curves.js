@@ -13,7 +13,7 @@ import { range, scale } from "./scale.js";
  * What a chart shows of a design: its curves under a name; series: which colour it has.
  * @typedef {Pick<Page.Machine, "name" | "series" | "curves" | "exact" | "centres" | "sliderEnds" | "turns">} Shown
  * @typedef {{ key: string } & Page.Heading} Panel
- * @typedef {Shown & { values: (number | null)[], ends: Page.Ends | null }} Drawn as it is shown: in the reader's units
+ * @typedef {Shown & { values: (number | null)[], ends?: Page.Ends | null }} Drawn as it is shown: in the reader's units
  */
 
 const HEIGHTS = { large: 250, small: 140 };
@@ -286,9 +286,9 @@ function chart(panel, turned, resize) {
   };
 }
 
-/** Return exact ends of a curve in the reader's units. @param {Page.Ends | undefined} exact @param {string} unit @returns {Page.Ends | null} */
+/** Return exact ends of a curve in the reader's units. @param {Page.Ends | null | undefined} exact @param {string} unit */
 function endsOf(exact, unit) {
-  if (!exact) return null;
+  if (!exact) return exact;
   const { low, high } = exact;
   return {
     low: { ...low, value: inDisplayUnit(low.value, unit) },

@@ -1,6 +1,6 @@
 /** A field and a slider for a length of a linkage. */
 
-import { h, markInvalid, numberField } from "../lib/dom.js";
+import { h, markInvalid, numberField, typeInto } from "../lib/dom.js";
 import { inDisplayUnit, text, unitOf, withUnit } from "../lib/numbers.js";
 import { parseQuantity } from "../lib/quantity_text.js";
 
@@ -15,11 +15,11 @@ export const SAME = 1e-9; // relative
 
 /**
  * Return the controls of a length. set(value): a length was chosen, null where what was typed is none. ends: those of the job,
- * or of the slider alone: `isOfJob` is false.
+ * or of the slider alone: `isOfJob` is false. describedBy: id of what says why a text is no length.
  * @param {keyof Page.Lengths} key @param {string} title @param {readonly number[]} ends @param {(value: number | null) => void} set
- * @param {{ isOfJob?: boolean }} [options]
+ * @param {{ isOfJob?: boolean, describedBy?: string }} [options]
  */
-export function lengthRow(key, title, [low, high], set, { isOfJob = true } = {}) {
+export function lengthRow(key, title, [low, high], set, { isOfJob = true, describedBy = "" } = {}) {
   const fixed = low === high;
   const id = `what-if-${key}`;
   const outside = h(
@@ -35,7 +35,7 @@ export function lengthRow(key, title, [low, high], set, { isOfJob = true } = {})
     oninput: () => {
       const { value, said = "", wrong: sentence = "" } = typed();
       wrong = sentence;
-      markInvalid(number, wrong);
+      markInvalid(number, wrong, describedBy);
       if (value !== undefined) slide(value);
       understood.textContent = said;
       set(value ?? null);
@@ -89,7 +89,7 @@ export function lengthRow(key, title, [low, high], set, { isOfJob = true } = {})
   function show(value) {
     wrong = understood.textContent = "";
     number.value = String(Number(inDisplayUnit(value, "mm").toPrecision(6)));
-    markInvalid(number, false);
+    markInvalid(number, false, describedBy);
     slide(value);
   }
 
@@ -112,5 +112,8 @@ export function lengthRow(key, title, [low, high], set, { isOfJob = true } = {})
     ),
     show,
     wrong: () => wrong,
+    text: () => number.value,
+    /** @param {string | undefined} words */
+    type: (words) => words && typeInto(number, words),
   };
 }

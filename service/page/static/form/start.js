@@ -44,8 +44,8 @@ export function firstJob(system) {
 export function jobAround(system, [crank, rod, offset, stroke, rpm]) {
   const job = firstJob(system);
   const [factor, unit] = system === "inch" ? [1 / 25.4, "in"] : [1, "mm"];
-  /** @param {number} mm */
-  const length = (mm) => `${Number((factor * mm).toPrecision(4))} ${unit}`;
+  /** @param {number} mm @param {number} [digits] */
+  const length = (mm, digits = 4) => `${Number((factor * mm).toPrecision(digits))} ${unit}`;
   const nearest = Math.max(Math.abs(offset) - crank / 2, 0);
   const ends = [nearest, Math.abs(offset) + crank / 2].map((mm) => (offset < 0 ? -mm : mm));
   return {
@@ -55,8 +55,8 @@ export function jobAround(system, [crank, rod, offset, stroke, rpm]) {
     variables: {
       crank: [length(crank / 2), length(1.5 * crank)],
       rod: [length(rod / 2), length(2 * rod)],
-      offset: ends.sort((a, b) => a - b).map(length),
+      offset: ends.sort((a, b) => a - b).map((mm) => length(mm)),
     },
-    constraints: { stroke: { equals: length(stroke) } },
+    constraints: { stroke: { equals: length(stroke, 8) } },
   };
 }

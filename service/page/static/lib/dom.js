@@ -52,10 +52,22 @@ export function numberField(attributes) {
   });
 }
 
-/** Mark a control as wrong, or as right again. @param {Element} control @param {unknown} wrong */
-export function markInvalid(control, wrong) {
+/**
+ * Mark a control as wrong, or as right again; describedBy: id of what says why.
+ * @param {Element} control @param {unknown} wrong @param {string} describedBy
+ */
+export function markInvalid(control, wrong, describedBy = "") {
   if (wrong) control.setAttribute("aria-invalid", "true");
   else control.removeAttribute("aria-invalid");
+  if (!describedBy) return;
+  if (wrong) control.setAttribute("aria-describedby", describedBy);
+  else control.removeAttribute("aria-describedby");
+}
+
+/** Put text into a field as if it were typed. @param {HTMLInputElement} field @param {string} text */
+export function typeInto(field, text) {
+  field.value = text;
+  field.dispatchEvent(new Event("input"));
 }
 
 /** Return the element of the document that has an id; the document that comes with the page has it. @param {string} id */

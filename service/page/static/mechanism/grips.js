@@ -17,6 +17,7 @@ const PARTS = [
 ];
 /** @type {Record<string, number>} */
 const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 }; // steps
+const ROUNDING = 1e-6; // of a step
 const WIDTH = 24; // pixels, of what a finger can hit
 
 /**
@@ -98,10 +99,14 @@ export function grips({ changed, released }) {
     if (!drawn) return;
     const step = stepOf(drawn.view);
     const round = step * Math.round(inDisplayUnit(length, "mm") / step);
-    const value = fromDisplayUnit(
-      Number((key === "offset_mm" ? round : Math.max(round, step)).toPrecision(9)),
-      "mm",
+    const [low, high] = boundsOf(drawn.linkage)[key].map(
+      (bound) => inDisplayUnit(bound, "mm") / step,
     );
+    const within = Math.min(
+      Math.max(round, step * (Math.floor(low + ROUNDING) + 1)),
+      step * (Math.ceil(high - ROUNDING) - 1),
+    );
+    const value = fromDisplayUnit(Number(within.toPrecision(9)), "mm");
     changed({ ...drawn.linkage, [key]: value }, angle);
   }
 
@@ -117,11 +122,28 @@ export function grips({ changed, released }) {
       block.setAttribute("y", String(slider[1] - WIDTH));
       crank.setAttribute("cx", String(pin[0]));
       crank.setAttribute("cy", String(pin[1]));
+      const bounds = boundsOf(linkage);
       PARTS.forEach(({ key }, n) => {
+        ["min", "max"].forEach((end, side) => {
+          const bound = bounds[key][side];
+          if (Number.isFinite(bound)) nodes[n].setAttribute(`aria-value${end}`, String(bound));
+        });
         nodes[n].setAttribute("aria-valuenow", String(linkage[key]));
         nodes[n].setAttribute("aria-valuetext", withUnit(linkage[key], "mm"));
       });
     },
+  };
+}
+
+/**
+ * Return between which lengths, mm, both excluded, a mechanism can be assembled while its others stay: |e| < r + l.
+ * @param {Page.Lengths} linkage @returns {Record<keyof Page.Lengths, Page.Point>}
+ */
+function boundsOf({ crank_mm: r, rod_mm: l, offset_mm: e }) {
+  return {
+    crank_mm: [Math.max(Math.abs(e) - l, 0), Infinity],
+    rod_mm: [Math.max(Math.abs(e) - r, 0), Infinity],
+    offset_mm: [-(r + l), r + l],
   };
 }
 

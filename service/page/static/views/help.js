@@ -117,6 +117,13 @@ function overview(place, quantities, sought) {
             ),
           ),
         ),
+        h(
+          "p",
+          {},
+          "To see how a single mechanism moves, without a search: ",
+          h("a", { href: "#/look" }, "Look at one mechanism"),
+          ".",
+        ),
       ),
       h(
         "section",

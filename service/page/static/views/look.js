@@ -8,25 +8,23 @@ import { lengthRow, LENGTHS } from "../design/length_row.js";
 import { mechanismsPanel } from "../design/mechanisms.js";
 import { keep, link } from "../lib/address.js";
 import { isAbort, post } from "../lib/api.js";
-import { fill, h, markInvalid, numberField } from "../lib/dom.js";
-import { readySystem, system, text, unitOf, withUnit } from "../lib/numbers.js";
+import { fill, h, markInvalid, numberField, typeInto } from "../lib/dom.js";
+import { readySystem, text, unitOf } from "../lib/numbers.js";
 import { parseQuantity } from "../lib/quantity_text.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { readyKinds } from "../lib/units.js";
 import { capital, inWords } from "../lib/words.js";
+import { factsOf, reasonNotAssembled } from "../mechanism/facts.js";
 import { grips } from "../mechanism/grips.js";
 import { deadCentresOf, motionOf } from "../mechanism/motion.js";
 import { playback } from "../mechanism/playback.js";
+import { jobOf, statedIn } from "../mechanism/stated.js";
+
+/** @import { Stated } from "../mechanism/stated.js" */
 
 export const title = "One mechanism";
 
-/** @typedef {Page.Lengths & { rpm: number }} Stated */
-
-/** @type {Record<"si" | "inch", Stated>} */
-const FIRST = {
-  si: { crank_mm: 50, rod_mm: 150, offset_mm: 40, rpm: 60 },
-  inch: { crank_mm: 50.8, rod_mm: 152.4, offset_mm: 38.1, rpm: 60 },
-};
+const WRONG = "look-wrong"; // id of the sentence that says what is wrong
 const START = 50; // deg, where all links are apart
 /** @type {({ key: string } & Page.Heading)[]} */
 const PANELS = [
@@ -41,14 +39,15 @@ export async function show(place, { query, signal }) {
   await Promise.all([readySystem(), readyKinds()]);
   if (signal.aborted) return;
   place.classList.add("of-design"); // whose drawing, curves and lengths it has
-  const stated = startOf(query);
+  const { stated, unread } = statedIn(query);
   const angle = playback(0, signal); // at paces of the screen: the speed changes
   angle.set(START);
-  const [stage, strip, curves, wrong, facts, next] = [
+  const [stage, strip, nothing, curves, wrong, facts, next] = [
     h("section", { class: "panel stage" }),
     h("div", { class: "panel row strip", role: "group", "aria-label": "Motion" }),
+    h("p", { class: "panel quiet", hidden: true }, "No mechanism to show."),
     h("section", { class: "curves" }, h("h2", {}, "Over one turn")),
-    h("p", { class: "bad", role: "alert" }),
+    h("p", { id: WRONG, class: "bad", role: "alert" }),
     h("dl", { class: "facts" }),
     h("a", { class: "button primary", hidden: true }, "Search from here"),
   ];
@@ -83,10 +82,10 @@ export async function show(place, { query, signal }) {
       name,
       key === "offset_mm" ? [-longest / 2, longest / 2] : [longest / 1000, longest],
       (value) => {
-        if (value === null) fault();
+        if (value === null) refuse();
         else take({ [key]: value }, key);
       },
-      { isOfJob: false },
+      { isOfJob: false, describedBy: WRONG },
     ),
   );
   let typedSpeed = ""; // why what was typed is no speed
@@ -96,36 +95,55 @@ export async function show(place, { query, signal }) {
     oninput: () => {
       const { value, wrong: sentence = "" } = parseQuantity(speed.value, "rpm");
       typedSpeed = value ? "" : sentence || "Speed needs a value other than 0.";
-      markInvalid(speed, typedSpeed);
+      markInvalid(speed, typedSpeed, WRONG);
       if (value) take({ rpm: value });
-      else fault();
+      else refuse();
     },
   });
   let busy = false;
   let again = false;
 
-  /** Return why something that was typed is no number; nothing with "". */
-  const unread = () => rows.map((row) => row.wrong()).find(Boolean) || typedSpeed;
-  const fault = () => (wrong.textContent = unread());
+  /** Return why what was typed states no mechanism, or "". */
+  const mistakes = () => [...rows.map((row) => row.wrong()), typedSpeed].filter(Boolean).join(" ");
+
+  /** Keep in the address what is stated; what is no number, as it was typed. */
+  function keepStated() {
+    const typed = rows.filter((row) => row.wrong()).map((row) => [row.key, row.text()]);
+    keep({ ...stated, ...Object.fromEntries(typed), ...(typedSpeed && { rpm: speed.value }) });
+  }
+
+  /** Show no mechanism while a field holds no number. */
+  function refuse() {
+    keepStated();
+    draw();
+  }
 
   /** Go to other lengths, or another speed. @param {Partial<Stated>} other @param {string} [typed] key of the length that was typed */
   function take(other, typed = "") {
-    Object.assign(stated, other);
+    for (const [key, value] of Object.entries(other))
+      stated[/** @type {keyof Stated} */ (key)] = Number(value.toPrecision(10)); // 60 mm, also from inches
     for (const row of rows) if (row.key !== typed && row.key in other) row.show(stated[row.key]);
-    keep({ ...stated });
+    keepStated();
     draw();
     ask();
   }
 
-  /** Draw the mechanism from its lengths, until the service has looked at them. @param {Api.Example | null} [example] */
+  /** Draw the mechanism from its lengths, until the service has looked at them; return whether there is one. @param {Api.Example | null} [example] */
   function draw(example = null) {
     const { rpm, ...row } = stated;
     const motion = motionOf(row);
     const { inner, outer } = deadCentresOf(row);
     const positions = motion.slider_position_mm.map((x) => (Number.isFinite(x) ? Number(x) : null));
-    const reached = positions.findIndex((x) => x !== null);
-    if (reached < 0) return machines.fade(true); // it cannot even be put together
+    const isReached = positions.some((x) => x !== null);
     const locks = positions.includes(null);
+    const fault = mistakes() || (isReached ? "" : reasonNotAssembled(row));
+    nothing.hidden = !fault;
+    for (const part of [stage, strip]) part.hidden = Boolean(fault);
+    for (const part of [curves, facts, next]) part.hidden ||= Boolean(fault) || locks;
+    if (fault) {
+      wrong.textContent = fault;
+      return false;
+    }
     if (locks) {
       angle.pause();
       angle.set(nearest(positions, angle.angle));
@@ -139,14 +157,18 @@ export async function show(place, { query, signal }) {
       turns: 1,
       curves: example?.motion ?? { ...motion, slider_position_mm: positions },
       curveColumns: [],
+      exact: example ? marked(example) : {},
       centres: example?.dead_centres_deg ?? ends(positions),
       sliderEnds: example?.slider_ends_mm ?? (locks ? [NaN, NaN] : [inner, outer]),
     };
     angle.direction = rpm < 0 ? -1 : 1;
     machines.show([machine]);
     machines.fade(locks);
-    curves.hidden = locks;
-    if (example) charts.show([machine], PANELS, abscissaOf("angle", rpm));
+    if (example) {
+      curves.hidden = false;
+      charts.show([machine], PANELS, abscissaOf("angle", rpm));
+    }
+    return true;
   }
 
   /** Ask the service, one question at a time, the latest lengths next. */
@@ -160,18 +182,21 @@ export async function show(place, { query, signal }) {
       const {
         example,
         allowed,
-        wrong: mistakes,
+        wrong: found,
       } = await post("preview", { job: jobOf(stated) }, { signal });
       if (!again)
-        update(example, [
-          ...(allowed?.said ?? []),
-          ...mistakes
-            .filter(({ path }) => /^(variables|mechanism)/.test(path))
-            .map(({ sentence }) => sentence),
-        ]);
+        update(
+          example,
+          [
+            ...(allowed?.said ?? []),
+            ...found
+              .filter(({ path }) => /^(variables|mechanism)/.test(path))
+              .map(({ sentence }) => sentence),
+          ].map((one) => `${capital(inWords(one))}.`),
+        );
     } catch (error) {
       if (isAbort(error)) return;
-      wrong.textContent = sentenceOf(error);
+      update(null, [sentenceOf(error)]);
     } finally {
       busy = false;
       if (again && !signal.aborted) ask();
@@ -180,10 +205,9 @@ export async function show(place, { query, signal }) {
 
   /** Show what the service says. @param {Api.Example | null} example @param {string[]} faults */
   function update(example, faults) {
-    wrong.textContent =
-      unread() || (example ? "" : faults.map((one) => `${capital(inWords(one))}.`).join(" "));
-    next.hidden = facts.hidden = !example;
-    draw(example);
+    if (!draw(example)) return;
+    wrong.textContent = example ? "" : faults.join(" ");
+    for (const part of [curves, facts, next]) part.hidden = !example;
     if (!example) return;
     next.href = link(["new"], {
       around: [
@@ -208,7 +232,7 @@ export async function show(place, { query, signal }) {
     h(
       "div",
       { class: "design-columns" },
-      h("div", {}, stage, strip),
+      h("div", {}, stage, strip, nothing),
       h(
         "section",
         { class: "panel" },
@@ -234,65 +258,26 @@ export async function show(place, { query, signal }) {
     curves,
   );
   for (const row of rows) row.show(stated[row.key]);
+  for (const row of rows) row.type(unread[row.key]);
+  if (unread.rpm) typeInto(speed, unread.rpm);
   draw();
   await ask();
-  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) angle.play();
+  if (!facts.hidden && !matchMedia("(prefers-reduced-motion: reduce)").matches) angle.play();
 }
 
-/** Return what the address states; where it says nothing that can be read, the first mechanism. @param {URLSearchParams} query @returns {Stated} */
-function startOf(query) {
-  const first = FIRST[system()];
-  const read = /** @param {keyof Stated} key */ (key) => {
-    const value = Number(query.get(key)?.trim() || NaN);
-    return Number.isFinite(value) && (value > 0 || key === "offset_mm" || (key === "rpm" && value))
-      ? value
-      : first[key];
-  };
+/**
+ * Return the extremes to mark on the curves: those of the position are exact; those of samples would contradict the facts.
+ * @param {Api.Example} example @returns {Record<string, Page.Ends | null>}
+ */
+function marked({ slider_ends_mm, dead_centres_deg }) {
+  const [low, high] = slider_ends_mm.map((value, n) => ({
+    value,
+    angle: turned(dead_centres_deg[n]),
+  }));
   return {
-    crank_mm: read("crank_mm"),
-    rod_mm: read("rod_mm"),
-    offset_mm: read("offset_mm"),
-    rpm: read("rpm"),
+    ...Object.fromEntries(PANELS.map(({ key }) => [key, null])),
+    slider_position_mm: { low, high },
   };
-}
-
-/** Return the job that asks the service to look. @param {Stated} stated */
-function jobOf({ crank_mm, rod_mm, offset_mm, rpm }) {
-  return {
-    mechanism: { speed: `${rpm} rpm` },
-    variables: { crank: `${crank_mm} mm`, rod: `${rod_mm} mm`, offset: `${offset_mm} mm` },
-  };
-}
-
-/** @param {Api.Example} example */
-function factsOf({
-  stroke_mm,
-  time_ratio,
-  slow_stroke,
-  least_transmission_angle_deg,
-  slider_ends_mm,
-  dead_centres_deg,
-  clockwise,
-}) {
-  const [inner, outer] = dead_centres_deg;
-  const forward = (((clockwise ? inner - outer : outer - inner) % 360) + 360) % 360;
-  /** @param {number} n */
-  const centre = (n) =>
-    `slider at ${withUnit(slider_ends_mm[n], "mm")}, crank at ${text(dead_centres_deg[n], "deg", 4)}°`;
-  /** @type {[string, string][]} */
-  const lines = [
-    ["Stroke", withUnit(stroke_mm, "mm")],
-    [
-      "Time ratio",
-      `${text(time_ratio, "", 4)}${slow_stroke === "equal" ? "" : `, slow ${slow_stroke}`}`,
-    ],
-    ["Outward stroke", `over ${text(forward, "deg", 4)}° of the crank`],
-    ["Inward stroke", `over ${text(360 - forward, "deg", 4)}°`],
-    ["Least transmission angle", withUnit(least_transmission_angle_deg, "deg", 4)],
-    ["Inner dead centre", centre(0)],
-    ["Outer dead centre", centre(1)],
-  ];
-  return lines.map(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]);
 }
 
 /** Return where the slider is innermost and outermost, deg. @param {(number | null)[]} positions @returns {Page.Point} */

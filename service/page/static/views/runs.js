@@ -186,6 +186,7 @@ export async function show(place, { query, signal }) {
     place.classList.toggle("empty", empty);
     search.hidden = empty;
     welcome.hidden = !empty;
+    single.hidden = empty; // the welcome has it
     first(place, "h1")?.replaceChildren(empty ? "No runs yet" : title);
     if (empty) machines.begin();
     status.textContent =
@@ -204,6 +205,7 @@ export async function show(place, { query, signal }) {
   }
 
   const machines = gallery(signal);
+  const single = h("a", { class: "button", href: link(["look"]) }, "Look at one mechanism");
   const welcome = h(
     "section",
     { class: "welcome", hidden: true },
@@ -228,7 +230,12 @@ export async function show(place, { query, signal }) {
         "div",
         { class: "row spread" },
         h("h1", {}, title),
-        h("a", { class: "button primary", href: "#/new" }, "New run"),
+        h(
+          "div",
+          { class: "row" },
+          single,
+          h("a", { class: "button primary", href: "#/new" }, "New run"),
+        ),
       ),
       search,
       welcome,
