@@ -119,13 +119,13 @@ export function peaks(one, { x, y, abscissa }) {
 }
 
 /**
- * Return a sentence for a curve: its least and greatest value, and where.
+ * Return a sentence for a curve: its least and greatest value if known, and where.
  * @param {string} words @param {string} unit @param {Shown[]} series @param {string} key @param {Abscissa} abscissa
  */
 export function summary(words, unit, series, key, abscissa) {
-  const each = series.map((one) => {
+  const known = series.filter(({ exact }) => exact?.[key] !== null);
+  const each = known.map((one) => {
     const { name, curves, exact } = one;
-    if (exact?.[key] === null) return name;
     const extremeValues = exact?.[key] ?? extremes(curves[key]);
     if (!extremeValues) return `${name}: not defined`;
     /** @param {{ value: number, angle: number }} options */
@@ -133,5 +133,5 @@ export function summary(words, unit, series, key, abscissa) {
       `${exact?.[key] ? "" : "about "}${withUnit(value, unit, 4)} at ${text(crankAt(one, angle), "", 4)}°`;
     return `${series.length > 1 ? `${name}: ` : ""}least ${describe(extremeValues.low)}, greatest ${describe(extremeValues.high)}`;
   });
-  return `${words} over the ${abscissa.title}. ${each.join(". ")}.`;
+  return [`${words} over the ${abscissa.title}`, ...each].map((part) => `${part}.`).join(" ");
 }

@@ -45,7 +45,7 @@ export async function show(place, { query, signal }) {
   const [stage, strip, nothing, curves, wrong, facts, next] = [
     h("section", { class: "panel stage" }),
     h("div", { class: "panel row strip", role: "group", "aria-label": "Motion" }),
-    h("p", { class: "panel quiet", hidden: true }, "No mechanism to show."),
+    h("div", { class: "panel quiet", hidden: true }, "No mechanism to show."),
     h("section", { class: "curves" }, h("h2", {}, "Over one turn")),
     h("p", { id: WRONG, class: "bad", role: "alert" }),
     h("dl", { class: "facts" }),
