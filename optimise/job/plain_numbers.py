@@ -54,22 +54,28 @@ class PlainNumbers:
         read = f'"{number:g} {self.kind.unit}"'
         sentence = f"{self.key} = {value_text} {doubt} read as {read[1:-1]}{self._usual(number, ' ({})')}"
         usual = f"{number:g} {self.kind.metric.symbol}"
-        every = isinstance(self.value, list | tuple) and len(doubtful) == len(self.value) > 1
+        in_usual = self._list_in(self.kind.metric.symbol, doubtful)
         if self.kind.believed is not None and abs(number) < self.kind.believed[0]:
             return f"{sentence}; write it with its unit"
         if usual == read[1:-1]:
             return Remark(f"{sentence}; write {read}", self._writing(number, read[1:-1]))
-        if every and len(text) <= _LONGEST:
-            in_usual, in_si = (
-                toml([f"{plain:g} {unit}" for plain in numbers]) for unit in (self.kind.metric.symbol, self.kind.unit)
-            )
-            return f"{sentence}; if you mean {self.kind.metric.symbol}, write {in_usual}, otherwise {in_si}"
+        if in_usual is not None and len(text) <= _LONGEST:
+            symbol, in_si = self.kind.metric.symbol, self._list_in(self.kind.unit, doubtful)
+            sentence = f"{sentence}; if you mean {symbol}, write {toml(in_usual)}, otherwise {toml(in_si)}"
+            return Remark(sentence, Change(self.key, in_usual, f"Read as {symbol}"))
         sentence = f'{sentence}; if you mean {usual}, write "{usual}", otherwise {read}'
         return Remark(sentence, self._writing(number, usual))
 
     def _writing(self, number: float, text: str) -> Change | None:
         """Return the change that writes the value as a text, if it is that number alone."""
         return Change(self.key, text, f"Write {text}") if self.value == number else None
+
+    def _list_in(self, unit: str, doubtful: list[float]) -> list[str | float] | None:
+        """Return a list with a unit after each number but zero; None for any other value, or if some are credible."""
+        numbers = self.value if isinstance(self.value, list | tuple) else ()
+        if len(numbers) < 2 or len(doubtful) + sum(number == 0 for number in numbers) < len(numbers):
+            return None
+        return [f"{number:g} {unit}" if number else number for number in numbers]
 
     def concerns(self, key: str) -> bool:
         """Return whether the value stands at a key of the job, in it, or in the table of it."""

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ...model.errors import InfeasibleError, InputError
+from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.count_text import counted
 from ...optimise.feasibility.relaxation import Relaxation, missed
 from ...optimise.front.constant_numbers import is_constant
@@ -16,6 +17,7 @@ from ...optimise.job import Job
 from ...optimise.job.file import require_few
 from ...optimise.job.incomplete_formulas import FormulaName, StatedFormula, formula_names, stated_formulas
 from ...optimise.job.messages import place_of
+from ...optimise.job.plain_numbers import plain_values
 from ...optimise.job.possible_values import STROKE_RATIOS, beyond_both
 from ...optimise.job.schema import schema_of
 from ...optimise.problem.problem import Problem
@@ -123,14 +125,25 @@ def _find_problems(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]]
         return Look(wrong, full_problem, None, None, [], [])
     possible_values = possible(stated)
     fixed_names = () if full_problem is None else tuple(item.name for item in full_problem.mechanism.varying)
+    doubts = _doubtful_lengths(tables)
+    reported = () if full_problem is None else full_problem.warnings
     return Look(
         wrong,
         full_problem,
         stated,
         possible_values,
         [*left_out(tables, stated), *possible_values.unchecked],
-        infeasibility_sentences(stated, possible_values, fixed_names, tables),
+        [doubt for doubt in doubts if doubt not in reported]
+        if doubts  # what follows from lengths in the wrong unit has the wrong remedy
+        else infeasibility_sentences(stated, possible_values, fixed_names, tables),
     )
+
+
+def _doubtful_lengths(tables: Mapping[str, Any]) -> list[str]:
+    """Return the warnings on crank, rod and offset whose numbers without a unit are not believed."""
+    keys = {f"variables.{name}" for name in DIMENSIONS}
+    plain = plain_values(Job, {"variables": tables["variables"]})
+    return [item.warning for item in plain if item.key in keys and item.warning]
 
 
 def _mistakes_in(error: InputError) -> list[Wrong]:

@@ -144,6 +144,26 @@ def test_the_change_beside_a_sentence_settles_it(shared: httpx.Client, name: str
         ]
 
 
+@pytest.mark.parametrize("rod", ["200 mm", [150, 300], 200])
+@pytest.mark.parametrize("offset", ["0 mm", [0, 40]])
+def test_lengths_in_the_wrong_unit_are_the_cause_and_each_has_its_change(
+    shared: httpx.Client, rod: Any, offset: Any
+) -> None:
+    job = {"variables": {"crank": [20, 100], "rod": rod, "offset": offset}}
+    plain = [f"variables.{name}" for name, value in job["variables"].items() if not isinstance(value, str)]
+    allowed = preview(shared, job)["allowed"]
+    assert [change["path"] for change in allowed["changes"]] == plain
+    assert [change["sentence"] for change in allowed["changes"]] == allowed["said"]
+    for change in allowed["changes"]:
+        name = change["path"].removeprefix("variables.")
+        stated = job["variables"][name]
+        assert change["value"] == ([n and f"{n} mm" for n in stated] if isinstance(stated, list) else f"{stated} mm")
+        job["variables"][name] = change["value"]
+    settled = preview(shared, job)["allowed"]
+    assert settled["said"] == settled["changes"] == []
+    assert settled["feasible_share"] > 0.0
+
+
 @pytest.mark.parametrize("more", [{}, {"time_ratio": {"min": 1.1, "max": 1.12}}, {"rod_to_offset": {"equals": 3.2}}])
 def test_as_many_designs_meet_an_exact_value_as_a_thin_band_around_it(shared: httpx.Client, more: Job) -> None:
     def share(stroke: Job) -> float:
