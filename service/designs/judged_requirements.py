@@ -65,6 +65,12 @@ class JudgedRule:
     met: bool
     missed_by: float | None
 
+    @property
+    def digits(self) -> int:
+        """Significant digits, at least six, that tell the value from the bound that it misses."""
+        ratio = abs(self.value / self.missed_by) if self.value and self.missed_by else 1.0
+        return min(12, max(6, math.ceil(math.log10(ratio)) + 2)) if 0.0 < ratio < math.inf else 6
+
 
 @dataclass(frozen=True, kw_only=True)
 class JudgedChoice:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -49,6 +50,17 @@ def test_the_table_says_what_is_not_met_first(tmp_path: Path, command: Command) 
     text = command("analyse", fronts.job_file(tmp_path), "--crank", "130 mm", *DESIGN).stdout
     assert "Not met: stroke (exactly 280 mm) is 269.68" in text
     assert text.index("Not met") < text.index("  met: crank (at least 20 mm, at most 200 mm): 130 mm")
+
+
+@pytest.mark.parametrize("change", [1e-4, 1e-6, -1e-7])
+def test_a_small_miss_has_the_digits_that_show_it(tmp_path: Path, command: Command, change: float) -> None:
+    # r^2 = S^2 (l^2 - e^2 - S^2 / 4) / (4 l^2 - S^2)
+    crank = 280.0 * ((400.0**2 - 100.0**2 - 280.0**2 / 4.0) / (4.0 * 400.0**2 - 280.0**2)) ** 0.5
+    text = command("analyse", fronts.job_file(tmp_path), "--crank", f"{crank * (1.0 + change)!r} mm", *DESIGN).stdout
+    (found,) = re.findall(r"Not met: stroke \(exactly 280 mm\) is ([\d.]+) mm, by ([-+\d.e]+) mm\.", text)
+    value, miss = map(float, found)
+    assert abs(value - 280.0) == pytest.approx(miss, rel=0.1)
+    assert (value > 280.0) == (change > 0.0)
 
 
 def test_without_a_job_there_are_no_rules(command: Command) -> None:

@@ -247,7 +247,7 @@ def test_what_if_shows_what_a_change_does(opened: Opened, solved: Solved, servic
     page.get_by_label("Crank", exact=True).fill(str(float(row["crank_mm"] or 0.0) * 0.98))
     table = page.get_by_role("table", name="Objectives before and after the change")
     expect(table).to_be_visible()
-    missed = re.compile(r"Misses a requirement: stroke \S+\xa0mm; must be exactly \S+\xa0mm\.")
+    missed = re.compile(r"Misses a requirement: stroke \S+\xa0mm; must be exactly \S+\xa0mm, \S+\xa0mm more\.")
     expect(page.locator(".verdict")).to_contain_text(missed)
     expect(page.locator(".objectives .panel")).to_contain_text(["misses a requirement"] * len(solved.result.objectives))
     expect(page.locator(".front-map .changed")).to_be_visible()

@@ -3,6 +3,7 @@
 import { fill, h } from "../lib/dom.js";
 import { link } from "../lib/address.js";
 import { text, unitOf, withPower, withUnit } from "../lib/numbers.js";
+import { requirementText } from "./requirement_text.js";
 import { headedRow, scrolled, scrolledTable } from "../lib/table.js";
 
 /** @typedef {{ name: string, series: number | string, row: Api.Row }} Shown A design of the tables. */
@@ -208,14 +209,6 @@ function limits(designs, requirements, slow, names) {
       ? scrolledTable("Requirements of the job", heads, [ofStroke, rows])
       : h("p", { class: "quiet" }, "The job sets none."),
   );
-}
-
-/** Return what a requirement asks, in words. @param {Api.Requirement} requirement */
-export function requirementText({ lower, upper, unit }) {
-  if (lower !== null && lower === upper) return `exactly ${withUnit(lower, unit)}`;
-  if (upper === null) return `at least ${withUnit(lower, unit)}`;
-  if (lower === null) return `at most ${withUnit(upper, unit)}`;
-  return `${text(lower, unit)} to ${withUnit(upper, unit)}`;
 }
 
 /** @param {Api.Row} row @param {Api.Requirement} requirement */

@@ -6,9 +6,10 @@ import { text, withUnit } from "../lib/numbers.js";
 import { link } from "../lib/address.js";
 import { frontMap } from "./front_map.js";
 import { lengthRow, LENGTHS, SAME } from "./length_row.js";
-import { difference, requirementText } from "./numbers.js";
+import { difference } from "./numbers.js";
 import { lengthsOf } from "./loading.js";
 import { rankOf } from "./rank.js";
+import { missText } from "./requirement_text.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { headedRow, headsOf, numberCell, table } from "../lib/table.js";
 
@@ -302,8 +303,5 @@ function missed(column, design, requirements) {
       : `Misses a requirement: the slow stroke is the ${design.slow_stroke} one.`;
   return requirements
     .filter((one) => one.column === column)
-    .map(
-      (one) =>
-        `Misses a requirement: ${one.title} ${design[column] === null ? "has no value" : withUnit(design[column], one.unit)}; must be ${requirementText(one)}.`,
-    );
+    .map((one) => missText(design[column], one));
 }
