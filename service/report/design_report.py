@@ -111,7 +111,11 @@ def _change_sentences(subject: Subject, changed: Variation) -> list[str]:
         )
     if changed.broken:
         sentences.append("misses requirements of the job; see below")
-    better = len(changed.dominated_by)
+    better, beaten = len(changed.dominated_by), len(changed.dominates)
     if better:
         sentences.append(f"{counted(better, 'design')} of the front at least as good in every objective")
+    elif beaten and not changed.broken:
+        sentences.append(f"dominates {counted(beaten, 'design')} of the front")
+    else:
+        sentences.append("no listed design is better in every objective")
     return sentences

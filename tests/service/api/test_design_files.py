@@ -183,7 +183,8 @@ def test_files_of_changed_lengths_have_their_numbers(
     files_of_changed: dict[str, httpx.Response], solved: Solved, client: httpx.Client
 ) -> None:
     lengths = changed(solved)
-    design = client.post(f"{solved.path}/designs/3/what-if", json=lengths).json()["design"]
+    answer = client.post(f"{solved.path}/designs/3/what-if", json=lengths).json()
+    design = answer["design"]
     document = read_dxf(io.StringIO(files_of_changed["designs/3/linkage.dxf"].text))
     drawn = sorted(
         (line.dxf.end - line.dxf.start).magnitude for line in document.modelspace().query('LINE[layer=="SKELETON"]')
@@ -196,6 +197,9 @@ def test_files_of_changed_lengths_have_their_numbers(
     for key, text in stored.items():
         assert (float(text) == design[key]) if isinstance(design[key], float) else text == "", key
     assert "Not all requirements are met" in page
+    assert answer["broken"]  # such a design is never said to dominate
+    assert " the front at least as good in every objective" in page or not answer["dominated_by"]
+    assert ("no listed design is better in every objective" in page) == (not answer["dominated_by"])
     assert f"crank {lengths['crank_mm']:.6g} mm instead of" in page
     for name, digits in (("designs/3/linkage.svg", 7), ("designs/3/motion.html", 6)):
         assert f"crank {lengths['crank_mm']:.{digits}g} mm" in files_of_changed[name].text, name

@@ -51,6 +51,7 @@ def test_a_what_if_outside_the_job_is_kept_and_decided_for(opened: tuple[Page, s
     expect(page.locator(".length", has=rod)).to_contain_text("outside the job")
     expect(rod).not_to_have_attribute("aria-invalid", "true")
     expect(page.locator(".verdict")).to_contain_text("Misses a requirement")
+    expect(page.locator(".verdict")).to_contain_text("Outside the job: rod 650\xa0mm; must be")
     page.get_by_text("Keep", exact=True).first.click()
     page.locator(".keeping:visible").get_by_label("Name").fill("Long rod")
     page.locator(".keeping:visible").get_by_label("Note").fill("from stock")

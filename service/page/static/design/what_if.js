@@ -206,7 +206,7 @@ export function whatIf(
       fill(results);
       return;
     }
-    fill(verdict, sentences(answer, requirements, objectives, job));
+    fill(verdict, sentences(answer, { ranges, requirements }, objectives, job));
     fill(results, comparison(objectives, base, answer.design));
   }
 
@@ -255,11 +255,12 @@ function comparison(objectives, before, after) {
 
 /**
  * Return what is wrong with a changed design, and where it is beside the front.
- * @param {Api.WhatIf} answer @param {Api.Requirement[]} requirements @param {Api.Objective[]} objectives @param {string} job
+ * @param {Api.WhatIf} answer @param {Pick<Api.Requirements, "ranges" | "requirements">} asked @param {Api.Objective[]} objectives @param {string} job
  */
-function sentences(answer, requirements, objectives, job) {
+function sentences(answer, { ranges, requirements }, objectives, job) {
   const {
     broken,
+    outside,
     dominated_by: better,
     dominated_by_count: count,
     dominates_count: beaten,
@@ -285,12 +286,17 @@ function sentences(answer, requirements, objectives, job) {
         count > 3 ? ", …" : "",
       ]
     : broken.length
-      ? "No design of the front is better in every objective, but this one misses a requirement."
+      ? "No listed design is better in every objective, but this one misses a requirement."
       : beaten
         ? `Beyond the front: it dominates ${beaten === 1 ? "one design" : `${beaten} designs`} of it.`
-        : "Pareto-optimal for these objectives: no design of the front is better in all of them.";
+        : "No listed design is better in every objective.";
   return [
     faults.map((sentence) => h("p", { class: "bad" }, sentence)),
+    LENGTHS.filter(([key]) => outside.includes(key)).map(([key, title]) => {
+      const [lower, upper] = ranges[key];
+      const range = { title: title.toLowerCase(), unit: "mm", lower, upper };
+      return h("p", { class: "at-limit" }, missText(design[key], range, "Outside the job"));
+    }),
     h("p", { class: count || broken.length ? null : "good" }, verdict),
   ];
 }
