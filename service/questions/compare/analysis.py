@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
@@ -11,11 +12,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ....model.errors import InputError
+from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.kinds import TIME, System
 from ....optimise.decisions.compare import compare
 from ...designs.choice_options import minimised_values
 from ...designs.display_units import objective_in
 from ...designs.front_comparison import comparison_sentences
+from ...preview.partial_job import ranges_of
 from ...render.blocks import Block, Phrase, Sentence, Table, Text, Value, column, heading, note, sentence
 from ...runs.result import Result, StoredObjective, objective_record
 from ..front_or_job_question import Answer
@@ -27,6 +30,9 @@ if TYPE_CHECKING:
 
 _SYSTEMS: tuple[System, ...] = ("metric", "inch")
 _LEFT_OUT = ("name", "description")
+_SEARCHED = ("variables", "choice", "objectives", "robust", "optimiser", "sections", "costs")
+"""Tables of a job that change what is searched, not what a design must do."""
+_MOST_NAMES = 8
 
 
 def analyse(runs: Sequence[ComparedRun], *, tolerance: float = 1e-6, **_: Any) -> Answer:
@@ -50,18 +56,39 @@ def analyse(runs: Sequence[ComparedRun], *, tolerance: float = 1e-6, **_: Any) -
             comparison = compare(values, tolerance=tolerance)
     places = differences([run.tables for run in runs if run.tables is not None])
     sentences = {system: _better_sentences(solved, system) for system in _SYSTEMS}
+    caution = _different_jobs_sentence(len(runs), places) if sentences["metric"] else []
 
     def record(units: System) -> dict[str, Any]:
         measures = {} if comparison is None else _front_measures(solved, comparison, units)
         found = [{"place": place, "values": list(values)} for place, values in places]
-        return measures | {"sentences": sentences[units], "differences": found}
+        return measures | {"sentences": [*caution, *sentences[units]], "differences": found}
 
-    blocks = [] if comparison is None else [*_measure_tables(solved, comparison), *_verdict_blocks(solved, comparison)]
+    blocks: list[Block] = [] if comparison is None else [_heading(solved)]
+    blocks += [sentence("{text}.", text=f"{text[:1].upper()}{text[1:]}") for text in caution]
     blocks += _better_blocks(runs, sentences)
+    blocks += [] if comparison is None else [*_verdict_blocks(solved, comparison), *_measure_tables(solved, comparison)]
     names = [run.name for run in runs if run.tables is not None]
     return Answer(
         record=record, blocks=[*blocks, *_difference_table(names, places)], is_satisfied=not message, message=message
     )
+
+
+def _different_jobs_sentence(count: int, places: Sequence[tuple[str, Sequence[str | None]]]) -> list[str]:
+    """Return a sentence that names the differing givens and requirements of the jobs; nothing if they are the same."""
+    names = list(dict.fromkeys(_given_name(place) for place, _ in places if place.split(".")[0] not in _SEARCHED))
+    if not names:
+        return []
+    more = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
+    jobs = "the two jobs" if count == 2 else "the jobs"
+    return [f"{jobs} ask different things: {', '.join(names[:_MOST_NAMES])}{more}; the comparison is of numbers only"]
+
+
+def _given_name(place: str) -> str:
+    """Return the name of what stands at a place of a job: "speed", "load", or the quantity or formula of a bound."""
+    table, _, key = place.partition(".")
+    if table == "constraints":  # a formula may have a point
+        return re.sub(r"\.(min|max|equals)$", "", key).replace("_", " ")
+    return (key.split(".")[0] if table == "mechanism" else table).replace("_", " ")
 
 
 def _objectives_message(runs: Sequence[ComparedRun]) -> str:
@@ -134,6 +161,11 @@ def _front_measures(solved: Sequence[ComparedRun], comparison: Comparison, units
     }
 
 
+def _heading(solved: Sequence[ComparedRun]) -> Block:
+    objectives = Phrase(*(_objectives(solved[0].result, system) for system in _SYSTEMS))
+    return heading("{count} runs: {objectives}", count=str(len(solved)), objectives=objectives)
+
+
 def _measure_tables(solved: Sequence[ComparedRun], comparison: Comparison) -> list[Block]:
     """Return the measures of the fronts and of each pair as tables."""
     titles = ("run", "method", "seed", "designs", "in union front", "hypervolume", "% of union's", "evaluated")
@@ -152,11 +184,9 @@ def _measure_tables(solved: Sequence[ComparedRun], comparison: Comparison) -> li
         for index, run in enumerate(solved)
     ]
     columns = [column(title, left=index == 0) for index, title in enumerate(titles)]
-    objectives = Phrase(*(_objectives(solved[0].result, system) for system in _SYSTEMS))
     coverage = "Coverage: % of the column's designs that the row's designs weakly dominate"
     epsilon = "Additive epsilon: largest shortfall of the row against the column, in ranges"
     return [
-        heading("{count} runs: {objectives}", count=str(len(solved)), objectives=objectives),
         note(
             "Objectives are scaled by their ranges over the combined front. Hypervolume is a fraction of the box that "
             "extends to 1.1 ranges."
@@ -180,7 +210,7 @@ def _pair_table(title: str, values: Sequence[Sequence[Value]]) -> list[Block]:
 
 def _verdict_blocks(solved: Sequence[ComparedRun], comparison: Comparison) -> list[Block]:
     names = [run.name for run in solved]
-    sentences = []
+    sentences, samples = list[str](), list[str]()
     open_pairs = 0
     for a, b in combinations(range(len(names)), 2):
         first, second = (a, b) if comparison.dominates[a, b] else (b, a)
@@ -190,10 +220,32 @@ def _verdict_blocks(solved: Sequence[ComparedRun], comparison: Comparison) -> li
             sentences.append(f"{names[a]} and {names[b]} have the same front, within the tolerance.")
         else:
             open_pairs += 1
+            samples += _samples_sentence(solved[a], solved[b]) or _samples_sentence(solved[b], solved[a])
     if open_pairs:
         pairs = "the two" if len(names) == 2 else "all other pairs" if sentences else "any two"
         sentences.append(f"Neither of {pairs} dominates: each has designs that the other does not match.")
-    return [sentence("{text}", text=text) for text in sentences]
+    return [sentence("{text}", text=text) for text in (*sentences, *samples)]
+
+
+def _samples_sentence(inner: ComparedRun, outer: ComparedRun) -> list[str]:
+    """Return why neither front dominates though one job has all designs of the other; nothing for other jobs."""
+    if inner.tables is None or outer.tables is None:
+        return []
+    keys = {f"variables.{name}" for name in DIMENSIONS}
+    places = [place for place, _ in differences([inner.tables, outer.tables])]
+    if any(place not in keys and place.partition(".")[0] != "optimiser" for place in places):
+        return []
+    inner_ranges, outer_ranges = ranges_of(inner.tables), ranges_of(outer.tables)
+    if inner_ranges is None or outer_ranges is None:
+        return []
+    pairs = [(inner_ranges[name], outer_ranges[name]) for name in DIMENSIONS]
+    if any(own.lower < other.lower or own.upper > other.upper for own, other in pairs):
+        return []
+    cause = f"{inner.name} and {outer.name} have the same ranges, so their true fronts are the same"
+    if inner_ranges != outer_ranges:
+        cause = f"The ranges of {outer.name} contain those of {inner.name}, so its true front is nowhere worse"
+    sizes = f"{len(inner.result.designs)} and {len(outer.result.designs)} designs"
+    return [f"{cause}: the two fronts are samples of {sizes}, which do not coincide."]
 
 
 def _difference_table(names: Sequence[str], places: Sequence[tuple[str, Sequence[str | None]]]) -> list[Block]:

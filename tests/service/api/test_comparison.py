@@ -6,6 +6,7 @@ import random
 import re
 import tomllib
 from collections.abc import Iterator
+from copy import deepcopy
 from dataclasses import replace
 from typing import Any
 
@@ -87,6 +88,43 @@ def test_sentences_count_the_designs_that_the_other_run_does_not_match(
                 )
             else:
                 assert f"run {second} matches or beats every design of run {first}, to 2 % of each range" in sentences
+
+
+def test_a_comparison_of_different_jobs_begins_by_saying_so(client: httpx.Client, store: Store, solved: Solved) -> None:
+    other = deepcopy(TABLES)
+    other["mechanism"]["speed"] = "77 rpm"
+    other["constraints"]["stroke"] = {"equals": "123 mm"}
+    other["constraints"]["rod / (2.5 * crank)"] = {"min": 1}
+    other["load"] = [{"force": "200 N", "opposes": "motion"}]
+    other["optimiser"] = {"seed": 9}
+    numbers = [put_in(store, solved.result, TABLES), put_in(store, solved.result, other)]
+    found = client.get(f"{API}/comparison", params={"job": numbers}).json()
+    first, *rest = found["sentences"]
+    subject, _, names = first.partition(": ")
+    assert subject == "the two jobs ask different things"
+    different = {"speed", "stroke", "load", "rod / (2.5 * crank)"}
+    assert set(names.removesuffix("; the comparison is of numbers only").split(", ")) == different
+    assert any("matches or beats every design" in one for one in rest)
+    assert "The two jobs ask different things" in str(found["blocks"][1])
+
+
+def test_fronts_of_nested_ranges_are_said_to_be_samples(client: httpx.Client, store: Store, solved: Solved) -> None:
+    wider, faster = deepcopy(TABLES), deepcopy(TABLES)
+    wider["variables"]["rod"][1] = "700 mm"
+    faster["mechanism"]["speed"] = "77 rpm"
+    chance = random.Random(8)
+    result = replace(solved.result, exact=None)
+    own, *others = [
+        put_in(store, result, tables, designs=moved(solved, chance)) for tables in (TABLES, wider, TABLES, faster)
+    ]
+    wide = f"The ranges of run {others[0]} contain those of run {own}, so its true front is nowhere worse: "
+    same = "have the same ranges, so their true fronts are the same: "
+    for other, cause in zip(others, (wide, same, None), strict=True):
+        for first, second in ((own, other), (other, own)):
+            found = client.get(f"{API}/comparison", params={"job": [first, second]}).json()
+            assert (f"{cause}the two fronts are samples" in str(found["blocks"])) == (cause is not None)
+            assert ("are samples of" in str(found["blocks"])) == (cause is not None)
+            assert "Neither of the two dominates" in str(found["blocks"])
 
 
 def test_the_best_of_each_objective_is_said_with_who_has_it(client: httpx.Client, store: Store, solved: Solved) -> None:
