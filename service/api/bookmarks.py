@@ -14,7 +14,7 @@ from ...optimise.problem.table_columns import choice_field
 from ..designs.changed_design import Variation, variation_of, with_numbers
 from ..designs.columns import all_columns
 from ..designs.display_units import rows_in
-from ..designs.judged_requirements import ranges_of
+from ..designs.judged_requirements import faults_in_words, ranges_of
 from ..designs.stored_designs import StoredDesign, design_of, stored_design
 from ..runs.result import csv_text, json_ready
 from ..store.remarks import Bookmark, bookmarks_of, keep_design, remove_bookmark, update_bookmark
@@ -194,7 +194,7 @@ def _bookmark_model(stored_front: StoredFront, bookmark: Bookmark) -> Bookmarked
         **fields,
         changed=not same,
         numbers={} if same else _query(design) if origin and origin.variant == design.variant else None,
-        decision=bookmark.decision,
+        decision=bookmark.decision(faults_in_words(varied.row, varied.broken, varied.outside)),
         cells=json_ready(varied.row),
         broken=varied.broken,
         outside=varied.outside,

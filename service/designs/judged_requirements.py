@@ -130,6 +130,18 @@ def unmet_columns(rules: Iterable[Requirement], row: Row) -> list[str]:
     return [rule.column for rule in rules if rule.missed_by(row) != 0.0]
 
 
+def faults_in_words(row: Row, broken: Iterable[str], outside: Iterable[str]) -> list[str]:
+    """Return what a design misses and where it leaves its job: "misses stroke", "outside the job: rod".
+
+    broken: columns of requirements. outside: columns of ranges.
+    """
+    titles = {**{f"{name}_mm": name for name in DIMENSIONS}, "slow_stroke": "slow stroke"}
+    missed = [titles.get(key) or find_column(key, list(row)).title for key in broken]
+    left = [titles.get(key, key) for key in outside]
+    faults = (missed and f"misses {', '.join(missed)}", left and f"outside the job: {', '.join(left)}")
+    return [str(fault) for fault in faults if fault]
+
+
 def speed_rpm(mechanism: Mechanism) -> float:
     """Return the crank speed, rpm, counter-clockwise positive."""
     return _RPM * float(mechanism.speed)

@@ -17,7 +17,7 @@ def decision_section(subject: Subject) -> Section | None:
     if chosen is None:
         return None
     no_reason = "" if chosen.bookmark.reason else "; no reason was given"
-    blocks: list[Block] = [Paragraph(f"{chosen.bookmark.decision}{no_reason}.")]
+    blocks: list[Block] = [Paragraph(f"{chosen.bookmark.decision(chosen.faults)}{no_reason}.")]
     if subject.bookmark != chosen.bookmark:
         blocks.append(Paragraph("This report is about another design.", "note"))
     ordered = [chosen, *(alternative for alternative in subject.alternatives if alternative is not chosen)]
@@ -31,7 +31,7 @@ def decision_section(subject: Subject) -> Section | None:
         (
             alternative.bookmark.name,
             *(rounded(row[column.key]) for column in numbers),
-            _reason_and_misses(alternative, subject),
+            _reason_and_misses(alternative),
         )
         for alternative, row in zip(ordered, rows, strict=True)
     )
@@ -50,18 +50,7 @@ def decision_section(subject: Subject) -> Section | None:
     return Section("Decision", tuple(blocks))
 
 
-def _reason_and_misses(alternative: Alternative, subject: Subject) -> str:
+def _reason_and_misses(alternative: Alternative) -> str:
     """Return the reason, the note, and the requirements that a design misses."""
-    titles = {**{f"{name}_mm": name for name in DIMENSIONS}, "slow_stroke": "slow stroke"}
-    missed = [
-        find_column(key, list(alternative.row)).title if key not in titles else titles[key]
-        for key in alternative.broken
-    ]
-    left = [titles.get(key, key) for key in alternative.outside]
-    parts = [
-        alternative.bookmark.reason,
-        alternative.bookmark.note and f"note: {alternative.bookmark.note}",
-        missed and f"misses {', '.join(missed)}",
-        left and f"outside the job: {', '.join(left)}",
-    ]
-    return "; ".join(str(part) for part in parts if part)
+    note = alternative.bookmark.note and f"note: {alternative.bookmark.note}"
+    return "; ".join(part for part in (alternative.bookmark.reason, note, *alternative.faults) if part)

@@ -14,6 +14,7 @@ from ...optimise.front.front import ParetoFront
 from ...optimise.problem.problem import Problem
 from ..designs.changed_design import Variation
 from ..designs.display_units import record_in, result_in, row_in
+from ..designs.judged_requirements import faults_in_words
 from ..designs.stored_designs import StoredDesign, front_of, stored_design
 from ..designs.toleranced import format_toleranced, tolerances_of
 from ..designs.violations import violated_by, violations_in_words
@@ -35,6 +36,11 @@ class Alternative:
     row: Row
     broken: Sequence[str] = ()
     outside: Sequence[str] = ()
+
+    @property
+    def faults(self) -> list[str]:
+        """Missed requirements and ranges that it leaves, in words."""
+        return faults_in_words(self.row, self.broken, self.outside)
 
 
 @dataclass(frozen=True)

@@ -62,10 +62,10 @@ class Bookmark:
         pairs = zip(self.dimensions, dimensions, strict=True) if variant == self.variant else [(0.0, 1.0)]
         return all(math.isclose(own, other, rel_tol=_SAME, abs_tol=_SAME**2) for own, other in pairs)
 
-    @property
-    def decision(self) -> str:
-        """The decision for this design in words, with the reason if there is one; empty without a decision."""
-        return (f"Decided for {self.name}" + (f": {self.reason}" if self.reason else "")) * self.decided
+    def decision(self, faults: Sequence[str]) -> str:
+        """Return the decision for this design in words, with its reason and faults; empty without a decision."""
+        reason = f": {self.reason}" if self.reason else ""
+        return "; ".join((f"Decided for {self.name}{reason}", *faults)) * self.decided
 
 
 def bookmarks_of(store: Database, job: int) -> list[Bookmark]:

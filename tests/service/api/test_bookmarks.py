@@ -73,6 +73,16 @@ def test_a_design_that_is_kept_twice_has_one_bookmark(client: httpx.Client, solv
     assert client.get(f"{solved.path}/kept").json()["designs"] == [first | {"reason": "least torque"}, other]
 
 
+def test_a_decision_names_the_requirements_that_the_design_misses(client: httpx.Client, solved: Solved) -> None:
+    met = kept(client, solved, design=2, name="Met", decided=True)
+    assert met["decision"] == "Decided for Met"
+    missed = kept(client, solved, design=3, dimensions={"rod_mm": 650.0}, name="Long", decided=True, reason="stock")
+    assert missed["broken"] == ["stroke_mm"]
+    assert missed["decision"] == "Decided for Long: stock; misses stroke; outside the job: rod"
+    undecided = kept(client, solved, design=4, dimensions={"rod_mm": 650.0})
+    assert undecided["decision"] == ""
+
+
 def test_the_name_of_a_kept_design_is_in_its_files_its_answers_and_the_list(
     client: httpx.Client, solved: Solved
 ) -> None:
