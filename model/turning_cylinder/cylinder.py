@@ -61,7 +61,7 @@ class Cylinder:
 
     @property
     def areas(self) -> tuple[float, float] | None:
-        """Full area, which pushes, and annular area, which pulls, m^2; both full without a piston rod."""
+        """Full area, which pushes, and annular area, which pulls, m^2; None without a bore, both full without a rod."""
         if self.bore is None:
             return None
         rod = self.rod or 0.0
@@ -98,9 +98,20 @@ class Cylinder:
             if pressure > self.supply_pressure:
                 raise InputError(
                     f"the supply pressure must hold the lever: a {way} of {force:.6g} N needs "
-                    f"{1e-5 * pressure:.5g} bar; got {1e-5 * self.supply_pressure:.5g} bar; raise it, enlarge the "
-                    "bore, or move a pivot"
+                    f"{_rounded_up(1e-5 * pressure):.5g} bar; got {1e-5 * self.supply_pressure:.6g} bar; raise it, "
+                    "enlarge the bore, or move a pivot"
                 )
+
+    def require_stiffness(self, margin: float, length: float) -> None:
+        """Raise `InputError` for a margin against buckling below 1, which occurs at a length, m."""
+        if self.rod is None or margin >= 1.0:
+            return
+        needed = _rounded_up(1e3 * self.rod * margin**-0.25)
+        raise InputError(
+            f"the piston rod must not buckle: {1e3 * length:.6g} mm long between its pins, the cylinder carries "
+            f"{margin:.4g} times its push; got a piston rod of {1e3 * self.rod:.6g} mm; take one of {needed:.5g} mm or "
+            "more, or move a pivot"
+        )
 
     def buckling_margin(self, length: Array, push: Array) -> Array | None:
         """Return Euler's load over the push at lengths between the pins, m; inf where nothing pushes.
@@ -114,3 +125,9 @@ class Cylinder:
         load = math.pi**2 * self.modulus * (math.pi * self.rod**4 / 64.0) / length**2
         margin: Array = np.divide(load, push, out=np.full(np.shape(push), np.inf), where=push > 0.0)
         return margin
+
+
+def _rounded_up(amount: float) -> float:
+    """Return a positive need rounded up to five digits, so that it suffices as reported."""
+    step = 10.0 ** (math.floor(math.log10(amount)) - 4)
+    return math.ceil(amount / step) * step

@@ -22,7 +22,7 @@ from ..checks import require_all_finite, require_numbers
 from ..errors import InputError
 from ..machine.loads.load import require_word
 from ..swing.law import way
-from ..swing.swing_types import Law
+from ..swing.swing_types import LeverLaw
 from .lever import TurningCylinder, Vectors
 
 
@@ -103,22 +103,21 @@ class LeverSwing:
 
     start: float
     end: float
-    law: Law = "slow"
+    law: LeverLaw = "slow"
     duration: float | None = None
 
     def __post_init__(self) -> None:
-        require_word("law", self.law, Law)
+        require_word("law", self.law, LeverLaw)
         require_numbers(self, "duration", phrase="the duration of a swing", above=0.0, unit="s")
-        if self.law == "table":
+        if self.law == "slow" and self.duration is not None:
             raise InputError(
-                "a turning cylinder moves slowly or by a named law; got a table; choose slow, constant, trapezoid, "
-                "harmonic, cycloidal or polynomial"
+                f"a slow swing has no duration, as it ignores inertia; got {self.duration:g} s; name a law such as "
+                "cycloidal, or leave out the duration"
             )
-        if (self.law == "slow") != (self.duration is None):
+        if self.law != "slow" and self.duration is None:
             raise InputError(
-                "a slow swing must have no duration, and any other must have one; got the law "
-                f"{self.law} and {'no duration' if self.duration is None else f'{self.duration:g} s'}; give both, or "
-                "neither"
+                f"a swing by a law needs its duration; got the law {self.law} and no duration; give the time of one "
+                "way, or leave out the law"
             )
 
 

@@ -47,13 +47,13 @@ class TurningCylinder:
     pin_angle: float = 0.0
 
     def __post_init__(self) -> None:
-        require_numbers(self, "crank", phrase="the lever's radius OB", above=0.0, unit="m")
+        require_numbers(self, "crank", phrase="the crank OB of a lever", above=0.0, unit="m")
         if self.frame == 0.0:
             raise InputError(
                 "lever and cylinder must turn about two different pivots; got both in one place, 0 mm apart; "
                 "move one of them"
             )
-        require_numbers(self, "frame", phrase="the distance OA of the pivots", above=0.0, unit="m")
+        require_numbers(self, "frame", phrase="the frame OA of a lever", above=0.0, unit="m")
         require_numbers(self, "frame_angle", "offset", "pin_angle", phrase="the {} of a lever")
 
     def relative_angle(self, lever_angle: Any) -> Any:
@@ -102,6 +102,11 @@ class TurningCylinder:
         if not math.isfinite(start) or not math.isfinite(end) or start == end:
             raise InputError(
                 f"a swing needs two different lever angles; got {_degrees(start)} and {_degrees(end)}; change one"
+            )
+        if abs(end - start) >= math.pi:
+            raise InputError(
+                "a cylinder must swing its lever less than 180 deg, from one dead point to the next; got "
+                f"{_degrees(start)} to {_degrees(end)}; {_smaller_swing(start, end)}"
             )
         dead = self.dead_points(start, end)
         if dead:
@@ -236,6 +241,16 @@ def sizes_for_stroke(
         return None
     total, difference = math.sqrt(squares + 2.0 * product), math.sqrt(squares - 2.0 * product)
     return 0.5 * (total - difference), 0.5 * (total + difference)
+
+
+def _smaller_swing(start: float, end: float) -> str:
+    """Return the remedy for a swing of half a turn or more, rad: other angles for the same ends, if those are near."""
+    near = [math.remainder(angle, _TURN) for angle in (start, end)]
+    pairs = zip((start, end), near, strict=True)
+    wrapped = [f"{_degrees(other)} for {_degrees(angle)}" for angle, other in pairs if abs(other - angle) > 1.0]
+    if wrapped and 0.0 < abs(near[1] - near[0]) < math.pi:
+        return f"angles count through full turns: write {' and '.join(wrapped)}"
+    return "swing less far"
 
 
 def _degrees(angle: float) -> str:

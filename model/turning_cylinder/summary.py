@@ -30,8 +30,8 @@ class LeverSummary:
 
     lengths: cylinder at start and end. single_stage: whether any single-stage cylinder has both, longest < 2 shortest.
     hold: push at rest at start and end, without friction of the seal. push, pull: greatest forces with it, over both
-    ways; 0 where the cylinder never has to. energy_out, energy_back: work of the slow cylinder each way, J. power:
-    greatest size, W. fitting_sizes: lesser and greater of OB and OA with which the swing takes the whole stroke of the
+    ways and at rest at both ends; 0 where the cylinder never has to. energy_out, energy_back: work of the slow cylinder
+    each way, J. power: greatest size, W. fitting_sizes: OB and OA with which the swing takes the whole stroke of the
     cylinder, at the same angles.
     """
 
@@ -65,9 +65,9 @@ class LeverSummary:
 def summarise(
     machine: LeverMachine, swing: LeverSwing, cylinder: Cylinder, errors: DimensionErrors | None = None
 ) -> LeverSummary:
-    """Return the numbers of a swing; peaks are over the continuous lever angle.
+    """Return the numbers of a swing; peaks are over the continuous lever angle, and rest at both ends.
 
-    Raises the errors of `TurningCylinder.require_swing`, `Cylinder.require_lengths` and `require_pressure`.
+    Raises the errors of `TurningCylinder.require_swing`, and of all that `Cylinder` requires.
     """
     sizes = machine.sizes
     sizes.require_swing(swing.start, swing.end)
@@ -75,7 +75,7 @@ def summarise(
     shortest, longest = sorted((first, last))
     fitting = _fitting_sizes(machine, swing, cylinder)
     cylinder.require_lengths(shortest, longest, _remedy(fitting))
-    ends = lever_curves(machine, LeverSwing(swing.start, swing.end), np.array([0.0, 1.0]))
+    ends = _curves_at_rest(machine, swing)
     rub, travel = cylinder.seal_friction, longest - shortest
     push = _least_or_zero(machine, swing, lambda curves: -(curves.push + rub))
     pull = _least_or_zero(machine, swing, lambda curves: curves.push - rub)
@@ -87,6 +87,9 @@ def summarise(
         found = cylinder.buckling_margin(curves.length, curves.push + rub)
         return np.full_like(curves.length, np.inf) if found is None else found
 
+    buckling = _least(machine, swing, margin) if cylinder.rod is not None and push.value > 0.0 else None
+    if buckling is not None:
+        cylinder.require_stiffness(buckling.value, buckling.length)
     return LeverSummary(
         lengths=(first, last),
         extension_ratio=longest / shortest,
@@ -109,7 +112,7 @@ def summarise(
         else _greatest(machine, swing, lambda curves: (np.abs(curves.push) + rub) * np.abs(curves.speed)),
         pressures=cylinder.pressures(push.value, pull.value),
         flows=None if speed is None or cylinder.areas is None else _flows(cylinder.areas, speed.value),
-        buckling_margin=_least(machine, swing, margin) if cylinder.rod is not None and push.value > 0.0 else None,
+        buckling_margin=buckling,
         time_ratio=sizes.time_ratio,
         fitting_sizes=fitting,
     )
@@ -124,14 +127,17 @@ def _fitting_sizes(machine: LeverMachine, swing: LeverSwing, cylinder: Cylinder)
         return None
     sizes, lengths = machine.sizes, (cylinder.closed_length, cylinder.closed_length + cylinder.stroke)
     short, long = sorted((swing.start, swing.end), key=sizes.length)
-    return sizes_for_stroke(lengths, (sizes.relative_angle(short), sizes.relative_angle(long)), sizes.offset)
+    fitting = sizes_for_stroke(lengths, (sizes.relative_angle(short), sizes.relative_angle(long)), sizes.offset)
+    if fitting is None or sizes.crank < sizes.frame:
+        return fitting
+    return fitting[1], fitting[0]
 
 
 def _remedy(fitting: tuple[float, float] | None) -> str:
     if fitting is None:
         return "choose another cylinder, or move a pivot"
-    lesser, greater = (f"{1e3 * size:.6g} mm" for size in fitting)
-    return f"choose another cylinder, or radius and frame of {lesser} and {greater}, which take its whole stroke"
+    crank, frame = (f"{1e3 * size:.6g} mm" for size in fitting)
+    return f"choose another cylinder, or a crank of {crank} and a frame of {frame}, which take its whole stroke"
 
 
 def _greatest(machine: LeverMachine, swing: LeverSwing, curve: Callable[[LeverCurves], Array]) -> LeverPoint:
@@ -146,11 +152,22 @@ def _least_or_zero(machine: LeverMachine, swing: LeverSwing, curve: Callable[[Le
 
 
 def _least(machine: LeverMachine, swing: LeverSwing, curve: Callable[[LeverCurves], Array]) -> LeverPoint:
-    """Return the least value of a curve: the least of many samples, then of finer ones around it."""
+    """Return the least value of a curve: the least of many samples, then of finer ones around it, or that at rest.
+
+    A law that starts with a jump of speed or acceleration has other forces at its ends than the cylinder that holds.
+    """
     share = np.linspace(0.0, 1.0, _SAMPLES)
     for _ in range(_ZOOMS + 1):
         curves = lever_curves(machine, swing, share)
         values = curve(curves)
         best = int(np.argmin(values))
         share = np.linspace(share[max(best - 1, 0)], share[min(best + 1, len(share) - 1)], _ZOOMED)
-    return LeverPoint(float(values[best]), float(curves.lever_angle[best]), float(curves.length[best]))
+    moving = LeverPoint(float(values[best]), float(curves.lever_angle[best]), float(curves.length[best]))
+    rest = _curves_at_rest(machine, swing)
+    points = map(LeverPoint, curve(rest).tolist(), rest.lever_angle.tolist(), rest.length.tolist())
+    return min(moving, *points, key=lambda point: point.value)
+
+
+def _curves_at_rest(machine: LeverMachine, swing: LeverSwing) -> LeverCurves:
+    """Return the curves of a cylinder that holds the lever at start and end."""
+    return lever_curves(machine, LeverSwing(swing.start, swing.end), np.array([0.0, 1.0]))

@@ -67,7 +67,10 @@ def test_a_lever_of_a_job_is_the_same_in_python_on_the_command_line_and_for_agen
     asked = {"job": job.read_text(encoding="utf-8"), **sizes, "topics": ["lever"], "inputs": inputs}
     agent = Tool("ask", ask).execute(call, asked).record
     assert json_ready(agent) == record
-    assert record["notes"] == ["left out of the job, as a lever has neither rod nor slider: masses of rod and slider"]
+    assert record["notes"] == [
+        "pull pressure and retracting flow take the full bore: no piston rod was given",
+        "left out of the job, as a lever has neither rod nor slider: masses of rod and slider",
+    ]
     weight, psi = 1200.0 * 9.81, math.radians(11.16 + 35.0)
     arm = 1.1 * math.cos(math.radians(11.16)) - 0.15 * math.sin(math.radians(11.16))
     assert record["push_at_start_N"] == pytest.approx(
@@ -117,9 +120,9 @@ def test_the_pivot_of_the_cylinder_lies_farthest_from_both_dead_points_by_defaul
             ("--closed-length", "650 mm", "--cylinder-stroke", "400 mm"),
             "21.4349 mm more; choose another cylinder, or",
         ),
-        (("--bore", "40 mm", "--supply-pressure", "10 bar"), "needs 13.608 bar; got 10 bar; raise it"),
+        (("--bore", "40 mm", "--supply-pressure", "10 bar"), "needs 13.609 bar; got 10 bar; raise it"),
         (("--bore", "20 mm", "--piston-rod", "20 mm"), "the bore must exceed the piston rod"),
-        (("--law", "table", "--duration", "1 s"), "got a table; choose slow"),
+        (("--duration", "2 s"), "got 2 s; name a law such as cycloidal, or leave out the duration"),
         (("--mass", "-1 kg"), "--mass must be zero or more; got"),
         (("--rod", "0 mm"), "--rod must be positive; got"),
     ],
@@ -131,6 +134,29 @@ def test_a_swing_that_cannot_be_made_is_refused_with_the_amount(
     assert done.exit_code == 2
     assert sentence in done.stderr
     assert done.stderr.startswith("slidercrank: ")
+
+
+def test_a_table_of_points_is_not_among_the_laws(command: Command) -> None:
+    done = command("lever", *LOADED, "--law", "table", "--duration", "1 s")
+    assert done.exit_code == 2
+    assert "'polynomial'" in done.stderr
+    assert "'table'" not in done.stderr.replace("got 'table'", "").replace("'table' is not one of", "")
+
+
+def test_a_bore_without_a_piston_rod_pulls_with_the_full_area_as_noted(command: Command) -> None:
+    pulling = (*LOADED, "--seal-friction", "2 kN", "--bore", "40 mm")
+    record = answered(command, *pulling)
+    assert record["push_pressure_MPa"] > record["pull_pressure_MPa"] > 0.0
+    assert record["notes"] == ["pull pressure and retracting flow take the full bore: no piston rod was given"]
+    assert not any("full bore" in note for note in answered(command, *pulling, "--piston-rod", "22 mm")["notes"])
+    assert answered(command, *LOADED, "--bore", "40 mm")["notes"] == []
+
+
+def test_fitting_sizes_are_those_of_crank_and_frame_in_this_order(command: Command) -> None:
+    fitted = (*LOADED, "--closed-length", "640 mm", "--cylinder-stroke", "440 mm")
+    done = command("lever", *fitted, "--crank", "900 mm", "--rod", "350 mm")
+    assert "if crank and frame are 885.475 mm and 385.665 mm" in done.stdout
+    assert "if crank and frame are 385.665 mm and 885.475 mm" in command("lever", *fitted).stdout
 
 
 def test_ends_and_the_place_of_a_mass_are_asked_for(command: Command) -> None:

@@ -1,6 +1,6 @@
 """The crank as a lever that a cylinder moves which turns about a fixed pivot."""
 
-from ....model.swing.swing_types import Law
+from ....model.swing.swing_types import LeverLaw
 from ....objectives.kinds import ACCELERATION, ANGLE, FORCE, LENGTH, MASS, PRESSURE, TIME
 from ..design_question import DesignQuestion, QuestionCommand
 from ..inputs import Input
@@ -27,7 +27,7 @@ QUESTION = DesignQuestion(
         ),
         Input("end", ANGLE, "To", "Lever angle at the end. [default: of the job]", option="to", example="50 deg"),
         Input("pin_angle", ANGLE, "Angle of the pin", "Angle from the lever's own line to its pin B.", usual="0 deg"),
-        Input("law", help="Law of the cylinder's length over time; slow ignores inertia.", words=Law),
+        Input("law", help="Law of the cylinder's length over time; slow ignores inertia.", words=LeverLaw),
         Input("duration", TIME, help="Duration of one way, for a law other than slow.", sign="positive", example="4 s"),
         Input("mass", MASS, "Carried mass", "Mass that the lever carries.", sign="zero or more", example="80 kg"),
         Input("centre", LENGTH, "Its place along the lever", "Its distance from O along the lever.", example="0.7 m"),
@@ -77,13 +77,18 @@ QUESTION = DesignQuestion(
             sign="zero or more",
         ),
         Input(
-            "barrel_mass", MASS, "Mass of the barrel", "Mass of the barrel, a uniform bar.", "0 kg", sign="zero or more"
+            "barrel_mass",
+            MASS,
+            "Mass of the barrel",
+            "Mass of the barrel, a uniform bar as long as the closed cylinder, or as its least length in the swing.",
+            "0 kg",
+            sign="zero or more",
         ),
         Input(
             "piston_rod_mass",
             MASS,
             "Mass of the piston rod",
-            "Mass of the piston rod, a uniform bar.",
+            "Mass of the piston rod, a uniform bar as long as the barrel.",
             "0 kg",
             sign="zero or more",
         ),
@@ -100,9 +105,10 @@ QUESTION = DesignQuestion(
         help="""Analyse a lever that a cylinder moves, where the cylinder turns about a fixed pivot.
 
     This is the linkage with its rod fixed, as on lids, tippers and booms: the crank is the lever from its pivot O to
-    the pin B, the rod the distance from O to the cylinder's pivot A, the offset the distance of the cylinder's line
-    from A. Lever angles are counter-clockwise from +x. The cylinder moves the lever only between dead points, where O,
-    A and B are in line. Loads on the slider, friction in joints, and masses of rod and slider do not apply.""",
+    the pin B, the rod is the frame from O to the cylinder's pivot A, the offset the distance of the cylinder's line
+    from A, positive where the line passes left of A on the way to B. Lever angles are counter-clockwise from +x. The
+    cylinder moves the lever only between dead points, where O, A and B are in line. Loads on the slider, friction in
+    joints, and masses of rod and slider do not apply.""",
         endpoint="analyse_lever",
         job="Job file that supplies mass and centre of the crank, gravity, tolerances, and the swing in [motion]; with "
         "--design, a run.",

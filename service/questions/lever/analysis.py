@@ -11,7 +11,7 @@ import numpy as np
 from ....model.linkage.linkage import Linkage
 from ....model.machine.links import RigidLink
 from ....model.machine.mechanism import Mechanism
-from ....model.swing.swing_types import Law
+from ....model.swing.swing_types import LeverLaw
 from ....model.turning_cylinder.forces import lever_curves
 from ....model.turning_cylinder.summary import LeverPoint, LeverSummary, summarise
 from ....objectives.column_keys import kind_of_key
@@ -33,6 +33,7 @@ _TELESCOPIC = (
 )
 _IDLE = "the cylinder never has to push or pull: nothing weighs and nothing is accelerated; give a mass, or gravity"
 _BUCKLING = "buckling: Euler, both ends pinned, the whole length as slender as the piston rod, of steel"
+_FULL_BORE = "pull pressure and retracting flow take the full bore: no piston rod was given"
 _POINTS = {
     "peak_push": FORCE,
     "peak_pull": FORCE,
@@ -83,7 +84,7 @@ LeverNumbers = Annotated[
         {
             **_keys({"crank": LENGTH, "frame": LENGTH, "frame_angle": ANGLE, "offset": LENGTH, "pin_angle": ANGLE}),
             **_keys({"start_lever_angle": ANGLE, "end_lever_angle": ANGLE}),
-            "law": Law,
+            "law": LeverLaw,
             "duration_s": _type_of("duration"),
             **_keys({"start_length": LENGTH, "end_length": LENGTH, "travel": LENGTH, "extension_ratio": RATIO}),
             "single_stage": bool,
@@ -146,7 +147,7 @@ def numbers(mechanism: Mechanism, _: Linkage, *, request: LeverRequest, **option
         record |= _with_place(name, kind, point)
     push_pressure, pull_pressure = summary.pressures or (None, None)
     extending, retracting = summary.flows or (None, None)
-    lesser, greater = summary.fitting_sizes or (None, None)
+    lesser, greater = sorted(summary.fitting_sizes or ()) or (None, None)
     record |= {
         "dead_point_margin_deg": math.degrees(summary.dead_point_margin),
         "work_out_J": summary.energy_out,
@@ -158,7 +159,7 @@ def numbers(mechanism: Mechanism, _: Linkage, *, request: LeverRequest, **option
         "time_ratio": summary.time_ratio,
         **_metric("fitting_lesser", LENGTH, lesser),
         **_metric("fitting_greater", LENGTH, greater),
-        "notes": _notes(mechanism, summary),
+        "notes": _notes(mechanism, request, summary),
     }
     return record
 
@@ -177,7 +178,7 @@ def _with_place(name: str, kind: Kind, point: LeverPoint | None) -> dict[str, fl
     }
 
 
-def _notes(mechanism: Mechanism, summary: LeverSummary) -> list[str]:
+def _notes(mechanism: Mechanism, request: LeverRequest, summary: LeverSummary) -> list[str]:
     notes = []
     if not summary.single_stage:
         shortest, longest = sorted(1e3 * length for length in summary.lengths)
@@ -186,6 +187,9 @@ def _notes(mechanism: Mechanism, summary: LeverSummary) -> list[str]:
         notes.append(_IDLE)
     if summary.buckling_margin is not None:
         notes.append(_BUCKLING)
+    has_annular_area = request.cylinder.bore is None or request.cylinder.rod is not None
+    if not has_annular_area and (summary.pull.value > 0.0 or summary.flows is not None):
+        notes.append(_FULL_BORE)
     absent = {
         "its loads": bool(mechanism.loads),
         "friction": mechanism.friction.acts,
@@ -209,11 +213,12 @@ def blocks(record: Mapping[str, Any]) -> list[Block]:
             lines.append((name, value, _place(record, kind_of_key(key)[0])))
     found = number_list(f"Lever moved by a cylinder that turns, {how}", lines)
     if record["fitting_lesser_mm"] is not None:
+        crank, frame = ("lesser", "greater") if record["crank_mm"] < record["frame_mm"] else ("greater", "lesser")
         found.append(
             sentence(
-                "The swing takes the whole stroke of the cylinder if crank and frame are {lesser} and {greater}.",
-                lesser=recorded(record, "fitting_lesser_mm"),
-                greater=recorded(record, "fitting_greater_mm"),
+                "The swing takes the whole stroke of the cylinder if crank and frame are {crank} and {frame}.",
+                crank=recorded(record, f"fitting_{crank}_mm"),
+                frame=recorded(record, f"fitting_{frame}_mm"),
             )
         )
     return found

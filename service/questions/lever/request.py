@@ -13,7 +13,7 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.design import Design
 from ....model.machine.mechanism import Mechanism
 from ....model.swing.swing import Swing, placed
-from ....model.swing.swing_types import Law
+from ....model.swing.swing_types import LeverLaw
 from ....model.turning_cylinder.cylinder import Cylinder
 from ....model.turning_cylinder.forces import LeverBody, LeverMachine, LeverSwing, UniformBar
 from ....model.turning_cylinder.lever import DimensionErrors, TurningCylinder
@@ -119,7 +119,15 @@ def _swing(
                 f"a lever swings from one angle to another; got no {labels.get(name, name)}; give both, or a job with "
                 "[motion]"
             )
-    law: Law = inputs.get("law") or ("slow" if swing is None else swing.law)
+    law: LeverLaw | None = inputs.get("law")
+    if law is None and swing is not None:
+        if swing.law == "table":
+            raise InputError(
+                "a lever moves slowly or by a law with a name; got a table in [motion] of the job; give "
+                f"{labels.get('law', 'law')} slow, or another law"
+            )
+        law = swing.law
+    law = law or "slow"
     duration = inputs.get("duration")
     if duration is None and swing is not None and law != "slow":
         duration = swing.duration

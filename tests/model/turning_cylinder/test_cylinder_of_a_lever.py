@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
+from slidercrank.model.swing.swing_types import LeverLaw
 from slidercrank.model.turning_cylinder.cylinder import Cylinder
 from slidercrank.model.turning_cylinder.forces import LeverSwing, lever_curves
 from slidercrank.model.turning_cylinder.lever import DimensionErrors, TurningCylinder
@@ -38,10 +40,13 @@ def test_peaks_are_those_of_a_dense_sweep_in_both_directions() -> None:
         machine, swing = some_machine(random)
         cylinder = Cylinder(bore=0.08, rod=0.04, seal_friction=35.0)
         found, curves = summarise(machine, swing, cylinder), lever_curves(machine, swing, share)
-        size = float(np.abs(curves.push).max()) + 35.0
-        assert found.push.value == pytest.approx(max(curves.push.max() + 35.0, 0.0), abs=1e-5 * size)
-        assert found.pull.value == pytest.approx(max(35.0 - curves.push.min(), 0.0), abs=1e-5 * size)
-        for point, forces in ((found.pin, curves.pin), (found.pivot, curves.pivot)):
+        rest = lever_curves(machine, LeverSwing(swing.start, swing.end), np.array([0.0, 1.0]))
+        push = np.append(curves.push, rest.push)
+        size = float(np.abs(push).max()) + 35.0
+        assert found.push.value == pytest.approx(max(push.max() + 35.0, 0.0), abs=1e-5 * size)
+        assert found.pull.value == pytest.approx(max(35.0 - push.min(), 0.0), abs=1e-5 * size)
+        for point, name in ((found.pin, "pin"), (found.pivot, "pivot")):
+            forces = np.append(getattr(curves, name), getattr(rest, name))
             assert point.value == pytest.approx(float(np.abs(forces).max()), rel=1e-5)
         assert found.transmission.value == pytest.approx(float(curves.transmission.min()), abs=1e-6)
         assert found.energy_out + found.energy_back == pytest.approx(
@@ -81,11 +86,39 @@ def test_sizes_that_take_the_whole_stroke_make_the_swing_with_it() -> None:
     cylinder = Cylinder(closed_length=0.64, stroke=0.44)
     fitting = summarise(TIPPER, SLOW, cylinder).fitting_sizes
     assert fitting is not None
+    swapped = replace(TIPPER, sizes=replace(TIPPER.sizes, crank=0.9, frame=0.35))
+    assert summarise(swapped, SLOW, cylinder).fitting_sizes == pytest.approx(fitting[::-1], rel=1e-12)
     lengths = [
         TurningCylinder(crank=one, frame=other, frame_angle=math.radians(-60.0)).length(np.array(LIFT))
         for one, other in (fitting, fitting[::-1])
     ]
     assert np.allclose(lengths, [0.64, 1.08], rtol=1e-9)
+
+
+@pytest.mark.parametrize("law", ["constant", "harmonic", "cycloidal"])
+def test_the_cylinder_holds_the_lever_at_both_ends_whatever_the_law(law: LeverLaw) -> None:
+    """Moments about O: 80 kg at 0.7 m, over the arm r f sin(psi) / L of the force along AB at psi = 40 deg."""
+    arm = 0.35 * 0.9 * math.sin(math.radians(40.0)) / float(TIPPER.sizes.length(LIFT[0]))
+    hold = 80.0 * 9.81 * 0.7 * math.cos(LIFT[0]) / arm
+    swing, cylinder = LeverSwing(*LIFT, law, 4.0), Cylinder(bore=0.04, rod=0.02)
+    found = summarise(TIPPER, swing, cylinder)
+    assert found.push.value >= hold * (1.0 - 1e-12)
+    with pytest.raises(InputError, match="raise it, enlarge the bore"):
+        summarise(TIPPER, swing, replace(cylinder, supply_pressure=0.9999 * hold / (math.pi * 4e-4)))
+
+
+def test_needs_suffice_as_reported() -> None:
+    for field, pattern, unit, given in (
+        ("supply_pressure", r"needs ([\d.]+) bar", 1e5, {"bore": 0.04, "supply_pressure": 1e6}),
+        ("rod", r"take one of ([\d.]+) mm", 1e-3, {"rod": 0.008}),
+    ):
+        with pytest.raises(InputError) as refused:
+            summarise(TIPPER, SLOW, Cylinder(**given))
+        (reported,) = re.findall(pattern, str(refused.value))
+        needed = float(reported) * unit
+        summarise(TIPPER, SLOW, Cylinder(**given | {field: needed}))
+        with pytest.raises(InputError):
+            summarise(TIPPER, SLOW, Cylinder(**given | {field: 0.9998 * needed}))
 
 
 def test_an_error_of_the_lever_angle_needs_tolerances() -> None:
@@ -115,7 +148,8 @@ def test_an_error_of_the_lever_angle_needs_tolerances() -> None:
             "the bore must exceed the piston rod; got a bore of 20 mm",
         ),
         ({"supply_pressure": 1e6}, "a supply pressure needs the bore of the cylinder; got 10 bar and no bore"),
-        ({"bore": 0.04, "supply_pressure": 1e6}, "a push of 1710.09 N needs 13.608 bar; got 10 bar; raise it"),
+        ({"bore": 0.04, "supply_pressure": 1e6}, "a push of 1710.09 N needs 13.609 bar; got 10 bar; raise it"),
+        ({"rod": 0.008}, "the cylinder carries 0.2838 times its push; got a piston rod of 8 mm; take one of 10.9"),
         ({"bore": math.nan}, "the bore of a cylinder must be positive and finite; got nan m"),
         ({"seal_friction": -1.0}, "the friction of a seal must be zero or more and finite; got -1 N"),
     ],

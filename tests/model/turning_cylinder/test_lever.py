@@ -128,8 +128,24 @@ def test_a_swing_across_a_dead_point_or_to_where_the_line_does_not_reach_is_refu
         lever(offset=0.7).require_swing(math.radians(-20.0), math.radians(50.0))
     with pytest.raises(InputError, match="both in one place, 0 mm apart; move one of them"):
         lever(frame=0.0)
-    with pytest.raises(InputError, match=r"the lever's radius OB must be positive and finite; got -0\.35 m"):
+    with pytest.raises(InputError, match=r"the crank OB of a lever must be positive and finite; got -0\.35 m"):
         lever(crank=-0.35)
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "remedy"),
+    [
+        (340.0, 50.0, "got 340 deg to 50 deg; angles count through full turns: write -20 deg for 340 deg"),
+        (-20.0, 410.0, "write 50 deg for 410 deg"),
+        (-40.0, 140.0, "less than 180 deg, .*; got -40 deg to 140 deg; swing less far"),
+        (0.0, 360.0, "got 0 deg to 360 deg; swing less far"),
+    ],
+)
+def test_no_frame_allows_half_a_turn_but_other_angles_may_state_the_same_ends(
+    start: float, end: float, remedy: str
+) -> None:
+    with pytest.raises(InputError, match=remedy):
+        lever().require_swing(math.radians(start), math.radians(end))
 
 
 def test_a_length_out_of_reach_has_no_lever_angle() -> None:
