@@ -149,7 +149,7 @@ def motor_limit(key: str, example: str) -> Need:
 
 DRIVE_TRAIN = _defining(
     lambda machine: machine.drive is not None,
-    "it is of a motor; got none; add for example [drive] gear_ratio = 5",
+    "it needs [drive]; got none; add for example [drive] gear_ratio = 5",
 )
 MOTOR_LOADED = Need(lambda machine: drive_loaded(machine.fullest) or _rotates_unevenly(machine), _LOADS)
 """Loads on the motor: those of the drive torque, or the inertia of flywheel and rotor."""

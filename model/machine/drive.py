@@ -207,6 +207,10 @@ class Drive:
             parts.append(f"rated torque {self.rated_torque:.6g} N m")
         if self.greatest_speed is not None:
             parts.append(f"greatest speed {self.greatest_speed * 30.0 / math.pi:.6g} rpm")
+        if self.copper_loss is not None:
+            parts.append(f"copper loss {self.copper_loss:.6g} W")
+        if self.recovery:
+            parts.append(f"recovery {self.recovery:.6g}")
         return ", ".join(parts)
 
     def torque(self, crank_speed: ArrayLike, direction: float) -> Array:

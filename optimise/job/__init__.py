@@ -23,6 +23,7 @@ from ...objectives.units import quote
 from ..problem.problem import Problem
 from .catalogue import catalogues, with_catalogues, with_options
 from .custom_quantities import declared, function_modules
+from .drive import torque_warnings
 from .file import LARGEST, read, require_plain
 from .load_file import load_files, with_loads
 from .messages import LONGEST, MOST, explain
@@ -152,7 +153,8 @@ def parse_job(
         stated = with_values(stated, values, "values") if values else stated
         problem = problem_of(stated, folder=folder, installed=custom.installed, require_feasible=require_feasible)
         doubts += plain_bounds(problem, data)
-        warned = tuple(dict.fromkeys(item.warning for item in doubts if item.warning))
+        sentences = [] if stated.choice else torque_warnings(problem.mechanism)
+        warned = tuple(dict.fromkeys([*(item.warning for item in doubts if item.warning), *sentences]))
         return replace(problem, warnings=warned) if warned else problem
     except ValidationError as error:
         doubts = plain_values(job, data)

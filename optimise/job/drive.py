@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar
 from pydantic import BeforeValidator, Discriminator, Tag
 
 from ...model.machine import drive as model
+from ...model.machine.mechanism import Mechanism
 from .part_kinds import Kinds
 from .values import (
     AngularSpeed,
@@ -116,3 +117,18 @@ class DrivePart(Checked[model.Drive]):
     greatest_speed: PositiveAngularSpeed | None = optional("of the motor", "4000 rpm")
     copper_loss: Loss | None = optional("heat in the winding at the rated torque", "120 W")
     recovery: Recovery = optional("fraction of the braking energy that the supply takes back", 0.8, default=0.0)
+
+
+def torque_warnings(mechanism: Mechanism) -> list[str]:
+    """Return a warning if the motor gives more torque continuously than briefly, as stated and for all designs."""
+    drive = mechanism.drive
+    varying = {path for item in mechanism.varying for path in item.paths}
+    if drive is None or varying & {"drive.rated_torque", "drive.greatest_torque"}:
+        return []
+    rated, greatest = drive.rated_torque, drive.greatest_torque
+    if rated is None or greatest is None or rated <= greatest:
+        return []
+    return [
+        f"drive.rated_torque: a motor gives it continuously, and greatest_torque briefly; got {rated:.6g} N m, more "
+        f"than {greatest:.6g} N m; swap the two, or correct one"
+    ]

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from ...model.machine.loads.load import StrokePart
+from ...model.machine.numbers import DRIVE
 from ...objectives.formula.formulas import ROOTS
 from ...objectives.units import closest
 from .crank_speed import SPEED_KEYS
@@ -42,7 +43,9 @@ def unknown_path(path: str, tables: Mapping[str, Any]) -> str:
     several = _not_one_value_message(path, tables)
     if several:
         return several
-    near = closest(path, [known_path for known_path, value in _walk_values(tables, "") if _is_plain(value)])
+    is_number_of_drive = table == "drive" and key in DRIVE
+    known_paths = [known_path for known_path, value in _walk_values(tables, "") if _is_plain(value)]
+    near = None if is_number_of_drive else closest(path, known_paths)
     hint = (
         f"did you mean {near}?" if near else f"give it in [{path.partition('.')[0]}] first, as single designs have it"
     )

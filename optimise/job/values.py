@@ -162,6 +162,21 @@ class Physical(_Read):
         return described(self.kind, self.sign)
 
 
+@dataclass(frozen=True)
+class ProperFraction(Physical):
+    """Marks a number of at most 1, which people may state in percent. example: in place of that of the kind."""
+
+    example: str = "0.9"
+
+    def read(self, value: object) -> float:
+        """Return the number; raises InputError."""
+        percentage = re.fullmatch(r"\s*(\d+(?:\.\d+)?)\s*%\s*", value, re.ASCII) if isinstance(value, str) else None
+        if percentage is not None and 0.0 < float(percentage[1]) <= 100.0:
+            written = f"{float(percentage[1]) / 100.0:g}"
+            raise InputError(f"must be a fraction of at most 1; got {quote(value)}; write {written}")
+        return to_si(value, replace(self.kind, example=self.example), sign=self.sign)
+
+
 class GasPressure(Physical):
     """Marks the absolute pressure of a gas: one below vacuum is mostly that of a gauge."""
 
@@ -447,8 +462,16 @@ GasExponent = Annotated[
 ]
 CompressionRatio = Annotated[PositiveRatio, Limited("above 1", "6 to 20 are usual", greater_than=1.0)]
 HeatCapacityRatio = Annotated[PositiveRatio, Limited("above 1", "1.4 is cold air, 1.3 burnt gas", greater_than=1.0)]
-Efficiency = Annotated[PositiveRatio, Limited("at most 1", "0.9 to 0.98 are usual; write 90 % as 0.9", greatest=1.0)]
-Recovery = Annotated[Fraction, Limited("at most 1", "it is a fraction; write 80 % as 0.8", greatest=1.0)]
+Efficiency = Annotated[
+    float,
+    ProperFraction(kinds.RATIO, "positive"),
+    Limited("at most 1", "0.9 to 0.98 are usual; write 90 % as 0.9", greatest=1.0),
+]
+Recovery = Annotated[
+    float,
+    ProperFraction(kinds.RATIO, "zero or more", "0.8"),
+    Limited("at most 1", "it is a fraction; write 80 % as 0.8", greatest=1.0),
+]
 PositiveRange = Annotated[tuple[float, float] | Choices | Grid, RangeOf("positive")]
 AnyRange = Annotated[tuple[float, float] | Choices | Grid, RangeOf()]
 LengthTolerance = Annotated[float | str, ToleranceOf()]

@@ -81,6 +81,12 @@ GOOD = {"torque": "20 N m"}
         ({"motor": GOOD, "flywheel": "-1 kg m^2"}, ["drive.flywheel", "zero or more"]),
         ({"motor": GOOD, "flywheel": "1 kg"}, ["drive.flywheel", "is a mass"]),
         ({"motor": GOOD, "gear_ratio": 0}, ["drive.gear_ratio", "positive"]),
+        ({"gear_efficiency": 0}, ["drive.gear_efficiency: must be positive; got 0; write it like 0.9"]),
+        ({"gear_efficiency": -0.5}, ["drive.gear_efficiency: must be positive; got -0.5; write it like 0.9"]),
+        ({"gear_efficiency": "94 %"}, ['fraction of at most 1; got "94 %"; write 0.94']),
+        ({"gear_efficiency": "0 %"}, ['got "0 %"', "write it like 0.9"]),
+        ({"braking_efficiency": 94}, ["at most 1; got 94", "write 90 % as 0.9"]),
+        ({"recovery": -0.1}, ["drive.recovery: must be zero or more; got -0.1; write it like 0.8"]),
     ],
 )
 def test_a_bad_drive_is_refused_in_one_clear_message(drive: dict[str, Any], words: list[str]) -> None:
@@ -89,6 +95,37 @@ def test_a_bad_drive_is_refused_in_one_clear_message(drive: dict[str, Any], word
     message = str(caught.value)
     assert all(word in message for word in words), message
     assert len(message.splitlines()) == 1
+
+
+def test_a_number_that_the_drive_does_not_state_must_be_stated_before_it_varies() -> None:
+    variables = SMALL["variables"] | {"drive.braking_efficiency": [0.8, 0.95]}
+    with pytest.raises(JobError, match=r"got drive\.braking_efficiency; give it in \[drive\] first"):
+        parse_job(SMALL | {"drive": {"gear_efficiency": 0.9}, "variables": variables})
+    with pytest.raises(JobError, match=r"did you mean drive\.gear_efficiency\?"):
+        parse_job(
+            SMALL
+            | {
+                "drive": {"gear_efficiency": 0.9},
+                "variables": SMALL["variables"] | {"drive.gear_eficiency": [0.8, 0.95]},
+            }
+        )
+
+
+def test_a_motor_that_gives_more_continuously_than_briefly_is_warned_of() -> None:
+    drive = {"rated_torque": "20 N m", "greatest_torque": "10 N m"}
+    assert parse_job(SMALL | {"drive": drive}).warnings == (
+        "drive.rated_torque: a motor gives it continuously, and greatest_torque briefly; got 20 N m, more than 10 N m; "
+        "swap the two, or correct one",
+    )
+    assert parse_job(SMALL | {"drive": drive | {"greatest_torque": "20 N m"}}).warnings == ()
+    varied = SMALL["variables"] | {"drive.greatest_torque": ["10 N m", "40 N m"]}
+    assert parse_job(SMALL | {"drive": drive, "variables": varied}).warnings == ()
+
+
+def test_the_drive_in_words_names_heat_and_recovery() -> None:
+    drive = drive_of(rated_torque="5 N m", copper_loss="120 W", recovery=0.8)
+    assert drive is not None
+    assert drive.text == "gear ratio 1, rated torque 5 N m, copper loss 120 W, recovery 0.8"
 
 
 def test_numbers_of_the_drive_vary_and_come_with_the_motor_of_a_choice() -> None:
