@@ -71,6 +71,6 @@ def unreachable(turn: LawTurn, limits: LawLimits) -> InputError:
     narrow = [limits.name(field) for field in request.narrowing]
     return InputError(
         "a motion law must be resolved between the limits of speed; got a machine whose kinetic energy is too small "
-        "beside the work of its loads, or limits that leave almost no room; state the inertia of the motor in [drive] "
+        "beside the work of its loads, or limits that leave almost no room; state or raise the inertia in [drive] "
         f"(motor_inertia, gear_ratio, flywheel), or widen {' or '.join(narrow) or 'the limits'}"
     )

@@ -128,8 +128,9 @@ def resolve_limits(
 ) -> LawLimits:
     """Return the limits for a machine; names: the interface's names for the fields.
 
-    Raises `InputError` without a cycle time, for one half of a window, a window outside the stroke, speeds that exclude
-    each other or the cycle time, and an objective without what it needs.
+    The greatest speed is at most that of the motor. Raises `InputError` without a cycle time, for one half of a window,
+    a window outside the stroke, speeds that exclude each other or the cycle time, and an objective without what it
+    needs.
     """
     labels = dict(names or {})
 
@@ -154,6 +155,10 @@ def resolve_limits(
     mean = TURN / cycle_time
     greatest = RANGE * max(mean, request.least_speed or 0.0)
     greatest = greatest if request.greatest_speed is None else request.greatest_speed
+    drive = mechanism.drive
+    if drive is not None and drive.greatest_speed is not None and drive.greatest_speed / drive.gear_ratio < greatest:
+        greatest = drive.greatest_speed / drive.gear_ratio
+        labels["greatest_speed"] = "the motor's greatest speed over the gear ratio"
     least = min(mean, greatest) / RANGE if request.least_speed is None else request.least_speed
     if least > greatest:
         raise InputError(

@@ -19,10 +19,11 @@ from ...model.arrays import Array, Mask
 from ...model.motion_law.law_turn import LawTurn
 from ...model.motion_law.motion_law import MotionLaw
 from ...model.transient.equation import TURN
-from .law_limits import LawLimits
+from .law_limits import LawLimits, LawRequest
 from .programme import Aim, Margins, Multipliers, Programme, Requirement, Solution
 
 _RENEWALS = 20
+_DOUBLINGS = 8
 _CONVERGED = 1e-6
 _NOTHING = 1e-8  # of what is 1 in a programme: ten times what its solution may be wrong by
 _TIE = 1e-4  # of the peak torque
@@ -116,6 +117,7 @@ class _Search:
                 reference = self._combined(fast.energies, slow.energies)
             else:
                 slow = self._renewed("peak torque", needs, self._reference(slow), prove=True)
+                slow = slow or self._renewed("peak torque", needs, self._slow_reference(fast, request), prove=True)
                 if slow is None:
                     return None
                 peak, reference = max(peak, slow.value), slow.energies
@@ -162,6 +164,26 @@ class _Search:
             return np.stack([self.guess.energy(angles) for angles in self.programme.angles])
         if slow is not None:
             return slow.energies
+        return self._constant_speed
+
+    def _slow_reference(self, fast: Solution, request: LawRequest) -> Array:
+        """Return K of a law with the cycle time, by torques above that of a faster law; else of constant speed.
+
+        The tangent of the time at a law takes at most 1.5 times as long as the law itself, so that no law within it has
+        the cycle time if that one is much too fast.
+        """
+        torque, most = fast.value, request.torque_limit or math.inf
+        for _ in range(_DOUBLINGS):
+            torque = min(2.0 * torque, most)
+            slow = self.programme.solve("long cycle", Requirement(torque_limit=torque))
+            if slow is not None and self.programme.time(slow.energies) >= self.cycle_time:
+                return self._combined(fast.energies, slow.energies)
+            if torque == most:
+                break
+        return self._constant_speed
+
+    @property
+    def _constant_speed(self) -> Array:
         return np.asarray(0.5 * self.programme.inertia * (TURN / self.cycle_time) ** 2)
 
     def _renewed(self, aim: Aim, needs: Requirement, reference: Array, *, prove: bool = False) -> Solution | None:

@@ -52,7 +52,7 @@ QUESTION = DesignQuestion(
             "greatest_speed",
             ANGULAR_SPEED,
             "Crank speed, at most",
-            f"Greatest crank speed. [default: {RANGE:g} x mean speed]",
+            f"Greatest crank speed, at most that of the motor in [drive]. [default: {RANGE:g} x mean speed]",
             sign="positive",
         ),
         Input(

@@ -15,6 +15,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.drive import ConstantTorque, Drive
 from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.motion_law.law_turn import LawTurn
@@ -220,6 +221,45 @@ REFUSALS: list[tuple[dict[str, Any], str]] = [
 def test_limits_that_leave_no_law_are_refused_with_the_amount(limits: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):
         optimal_law(FEEDER, LINKAGE, LawRequest(**limits))
+
+
+PRESS = Mechanism(
+    speed=-45.0 * RPM,
+    slider_mass=8.0,
+    loads=(
+        PositionTable(
+            positions=(0.0, 0.01, 0.012), forces=(-2e4, -2e4, 0.0), datum="outer dead centre", during="outward stroke"
+        ),
+    ),
+    drive=Drive(gear_ratio=40.0, motor_inertia=8e-4, flywheel=0.2),
+)
+
+
+@pytest.mark.slow
+def test_a_press_that_may_run_faster_needs_no_more_torque() -> None:
+    """The best law within the widest limit is far too fast, so that a law with the cycle time is not near it."""
+    requests = (
+        LawRequest(greatest_speed=150.0 * RPM),
+        LawRequest(greatest_speed=200.0 * RPM, torque_limit=100.0),
+    )
+    found = [optimal_law(PRESS, Linkage(0.03, 0.3, 0.0), request) for request in requests]
+    assert all(law.proven for law in found)
+    assert found[1].value <= found[0].value * (1.0 + GAP)
+    for law in found:
+        require_within_limits(law)
+        assert law.law.period == pytest.approx(4.0 / 3.0, rel=1e-6)
+
+
+def test_a_crank_turns_no_faster_than_its_motor_allows() -> None:
+    assert PRESS.drive is not None
+    drive = replace(PRESS.drive, greatest_speed=4000.0 * RPM)
+    machine, linkage = replace(PRESS, drive=drive), Linkage(0.03, 0.3, 0.0)
+    for asked, greatest in ((None, 100.0), (150.0, 100.0), (90.0, 90.0)):
+        request = LawRequest(greatest_speed=None if asked is None else asked * RPM)
+        assert resolve_limits(machine, linkage, request).greatest_speed == pytest.approx(greatest * RPM, rel=1e-12)
+    slow = replace(machine, drive=replace(drive, greatest_speed=1600.0 * RPM))
+    with pytest.raises(InputError, match="the motor's greatest speed over the gear ratio is 40 rpm; raise it"):
+        resolve_limits(slow, linkage, LawRequest())
 
 
 def test_a_machine_without_speed_needs_a_cycle_time() -> None:
