@@ -28,6 +28,7 @@ CLASSES: dict[str, type[BaseModel]] = {
 } | {part.__name__: part for part in PARTS.values()}
 GIVEN: dict[str, Node] = {
     "ChoicePart": {"file": None, "option": [{"name": "a"}, {"name": "b"}]},
+    "DrivePart": {"rated_torque": "5 N m"},
     "EngineLoad": {"peak_pressure": "40 bar"},
     "MechanismPart": {"gravity": "9.81 m/s^2"},
     "MotionPart": {"kind": "swing", "from": "0 deg", "to": "60 deg", "duration": "1 s", "law": "harmonic"},
