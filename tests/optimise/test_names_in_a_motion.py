@@ -65,14 +65,6 @@ def test_every_quantity_of_a_full_turn_is_refused_for_a_swing_and_every_other_is
             assert np.isfinite(problem.evaluate([DESIGN], [name])).all(), name
 
 
-@pytest.mark.parametrize("ask", ["cycle", "plot", "deviations"])
-def test_curves_of_a_full_turn_are_refused_for_a_design_that_swings(ask: str) -> None:
-    found = load_job(SUPPORT).analyse(DESIGN)
-    given = [{"crank_angle_deg": [20.0, 30.0], "slider_position_mm": [3e3, 2.9e3]}] if ask == "deviations" else []
-    with pytest.raises(InputError, match="this design swings"):
-        getattr(found, ask)(*given)
-
-
 def test_cylinders_at_one_place_are_told_as_such() -> None:
     job = tomllib.loads(Path("runs/compressor.toml").read_text(encoding="utf-8"))
     job["mechanism"]["cylinders"] = {"phases": ["0 deg", "180 deg"], "places": ["0 mm", "0 mm"]}
