@@ -189,7 +189,7 @@ def _derive_offset(raw: Any, out: Any) -> None:
 
 @analytic
 def _derive_load(raw: Any, kind: Any, datum: Any, p: Any, q: Any, j: Any, out: Any) -> None:
-    """Fill the rows from q of a load with numbers from row p, and add its part to the design's sums."""
+    """Fill the rows of a load from q with numbers from row p, and add its part to the sums."""
     if datum == 0:
         sign, origin = 1.0, 0.0 * raw[_CRANK, j]  # not from a dead centre, which a swing need not have
     elif datum == 1:

@@ -244,7 +244,7 @@ def sizes_for_stroke(
 
 
 def _smaller_swing(start: float, end: float) -> str:
-    """Return the remedy for a swing of half a turn or more, rad: other angles for the same ends, if those are near."""
+    """Return the remedy for a swing of half a turn or more, rad: nearer angles of the same ends."""
     near = [math.remainder(angle, _TURN) for angle in (start, end)]
     pairs = zip((start, end), near, strict=True)
     wrapped = [f"{_degrees(other)} for {_degrees(angle)}" for angle, other in pairs if abs(other - angle) > 1.0]

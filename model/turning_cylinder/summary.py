@@ -152,7 +152,7 @@ def _least_or_zero(machine: LeverMachine, swing: LeverSwing, curve: Callable[[Le
 
 
 def _least(machine: LeverMachine, swing: LeverSwing, curve: Callable[[LeverCurves], Array]) -> LeverPoint:
-    """Return the least value of a curve: the least of many samples, then of finer ones around it, or that at rest.
+    """Return the least value of a curve: of samples, then of finer ones around it, or at rest.
 
     A law that starts with a jump of speed or acceleration has other forces at its ends than the cylinder that holds.
     """

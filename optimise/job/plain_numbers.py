@@ -71,7 +71,7 @@ class PlainNumbers:
         return Change(self.key, text, f"Write {text}") if self.value == number else None
 
     def _list_in(self, unit: str, doubtful: list[float]) -> list[str | float] | None:
-        """Return a list with a unit after each number but zero; None for any other value, or if some are credible."""
+        """Return a list with a unit after each number but zero; None for others, or if some are credible."""
         numbers = self.value if isinstance(self.value, list | tuple) else ()
         if len(numbers) < 2 or len(doubtful) + sum(number == 0 for number in numbers) < len(numbers):
             return None

@@ -167,7 +167,7 @@ class _Search:
         return self._constant_speed
 
     def _slow_reference(self, fast: Solution, request: LawRequest) -> Array:
-        """Return K of a law with the cycle time, by torques above that of a faster law; else of constant speed.
+        """Return K of a law with the cycle time, by torques above a faster law's; else of constant speed.
 
         The tangent of the time at a law takes at most 1.5 times as long as the law itself, so that no law within it has
         the cycle time if that one is much too fast.

@@ -131,7 +131,7 @@ def unmet_columns(rules: Iterable[Requirement], row: Row) -> list[str]:
 
 
 def faults_in_words(row: Row, broken: Iterable[str], outside: Iterable[str]) -> list[str]:
-    """Return what a design misses and where it leaves its job: "misses stroke", "outside the job: rod".
+    """Name requirements a design misses and variables outside its job: "misses stroke", "outside the job: rod".
 
     broken: columns of requirements. outside: columns of ranges.
     """

@@ -84,7 +84,7 @@ def _different_jobs_sentence(count: int, places: Sequence[tuple[str, Sequence[st
 
 
 def _given_name(place: str) -> str:
-    """Return the name of what stands at a place of a job: "speed", "load", or the quantity or formula of a bound."""
+    """Return the name of a place in a job: "speed", "load", or the quantity or formula of a bound."""
     table, _, key = place.partition(".")
     if table == "constraints":  # a formula may have a point
         return re.sub(r"\.(min|max|equals)$", "", key).replace("_", " ")

@@ -237,7 +237,7 @@ PRESS = Mechanism(
 
 @pytest.mark.slow
 def test_a_press_that_may_run_faster_needs_no_more_torque() -> None:
-    """The best law within the widest limit is far too fast, so that a law with the cycle time is not near it."""
+    """The best law within the widest limit is far too fast: no law with the cycle time is near."""
     requests = (
         LawRequest(greatest_speed=150.0 * RPM),
         LawRequest(greatest_speed=200.0 * RPM, torque_limit=100.0),
