@@ -65,18 +65,20 @@ def explain(error: ValidationError, schema: Schema, tables: Mapping[str, Any] | 
     the order of its keys. Unknown keys come first: a misspelt key explains the missing one, which is then left out.
     """
     unknown, wrong, missing, explained = dict[tuple[Any, ...], str](), list[str](), dict[str, str](), set[str]()
+    misplaced_objectives = set[str]()  # own quantities too, which the schema does not name
     listed = error.errors(include_url=False)[:LONGEST]
     parents = {details["loc"][:steps] for details in listed for steps in range(len(details["loc"]))}
     for details in listed:
         if details["type"] == "too_short" and details["loc"] in parents:
             continue  # a list that is too short for want of the entries that were refused
+        path = keys_of(details["loc"])
         if details["type"] == "extra_forbidden":
             unknown[details["loc"]], near = _unknown_key_message(details["loc"], details["input"], schema)
             explained.add(near)
-        elif details["loc"][:-1] == ("constraints",) and details["input"] in _WISHES:
-            unknown[details["loc"]] = f"{key_of(details['loc'])}: {sentence_of(details, schema)}"
+        elif path[:-1] == ["constraints"] and details["input"] in _WISHES:
+            unknown[tuple(path)] = f"{key_of(path)}: {sentence_of(details, schema)}"
+            misplaced_objectives.add(path[-1])
         else:
-            path = keys_of(details["loc"])
             sentence = f"{key_of(path)}: {sentence_of(details, schema)}"
             if details["type"] != "missing":
                 wrong.append(sentence)
@@ -85,7 +87,9 @@ def explain(error: ValidationError, schema: Schema, tables: Mapping[str, Any] | 
     for table in dict.fromkeys(loc[:-1] for loc in unknown):
         keys = [str(loc[-1]) for loc in unknown if loc[:-1] == table]
         keys.sort(key=list((tables or {}).get("constraints", keys) if table == ("constraints",) else keys).index)
-        owner = min(_tables_with_keys(keys, schema), key=lambda one: one.strip("[]") not in missing, default="")
+        are_objectives = table == ("constraints",) and misplaced_objectives.issuperset(keys)
+        owners = ["[objectives]"] if are_objectives else _tables_with_keys(keys, schema)
+        owner = min(owners, key=lambda one: one.strip("[]") not in missing, default="")
         if len(keys) > 1 and owner and owner.strip("[]") not in table:
             unknown = {loc: sentence for loc, sentence in unknown.items() if loc[:-1] != table}
             place = f"in {key_of(keys_of(table))}" if table else "at the top of the file"
@@ -217,9 +221,9 @@ def sentence_of(details: ErrorDetails, schema: Schema) -> str:
     if kind in ("too_short", "too_long"):
         return f"{rule_of(details)}; got {len(value)}{write}"
     is_value = isinstance(value, str | float | int) and not isinstance(value, bool)
+    if rule_of(details) == _TABLE and value in _WISHES and keys_of(path)[-2:-1] == ["constraints"]:
+        return f"{quote(value)} belongs below [objectives]; got it below [{path[0]}]; move it there"
     if rule_of(details) == _TABLE and is_value and "equals" in _possible_keys(schema, path):
-        if value in _WISHES:
-            return f"{quote(value)} belongs below [objectives]; got it below [{path[0]}]; move it there"
         fact = FACTS.get(str(path[-1]))
         first, *alternatives = map(toml, suggested_bounds(value, fact.kind if fact else None))
         write = f"; write {key_of(path[-1:])} = {', '.join(filter(None, (first, ' or '.join(alternatives))))}"

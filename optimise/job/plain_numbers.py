@@ -44,7 +44,7 @@ class PlainNumbers:
         numbers = plain_in(self.value)
         doubtful = [number for number in numbers if not self.kind.is_plausible(number)]
         mixed = any(isinstance(value, str) for value in values_in(self.value))
-        if not doubtful and not mixed:
+        if not numbers or not (doubtful or mixed):
             return None
         number = (doubtful or numbers)[0]
         text = toml(self.value)

@@ -36,6 +36,7 @@ _NAMES = re.compile(r"[\s(<{]*(\[*)\s*([^\W\d][\w-]*(?:[\s.,/]*[^\W\d][\w-]*)*)\
 """A heading, however it is written."""
 _INNER = re.compile(r"([\w-]+)\s*=\s*\[?\s*$")
 _TEXT = r"""(?:"(?:[^"\\]|\\.)*"|'[^']*')"""
+_ITEM = rf"(?:{_TEXT}|[-+]?[\d.]+(?:e[-+]?\d+)?)"
 _PASSED = rf"({_TEXT}|#.*)|"
 """Whole texts and comments, which an edit leaves as they are."""
 _COMMENT = re.compile(rf"{_TEXT}|(\s*#.*)")
@@ -99,7 +100,7 @@ _EDITS: tuple[Edit, ...] = (
     _edit_code(r",\s*(?=})", " ", "there must be no comma before a closing brace"),
     _edit_code(r"=\s*(?=[\w-]+\s*=)", "= { ", _BRACES),
     _edit_code(r"(?<=[^\s{])$", " }", _BRACES),
-    _edit_code(rf"{{(\s*{_TEXT}(?:\s*,\s*{_TEXT})*\s*)}}", r"[\2]", _SQUARE),
+    _edit_code(rf"{{(\s*{_ITEM}(?:\s*,\s*{_ITEM})*\s*)}}", r"[\2]", _SQUARE),
     lambda line: _with_brackets(line),
     _edit_code(r"\(([^()]*)\)", r"[\2]", _SQUARE),
     _edit_code(r"(?<==)\s*(?=[^\[{]*\]$)", " [", _SQUARE),

@@ -187,6 +187,15 @@ def test_a_refusal_begins_with_the_missing_unit_that_may_be_its_cause(
     assert f'"{meant}"' in said
 
 
+@pytest.mark.parametrize("inside", [[], [1], {}, [1, 2]])
+def test_a_list_in_a_list_is_refused_without_a_word_of_plain_numbers(inside: Any) -> None:
+    job = deepcopy(PRESS)
+    job["load"][0]["positions"][0] = inside  # type: ignore[index]
+    with pytest.raises(JobError, match=r"positions #1: must be a length; got .*; write it like") as refused:
+        parse_job(job)
+    assert "unit" not in str(refused.value)
+
+
 def test_a_refusal_elsewhere_has_no_word_of_plain_numbers() -> None:
     job = put("mechanism.speed", 120)
     job["objectives"] = {"time_ratio": "maximum", "stroke": "maximise"}
