@@ -188,8 +188,8 @@ class _Table(Part):
         for key in (key for key in ROOTS if isinstance(data.get(key), Mapping)):
             path, value = _undotted_key(key, data[key])
             raise InputError(
-                f"a key with dots must be in quotes, like a formula; got {path} without; write it as "
-                f'"{path}" = {toml(value)}'
+                f"a key with dots must be in quotes, like a formula; got "
+                f"{path if path.isprintable() else quote(path)} without; write it as {toml(path)} = {toml(value)}"
             )
         keys = [key for key in data if isinstance(key, str) and cls._is_formula(key)]
         rest = {key: value for key, value in data.items() if key not in keys}
