@@ -279,6 +279,11 @@ def _unit_in(match: re.Match[str]) -> str:
     return plain if plain in _SPOKEN else unit
 
 
+def printable_name(name: str) -> str:
+    """Return a name for a message: as it is, or quoted if some of it cannot be printed."""
+    return name if name.isprintable() else quote(name)
+
+
 def quote(value: object) -> str:
     """Return a value for a message: as a job file writes it, printable, of moderate length."""
     if value is None or isinstance(value, bool):

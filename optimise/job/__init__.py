@@ -19,7 +19,7 @@ from pydantic import ValidationError
 
 from ...model.errors import InfeasibleError, InputError, InputWarning, JobError
 from ...model.file_names import path_from_text, path_text
-from ...objectives.units import quote
+from ...objectives.units import printable_name
 from ..problem.problem import Problem
 from .catalogue import catalogues, with_catalogues, with_options
 from .custom_quantities import declared, function_modules
@@ -119,7 +119,7 @@ def _naming_file(path: str | PathLike[str]) -> Iterator[None]:
         with contextlib.suppress(OSError, ValueError):
             if file.suffix.casefold() == ".toml" and file.is_file() and file.stat().st_size <= LARGEST:
                 message = with_lines(message, file.read_text(encoding="utf-8-sig"))
-        error.args = (f"{name if name.isprintable() else quote(name)}: {message}",)
+        error.args = (f"{printable_name(name)}: {message}",)
         raise error from None
 
 

@@ -10,7 +10,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from ...objectives.registry import FACTS
-from ...objectives.units import closest, quote
+from ...objectives.units import closest, printable_name, quote
 from .suggested_bounds import suggested_bounds
 
 _MOST_KEYS = 20  # that are told where none is near
@@ -202,7 +202,7 @@ def sentence_of(details: ErrorDetails, schema: Schema) -> str:
         return str(context["error"])
     if kind == "missing":
         return f"is missing, but required{write.replace('write', 'add')}"
-    table = ".".join(key if key.isprintable() else quote(key) for key in keys_of(path) if isinstance(key, str))
+    table = ".".join(printable_name(key) for key in keys_of(path) if isinstance(key, str))
     if kind in ("tuple_type", "list_type") and isinstance(value, Mapping) and _possible_keys(schema, [*path, 0]):
         return f"{SEVERAL.format(table)}; got a single one; write [[{table}]] for [{table}]"
     if rule_of(details) == _TABLE and isinstance(value, list) and any(isinstance(item, Mapping) for item in value):

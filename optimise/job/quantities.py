@@ -32,7 +32,7 @@ from ...model.linkage.linkage import SlowStroke
 from ...objectives.formula.formulas import ROOTS, Formulas, is_formula
 from ...objectives.kinds import RATIO, Kind
 from ...objectives.registry import FACTS
-from ...objectives.units import closest, plus_minus_ends, quote
+from ...objectives.units import closest, plus_minus_ends, printable_name, quote
 from ..problem.requirements import SENSES, Constraint, Objective, Word
 from .grids import swap
 from .messages import key_of, toml
@@ -189,7 +189,7 @@ class _Table(Part):
             path, value = _undotted_key(key, data[key])
             raise InputError(
                 f"a key with dots must be in quotes, like a formula; got "
-                f"{path if path.isprintable() else quote(path)} without; write it as {toml(path)} = {toml(value)}"
+                f"{printable_name(path)} without; write it as {toml(path)} = {toml(value)}"
             )
         keys = [key for key in data if isinstance(key, str) and cls._is_formula(key)]
         rest = {key: value for key, value in data.items() if key not in keys}

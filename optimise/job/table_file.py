@@ -22,7 +22,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.errors import InputError
 from ...objectives.count_text import counted
-from ...objectives.units import is_value, number_and_unit, quote
+from ...objectives.units import is_value, number_and_unit, printable_name, quote
 from .table_layout import (
     EXPONENT,
     MISSING,
@@ -140,7 +140,7 @@ class TableFile:
             for portion, n in ends
         )
         names = (self.heads[place] for place in places)
-        heads = ", ".join(name if name.isprintable() else quote(name) for name in names)
+        heads = ", ".join(map(printable_name, names))
         rows = f"{len(self):,} row{'s' if len(self) > 1 else ''}"
         return "; ".join([f"{rows} of {heads}{left_over}", f"first {first}", f"last {last}", *self.notes])
 

@@ -15,7 +15,7 @@ from pydantic import AfterValidator, Field, model_validator
 
 from ...model.errors import InputError
 from ...objectives.formula.formulas import ROOTS
-from ...objectives.units import quote
+from ...objectives.units import printable_name, quote
 from .amounts import Amounts
 from .grids import says_values
 from .messages import DEEPEST
@@ -197,7 +197,7 @@ def _put_value(table: dict[str, Any], steps: list[str], value: Any, key: str) ->
 def leaves_of(table: Mapping[str, Any], root: str) -> Iterator[tuple[str, Any]]:
     """Yield path and value of what is no table in tables within tables; { choices } counts as a value."""
     for key, value in table.items():
-        name = key if str(key).isprintable() else quote(key)  # which no path has: a message shows it
+        name = printable_name(str(key))  # which no path has: a message shows it
         path = f"{root}.{name}" if root else name
         if isinstance(value, Mapping) and set(value) != {"choices"} and value and not says_values(value):
             yield from leaves_of(value, path)
