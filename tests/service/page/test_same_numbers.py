@@ -188,8 +188,10 @@ def test_like_has_a_tab_that_finds_what_the_api_does(opened: tuple[Page, str, st
     page.goto(f"{address}/#/help")
     page.goto(f"{address}/#/jobs/{solved.number}/designs/2")
     page.locator(".analyses").scroll_into_view_if_needed(timeout=30_000)
-    page.get_by_role("tab", name="Like").press("Enter", timeout=30_000)
+    tab = page.get_by_role("tab", name="Like")
+    tab.press("Enter", timeout=30_000)
     panel = page.get_by_role("tabpanel")
+    expect(tab).to_be_focused()  # also where the panel has been drawn meanwhile
     where = panel.get_by_label("Conditions, separated by semicolons")
     where.press("Enter")
     expect(panel.get_by_role("alert")).to_contain_text("a value is needed")

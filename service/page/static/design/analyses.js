@@ -57,34 +57,35 @@ export function analyses(
   const begun = []; // of the sections
   let near = false; // whether the tabs are, or have been, in sight
 
-  function drawTabs() {
-    fill(
-      tabs,
-      listed.map((one, n) =>
-        h(
-          "button",
-          {
-            type: "button",
-            role: "tab",
-            id: `tab-${one.name}`,
-            "aria-controls": "analysis",
-            "aria-selected": String(n === chosen),
-            tabindex: n === chosen ? 0 : -1,
-            title: one.shows,
-            onclick: () => choose(n),
-          },
-          one.title,
-        ),
-      ),
-    );
-    panel.setAttribute("aria-labelledby", `tab-${listed[chosen].name}`);
+  const buttons = listed.map((one, n) =>
+    h(
+      "button",
+      {
+        type: "button",
+        role: "tab",
+        id: `tab-${one.name}`,
+        "aria-controls": "analysis",
+        title: one.shows,
+        onclick: () => choose(n),
+      },
+      one.title,
+    ),
+  );
+
+  /** Mark the chosen tab. The buttons stay what they are: who has the focus on one keeps it. */
+  function markChosen() {
+    buttons.forEach((button, n) => {
+      button.setAttribute("aria-selected", String(n === chosen));
+      button.tabIndex = n === chosen ? 0 : -1;
+    });
+    panel.setAttribute("aria-labelledby", buttons[chosen].id);
   }
 
   async function draw() {
     const { shows, command, view } = listed[chosen];
     const isOfDesign = chosen < listed.length - ofFront.length;
     near = true;
-    drawTabs();
+    markChosen();
     fill(
       panel,
       h(
@@ -110,7 +111,7 @@ export function analyses(
   function onkeydown({ key }) {
     if (!KEYS[key]) return;
     choose((chosen + KEYS[key] + listed.length) % listed.length);
-    document.getElementById(`tab-${listed[chosen].name}`)?.focus();
+    buttons[chosen].focus();
   }
 
   fill(
@@ -132,8 +133,9 @@ export function analyses(
     }),
   );
   if (!swings) {
+    fill(tabs, buttons);
     fill(places.tabs, h("h2", {}, "Analyses"), tabs, panel);
-    drawTabs();
+    markChosen();
     whenNear(panel, async () => near || (await draw()), signal);
   }
   return {
