@@ -205,7 +205,11 @@ export async function show(place, { query, signal }) {
   }
 
   const machines = gallery(signal);
-  const single = h("a", { class: "button", href: link(["look"]) }, "Look at one mechanism");
+  const single = h(
+    "a",
+    { class: "button", href: link(["look"]), hidden: true }, // until there are runs
+    "Look at one mechanism",
+  );
   const welcome = h(
     "section",
     { class: "welcome", hidden: true },
