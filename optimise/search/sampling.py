@@ -37,14 +37,16 @@ def generator(seed: int, *stream: int) -> np.random.Generator:
     return np.random.default_rng(np.random.SeedSequence([seed, *stream]))
 
 
-def first_samples(count: int, dimension: int, seed: int, stream: int) -> Array:
+def first_samples(
+    count: int, dimension: int, seed: int, stream: int, *, boundary_share: float = BOUNDARY_SHARE
+) -> Array:
     """Return about `count` points of the unit box (n, k), a part of them on faces, edges and corners."""
     if dimension == 0:
         return np.zeros((1, 0))
     random = generator(seed, stream, 0)
     power = max(1, int(np.ceil(np.log2(max(2, count)))))
     points = sobol(power, dimension, random)[:count]
-    snapped = random.random(points.shape) < BOUNDARY_SHARE
+    snapped = random.random(points.shape) < boundary_share
     return np.asarray(np.where(snapped, np.round(points), points))
 
 

@@ -65,12 +65,12 @@ class WrongModel(BaseModel):
 class AllowedModel(BaseModel):
     """Values that the ranges of crank, rod and offset allow, from samples.
 
-    turning_share: of the designs within the ranges that turn fully. stroke_mm, time_ratio, transmission_angle_deg: from
+    turning_share: fraction of the box that rotates fully. stroke_mm, time_ratio, transmission_angle_deg: from
     least to greatest while all other requirements on the dimensions hold; null where they exclude each other.
     slow_strokes: slow strokes of the designs that meet all requirements which were checked, else of those that rotate
-    fully. feasible_share: of the sampled designs that meet all requirements which were checked; equalities are met
-    exactly. hardest, hardest_share: the requirement that the fewest of the turning designs meet. unchecked:
-    requirements that need more than a moment, or numbers of the machine that are still missing.
+    fully. feasible_share: fraction of the `sampled` designs, spread uniformly, that meet all checked requirements;
+    equalities are met exactly. hardest, hardest_share: the requirement that the fewest fully rotating designs meet.
+    unchecked: requirements that need more than a moment, or numbers of the machine that are still missing.
     """
 
     turning_share: float = Field(examples=[0.83])
@@ -142,8 +142,8 @@ class SwingExample(BaseModel):
 class SwingPreview(BaseModel):
     """Values that the ranges of a job of a swing allow, from samples.
 
-    closing_share: of the designs within the ranges that make the swing. travel_mm: of the slider between its two ends.
-    feasible_share: of the sampled designs that meet all requirements which were checked.
+    closing_share: fraction of the box that makes the swing. travel_mm: of the slider between its two ends.
+    feasible_share: fraction of the uniform samples that meet all checked requirements.
     """
 
     from_deg: float | None = Field(description="start of the example's swing; null without one", examples=[11.16])

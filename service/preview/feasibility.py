@@ -1,8 +1,8 @@
 """Values that a job's ranges allow, from samples: rotation, stroke, time ratio, transmission angle, feasible fraction.
 
-The samples are a few hundred designs, on faces and edges of the box too. Equality requirements are met exactly, so that
-the samples lie where the search looks. Extremes are searched around the best samples and polished: each belongs to a
-design.
+The samples are a few hundred designs. Equality requirements are met exactly, so that the samples lie where the search
+looks. Fractions are those of uniform samples; others lie on faces and edges of the box. Extremes are searched around
+the best samples and polished: each belongs to a design.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ _ONE = threading.Lock()
 
 @dataclass(frozen=True, kw_only=True)
 class Possible:
-    """Values that the ranges of a job allow. turning: fraction of the designs in the box that rotate fully.
+    """Values that the ranges of a job allow. turning: fraction of the box that rotates fully.
 
     stroke (m), time_ratio, transmission_angle (rad): ends of their ranges while all other requirements on the
     dimensions hold; None if no sample meets these. They include the floor of the transmission angle if it has no other
@@ -78,26 +78,27 @@ class Possible:
 def possible(problem: Problem) -> Possible:
     """Return the values that the ranges of a problem of `partial_job.geometry` allow."""
     free = replace(problem, constraints=())
-    box = designs_of(free, SAMPLES)
+    box, is_uniform = designs_of(free)
     turning = _rotates_fully(box)
+    uniform = box[turning & is_uniform]
     light, costly = _lengths_only(problem)
     screening = run_within(PATIENCE, lambda: screened(problem)) if costly else None
-    designs, violation = screened(light) if screening is None else screening
-    feasible = violation <= FEASIBLE
+    sample = screened(light) if screening is None else screening
+    feasible = sample.is_feasible
     if screening is None:
-        hardest = _hardest_requirement(light, box[turning])
+        hardest = _hardest_requirement(light, uniform)
     else:
-        hardest = run_within(PATIENCE, lambda: _hardest_requirement(problem, box[turning][:BATCH]))
+        hardest = run_within(PATIENCE, lambda: _hardest_requirement(problem, uniform[:BATCH]))
     return Possible(
-        turning=float(turning.mean()),
+        turning=float(turning[is_uniform].mean()),
         stroke=_possible_ends(light, "stroke"),
         time_ratio=_possible_ends(light, "time_ratio"),
         transmission_angle=_possible_ends(light, "transmission_angle"),
-        slow_strokes=_slow_strokes(light, designs[feasible] if feasible.any() else box[turning]),
-        feasible=float(feasible.mean()) if len(feasible) else 0.0,
-        sampled=len(feasible),
+        slow_strokes=_slow_strokes(light, sample.designs[feasible] if feasible.any() else box[turning]),
+        feasible=sample.feasible,
+        sampled=sample.sampled,
         hardest=hardest,
-        example=lengths_of(example_of(designs, violation, box[turning])),
+        example=lengths_of(example_of(sample.designs, sample.violation, box[turning])),
         example_feasible=bool(feasible.any()),
         unchecked=costly if screening is None else (),
     )

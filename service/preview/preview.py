@@ -173,9 +173,9 @@ def infeasibility_sentences(
         ends: Ends | None = getattr(possible_values, name)
         if name in constraints and ends is not None:
             sentences += _nearest_possible(problem, constraints[name], ends)
-    if possible_values.turning == 0.0:
+    if possible_values.example is None:
         sentences.append(_locking_sentence(problem, tables))
-    elif possible_values.sampled and possible_values.feasible == 0.0 and not sentences:
+    elif possible_values.sampled and not possible_values.example_feasible and not sentences:
         hardest = ""
         if possible_values.hardest is not None and possible_values.hardest[1] < 1.0:
             name, share = possible_values.hardest

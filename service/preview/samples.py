@@ -1,10 +1,16 @@
-"""Samples of the designs that a job allows; equalities are met exactly, as is a value in each narrow band."""
+"""Samples of the designs that a job allows; equalities are met exactly, as is a value in each narrow band.
+
+Half of them are spread uniformly, and fractions count these alone. The others lie on faces and edges of the box too,
+where extremes are.
+"""
 
 from __future__ import annotations
 
+import math
 import time
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +21,8 @@ from ...objectives.registry import QUANTITIES
 from ...optimise.job.possible_values import Box
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint
-from ...optimise.search.elimination import elimination_branches
+from ...optimise.problem.violation import FEASIBLE
+from ...optimise.search.elimination import EliminationBranch, elimination_branches
 from ...optimise.search.evaluation import Evaluator
 from ...optimise.search.sampling import first_samples
 
@@ -28,15 +35,51 @@ _BAND = 0.5  # of what the ranges allow of a quantity: wider bands are met by sa
 _VALUES = 8  # within bands, each with as many samples as the others
 
 
-def designs_of(problem: Problem, count: int) -> Array:
-    """Return designs (n, 3) in the box that meet the eliminable equalities; some may not be linkages.
+@dataclass(frozen=True)
+class Screening:
+    """Designs (n, 3), their greatest relative violation (n,), and whether each is one of the uniform samples (n,)."""
 
-    Designs of a swing with a variable start have the start as a fourth number.
+    designs: Array
+    violation: Array
+    is_uniform: NDArray[np.bool_]
+
+    @property
+    def is_feasible(self) -> NDArray[np.bool_]:
+        """Whether each design meets every requirement."""
+        return np.asarray(self.violation <= FEASIBLE)
+
+    @property
+    def sampled(self) -> int:
+        """Number of uniform samples."""
+        return int(self.is_uniform.sum())
+
+    @property
+    def feasible(self) -> float:
+        """Fraction of the uniform samples that meet every requirement."""
+        return float(self.is_feasible[self.is_uniform].mean()) if self.sampled else 0.0
+
+
+def designs_of(problem: Problem) -> tuple[Array, NDArray[np.bool_]]:
+    """Return designs (n, 3) in the box that meet the eliminable equalities, and whether each is a uniform sample.
+
+    Some may not be linkages. Designs of a swing with a variable start have the start as a fourth number.
     """
-    parts = []
-    for index, branch in enumerate(elimination_branches(problem)):
-        parts.append(branch.dimensions(first_samples(count, len(branch.free), 1, index))[:, _length_columns(problem)])
-    return np.concatenate(parts)
+    branches = elimination_branches(problem)
+    parts = list(_points(branches, SAMPLES, 0))
+    designs = [branches[index].dimensions(points)[:, _length_columns(problem)] for index, points, _ in parts]
+    return np.concatenate(designs), np.repeat([part[2] for part in parts], [len(points) for points in designs])
+
+
+def _points(branches: Sequence[EliminationBranch], count: int, stream: int) -> Iterator[tuple[int, Array, bool]]:
+    """Yield points of each branch by its index, with whether they are uniform: by the width of its offsets."""
+    ranges = [branch.bounds["offset"] for branch in branches]
+    by_width = all("offset" in branch.free for branch in branches)
+    widths = [item.upper - item.lower if by_width else 1.0 for item in ranges]
+    for index, branch in enumerate(branches):
+        dimension, uniform = len(branch.free), math.ceil(count * widths[index] / max(widths))
+        yield index, first_samples(uniform, dimension, 1, stream + index, boundary_share=0.0), True
+        if dimension:
+            yield index, first_samples(count, dimension, 1, stream + index), False
 
 
 def _length_columns(problem: Problem) -> list[int]:
@@ -45,23 +88,26 @@ def _length_columns(problem: Problem) -> list[int]:
     return [0, 1, 2, *([] if column is None else [column])]
 
 
-def screened(problem: Problem) -> tuple[Array, Array]:
-    """Return designs as in `designs_of` and their greatest relative violation (n,), as many as a short time allows."""
+def screened(problem: Problem) -> Screening:
+    """Return designs as in `designs_of` with their violations, as many as a short time allows."""
     end = time.monotonic() + _MOMENT
     columns = _length_columns(problem)
-    designs, violations = [np.zeros((0, len(columns)))], [np.zeros(0)]
+    designs, violations, uniform = [np.zeros((0, len(columns)))], [np.zeros(0)], [np.zeros(0, dtype=bool)]
     parts = _exact_parts(problem)
     for place, part in enumerate(parts):
-        for index, branch in enumerate(elimination_branches(part)):
-            evaluator = Evaluator(part, branch)
-            points = first_samples(SAMPLES // len(parts), evaluator.dimension, 1, index + 10 * place)
+        branches = elimination_branches(part)
+        evaluators = [Evaluator(part, branch) for branch in branches]
+        for index, points, is_uniform in _points(branches, SAMPLES // len(parts), 10 * place):
+            if not is_uniform and time.monotonic() > end:
+                continue
             for begin in range(0, len(points), BATCH):
-                screened_designs, _, violation = evaluator.screen(points[begin : begin + BATCH])
+                screened_designs, _, violation = evaluators[index].screen(points[begin : begin + BATCH])
                 designs.append(screened_designs[:, columns])
                 violations.append(violation)
+                uniform.append(np.full(len(violation), is_uniform))
                 if time.monotonic() > end:
                     break
-    return np.concatenate(designs), np.concatenate(violations)
+    return Screening(np.concatenate(designs), np.concatenate(violations), np.concatenate(uniform))
 
 
 def _exact_parts(problem: Problem) -> list[Problem]:

@@ -22,17 +22,16 @@ from ...optimise.job.motion import MotionPart, with_margin
 from ...optimise.job.raw_tables import table_in
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Objective
-from ...optimise.problem.violation import FEASIBLE
 from .feasibility import PATIENCE, Ends, example_of, lengths_of, run_within
 from .partial_job import ranges_of, requirement_names
-from .samples import SAMPLES, designs_of, screened
+from .samples import Screening, designs_of, screened
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
 class PossibleSwing:
-    """Values that the ranges of a swing job allow. closing: fraction of the designs in the box that make the swing.
+    """Values that the ranges of a swing job allow. closing: fraction of the box that makes the swing.
 
     travel (m): ends of its range, for designs that keep the margin and the other checked requirements, if any do; None
     if no design makes the swing. feasible: fraction of the `sampled` designs that meet every checked requirement.
@@ -88,19 +87,16 @@ def possible_swing(tables: Mapping[str, Any], full_problem: Problem | None) -> P
     screening = None if full is None else run_within(PATIENCE, lambda: screened(full))
     named = requirement_names(tables)
     unchecked = () if screening is not None else tuple(name for name in named if name != SWING_TRANSMISSION_ANGLE.name)
-    designs, violation = screened(light) if screening is None else screening
-    return _possible_swing(swing, light, designs, violation, unchecked)
+    return _possible_swing(swing, light, screened(light) if screening is None else screening, unchecked)
 
 
-def _possible_swing(
-    swing: Swing, light: Problem, designs: Array, violation: Array, unchecked: tuple[str, ...]
-) -> PossibleSwing:
+def _possible_swing(swing: Swing, light: Problem, sample: Screening, unchecked: tuple[str, ...]) -> PossibleSwing:
     sign = -1.0 if light.mechanism.nominal.branch == "crossed" else 1.0
-    box = designs_of(replace(light, constraints=()), SAMPLES)
+    box, is_uniform = designs_of(replace(light, constraints=()))
     turning = passes(light.mechanism, swing, box)
-    closes = np.isfinite(violation)
-    good = violation <= FEASIBLE
-    example = example_of(designs, violation, box[turning])
+    designs, good = sample.designs, sample.is_feasible
+    closes = np.isfinite(sample.violation)
+    example = example_of(designs, sample.violation, box[turning])
     basis = designs[good] if good.any() else designs[closes] if closes.any() else box[turning]
     ends = ends_of(light.mechanism, swing, basis)
     travel = np.abs(positions(ends.end, sign, basis) - positions(ends.start, sign, basis))
@@ -114,10 +110,10 @@ def _possible_swing(
         swing=swing,
         example_swing=example_swing,
         branch=sign,
-        closing=float(turning.mean()),
+        closing=float(turning[is_uniform].mean()),
         travel=(float(travel.min()), float(travel.max())) if len(travel) else None,
-        feasible=float(good.mean()) if len(good) else 0.0,
-        sampled=len(good),
+        feasible=sample.feasible,
+        sampled=sample.sampled,
         example=lengths_of(example),
         example_feasible=bool(good.any()),
         unchecked=unchecked,

@@ -176,6 +176,23 @@ def test_as_many_designs_meet_an_exact_value_as_a_thin_band_around_it(shared: ht
         assert share({"min": f"{100 - half} mm", "max": f"{100 + half} mm"}) == pytest.approx(exact, abs=0.06)
 
 
+@pytest.mark.parametrize("offset", [(0.0, 100.0), (-10.0, 150.0)])
+def test_fractions_beside_the_form_are_those_of_the_volume_of_the_box(
+    shared: httpx.Client, offset: tuple[float, float]
+) -> None:
+    ends = {"crank": (20.0, 100.0), "rod": (60.0, 400.0), "offset": offset}
+    variables = {name: [f"{low:g} mm", f"{high:g} mm"] for name, (low, high) in ends.items()}
+    random = np.random.default_rng(1)
+    r, l, e = (random.uniform(low, high, 100_000) for low, high in ends.values())
+    rotates = l > r + np.abs(e)
+    feasible = rotates & (np.abs(e) + r <= l * math.cos(math.radians(40.0)))
+    constraints = {"transmission_angle": {"min": "40 deg"}}
+    allowed = preview(shared, {"variables": variables, "constraints": constraints})["allowed"]
+    assert allowed["turning_share"] == pytest.approx(rotates.mean(), abs=0.03)
+    assert allowed["feasible_share"] == pytest.approx(feasible.mean(), abs=0.03)
+    assert allowed["hardest_share"] == pytest.approx(feasible.sum() / rotates.sum(), abs=0.03)
+
+
 def test_a_crank_that_locks_is_told_how_much_longer_a_rod_it_needs(shared: httpx.Client) -> None:
     lengths = {"crank": "50 mm", "rod": "80 mm", "offset": "-40 mm"}
     (said,) = preview(shared, {"variables": lengths})["allowed"]["said"]

@@ -9,7 +9,7 @@ import { inDisplayUnits, limitText, unitOf, withUnit } from "../lib/numbers.js";
  * Fill a place with what a preview says. apply(change): the reader chose a change that settles a warning.
  * @param {HTMLElement} place @param {Api.Preview} preview @param {(change: Api.Change) => void} apply
  */
-export function showFacts(place, { allowed, understood, swing }, apply) {
+export function showFacts(place, { allowed, understood, swing, example }, apply) {
   const open = place.querySelector("details")?.open; // as the reader left it
   const changes = [...(understood?.changes ?? []), ...(allowed?.changes ?? [])];
   /** @param {string} sentence */
@@ -31,9 +31,13 @@ export function showFacts(place, { allowed, understood, swing }, apply) {
       h(
         "dl",
         { class: "terms" },
-        row("makes the swing", share(swing.closing_share), "of the ranges"),
+        row("makes the swing", share(swing.closing_share, Boolean(swing.example)), "of the ranges"),
         row("travel of the slider", between(swing.travel_mm, "mm")),
-        row("meets everything", share(swing.feasible_share), `of ${swing.sampled} tried`),
+        row(
+          "meets everything",
+          share(swing.feasible_share, swing.example?.feasible),
+          `of ${swing.sampled} tried`,
+        ),
       ),
       notesOf(swing.unchecked, understood, { open }),
     );
@@ -52,11 +56,15 @@ export function showFacts(place, { allowed, understood, swing }, apply) {
     h(
       "dl",
       { class: "terms" },
-      row("rotates fully", share(allowed.turning_share), "of the ranges"),
+      row("rotates fully", share(allowed.turning_share, Boolean(example)), "of the ranges"),
       row("strokes", between(allowed.stroke_mm, "mm")),
       row("time ratios", between(allowed.time_ratio, "")),
       row("transmission angles", between(allowed.transmission_angle_deg, "deg")),
-      row("meets everything", share(allowed.feasible_share), `of ${allowed.sampled} tried`),
+      row(
+        "meets everything",
+        share(allowed.feasible_share, example?.feasible),
+        `of ${allowed.sampled} tried`,
+      ),
       allowed.slow_strokes.length ? row("slow stroke", allowed.slow_strokes.join(" or ")) : null,
     ),
     notesOf(allowed.unchecked, understood, { said: allowed.said.map(warning), open }),
@@ -119,9 +127,9 @@ function understanding(understood) {
     ]);
 }
 
-/** @param {number} value */
-function share(value) {
-  if (value > 0 && value < 0.01) return "under 1 %";
+/** Format a fraction of samples. found: whether a design is known that counts. @param {number} value @param {boolean} [found] */
+function share(value, found = false) {
+  if ((value > 0 || found) && value < 0.01) return "under 1 %";
   return value > 0.99 && value < 1 ? "over 99 %" : `${Math.round(100 * value)} %`;
 }
 
