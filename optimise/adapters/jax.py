@@ -1,4 +1,4 @@
-"""Quantities of a problem as a function that JAX differentiates (reverse mode) and maps over designs."""
+"""A problem's quantities as a JAX function with reverse-mode derivatives, mapped over designs."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 def jax_function(problem: Problem, quantities: Sequence[str] | None = None) -> JaxFunction:
     """Return a function from designs (..., 3 + k) to quantities (..., q), SI, for `jax.grad`, `jax.vmap`, `jax.jit`.
 
-    quantities: names; the objectives if None. The derivatives are those of `Problem.evaluate` (`jax.custom_vjp`), of
-    first order and in reverse mode. Raises `InputError` without JAX, and unless JAX uses double precision.
+    quantities: names; by default, the objectives. Supports first derivatives in reverse mode, those of
+    `Problem.evaluate` (`jax.custom_vjp`). Raises `InputError` if JAX is missing or not set to double precision.
     """
     require_problem(problem, "jax_function")
     try:

@@ -1,4 +1,4 @@
-"""Refusal for a framework that is not installed."""
+"""Error for an optional framework that is not installed."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from ...model.errors import InputError
 
 
 def require(framework: str, error: ImportError) -> InputError:
-    """Return the error that names the extra which brings a framework; for any other missing import the error stays."""
+    """Return an error that names the extra to install; for any other missing import, return the error itself."""
     if error.name is None or error.name.partition(".")[0] != framework:
         raise error
     return InputError(f'{framework} is needed; it is not installed; run pip install "slidercrank[{framework}]"')

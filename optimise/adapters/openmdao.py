@@ -1,4 +1,4 @@
-"""Quantities of a problem as a component of an OpenMDAO model."""
+"""A problem's quantities as a component for an OpenMDAO model."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 
 def openmdao_component(problem: Problem, quantities: Sequence[str] | None = None) -> ExplicitComponent:
-    """Return an `ExplicitComponent` that maps the numbers of one design to quantities, each with its SI unit.
+    """Return an `ExplicitComponent` that maps the numbers of one design to quantities in SI units.
 
-    Inputs: crank, rod, offset, and the varying numbers with underscores in place of dots (mechanism_slider_mass).
-    Outputs: quantities by name; None stands for the objectives and the constrained ones. Partials are exact. A design
-    that does not rotate fully has NaN outputs, which an optimiser's line search must survive: bound the model so that
-    rod exceeds crank + |offset|. Raises `InputError` without OpenMDAO.
+    Inputs: crank, rod, offset, and the extra variables with underscores in place of dots (mechanism_slider_mass).
+    Outputs: quantities by name; By default, the objectives and the constrained quantities. Partials are exact. A design
+    that does not rotate fully has NaN outputs, which some line searches do not survive: bound the model so that rod
+    exceeds crank + |offset|. Raises `InputError` without OpenMDAO.
     """
     require_problem(problem, "openmdao_component")
     try:

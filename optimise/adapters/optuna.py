@@ -1,4 +1,4 @@
-"""A problem as the objective of an Optuna study."""
+"""A problem as the objective function for an Optuna study."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from optuna.trial import Trial
 
 _FAR = 1e30
-"""Stands for infinite, which a study of several objectives does not take."""
+"""Replaces infinity, which Optuna rejects in studies with several objectives."""
 
 
 def optuna_objective(
@@ -22,10 +22,10 @@ def optuna_objective(
 ) -> Callable[[Trial], tuple[float, ...]]:
     """Return an objective function for `study.optimize`, with minimised objectives and requirements as constraints.
 
-    Create the study with a direction "minimize" for each objective. eliminate: whether to eliminate equalities, see
-    `standard_form`; the parameters then run from 0 to 1. elimination_branch: index of one of several solutions of the
-    equalities. Each trial has its design as user attribute "design": crank, rod, offset, m, extra variables, SI.
-    Raises `InputError` as `standard_form` does.
+    Create the study with direction "minimize" for each objective. eliminate: whether to eliminate equalities, see
+    `standard_form`; the parameters then range from 0 to 1. elimination_branch: index of the solution branch if the
+    equalities have several. Each trial stores its design in the user attribute "design": crank, rod, offset, m, extra
+    variables, SI. Raises `InputError` as `standard_form` does.
     """
     form = standard_form(problem, eliminate=eliminate, elimination_branch=elimination_branch)
 
@@ -49,4 +49,4 @@ def optuna_objective(
 
 
 _TOLERANCE = 1e-4
-"""Relative distance from the value of an equality that counts as met, where equalities are not eliminated."""
+"""Relative tolerance within which an equality counts as met if equalities are not eliminated."""

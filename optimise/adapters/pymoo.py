@@ -1,4 +1,4 @@
-"""A problem for the algorithms of pymoo."""
+"""A problem for pymoo's algorithms."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ if TYPE_CHECKING:
     from pymoo.core.problem import Problem as PymooProblem
 
 _FAR = 1e30
-"""Stands for infinite: pymoo scales by the greatest value."""
+"""Replaces infinity, because pymoo scales by the greatest value."""
 
 
 def pymoo_problem(problem: Problem, *, eliminate: bool = True, elimination_branch: int | None = None) -> PymooProblem:
-    """Return a pymoo `Problem` that evaluates whole populations: F as minimised, G <= 0, H = 0.
+    """Return a pymoo `Problem` that evaluates whole populations: F minimised, G <= 0, H = 0.
 
-    eliminate: whether to eliminate equalities, see `standard_form`; genetic algorithms hardly meet them otherwise. The
-    variables then run from 0 to 1; `found.form.designs(X)` gives the designs. elimination_branch: index of one of
-    several solutions of the equalities. Raises `InputError` without pymoo.
+    eliminate: whether to eliminate equalities, see `standard_form`; genetic algorithms rarely meet them otherwise. The
+    variables then range from 0 to 1; `found.form.designs(X)` gives the designs. elimination_branch: index of the
+    solution branch if the equalities have several. Raises `InputError` without pymoo.
     """
     try:
         from pymoo.core.problem import Problem as PymooProblem
@@ -46,7 +46,7 @@ def pymoo_problem(problem: Problem, *, eliminate: bool = True, elimination_branc
 
         def __reduce__(self) -> tuple[object, ...]:
             rebuild = partial(pymoo_problem, eliminate=eliminate, elimination_branch=elimination_branch)
-            return rebuild, (problem,)  # a class inside a function cannot be pickled by name
+            return rebuild, (problem,)  # pickle cannot find a class inside a function by name
 
         def _evaluate(self, x: Array, out: dict[str, Array], *args: object, **options: object) -> None:
             arrays = form.arrays(x)

@@ -1,4 +1,4 @@
-"""Standard form of a problem for other optimisers: bounds, objectives as minimised, G <= 0 and H = 0."""
+"""Standard form of a problem for other optimisers: bounds, minimised objectives, G <= 0 and H = 0."""
 
 from __future__ import annotations
 
@@ -23,13 +23,14 @@ if TYPE_CHECKING:
 
 Row = tuple[Array, Array]
 _MARGIN = 0.02
-"""Share of the rod by which it exceeds crank + |offset| where no transmission angle is asked: that of 11.5 deg."""
+"""Minimum excess of the rod over crank + |offset|, as a fraction of the rod, if no transmission angle is required;
+equals 11.5 deg."""
 
 
 class Arrays(NamedTuple):
     """Objectives and requirements of n designs, and their Jacobians.
 
-    F (n, m) as minimised, G (n, g) <= 0, H (n, h) = 0. The Jacobians (n, ., 3 + k) are empty, (n, ., 0), unless
+    F (n, m) is minimised; G (n, g) <= 0; H (n, h) = 0. The Jacobians (n, ., 3 + k) have shape (n, ., 0) unless
     requested.
     """
 
@@ -42,7 +43,7 @@ class Arrays(NamedTuple):
 
 
 class ScipyForm(NamedTuple):
-    """Arguments of `scipy.optimize.minimize` and similar functions: bounds, constraints, a start near the middle."""
+    """Arguments for `scipy.optimize.minimize` and similar functions: bounds, constraints, a start near the middle."""
 
     fun: Callable[[Array], float]
     jac: Callable[[Array], Array]
@@ -53,15 +54,15 @@ class ScipyForm(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class StandardForm:
-    """A problem in standard form, over designs x = (crank, rod, offset, then the varying numbers), SI.
+    """A problem in standard form, with x = (crank, rod, offset, extra variables), SI.
 
     names: names of the variables. lower, upper: their bounds (3 + k,). objectives, inequalities, equalities: labels of
-    the columns of F, G and H. Objectives have the order of `Problem.objectives`, which is not that of the job: see
-    `objectives`. Those to be maximised are negated; one with a target is the distance from it.
-    Each requirement is divided by the size of its bound. The first two inequalities keep the crank rotating fully:
-    crank + offset and crank - offset below the rod. A swing has neither: its crank need not rotate fully.
-    With eliminated equalities, x holds the remaining free unknowns, each from 0 to 1, and `designs` converts it to
-    designs. The ranges of the computed dimensions then come last among the inequalities.
+    the columns of F, G and H. Objectives have the order of `Problem.objectives`, which may differ from the job's: see
+    `objectives`. Maximised objectives are negated; an objective with a target becomes the distance from it. Each
+    requirement is divided by the magnitude of its bound. The first two inequalities keep the crank rotating fully:
+    crank + offset and crank - offset below the rod. A swing omits both, because its crank need not rotate fully. With
+    eliminated equalities, x holds the remaining free unknowns, each from 0 to 1; `designs` converts x to designs. The
+    bounds on computed dimensions are then the last inequalities.
     """
 
     problem: Problem
@@ -83,11 +84,11 @@ class StandardForm:
         return designs.reshape(*points.shape[:-1], designs.shape[1])
 
     def arrays(self, x: ArrayLike, *, gradients: bool = False) -> Arrays:
-        """Return F, G and H of points x (n, 3 + k), and with `gradients` their Jacobians.
+        """Return F, G and H at points x (n, 3 + k), with their Jacobians if `gradients`.
 
-        For a design that does not rotate fully, F, G and H are infinite and their Jacobians NaN. The exceptions are the
-        first two rows of G, which say by how much it fails. For a design that cannot make a swing, all are infinite.
-        Raises `InputError` as `Problem.evaluate` does.
+        F, G and H are infinite, and their Jacobians NaN, if a design does not rotate fully. The exceptions are the
+        first two columns of G, which measure how far it is from rotating fully. If a design cannot make the swing, all
+        are infinite. Raises `InputError` as `Problem.evaluate` does.
         """
         points = given_designs(x, self.names)
         x = self.designs(points)
@@ -119,8 +120,8 @@ class StandardForm:
         """Return arguments for `scipy.optimize`: `minimize(**form.scipy()._asdict(), method="SLSQP")`.
 
         objective: name of the objective; required if the problem has several. keep_feasible: whether every iterate must
-        rotate fully; needed by trust-constr, unknown to SLSQP. Raises `InputError` if the objective is missing or
-        unknown, and for quantities without a gradient.
+        rotate fully; trust-constr needs it, SLSQP does not support it. Raises `InputError` if the objective is missing
+        or unknown, and for quantities without a gradient.
         """
         from scipy.optimize import Bounds, LinearConstraint, NonlinearConstraint
 
@@ -134,7 +135,7 @@ class StandardForm:
             share, rest = _greatest_crank_share(self._constraints), np.zeros((2, len(self.names) - 3))
             turning = np.column_stack([[[1.0, -share, 1.0], [1.0, -share, -1.0]], rest])
             constraints.append(LinearConstraint(turning, -np.inf, 0.0, keep_feasible=keep_feasible))
-            first = 2  # rows of G that are linear
+            first = 2  # linear rows of G
         if len(self.inequalities) > first:
             inner, slope = (lambda x: self.arrays(x).G[first:]), (lambda x: self.arrays(x, gradients=True).dG[first:])
             constraints.append(NonlinearConstraint(inner, -np.inf, 0.0, jac=slope))
@@ -152,7 +153,7 @@ class StandardForm:
     def start(self) -> Array:
         """Return a point near the middle of the bounds whose crank rotates fully, or makes the problem's swing.
 
-        Raises `InputError` if there is none.
+        Raises `InputError` if no such point exists.
         """
         if self._branch is not None or not self._turns:
             grid = self.lower + np.random.default_rng(1).random((4096, len(self.names))) * (self.upper - self.lower)
@@ -192,16 +193,16 @@ class StandardForm:
 
 
 def standard_form(problem: Problem, *, eliminate: bool = False, elimination_branch: int | None = None) -> StandardForm:
-    """Return a problem in the standard form for other optimisers.
+    """Return a problem in standard form for other optimisers.
 
     eliminate: whether to eliminate equality constraints exactly, as `solve` does. This leaves fewer unknowns, and suits
-    methods that cannot meet equalities, such as most genetic algorithms. elimination_branch: index from 0 of one of
-    several solutions of the equalities, such as those with an offset above and below 0; each has its own form.
+    methods that cannot handle equalities, such as most genetic algorithms. elimination_branch: index, from 0, of a
+    solution branch of the equalities, such as offsets above and below 0; each branch has its own form.
 
-    The requirements are those of `solve`, with its floors where the problem sets none: a transmission angle of 10 deg,
-    and with friction a self-locking margin of 5 deg. Without equalities, an offset of both signs has one form, in which
-    x are designs. Raises `InputError` for a problem with choices (use its `parts`) and for one with discrete values.
-    With `eliminate` it also does so for equalities with several branches unless one is named; the message lists them.
+    The requirements are those of `solve`, with its default floors: a transmission angle of 10 deg and, with friction, a
+    self-locking margin of 5 deg. Without equalities, offsets of both signs share one form, whose x are designs. Raises
+    `InputError` for a problem with choices (use its `parts`) or with discrete values. With `eliminate`, also raises it
+    if the equalities have several branches and none is selected; the message lists them.
     """
     require_problem(problem, "standard_form")
     if problem.variants:
@@ -275,7 +276,7 @@ def _requested_branch(problem: Problem, index: int | None) -> EliminationBranch 
 
 
 def _branch_label(branch: EliminationBranch) -> str:
-    """Return the sign of the offsets in a branch as text, and which of several roots it takes."""
+    """Describe a branch: the sign of its offsets, and which of several roots it takes."""
     side = "above 0" if branch.sign > 0.0 else "below 0"
     roots = [
         f"root {step.solutions.index(step) + 1} for {step.target}" for step in branch.steps if len(step.solutions) > 1
@@ -288,7 +289,7 @@ def _computed_dimensions(branch: EliminationBranch) -> list[str]:
 
 
 def _computed_range_rows(x: Array, branch: EliminationBranch, width: int) -> list[Row]:
-    """Rows of G for the ranges of computed dimensions; an offset counts by its size."""
+    """Columns of G for the bounds on computed dimensions; an offset counts by its magnitude."""
     rows = []
     for name in _computed_dimensions(branch):
         column, ends = branch.names.index(name), branch.bounds[name]
@@ -301,7 +302,7 @@ def _computed_range_rows(x: Array, branch: EliminationBranch, width: int) -> lis
 
 
 def _without_spurious(rows: list[Row], x: Array, problem: Problem, branch: EliminationBranch) -> list[Row]:
-    """Return rows that are infinite where an eliminated equality does not hold: its formula gave another root."""
+    """Return columns that are infinite where an eliminated equality fails because its formula gave another root."""
     equalities = [c for c in problem.constraints if c.quantity in branch.eliminated]
     values = problem.evaluate(x, [c.quantity for c in equalities])
     target = np.array([c.lower for c in equalities], dtype=np.float64)
@@ -310,18 +311,18 @@ def _without_spurious(rows: list[Row], x: Array, problem: Problem, branch: Elimi
 
 
 def _greatest_crank_share(constraints: tuple[Constraint, ...]) -> float:
-    """Greatest allowed ratio of crank + |offset| to the rod."""
+    """Greatest allowed ratio of crank + |offset| to rod."""
     floor = next((c.lower for c in constraints if c.quantity == TRANSMISSION_ANGLE.name and c.lower is not None), None)
     return 1.0 - _MARGIN if floor is None or not 0.0 < floor < 1.5 else float(np.cos(floor))
 
 
 def _full_rotation_rows(x: Array, constraints: tuple[Constraint, ...], width: int) -> list[Row]:
-    """Rows of G that keep the crank rotating fully: the floor on the transmission angle, linear in the dimensions."""
+    """Columns of G that keep the crank rotating fully: the transmission angle's floor, linear in the dimensions."""
     share, rows = _greatest_crank_share(constraints), []
     for sign in (1.0, -1.0):
         size = np.abs(x[..., 1])
         slope = np.zeros((*x.shape[:-1], width))
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # a rod of zero length fails without bound
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # infinite for a rod of zero length
             value = (x[..., 0] + sign * x[..., 2] - share * x[..., 1]) / size
             if width:
                 slope[..., 0], slope[..., 2] = 1.0 / size, sign / size

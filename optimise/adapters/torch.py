@@ -1,4 +1,4 @@
-"""Quantities of a problem as a function that PyTorch differentiates."""
+"""A problem's quantities as a differentiable PyTorch function."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 def torch_function(problem: Problem, quantities: Sequence[str] | None = None) -> TorchFunction:
     """Return a function from a tensor of designs (..., 3 + k) to quantities (..., q), SI, for `backward`.
 
-    quantities: names; the objectives if None. The derivatives are those of `Problem.evaluate`, of first order. Tensors
-    must have double precision and be on the CPU. Raises `InputError` without PyTorch, and for other tensors.
+    quantities: names; by default, the objectives. Supports first derivatives, those of `Problem.evaluate`. Tensors must
+    have double precision and be on the CPU. Raises `InputError` without PyTorch, or for any other tensor.
     """
     require_problem(problem, "torch_function")
     try:

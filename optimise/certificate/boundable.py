@@ -1,4 +1,4 @@
-"""Quantities with bounds over boxes of designs, and reasons why others have none."""
+"""Quantities that can be bounded over boxes of designs, and the reasons why others cannot."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from .machine import unbounded_load
 def unbounded_reason(problem: Problem, objective: Objective) -> str:
     """Return why an objective cannot be bounded over a box; empty if it can.
 
-    Bounded are quantities with `formulas`, travel and angle of a swing; from below the peaks over the cycle or the
-    swing, and from above the least values of a swing, of machines without friction.
+    Bounds exist for quantities with `formulas`, and for the travel and angle of a swing. Machines without friction also
+    have lower bounds on peaks over the cycle or swing, and upper bounds on the least values of a swing.
     """
     reasons = (_why_unbounded(part, objective) for part in problem.parts())
     return next(filter(None, reasons), "")
@@ -45,7 +45,7 @@ def _why_unbounded(problem: Problem, objective: Objective) -> str:
 
 
 def is_swing_form(quantity: Quantity) -> TypeGuard[SwingForm]:
-    """Whether a quantity is a closed form of both ends of a swing."""
+    """Whether a quantity has a closed form in the two ends of a swing."""
     return isinstance(quantity, SwingForm) and quantity.measure != "angle"
 
 
@@ -56,13 +56,13 @@ def _has_forces(quantity: Quantity) -> bool:
 
 
 def is_usable(problem: Problem, constraint: Constraint) -> bool:
-    """Whether a constraint helps to rule out boxes; one that does not still holds for every design that is counted."""
+    """Whether a constraint helps to rule out boxes; any other still holds for every design that is counted."""
     stated = [bound for bound in (constraint.lower, constraint.upper) if bound is not None]
     return len(ignored_sides(problem, constraint)) < len(stated)
 
 
 def ignored_sides(problem: Problem, constraint: Constraint) -> list[str]:
-    """Return in words which sides of a constraint do not rule out boxes."""
+    """Describe the sides of a constraint that do not rule out boxes."""
     sides: tuple[tuple[str, float | None, Sense], ...] = (
         ("minimum", constraint.lower, "maximise"),
         ("maximum", constraint.upper, "minimise"),

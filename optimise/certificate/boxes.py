@@ -1,4 +1,4 @@
-"""Bounds for all designs in a box: proof that none is feasible, and lower bounds on the objectives."""
+"""Bounds for all designs in a box: whether none is feasible, and lower bounds on the objectives."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ from .machine import Numbers, numbers_over_boxes, raw_number
 from .swing import SwingBoxes, SwingCurve, swing_form
 
 Curve = CycleCurve | SwingCurve | DemandCurve
-_ROUNDED = 1e-9  # relative: more than a closed form may be off where a linkage is close to locking
-_SLACK = 1e-6  # relative, by how much computed dimensions may miss their range here: more than requirements may
+_ROUNDED = 1e-9  # relative error of a closed form near locking is less than this
+_SLACK = 1e-6  # relative margin of computed dimensions beyond their bounds; wider than the margin of requirements
 
 
 @dataclass
 class Bounded(Table):
-    """Bounds that hold for the designs of n boxes.
+    """Bounds that hold for all designs in each of n boxes.
 
     alive: whether a design may be feasible; the other fields are meaningless otherwise. lower, upper: (n, k), the part
-    of the box that contains all feasible designs. corner: (n, m), lower bounds of their minimised objectives, -inf
-    where none is known. smear: (n, k), influence of the width along each axis. trial: (n, k), a point that is feasible
-    if the linear part of the box is accurate.
+    of the box that contains all its feasible designs. corner: (n, m), lower bounds on the minimised objectives, -inf
+    where unknown. smear: (n, k), effect of the box's width along each axis. trial: (n, k), a point that is feasible if
+    the linear part of the enclosure is accurate.
     """
 
     alive: Mask
@@ -56,7 +56,7 @@ class Bounded(Table):
 
 
 class Boxes:
-    """Bounds boxes of the unit box of one branch. span: (m,), by which objectives are compared."""
+    """Computes bounds over boxes in the unit box of one branch. span: (m,), scale of the objectives."""
 
     def __init__(self, evaluator: Evaluator, span: Array, *, objectives: bool = True) -> None:
         """Prepare the curves; raise `InputError` for an objective that cannot be bounded."""
@@ -84,7 +84,7 @@ class Boxes:
         self.swing = None if problem.motion is None else SwingBoxes(self.mechanism, problem.motion, slow=True)
 
     def _curves_of(self, name: str) -> Sequence[Curve]:
-        """Return the curves of which a quantity is the greatest or the least value; none of a closed form."""
+        """Return the curves whose greatest or least value is the quantity; empty for a closed form."""
         quantity = self.problem.quantity(name)
         if isinstance(quantity, CyclePeak):
             machines = machines_of(self.mechanism, quantity.signal)
@@ -96,7 +96,7 @@ class Boxes:
         return []
 
     def bound(self, lower: Array, upper: Array) -> Bounded:
-        """Return the bounds that hold for boxes lower to upper (n, k)."""
+        """Return the bounds for boxes from lower to upper (n, k)."""
         with np.errstate(all="ignore"):
             n, k = lower.shape
             limits = Limits(n, k)
@@ -109,7 +109,7 @@ class Boxes:
             moves = moving(self.mechanism, self.problem.motion, middle)
             curves: dict[str, Enclosure] = {}
             for name, curves_of_quantity in self.curves.items():
-                rows = np.flatnonzero(limits.alive)  # earlier constraints leave fewer
+                rows = np.flatnonzero(limits.alive)  # constraints before this one may have ruled out boxes
                 part = {slot: _select_boxes(value, rows) for slot, value in numbers.items()}
                 enclosed = _enclose_curves(curves_of_quantity, part, middle[rows], moves[rows])
                 curves[name] = _scatter_boxes(enclosed, rows, n)
@@ -146,7 +146,7 @@ class Boxes:
             )
 
     def _numbers(self, lower: Array, upper: Array, limits: Limits) -> Numbers:
-        """Return the raw numbers that designs set, (n, 1); dimensions that are computed are held to their ranges."""
+        """Return the machine parameters that designs set, (n, 1); confine computed dimensions to their bounds."""
         n, k = lower.shape
         branch = self.branch
 
@@ -174,7 +174,7 @@ class Boxes:
         return numbers_over_boxes(self.mechanism, [unknowns[name] for name in branch.names])
 
     def _closed(self, name: str, numbers: Numbers) -> tuple[Enclosure, Array | None, Array | None]:
-        """Return the forms of a quantity (n, forms), and further bounds from below and above."""
+        """Return the closed forms of a quantity (n, forms), and further lower and upper bounds."""
         quantity = self.problem.quantity(name)
         if is_swing_form(quantity):
             return swing_form(self.mechanism, quantity, numbers), None, None
@@ -190,11 +190,9 @@ class Boxes:
             [np.maximum(pair[rises != upper], 0.0)[:, 0] for pair, rises in zip(ends, quantity.rises, strict=True)]
             for upper in (True, False)
         ]
+        # NaN for designs that do not rotate fully
         least, highest = [
-            np.where(
-                l > r + a, closed_form(int(quantity.forms[0]), r, l, a), np.nan
-            )  # of those that rotate fully fully
-            for r, l, a in (least_at, most_at)
+            np.where(l > r + a, closed_form(int(quantity.forms[0]), r, l, a), np.nan) for r, l, a in (least_at, most_at)
         ]
         least, highest = least - _ROUNDED * np.abs(least), highest + _ROUNDED * np.abs(highest)
         return value, np.where(np.isnan(least), -np.inf, least), np.fmin(greatest, highest)
@@ -207,9 +205,9 @@ def _curve_bound(value: Enclosure, low: Array, high: Array, *, least: bool) -> A
 
 
 def _enclose_curves(curves: Sequence[Curve], part: Numbers, middle: Array, moves: Mask) -> Enclosure:
-    """Return the curves of a quantity side by side, of which the greatest or least bounds its own.
+    """Return a quantity's curves side by side; their greatest or least value bounds that of the quantity.
 
-    They are enclosed where the middle designs have their peaks, at any place where the middle does not move.
+    Each is enclosed at the peak of the middle design, or at an arbitrary position if the middle design cannot move.
     """
     enclosures = []
     for curve in curves:
@@ -223,20 +221,20 @@ def _enclose_curves(curves: Sequence[Curve], part: Numbers, middle: Array, moves
 def _computed_ends(
     name: str, unknowns: dict[str, Enclosure], bounds: Range, lean: float, n: int
 ) -> tuple[Array, Array]:
-    """Return the ends (n, 1) of a computed dimension from its range and r + |e| <= lean l."""
+    """Return the lower and upper end (n, 1) of a computed dimension from its bounds and r + |e| <= lean l."""
     ends = [unknowns[dimension].ends() for dimension in DIMENSIONS if dimension != name and dimension in unknowns]
     slack = _SLACK * bounds.upper
     low, high = np.full((n, 1), bounds.lower - slack), np.full((n, 1), bounds.upper + slack)
     if len(ends) < 2:
         return low, high
-    (first_low, two), (three, four) = ends  # in the order crank, rod, offset
+    (first_low, two), (three, four) = ends  # in the order crank, rod, offset, without the computed dimension
     if name == "rod":
         return np.maximum(low, (first_low + three) / lean), high
     return low, np.minimum(high, lean * four - first_low if name == "offset" else lean * two - three)
 
 
 def _minimised_bound(objective: Objective, lowest: Array, highest: Array) -> Array:
-    """Return a lower bound on an objective as it is minimised, from the ends of its value."""
+    """Return a lower bound on a minimised objective, from the ends of its value."""
     if objective.sense == "maximise":
         return -highest
     if objective.target is not None:
@@ -250,7 +248,7 @@ def _select_boxes(value: Enclosure, rows: IntArray) -> Enclosure:
 
 
 def _scatter_boxes(value: Enclosure, rows: IntArray, n: int) -> Enclosure:
-    """Return an enclosure of n boxes that says nothing of those not in `rows`."""
+    """Return an enclosure of n boxes that is unknown outside `rows`."""
     parts = value.centre.shape[1]
     centre, slopes = np.zeros((n, parts)), np.zeros((len(value.slopes), n, parts))
     rest = np.full((n, parts), np.nan)

@@ -1,4 +1,4 @@
-"""Certificate of a front: the result of a search for a proof, and its steps."""
+"""Certificate for a front: the result and steps of a search for a proof."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Status = Literal["proven", "out of budget", "cancelled"]
 
 @dataclass(frozen=True)
 class Step:
-    """State of the proof. epsilon: proven so far for the completed set, infinite while nothing is."""
+    """State of the proof. epsilon: proven so far for the completed set, infinite at first."""
 
     epsilon: float
     boxes: int
@@ -26,17 +26,16 @@ class Step:
 
 @dataclass(frozen=True)
 class Certificate:
-    """A proof of the greatest distance of a front from the true one.
+    """A proof of the greatest distance from a front to the true one.
 
-    requested: epsilon to be proven. epsilon: proven for the front completed by the added designs. delivered: proven for
-    the front alone. gap: certain gap of the front alone, the excess of the design `hole` (3 + v,) (None if no design
-    lies beyond the front). All in units of the objectives' ranges `span` (m,), SI. hypervolume_gap: greatest possible
+    requested: epsilon to prove. epsilon: proven for the front completed by the added designs. delivered: proven for the
+    front alone. gap: certain gap in the front alone, the excess of the design `hole` (3 + v,) (None if no design lies
+    beyond the front). All in units of the objectives' ranges `span` (m,), SI. hypervolume_gap: upper bound on the
     excess of the true front's hypervolume over the front's, in its units, including volume beyond the front's ideal
-    point. added: (n, 3 + v), SI, the designs that complete the front; added_values: (n, m), SI, minimised; table: all
-    their quantities. boxes: number of boxes bounded. open: number of open boxes. remaining: their fraction of the
-    design box. worst_open_box: the ranges of a design's numbers, SI, in the open box with the largest excess, (3 + v,
-    2); None if none is open. notes: requirements that the bounds did not use. The proof holds without them, but is
-    harder to obtain.
+    point. added: (n, 3 + v), SI, designs that complete the front; added_values: (n, m), SI, minimised; table: all their
+    quantities. boxes: number of bounded boxes. open: number of open boxes. remaining: their fraction of the design box.
+    worst_open_box: ranges of a design's numbers, SI, in the open box with the largest excess, (3 + v, 2); None if no
+    box is open. notes: requirements that the bounds did not use. The proof holds without them, but is harder to find.
     """
 
     status: Status
@@ -67,7 +66,7 @@ class Certificate:
 def message_of(
     status: Status, requested: float, proven: float, delivered: float, gap: float, designs: int, added: int
 ) -> str:
-    """Return the proof in words."""
+    """Describe the proof in words."""
 
     def share(value: float) -> str:
         return f"{100.0 * value:.3g} %"

@@ -1,18 +1,18 @@
-"""Distance of a front from the true one: bounded by branch and bound on the whole design box.
+"""Distance from a front to the true one, bounded by branch and bound over the whole design box.
 
 The statement proven, for an epsilon e and objectives scaled by their range over the front: **for every feasible design,
-some design of the set is worse by at most e of the range in every objective**. Hence no design that the job permits can
-beat all designs of the set by more than e. The set is the front as delivered, or the front completed by designs that
-the search for the proof adds: a front of few designs leaves gaps between neighbours, and no proof can be better than
-the widest gap. The certificate has both numbers, and the design that shows the widest gap.
+some design of the set is worse by at most e of the range in every objective**. So no permitted design can beat all
+designs in the set by more than e. The set is the front as delivered, or the front completed by designs that the proof
+search adds: a front with few designs leaves gaps, and no proof can be better than the widest gap. The certificate
+states both numbers, and the design that shows the widest gap.
 
-A box of designs is closed when none of them can be feasible, or when one design of the set covers the box's lower
-corner (`cover`): it then covers every feasible design of the box. Other boxes are halved, those of the largest excess
-first, so that at any time the largest excess of the open boxes is a proven epsilon. Where a box is small enough that a
-feasible design of its own covers its corner, and no other does, that design is added.
+A box of designs is closed when none of its designs can be feasible, or when one design in the set covers the box's
+lower corner (`cover`) and thus every feasible design in the box. Other boxes are halved, largest excess first, so at
+any time the largest excess among open boxes is a proven epsilon. In a small box, a feasible design from the box itself
+may cover its corner when no other design does; that design is added.
 
-The proof relies on bounds as in `boxes`, which account for rounding, and on the values of the set's designs as the
-model computes them. Requirements count as met to 1e-9 of their size, as everywhere else.
+The proof relies on the bounds from `boxes`, which account for rounding, and on the model's values for the designs in
+the set. Requirements count as met to a relative 1e-9, as everywhere else.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from .defaults import EPSILON, SECONDS
 from .search import Search
 
 MOST_COMBINATIONS = 1_000
-"""Combinations of listed values, each of which has boxes of its own."""
+"""Maximum number of combinations of listed values; each has its own boxes."""
 
 
 def certify_designs(
@@ -43,14 +43,14 @@ def certify_designs(
     progress: Callable[[Step], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Certificate:
-    """Return a proof of the greatest distance of a set of designs from the true front.
+    """Return a proof of the greatest distance from a set of designs to the true front.
 
     dimensions: (n, 3 + v), crank, rod, offset, m, and the extra variables, SI, of designs that meet the job's
-    requirements. variants: the variant of each in a problem with choices. epsilon: requested epsilon, a fraction of the
-    objectives' ranges over these designs. seconds: time limit, s; returns what is proven so far. progress: called
-    between rounds. cancelled: called between rounds. Each combination of listed values is a variant of its own. Raises
-    `InputError` without designs, for too many combinations, and for objectives that cannot be bounded over a range of
-    designs (`boundable.unbounded_reason`).
+    requirements. variants: the variant of each in a problem with choices. epsilon: requested epsilon, as a fraction of
+    the objectives' ranges over these designs. seconds: time limit, s; returns what is proven so far. progress,
+    cancelled: called between rounds. Each combination of listed values is a separate variant. Raises `InputError`
+    without designs, for too many combinations, and for objectives that cannot be bounded over a range of designs
+    (`boundable.unbounded_reason`).
     """
     if not len(dimensions):
         raise InputError("a certificate needs a front with designs; this one is empty; its message says why")
@@ -67,9 +67,9 @@ def certify_designs(
 
 
 def _enumerated(problem: Problem, variants: IntArray) -> tuple[Problem, IntArray]:
-    """Return a problem with a variant for each combination of listed values, and variants for designs of the old ones.
+    """Return a problem with a variant for each combination of listed values, and each design's variant in that problem.
 
-    A design's variant is any combination of its choices: its values come from the design itself.
+    A design's variant may be any combination of its choices: the design itself holds their values.
     """
     axes = [Axes.of_problem(part) for part in problem.parts()]
     counts = [axis.count for axis in axes]

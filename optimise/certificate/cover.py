@@ -1,8 +1,8 @@
-"""Excess of points of the objective space over designs, and few designs that cover many points.
+"""Excess of points in objective space over designs, and small sets of designs that cover many points.
 
-A design p covers a point z to e when p_j <= z_j + e in every objective j (all minimised and scaled). The *excess* of z
-over designs is the least e to which one of them covers it: additive epsilon dominance (E. Zitzler et al., "Performance
-assessment of multiobjective optimizers", IEEE Trans. Evol. Comput. 7(2), 2003, sec. III).
+A design p covers a point z to within e if p_j <= z_j + e in every objective j (all minimised and scaled). The *excess*
+of z over a set of designs is the least e to within which one of them covers it: additive epsilon dominance (E. Zitzler
+et al., "Performance assessment of multiobjective optimizers", IEEE Trans. Evol. Comput. 7(2), 2003, sec. III).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ...model.kernel.kernel import Flags, Integers, Row, Table, kernel
 from ..front.dominance import nondominated
 from ..front.hypervolume import hypervolume
 
-_EXACT = 4000  # points in three and more dimensions of which the hypervolume takes about a second
+_EXACT = 4000  # points in three or more dimensions whose hypervolume takes about a second
 
 
 @kernel
@@ -42,9 +42,9 @@ def excess(
     first: IntArray | None = None,
     enough: float = -np.inf,
 ) -> Array:
-    """Return the excess (n,) of points (n, m) over designs (p, m), infinite without any.
+    """Return the excess (n,) of points (n, m) over designs (p, m), infinite if there are no designs.
 
-    earlier_excess: excess over other designs; the lesser one counts. first: (n,), index of the first design compared.
+    earlier_excess: excess over other designs; the smaller counts. first: (n,), index of the first design to compare.
     enough: a value that need not be improved.
     """
     n = len(points)
@@ -66,7 +66,7 @@ def _choose_cover(points: Table, values: Table, epsilon: float, chosen: Flags) -
     for i in range(points.shape[0]):
         covered = False
         for c in range(count):
-            q = order[count - 1 - c]  # neighbours come one after the other
+            q = order[count - 1 - c]  # neighbouring boxes are adjacent in the table
             covers = True
             for j in range(points.shape[1]):
                 covers = covers and values[q, j] <= points[i, j] + epsilon
@@ -84,14 +84,14 @@ def _choose_cover(points: Table, values: Table, epsilon: float, chosen: Flags) -
 
 
 def choose_covering(points: Array, values: Array, epsilon: float) -> IntArray:
-    """Return the rows of values (n, m) that cover their point (n, m) to epsilon where earlier ones do not."""
+    """Return the rows of values (n, m) that cover their point (n, m) to within epsilon where no earlier row does."""
     chosen = np.zeros(len(points), dtype=bool)
     _choose_cover(np.ascontiguousarray(points), np.ascontiguousarray(values), epsilon, chosen)
     return np.flatnonzero(chosen)
 
 
 def greedy_cover(points: Array, values: Array, epsilon: float) -> IntArray:
-    """Return few rows of values (p, m), chosen greedily, that together cover all points (n, m) to epsilon."""
+    """Return few rows of values (p, m), chosen greedily, that together cover all points (n, m) to within epsilon."""
     covers = np.stack([(row <= points + epsilon).all(axis=1) for row in values]) if len(values) else np.zeros((0, 0))
     if not len(points) or not covers.any(axis=0).all():
         return np.arange(len(values)) if len(points) else np.zeros(0, dtype=np.int64)
@@ -108,16 +108,16 @@ def greedy_cover(points: Array, values: Array, epsilon: float) -> IntArray:
 
 
 def scaled_hypervolume(values: Array) -> float:
-    """Return the hypervolume of scaled values in the units of fronts; what lies beyond the ideal counts too."""
+    """Return the hypervolume of scaled values in the units of fronts, including volume beyond the ideal point."""
     ideal, span = np.zeros(values.shape[1]), np.ones(values.shape[1])
     return hypervolume(values[nondominated(values)], ideal, span, clip_at_ideal=False)
 
 
 def hypervolume_gap_bound(front: Array, designs: Array, epsilon: float, points: Array) -> float:
-    """Return by how much the hypervolume of the true front may exceed that of `front`; all scaled.
+    """Return an upper bound on the excess of the true front's hypervolume over that of `front`; all scaled.
 
-    Every feasible design is covered by `designs` to epsilon, and lies beyond one of `points` unless the front itself
-    covers it to epsilon. Of the two sets that the true front cannot leave, the smaller.
+    `designs` cover every feasible design to within epsilon; each also lies beyond one of `points` unless the front
+    itself covers it to within epsilon. Both sets confine the true front; the smaller one counts.
     """
     if not np.isfinite(epsilon):
         return float("inf")

@@ -1,4 +1,4 @@
-"""Crank angles that follow the design, enclosed over boxes: for a slider position, and at a dead centre."""
+"""Crank angles that depend on the design, enclosed over boxes: for a slider position, and at a dead centre."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from ...model.machine.design import Design
 from ...model.machine.two_turns import TURN
 from .enclosure import Enclosure, interval, select
 
-_ON_END = 1e-7  # share of the stroke: nearer to a dead centre than this is on it
-_AT_REST = 1e-6  # of the crank: |x'| below it is a dead centre
+_ON_END = 1e-7  # fraction of the stroke; a point closer than this to a dead centre is on it
+_AT_REST = 1e-6  # relative to the crank: |x'| below it means a dead centre
 
 
 def crank_pin_of(d: Design, x: Any, side: Any) -> tuple[Any, Any]:
-    """Return q and h of the crank pin q B + h B' for a slider position x.
+    """Return q and h for a slider position x; the crank pin is at q B + h B'.
 
-    With B the slider pin, q = (r^2 + B^2 - l^2) / (2 B^2), and B' is B turned by 90 degrees, h^2 = r^2 / B^2 - q^2.
-    side: the sign of h, 1 with the crank pin left of the line from crank pivot to slider pin.
+    B is the slider pin, B' is B turned by 90 degrees, q = (r^2 + B^2 - l^2) / (2 B^2) and h^2 = r^2 / B^2 - q^2. side:
+    the sign of h, 1 if the crank pin is left of the line from crank pivot to slider pin.
     """
     square = x * x + d.e * d.e
     q = (d.r * d.r + square - d.l * d.l) / (square * 2.0)
@@ -30,16 +30,16 @@ def crank_pin_of(d: Design, x: Any, side: Any) -> tuple[Any, Any]:
 
 
 def crank_at(d: Design, x: Any, side: Any) -> tuple[Any, Any]:
-    """Return sine and cosine of the crank angle that puts the slider at x, see `crank_pin_of`."""
+    """Return sine and cosine of the crank angle for the slider position x, see `crank_pin_of`."""
     q, h = crank_pin_of(d, x, side)
     return (q * d.e + h * x) / d.r, (q * x - h * d.e) / d.r
 
 
 def angle_near(d: Design, x: Enclosure, sine: Any, cosine: Any, side: Array, near: Array | None = None) -> Enclosure:
-    """Return the crank angle, rad, with its sine and cosine: theta = atan2(e, x) + side acos(...).
+    """Return the crank angle, rad, from its sine and cosine: theta = atan2(e, x) + side acos(...).
 
-    near: angles (n, p) less than half a turn away; whole turns are added to get there. Not a number where the angle
-    ranges over half a turn or more.
+    near: angles (n, p) less than half a turn away, to which whole turns are added. NaN where the angle ranges over half
+    a turn or more.
     """
     r, l, e, at = (number.centre for number in (d.r, d.l, d.e, x))
     size = np.hypot(at, e)
@@ -55,7 +55,7 @@ def angle_near(d: Design, x: Enclosure, sine: Any, cosine: Any, side: Array, nea
 def at_share(
     d: Design, sine: Array, cosine: Array, middle: Array, start: float, end: float
 ) -> tuple[Enclosure, Enclosure]:
-    """Return sine and cosine of the crank angle at the share of the stroke that the middle design has covered."""
+    """Return sine and cosine of the crank angle at the same fraction of the stroke as in the middle design."""
     r, l, e = (column[:, None] for column in middle[:, :3].T)
     at = motion(sine, cosine, r, l, e, d.branch)
     inner, outer = np.sqrt((l - r) ** 2 - e * e), np.sqrt((l + r) ** 2 - e * e)
@@ -71,7 +71,7 @@ def at_share(
 
 
 def dead_centre_angle(d: Design, far: Mask) -> Enclosure:
-    """Return the crank angle of the outer dead centre where `far`, of the inner one elsewhere, rad."""
+    """Return the crank angle of the outer dead centre where `far`, otherwise of the inner one, rad."""
     outer, inner = outer_crank_angle(d.r, d.l, d.e), inner_crank_angle(d.r, d.l, d.e)
     angle = select(far, outer, inner)
     return angle if d.branch > 0.0 else math.pi - angle
@@ -80,11 +80,11 @@ def dead_centre_angle(d: Design, far: Mask) -> Enclosure:
 def at_dead_centre(
     d: Design, sine: Array, cosine: Array, angle: Array, middle: Array
 ) -> tuple[Mask, Enclosure, Enclosure, Any]:
-    """Return where the middle design is on a dead centre, and sine, cosine and an angle that stays there."""
+    """Return a mask of middle designs at a dead centre, with sine, cosine and angle that follow the dead centre."""
     r, l, e = (column[:, None] for column in middle[:, :3].T)
     at = motion(sine, cosine, r, l, e, d.branch)
     on_dead_centre = np.abs(at.x_1) < _AT_REST * r
-    far = at.x * d.branch > np.sqrt(l * l - e * e)  # between the two dead centres
+    far = at.x * d.branch > np.sqrt(l * l - e * e)  # sqrt(l^2 - e^2) lies between the dead centres
     q = select(far, d.r / (d.l + d.r), -d.r / (d.l - d.r))
     x = select(far, d.outer * d.branch, d.inner * d.branch)
     k = len(q.slopes)

@@ -1,12 +1,12 @@
-"""A curve over the cycle, enclosed over boxes of designs at chosen crank angles.
+"""A curve over the cycle, enclosed over boxes of designs at selected crank angles.
 
-The greatest value of a curve over the cycle is at least its value at any one crank angle, so an enclosure at one angle
-bounds a peak from below, for every design of a box. At the angle where the peak of the box's middle design is, the
-bound is right to second order in the size of the box: there the curve is flat over crank angle. Where the curve counts
-only over a part of the stroke, and the peak sits on the end of that part, the angle follows the design: it is the one
-at which the slider has covered a fixed share of its stroke. From above a peak is not bounded here.
+A curve's greatest value over the cycle is at least its value at any one crank angle, so an enclosure at one angle
+bounds the peak from below for every design in a box. At the peak of the box's middle design, the bound is accurate to
+second order in the box size, because the curve is flat there. If the curve counts only during part of the stroke and
+peaks at the end of that part, the angle follows the design: the slider has covered a fixed fraction of its stroke. This
+module does not bound peaks from above.
 
-Cylinders of a crankshaft add up at one angle of the shaft. Along a speed profile that angle gives the speed.
+The cylinders of a crankshaft add up at the same shaft angle. Along a speed profile, that angle determines the speed.
 """
 
 from __future__ import annotations
@@ -39,15 +39,15 @@ from .crank_angles import at_dead_centre, at_share, dead_centre_angle
 from .enclosure import Enclosure, interval, select, side_by_side
 from .machine import BoxMachine, Numbers
 
-_SIDE_STEP, _FARTHEST = 1e-9, 0.5  # rad from a step
+_SIDE_STEP, _FARTHEST = 1e-9, 0.5  # rad, distances from a step
 _ERRORS = (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
 
 
 def machines_of(mechanism: Mechanism, kind: Signal) -> tuple[Mechanism, ...]:
-    """Return machines whose highest peak of a signal is that of the machine.
+    """Return machines whose highest peak of a signal equals the whole machine's peak.
 
-    Each turn of a single crank's cycle of two turns is a separate machine. So is each cylinder, for a signal that does
-    not add up over the cylinders.
+    If the cycle of a single crank has two turns, each turn is a separate machine. So is each cylinder, if the signal
+    does not add up over the cylinders.
     """
     if not is_shaft(mechanism):
         return halves(mechanism) if kind.needs_forces and cycle_turns(mechanism) > 1 else (mechanism,)
@@ -65,15 +65,15 @@ def machines_of(mechanism: Mechanism, kind: Signal) -> tuple[Mechanism, ...]:
 
 
 Read = Callable[[Forces, Any, Any, Motion, Design], tuple[Any, Any]]
-"""Two components from the joint forces, sine and cosine of the crank angle, the motion and the design."""
+"""Two components of a signal from the joint forces, sine and cosine of the crank angle, the motion and the design."""
 
 
 class CycleCurve:
-    """One signal of a machine over boxes of designs. Without friction, whose forces are not a plain formula."""
+    """One signal of a machine over boxes of designs. Friction is excluded: its forces have no plain formula."""
 
     least = False
     anywhere: tuple[float, ...] = (0.5 * math.pi,)
-    """A place for boxes whose middle design does not turn."""
+    """Position for boxes whose middle design does not rotate fully."""
 
     def __init__(self, mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> None:
         self.kind, self.during, self.mechanism = kind, during, mechanism
@@ -92,17 +92,17 @@ class CycleCurve:
         self.shares = self.partial and self.kind in _ERRORS
 
     def places(self, designs: Array) -> Array:
-        """Return the crank angle, rad, of each design's peak (n, 1), that of the shaft for a shaft."""
+        """Return each design's crank angle at the peak, rad, (n, 1); for a crankshaft, the shaft's angle."""
         if screens(self.mechanism, self.kind, during=self.during):
             return screen(self.mechanism, (self.kind,), designs, places=True)[0].angles[:, None]
         angles = find_peaks(self.mechanism, self.kind, designs, during=self.during, limit=1).angles
         return np.where(np.isfinite(angles), angles, 0.0)
 
     def enclose(self, numbers: Numbers, places: Array, middle: Array) -> Enclosure:
-        """Return the signal (n, p) at crank angles (n, 1): numbers (n, 1), middle designs (n, 3 + k).
+        """Return the signal (n, p) at crank angles (n, 1). numbers: (n, 1). middle: middle designs (n, 3 + k).
 
-        It has two parts where it may jump at the angle, and three where a table steps. The rest is not a number where
-        the angle does not count in all of the box.
+        The result has two parts where the signal may jump at the angle, and three where a table steps. The rest is NaN
+        where the angle does not count throughout the box.
         """
         sums = [
             pair
@@ -113,9 +113,9 @@ class CycleCurve:
         return reduce(side_by_side, sizes)
 
     def angles_at_steps(self, numbers: Numbers, angles: Array, middle: Array) -> list[Array]:
-        """Return angles (n, 1) and, if loads step, angles on both sides of them.
+        """Return angles (n, 1) and, if loads have steps, angles on both sides of each step.
 
-        A peak on a step moves with the design: beside it all designs of the box are on one side of the step.
+        A peak at a step moves with the design: beside it, all designs in the box are on one side of the step.
         """
         if not self.steps:
             return [angles]
@@ -126,9 +126,9 @@ class CycleCurve:
         return [angles, angles - away, angles + away]
 
     def sums(self, numbers: Numbers, angles: Array, middle: Array, read: Read | None = None) -> list[tuple[Any, Any]]:
-        """Return the two components of the signal, or what `read` takes from joint forces, over all cylinders.
+        """Return the signal's two components, or what `read` takes from the joint forces, summed over all cylinders.
 
-        Two pairs where it jumps at the angle; only a single cylinder does, at its dead centre.
+        Two pairs if it jumps at the angle, as only a single cylinder does at its dead centre.
         """
         designs = [machine.design(numbers) for machine in self.machines]
         read = read or self._component
@@ -146,7 +146,7 @@ class CycleCurve:
     def _member_parts(
         self, member: Member, designs: list[tuple[Design, Any]], angles: Array, middle: Array, read: Read
     ) -> list[tuple[Enclosure, Enclosure]]:
-        """Return a cylinder's components at angles of the shaft: for both strokes if it jumps at the angle."""
+        """Return a cylinder's components at shaft angles; for both strokes if they jump at the angle."""
         d = self._moving(designs[0][0], member, angles)
         local: Any = angles + member.lead
         sine: Any = np.sin(local)
@@ -162,7 +162,7 @@ class CycleCurve:
         outward = m.x_1 * (d.branch * self.mechanism.direction)
         place = (sine, cosine, local, m)
         if jump is not None and jump.any():
-            # The peak is the greater limit of the curve from either side, which are the two strokes.
+            # The peak is the greater one-sided limit of the curve, one for each stroke.
             sides = [
                 select(jump, interval(side, side, len(outward.slopes)), outward) for side in (jump + 0.0, -1.0 * jump)
             ]
@@ -175,7 +175,7 @@ class CycleCurve:
         return [(x, y)]
 
     def _moving(self, d: Design, member: Member, angles: Array | Enclosure) -> Design:
-        """Return a design with the speed and acceleration at angles of the shaft, and gravity as its bank feels it."""
+        """Return a design with the speed and acceleration at shaft angles, and gravity in the axes of its bank."""
         if member.bank:
             c, s = math.cos(member.bank), math.sin(member.bank)
             x, y = d.gravity_x, d.gravity_y
@@ -189,7 +189,7 @@ class CycleCurve:
     def _components(
         self, member: Member, designs: list[tuple[Design, Any]], d: Design, place: Any, outward: Enclosure, read: Read
     ) -> tuple[Enclosure, Enclosure]:
-        """Return the components of one cylinder, in the axes of the shaft if it shakes."""
+        """Return the components of one cylinder; a shaking signal is in the axes of the shaft."""
         sine, cosine, local, m = place
         kind, nothing = self.kind, 0.0 * outward
         if kind in _ERRORS:
@@ -228,7 +228,7 @@ class CycleCurve:
         return (torque * d.speed if self.kind is Signal.POWER else torque), 0.0 * outward
 
     def _first_half(self, d: Design, local: Any) -> tuple[Mask, Mask]:
-        """Return masks: angles in the first of two turns, and boxes that lie within one turn."""
+        """Return two masks: angles in the first of two turns, and boxes that lie within one turn."""
         (datum,) = {load.cycle_datum for load in self.mechanism.loads if load.cycle_turns > 1}
         way = 1.0 if datum == "zero crank angle" else self.mechanism.direction
         counted: Any = local
@@ -253,9 +253,9 @@ class CycleCurve:
 
 
 def _ratios(pace: Any, angles: Any) -> tuple[Any, Any, Any]:
-    """Return p of a speed profile and its first two derivatives at angles (n, p) of the shaft.
+    """Return p of a speed profile and its first two derivatives at shaft angles (n, p).
 
-    Over an enclosed angle: the tangent at its centre, and bounds of the second and third derivative for the rest.
+    Over an enclosed angle: the tangent at its centre, and bounds on the second and third derivatives for the rest.
     """
     if not isinstance(angles, Enclosure):
         found = [speed_ratio_at(float(angle), pace)[:3] for angle in angles.ravel()]

@@ -1,9 +1,9 @@
-"""Ratios of load to resistance for bars and pins, enclosed over boxes of designs.
+"""Load-to-resistance ratios of bars and pins, enclosed over boxes of designs.
 
-The greatest stress over the cycle is at least that at one place and angle, and the greatest force of a pin at least
-that at one angle. So a stress or a pressure is bounded from below, and a safety from above. The place is a fraction of
-the bar's length, so it moves with the design. Where the section may vanish in a box, max(section, 0) takes its place in
-a safety: designs without section have no positive one.
+The greatest stress over the cycle is at least the stress at one point and angle; the greatest force on a pin is at
+least its force at one angle. So stresses and pressures have lower bounds, and safety factors have upper bounds. The
+point is a fraction of the bar's length, so it moves with the design. Where the section may vanish in a box, a safety
+factor uses max(section, 0): designs without a section have no positive one.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from .machine import Numbers, raw_number
 
 
 class StressCurve(CycleCurve):
-    """The greatest p sigma - q sigma at a location of one turn of a machine; `stress_cycle` defines it."""
+    """Greatest p sigma - q sigma at a location over one turn of a machine; `stress_cycle` defines it."""
 
     anywhere = (1.0, 1.0, np.pi / 2.0, np.pi / 2.0)
 
@@ -44,12 +44,12 @@ class StressCurve(CycleCurve):
         self.location, self.criteria = location, criteria
 
     def places(self, designs: Array) -> Array:
-        """Return fraction of the length, side and both crank angles, rad, of each design's greatest value (n, 4)."""
+        """Return each design's critical point (n, 4): fraction of the length, side, and both crank angles, rad."""
         (peaks,) = stress_peaks(self.mechanism, (self.location,), designs, np.array(self.criteria), limit=1)
         return np.where(np.isfinite(peaks.places[:, 0]), peaks.places[:, 0], self.anywhere)
 
     def enclose(self, numbers: Numbers, places: Array, middle: Array) -> Enclosure:
-        """Return the value (n, p) of each criterion at places (n, 4); see `CycleCurve.enclose`."""
+        """Return the value (n, p) of each criterion at critical points (n, 4); see `CycleCurve.enclose`."""
         share, side, first, second = (places[:, column : column + 1] for column in range(4))
 
         def read(f: Forces, sine: Any, cosine: Any, m: Motion, d: Design) -> tuple[Any, Any]:
@@ -65,14 +65,17 @@ class StressCurve(CycleCurve):
         for p, q in self.criteria:
             if p and q:
                 values += [high * p - low * q for high, low in product(highs, lows)]
-            else:  # each has an angle of its own; the other angle of a place is not that of a peak
+            else:  # each criterion has its own angle; the point's other angle is not at a peak
                 values += [high * p for high in highs] if p else [-low * q for low in lows]
         return reduce(side_by_side, values)
 
     def _stress(
         self, state: tuple[Any, Any, Any, Any, Any], number: Callable[[int], Any], share: Array, side: Array
     ) -> Any:
-        """Return the stress at the location, in an eye times w - D. state: arguments of `stress_along` up to forces."""
+        """Return the stress at the location; in an eye, times w - D.
+
+        state: arguments of `stress_along` up to forces.
+        """
         location = self.location
         slot = Raw.ROD_WIDTH if location.part == ROD else Raw.CRANK_WIDTH
         c = stress_along(location.part, *state, 0.0, (number(slot), number(slot + 1), number(slot + 2)))
@@ -87,17 +90,17 @@ class StressCurve(CycleCurve):
 
 
 class DemandCurve:
-    """A demand of a quantity: the greatest scale peak / section or, with `least`, the least scale section / peak."""
+    """One load demand: the greatest scale peak / section or, with `least`, the least scale section / peak."""
 
     def __init__(self, peak: CycleCurve, demand: Demand, *, least: bool) -> None:
         self.peak, self.demand, self.least, self.anywhere = peak, demand, least, peak.anywhere
 
     def places(self, designs: Array) -> Array:
-        """Return the place of each design's peak."""
+        """Return the position of each design's peak."""
         return self.peak.places(designs)
 
     def enclose(self, numbers: Numbers, places: Array, middle: Array) -> Enclosure:
-        """Return the value (n, p) at the places of peaks; not a number where the peak may not be positive."""
+        """Return the value (n, p) at peak positions; NaN where the peak may not be positive."""
         peak, (_, section, scale, _) = self.peak.enclose(numbers, places, middle), self.demand
         size: Any = 1.0 if section is None else section(raw_number(self.peak.mechanism, numbers))
         value: Enclosure
@@ -111,7 +114,7 @@ class DemandCurve:
 
 
 def demand_curves(mechanism: Mechanism, quantity: BarPeak) -> list[DemandCurve]:
-    """Return the curves of which a quantity is the greatest or the least value."""
+    """Return the curves whose greatest or least value is the quantity."""
     single = single_cylinder(mechanism)
     turns = halves(single) if cycle_turns(single) > 1 else (single,)
     curves: list[DemandCurve] = []

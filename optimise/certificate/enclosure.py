@@ -1,18 +1,18 @@
-"""Arithmetic that encloses a formula over a whole box of designs: a linear part plus a bound on the remainder.
+"""Arithmetic that encloses a formula over a whole box of designs by a linear part and a bound on the remainder.
 
-Over a box with coordinates d in [-1, 1]^k, a number of every design has the form
+Over a box with coordinates d in [-1, 1]^k, a number that depends on the design has the form
 
     value(d) in centre + slopes . d + [-rest, rest]        wherever the formula is defined,
 
 a Taylor model of first order (Makino and Berz, "Taylor models and other validated functional inclusion methods", Int.
-J. Pure Appl. Math. 4(4), 2003). Its excess over the true range shrinks with the square of the box. Each operation is
-valid pointwise, so a formula may be undefined elsewhere in the box.
+J. Pure Appl. Math. 4(4), 2003). Its overestimate of the true range shrinks with the square of the box size. Each
+operation is valid point by point, so a formula may be undefined elsewhere in the box.
 
-The formulas of the model are plain functions of any type with +, -, *, / and NumPy's sqrt and arcsin. They take an
-`Enclosure` as they take a float, so the physics is not written a second time.
+The model's formulas are plain functions that accept any type with +, -, *, / and NumPy's sqrt and arcsin. They accept
+an `Enclosure` as they accept a float, so the physics is not written twice.
 
-Rounding: every operation adds `UNIT` times the size of all that enters to the rest, eight times what IEEE doubles
-round it by; results are inflated by `INFLATION` of their size once more, for sines and other rounded numbers.
+Rounding: every operation adds `UNIT` times the magnitude of all operands to the rest, eight times the rounding error of
+IEEE doubles; results are inflated by another `INFLATION` of their magnitude, for sines and other rounded numbers.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ INFLATION = 1e-12
 
 
 class Enclosure:
-    """A number of each of n boxes, enclosed over the box.
+    """A number for each of n boxes, enclosed over the box.
 
     centre, rest: (n, ...). slopes: (k, n, ...). empty: where the formula is defined nowhere in the box; None for
-    nowhere. A rest that is not finite says nothing about the number.
+    nowhere. If the rest is not finite, the number is unknown.
     """
 
     __slots__ = ("_radius", "_size", "centre", "empty", "rest", "slopes")
@@ -44,14 +44,14 @@ class Enclosure:
 
     @property
     def radius(self) -> Array:
-        """Greatest distance of the number from the centre."""
+        """Greatest deviation of the number from its centre."""
         if self._radius is None:
             self._radius = np.abs(self.slopes).sum(axis=0) + self.rest
         return self._radius
 
     @property
     def size(self) -> Array:
-        """The greatest absolute value that the number may have."""
+        """Upper bound on the absolute value."""
         if self._size is None:
             self._size = np.asarray(np.abs(self.centre) + self.radius)
         return self._size
@@ -59,7 +59,7 @@ class Enclosure:
     def ends(self, low: Array | None = None, high: Array | None = None) -> tuple[Array, Array]:
         """Return the least and the greatest value, infinite where unknown.
 
-        low, high: (k, n), the part of [-1, 1]^k that matters; all of it by default.
+        low, high: (k, n), the relevant part of [-1, 1]^k; all of it by default.
         """
         swing = np.abs(self.slopes).sum(axis=0)
         lowest, highest = -swing, swing
@@ -74,7 +74,7 @@ class Enclosure:
         return np.where(is_finite, least, -np.inf), np.where(is_finite, greatest, np.inf)
 
     def confined(self, low: Array, high: Array) -> Enclosure:
-        """Return the number where only values from low to high (n, ...) matter: they alone where it reaches farther."""
+        """Return the number confined to low..high (n, ...): where it extends beyond them, only that interval counts."""
         clear = self.radius <= high - low
         if clear.all():
             return self
@@ -89,7 +89,7 @@ class Enclosure:
         straddles_zero = (low < 0.0) & (high > 0.0)
         if not straddles_zero.any():
             return self._scaled(sign)
-        # On [low, high] the absolute value lies between its chord and the chord less its height above zero.
+        # On [low, high] the absolute value lies between its chord and the chord minus the chord's height at zero.
         width = np.where(straddles_zero, high - low, 1.0)
         slope = np.where(straddles_zero, (high + low) / width, sign)
         height = np.where(straddles_zero, -2.0 * low * high / width, 0.0)
@@ -163,7 +163,7 @@ class Enclosure:
     def _inverted(self) -> Enclosure:
         """Return an enclosure of 1 / x.
 
-        1 / (c + t) = 1 / c - t / c^2 + t^2 / (c^2 (c + t)): the last is largest at the end next to zero.
+        1 / (c + t) = 1 / c - t / c^2 + t^2 / (c^2 (c + t)); the last term is largest at the end nearest zero.
         """
         size, radius = np.abs(self.centre), self.radius
         clear = size > radius * (1.0 + INFLATION)
@@ -176,7 +176,7 @@ class Enclosure:
     def _root(self) -> Enclosure:
         """Return an enclosure of the square root.
 
-        With w^2 = c + t and q^2 = c: w = q + t / (2 q) - (q - w)^2 / (2 q), the last largest at the lower end.
+        With w^2 = c + t and q^2 = c: w = q + t / (2 q) - (q - w)^2 / (2 q); the last term is largest at the lower end.
         """
         radius = self.radius
         least, greatest = self.centre - radius, self.centre + radius
@@ -187,7 +187,7 @@ class Enclosure:
         rest = self.rest * (0.5 / q) + 0.5 * bend + UNIT * (q + radius / q)
         if clear.all():
             return Enclosure(centre, slopes, rest, self.empty)
-        # What is defined lies between zero and the root of the greatest value.
+        # Where defined, the result lies between zero and the root of the greatest value.
         half = np.where(np.isfinite(greatest), 0.5 * np.sqrt(np.maximum(greatest, 0.0)) * (1.0 + INFLATION), np.nan)
         root = select(clear, Enclosure(centre, slopes, rest), Enclosure(half, 0.0, half))
         root.empty = _merge_empty(self.empty, greatest < -INFLATION * np.abs(self.centre))
@@ -213,7 +213,10 @@ class Enclosure:
         return arcsine
 
     def sin(self) -> Enclosure:
-        """Return the sine: tangent at the centre, and a second derivative of at most 1; NumPy calls it in arrays."""
+        """Return the sine: the tangent at the centre, and a bound of 1 on the second derivative.
+
+        NumPy calls it in arrays.
+        """
         sine, cosine = np.sin(self.centre), np.cos(self.centre)
         rest = self.rest * np.abs(cosine) + 0.5 * self.radius**2 * (1.0 + INFLATION)
         rest = rest + 8.0 * UNIT * (1.0 + self.size)
@@ -225,7 +228,7 @@ class Enclosure:
         return (self + 0.5 * np.pi).sin()
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
-        """Run NumPy's functions on enclosures, as formulas call them, and operators with an array on the left."""
+        """Support NumPy functions that formulas call on enclosures, and operators with an array on the left."""
         if method != "__call__" or options or ufunc not in _FUNCTIONS:
             return NotImplemented
         return _FUNCTIONS[ufunc](*inputs)
@@ -245,14 +248,14 @@ _FUNCTIONS: dict[Any, Callable[..., Any]] = {
 
 
 def interval(low: Any, high: Any, k: int) -> Enclosure:
-    """Return a number of which only the ends are known."""
+    """Return a number known only by its ends."""
     low, high = np.broadcast_arrays(np.asarray(low, dtype=np.float64), np.asarray(high, dtype=np.float64))
     rest = 0.5 * (high - low) + UNIT * (np.abs(low) + np.abs(high))
     return Enclosure(0.5 * (low + high), np.zeros((k, *low.shape)), rest)
 
 
 def constant(value: Any, like: Enclosure) -> Enclosure:
-    """Return a number that all designs of a box share, as wide as another one."""
+    """Return a number that is the same for all designs in a box, with the shape of another one."""
     centre = np.broadcast_to(
         np.asarray(value, dtype=np.float64), np.broadcast_shapes(np.shape(value), like.centre.shape)
     )
@@ -260,13 +263,13 @@ def constant(value: Any, like: Enclosure) -> Enclosure:
 
 
 def sign_of(value: Enclosure) -> Array:
-    """Return the sign that a number has all over a box; NaN where it is not one."""
+    """Return a number's sign if it is constant over a box; otherwise NaN."""
     low, high = value.ends()
     return np.where(low > 0.0, 1.0, np.where(high < 0.0, -1.0, np.nan))
 
 
 def side_by_side(left: Enclosure, right: Enclosure) -> Enclosure:
-    """Return the parts (n, p) of one and of another side by side."""
+    """Return the parts (n, p) of two numbers side by side."""
     empty = None if left.empty is None or right.empty is None else left.empty & right.empty
     return Enclosure(
         np.concatenate([left.centre, right.centre], axis=1),
@@ -285,7 +288,7 @@ def coordinate(low: Array, high: Array, column: int, k: int) -> Enclosure:
 
 
 def select(mask: Mask, chosen: Enclosure, alternative: Enclosure) -> Enclosure:
-    """Return one number where the mask holds, another elsewhere."""
+    """Return one number where the mask holds, the other elsewhere."""
     empty = None
     if chosen.empty is not None or alternative.empty is not None:
         empty = np.where(
@@ -308,6 +311,6 @@ def _merge_empty(first: Mask | None, second: Mask | None) -> Mask | None:
 
 
 def _broadcast_slopes(slopes: Array, centre: Array) -> Array:
-    """Return slopes as wide as a centre that an array has widened."""
+    """Return slopes broadcast to the shape of a centre."""
     shape = (len(slopes), *np.shape(centre))
     return slopes if slopes.shape == shape else np.broadcast_to(slopes, shape)

@@ -1,4 +1,4 @@
-"""Force of the gas in a cylinder, enclosed over boxes of designs."""
+"""Gas force in a cylinder, enclosed over boxes of designs."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from .enclosure import UNIT, Enclosure, interval, select
 
 
 def gas_force(load: Cylinder, share: Enclosure, stroke: Enclosure, outward: Enclosure) -> Enclosure:
-    """Return the force, N outward, for the piston's distance from its top as a share of the stroke.
+    """Return the force, N outward, for the piston's distance from its top as a fraction of the stroke.
 
-    outward: its sign determines the stroke; where that is uncertain, the force lies between those of both strokes.
+    outward: its sign determines the stroke; where the sign is uncertain, the force spans both strokes.
     """
     sign = 1.0 if load.head == "inner dead centre" else -1.0
     low, high = outward.ends()
@@ -29,11 +29,11 @@ def gas_force(load: Cylinder, share: Enclosure, stroke: Enclosure, outward: Encl
 
 
 def _pressure(load: Cylinder, share: Enclosure, stroke: Enclosure, *, expanding: bool) -> Enclosure:
-    """Return the pressure in one stroke, Pa: it falls with the distance from the top."""
+    """Return the pressure during one stroke, Pa; it falls with the distance from the top."""
     k = len(share.slopes)
     first, last = (np.clip(end, 0.0, 1.0) for end in share.ends())
     if load.clearance_volume and load.compression_exponent:
-        # It rises (expansion) or falls (compression) with the clearance: a bound by the corners.
+        # It rises (expansion) or falls (compression) with the clearance, so the corners bound it.
         least, greatest = (load.clearance + load.clearance_volume / (load.area * end) for end in stroke.ends()[::-1])
         near, far = (greatest, least) if expanding else (least, greatest)
         return interval(_pressure_at(load, last, far, expanding), _pressure_at(load, first, near, expanding), k)
@@ -53,7 +53,7 @@ def _pressure(load: Cylinder, share: Enclosure, stroke: Enclosure, *, expanding:
             bent, curved, scale = np.maximum(first, event), last > event, load.high * (c + event) ** n
         with np.errstate(divide="ignore"):
             bend = np.where(curved, scale * n * (n + 1.0) / (c + bent) ** (n + 2.0), 0.0)
-        # Chords of the two pieces meet on the event; each curve hangs below its own by bend width^2 / 8 at most.
+        # Chords of the two pieces meet at the event; each curve lies at most bend width^2 / 8 below its chord.
         off = _pressure_at(load, event, c, expanding) - (at_first + slope * (event - first))
         between_ends = (first < event) & (event < last)
         lowest = np.where(between_ends, np.minimum(off, 0.0), 0.0) - 0.125 * bend * (last - first) ** 2
@@ -64,7 +64,7 @@ def _pressure(load: Cylinder, share: Enclosure, stroke: Enclosure, *, expanding:
 
 
 def _pressure_at(load: Cylinder, share: Any, clearance: Any, expanding: bool) -> Array:
-    """Return the pressure at a share of the stroke, for a clearance ratio."""
+    """Return the pressure at a fraction of the stroke, for a clearance ratio."""
     if load.compression_exponent == 0.0:
         return np.asarray((load.low if expanding else load.high) + 0.0 * share)
     if expanding and isinstance(load, LimitedPressure):

@@ -1,4 +1,4 @@
-"""The proof that no design meets all requirements of a job: every box of designs breaks one of them."""
+"""Proof that no design meets all requirements of a job, because every box of designs violates one."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from .tree import Tree, pool
 
 SECONDS = 5.0
 _BATCH = 2048
-_MOST = 400_000  # boxes bounded: the same job gives the same answer unless the machine is very slow
+_MOST = 400_000  # bounded boxes; a count gives reproducible answers unless the machine is very slow
 
 
 def prove_infeasible(problem: Problem, *, seconds: float = SECONDS, poll: Callable[[], None] = lambda: None) -> bool:
-    """Return whether it is proven that no design within the job's ranges meets all its requirements.
+    """Return whether it is proven that no design within the job's bounds meets all its requirements.
 
-    Requirements that cannot be bounded over a range of designs are not used: the others must contradict each other.
-    False if a design meets all of these, or if the time runs out first: then nothing is known. poll: called many times
-    a second; any error it raises ends the search.
+    Requirements that cannot be bounded over a range of designs are ignored: the others must contradict each other.
+    False if a design meets all of these, or if time runs out first: feasibility is then unknown. poll: called many
+    times a second; any error it raises ends the search.
     """
     start = time.perf_counter()
     unit_span = np.ones(len(problem.objectives))
@@ -56,7 +56,7 @@ def prove_infeasible(problem: Problem, *, seconds: float = SECONDS, poll: Callab
 
 
 def _requirement_evaluator(problem: Problem, branch: EliminationBranch) -> Evaluator:
-    """Return an evaluator of the requirements that rule out boxes; no design that meets these is ever ruled out."""
+    """Return an evaluator of the requirements that rule out boxes; it never rules out a design that meets them."""
     evaluator = Evaluator(problem, branch)
     evaluator.constraints = tuple(item for item in evaluator.constraints if is_usable(problem, item))
     return evaluator

@@ -1,4 +1,4 @@
-"""Conditions on boxes of designs: which boxes can meet them, in which part, and a point that probably does."""
+"""Conditions on boxes of designs: which boxes can meet them, in which part, and a point likely to meet them."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from ..problem.requirements import Constraint
 from ..problem.violation import FEASIBLE
 from .enclosure import INFLATION, Enclosure
 
-_INSIDE = 1e-9  # relative: by how much a trial design stays off the limits
-_ROUNDS = 3  # of moving it into the box's feasible part
+_INSIDE = 1e-9  # relative distance of a trial design from the limits
+_ROUNDS = 3  # attempts to move it into the box's feasible part
 
 
 class Limits:
-    """Conditions `enclosure <= FEASIBLE` on n boxes, gathered one by one, and which boxes may meet them."""
+    """Conditions `enclosure <= FEASIBLE` on n boxes, added one by one, and which boxes may meet them."""
 
     def __init__(self, n: int, k: int) -> None:
         self.alive = np.ones(n, dtype=bool)
@@ -22,7 +22,7 @@ class Limits:
         self.k = k
 
     def add(self, value: Enclosure) -> None:
-        """Require each part of a number (n, p) to be defined somewhere in the box and at most `FEASIBLE`."""
+        """Require each part of a number (n, p) to be defined and at most `FEASIBLE` somewhere in the box."""
         if value.empty is not None:
             self.alive &= ~value.empty.any(axis=1)
         self.alive &= ~(value.ends()[0] > FEASIBLE).any(axis=1)
@@ -37,7 +37,7 @@ class Limits:
             )
 
     def hold(self, constraint: Constraint, value: Enclosure, least: Array | None, greatest: Array | None) -> None:
-        """Require a constraint on the greatest part of a quantity. least, greatest: further bounds of it."""
+        """Require a constraint on the greatest part of a quantity. least, greatest: further bounds on it."""
         upper, lower = constraint.upper, constraint.lower
         if upper is not None:
             scale = abs(upper) or 1.0
@@ -52,7 +52,7 @@ class Limits:
                 self.alive &= ~(lower - greatest > FEASIBLE * scale)
 
     def hold_curve(self, constraint: Constraint, value: Enclosure) -> None:
-        """Require a bound of a quantity's greatest value on each part, or a lower bound of its least value."""
+        """Require an upper bound on every part of a greatest value, or a lower bound on a least value."""
         if constraint.lower is None:
             self.hold(constraint, value, None, None)
         else:
@@ -62,7 +62,7 @@ class Limits:
         """Return low and high (k, n), the part of [-1, 1]^k that holds all feasible designs."""
         low, high = -np.ones((self.k, len(self.alive))), np.ones((self.k, len(self.alive)))
         for centre, slopes, rest in self.rows:
-            # centre + slopes . d - rest <= FEASIBLE, with all coordinates but one at their best.
+            # centre + slopes . d - rest <= FEASIBLE, with all other coordinates at their best.
             best = np.minimum(slopes * low, slopes * high)
             slack = FEASIBLE - centre + rest + INFLATION * (np.abs(centre) + np.abs(slopes).sum(axis=0))
             for i in range(self.k):
@@ -75,7 +75,7 @@ class Limits:
         return np.minimum(low, 1.0), np.maximum(high, -1.0)
 
     def feasible_points(self, low: Array, high: Array) -> Array:
-        """Return points (k, n) moved from the middle across the conditions that fail there, one after the other."""
+        """Return points (k, n) moved from the middle across the conditions that fail there, one after another."""
         d = 0.5 * (low + high)
         for _ in range(_ROUNDS):
             for centre, slopes, rest in self.rows:
@@ -86,7 +86,7 @@ class Limits:
         return d
 
     def smear(self, low: Array, high: Array) -> Array:
-        """Return the effect of the width along each axis on the conditions not sure to hold, (n, k)."""
+        """Return the effect of the width along each axis on the conditions that are not certain to hold, (n, k)."""
         widest = np.zeros((len(self.alive), self.k))
         for centre, slopes, rest in self.rows:
             open_ = centre + np.maximum(slopes * low, slopes * high).sum(axis=0) + rest > 0.0

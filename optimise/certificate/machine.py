@@ -1,4 +1,4 @@
-"""A machine over boxes of designs: its numbers, and the loads on slider and crank."""
+"""A machine over boxes of designs: its parameters, and the loads on slider and crank."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ _TURN = 2.0 * np.pi
 _derive = cast(Any, derive)
 
 Numbers = Mapping[int, Enclosure]
-"""Raw numbers that designs set, enclosed over boxes, by slot (`Raw`, `PINS`)."""
+"""Machine parameters that designs set, enclosed over boxes, by slot (`Raw`, `PINS`)."""
 
 
 def numbers_over_boxes(mechanism: Mechanism, columns: list[Enclosure]) -> Numbers:
-    """Return the raw numbers that designs set, from the columns (n, 1) of a design's own numbers."""
+    """Return the machine parameters that designs set, from the columns (n, 1) of a design's own numbers."""
     design = np.empty((1, len(columns)), dtype=object)
     design[0, :] = columns
     return {slot: value[0] for slot, value in raw_numbers(mechanism, design).items()}
 
 
 def raw_number(mechanism: Mechanism, numbers: Numbers) -> Callable[[int], Any]:
-    """Return the function that gives the raw number of a slot: over boxes if designs set it."""
+    """Return a function from slot to machine parameter, enclosed over boxes if designs set it."""
     return lambda slot: numbers[slot] if slot in numbers else nominal_number(mechanism, slot)
 
 
 def unbounded_load(mechanism: Mechanism) -> str:
-    """Return why the loads of a machine have no bound over a range of designs; empty if they have."""
+    """Return why a machine's loads have no bound over a range of designs; empty if they do."""
     for item in mechanism.varying:
         for path in item.paths:
             part, _, place = path.partition(".")
@@ -49,13 +49,13 @@ def unbounded_load(mechanism: Mechanism) -> str:
 
 
 class BoxMachine:
-    """Numbers and loads of a machine over boxes of designs, without friction. raw, loads: as for a signal."""
+    """Parameters and loads of a machine over boxes of designs, without friction. raw, loads: as for a signal."""
 
     def __init__(self, mechanism: Mechanism, raw: Array, loads: Loads) -> None:
         self.mechanism, self.raw, self.loads = mechanism, raw, loads
 
     def design(self, numbers: Numbers) -> tuple[Design, Any]:
-        """Return the derived design, and its block for the loads."""
+        """Return the derived design, and its parameter block for the loads."""
         raw = self.raw.astype(object)[:, None]
         for slot, value in numbers.items():
             if slot < len(raw):
@@ -65,7 +65,7 @@ class BoxMachine:
         return design_at(block, 0), block
 
     def load(self, m: Any, d: Design, block: Any, theta: Array | Enclosure, outward: Enclosure) -> Any:
-        """Return the load on the slider, N outward. outward: has the sign of the slider's way outward."""
+        """Return the load on the slider, N outward. outward: has the sign of the slider's outward velocity."""
         load: Any = smooth_load(m, d, by_stroke(outward, d.outward_force, d.inward_force))
         way = by_stroke(outward, 1.0, -1.0)
         for k, code in enumerate(self.loads.kind.tolist()):
@@ -84,7 +84,7 @@ class BoxMachine:
     def on_crank(
         self, m: Any, d: Design, block: Any, theta: Array | Enclosure, outward: Enclosure, way: float | Array
     ) -> Any:
-        """Return the torque of the loads on the crank, N m. way: 1 where it turns counter-clockwise, -1 clockwise."""
+        """Return the loads' torque on the crank, N m. way: 1 if the crank turns counter-clockwise, -1 if clockwise."""
         torque: Any = 0.0
         for k, load in enumerate(self.mechanism.loads):
             if load.on_crank and self.loads.kind[k] == Enters.CRANK_TORQUE:
@@ -110,14 +110,14 @@ class BoxMachine:
         counted = theta - block[DESIGN + LOAD_ROWS * k + 1, 0] if self.loads.datum[k] else theta
         centre = counted.centre if isinstance(counted, Enclosure) else counted
         turns = counted - _TURN * np.floor((centre - at[0]) / _TURN)
-        # A turn before and one after: a box may reach beyond the ends of the table.
-        # Where the table steps at its seam, the end of one turn and the start of the next are both sides of that.
+        # One turn before and one after, because a box may extend beyond the ends of the table. Where the table steps at
+        # its seam, the end of one turn and the start of the next are the two sides of the step.
         at = np.concatenate([at - _TURN, at, at + _TURN])
         return factor * interpolated(turns, at, np.tile(force, 3))
 
 
 def interpolated(x: Enclosure, at: Array, force: Array) -> Enclosure:
-    """Return the table's force over an enclosed position: the chord, and how far the knots lie off it."""
+    """Return the table's force over an enclosed position: the chord, and the greatest distance of the knots from it."""
     low, high = x.ends()
     first, last = np.interp(low, at, force), np.interp(high, at, force)
     wide = high > low
@@ -132,7 +132,7 @@ def interpolated(x: Enclosure, at: Array, force: Array) -> Enclosure:
 
 
 def by_stroke(outward: Enclosure, out: Any, back: Any) -> Enclosure:
-    """Return one number in the outward stroke and another in the inward one, both where the stroke is not certain."""
+    """Return one number for the outward stroke, another for the inward one, and both where the stroke is uncertain."""
     low, high = outward.ends()
     k = len(outward.slopes)
     if not isinstance(out, Enclosure) and not isinstance(back, Enclosure):

@@ -1,4 +1,4 @@
-"""Search for a proof: open boxes, the covering set of designs, and the bounds so far."""
+"""Search for a proof: open boxes, the covering set of designs, and the bounds found so far."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from .certificate import Certificate, Status, Step, message_of
 from .cover import choose_covering, excess, greedy_cover, hypervolume_gap_bound
 from .tree import Tree, pool
 
-_BATCH = 4096  # boxes halved at a time
-_MOST = 4_000_000  # open boxes that memory is kept for
-_POLISHED = 400  # added designs that are polished; more would take longer than the proof
-_STEPS = 8  # of their polish: most of the way; they need not be stationary
-_SHARE = 0.15  # of the time, kept for polishing
-_MOST_PAIRS = 50_000_000  # pairs of added designs and corners that are looked through for a smaller set
+_BATCH = 4096  # boxes halved per batch
+_MOST = 4_000_000  # open boxes; memory for these is allocated
+_POLISHED = 400  # added designs to polish; more would take longer than the proof
+_STEPS = 8  # steps per polish: most of the improvement; the designs need not be stationary
+_SHARE = 0.15  # fraction of the time that is reserved for polishing
+_MOST_PAIRS = 50_000_000  # pairs of added design and corner to examine for a smaller set
 
 
 def _exact_objectives(problem: Problem, dimensions: Array) -> Array:
-    """Return the minimised objectives (n, m) of designs of one variant, exact over continuous crank angle."""
+    """Return the minimised objectives (n, m) for designs of one variant, exact over continuous crank angle."""
     columns = [
         minimised(wish, problem.quantity(wish.quantity).evaluate(problem.mechanism, dimensions).values)
         for wish in problem.objectives
@@ -41,7 +41,7 @@ def _exact_objectives(problem: Problem, dimensions: Array) -> Array:
 
 
 class Search:
-    """Branch and bound: open boxes, the covering set of designs, and the bounds so far."""
+    """Branch and bound: open boxes, the covering set of designs, and the bounds found so far."""
 
     def __init__(
         self,
@@ -52,7 +52,7 @@ class Search:
         seconds: float,
         cancelled: Callable[[], bool] | None,
     ) -> None:
-        """Prepare the bounds; raise `InputError` for objectives that have none."""
+        """Prepare the bounds; raise `InputError` for objectives that cannot be bounded."""
         self.start = time.perf_counter()
         self.problem, self.epsilon, self.seconds = problem, epsilon, seconds
         self.cancelled = cancelled
@@ -68,7 +68,7 @@ class Search:
         m = len(problem.objectives)
         self.added = Candidates.empty(m)  # values scaled
         self.needy = [np.zeros((0, m))]  # corners of closed boxes that the front alone does not cover
-        self.closed = 0.0  # largest excess of closed boxes, of the set and of the front alone
+        self.closed = 0.0  # largest excess of closed boxes over the set and over the front alone
         self.closed_by_front = 0.0
         self.gap, self.hole = 0.0, np.full(dimensions.shape[1], np.nan)
         self.stopped = False
@@ -79,7 +79,7 @@ class Search:
     # ---- the search -----------------------------------------------------------------------------------------------
 
     def run(self, progress: Callable[[Step], None] | None) -> None:
-        """Halve boxes until all are closed or the budget is spent."""
+        """Halve boxes until all are closed or the budget runs out."""
         with pool() as threads:
             for index in range(len(self.evaluators)):
                 self._take(index, *self.tree.initial_boxes(index), threads)
@@ -90,7 +90,7 @@ class Search:
                     break
                 for index, lower, upper in self.tree.halved(self._close_covered_boxes(rows)):
                     self._take(index, lower, upper, threads)
-        if len(self.tree):  # all designs count for all boxes that are left open
+        if len(self.tree):  # check all designs against all open boxes
             self._close_covered_boxes(np.arange(len(self.tree)))
 
     def _should_stop(self) -> bool:
@@ -99,7 +99,7 @@ class Search:
         return self.stopped or late or len(self.tree) > _MOST
 
     def _close_covered_boxes(self, rows: IntArray) -> IntArray:
-        """Close those boxes that designs added since they were opened cover; return the others."""
+        """Close the boxes that designs added since their opening cover; return the others."""
         tree = self.tree
         tree.excess[rows] = excess(
             tree.corner[rows],
@@ -118,7 +118,7 @@ class Search:
         return np.asarray(np.cumsum(is_open)[rows[~covered]] - 1)
 
     def _take(self, index: int, lower: Array, upper: Array, threads: object) -> None:
-        """Bound boxes of a branch, close what can be closed, open the rest."""
+        """Bound boxes of a branch, close those that can be closed, and open the rest."""
         boxes = self.tree.bound(index, lower, upper, threads)  # type: ignore[arg-type]
         corner = self._scaled(boxes.corner)
         gaps = excess(corner, self.designs, enough=self.epsilon)
@@ -130,7 +130,7 @@ class Search:
         self.tree.add(index, boxes[~covered], corner[~covered], gaps[~covered], len(self.designs))
 
     def _add(self, index: int, trial: Array, corner: Array, gaps: Array) -> Array:
-        """Add designs that cover the corner of their box where no other does; return the excess of the corners."""
+        """Add designs that cover the corner of their box where no other does; return the excess of each corner."""
         evaluator = self.evaluators[index]
         dimensions, values, violation = evaluator.screen(trial)
         good = np.flatnonzero(violation <= FEASIBLE)
@@ -154,7 +154,7 @@ class Search:
         return self._scaled(_exact_objectives(self.evaluators[index].problem, dimensions))
 
     def _note(self, index: int, design: Array) -> None:
-        """Remember a design of a branch that lies farther beyond the front than any before."""
+        """Store the design of a branch that lies farthest beyond the front so far."""
         lead = float(excess(self._exact(index, design[None]), self.front)[0])
         if lead > self.gap:
             self.gap, self.hole = lead, design
@@ -178,7 +178,7 @@ class Search:
     # ---- the result -----------------------------------------------------------------------------------------------
 
     def certificate(self) -> Certificate:
-        """Return the certificate so far, with its added designs polished and reduced to as few as necessary."""
+        """Return the certificate so far, with its added designs polished and reduced to as few as possible."""
         tree, proven = self.tree, self._proven()
         needy = np.concatenate(self.needy)
         self._drop_redundant(needy)
@@ -190,7 +190,7 @@ class Search:
         if len(leads) and leads.max() > self.gap:
             farthest = int(np.argmax(leads))
             self._note(int(self.added.branch[farthest]), dimensions[farthest])
-        # A point covered by an added design is covered by the front to the sum of both excesses.
+        # If an added design covers a point, the front covers it to within the sum of both excesses.
         least = max(self.closed_by_front, float(excess(tree.corner, self.front).max(initial=0.0)))
         delivered = max(min(least, proven + float(leads.max(initial=0.0))), self.gap)
         status: Status = "cancelled" if self.stopped else "out of budget"
@@ -236,12 +236,12 @@ class Search:
         return tuple(dict.fromkeys(notes))
 
     def _drop_redundant(self, needy: Array) -> None:
-        """Leave out added designs whose corners others cover."""
+        """Drop added designs whose corners other designs cover."""
         if not len(self.tree) and len(self.added) * len(needy) <= _MOST_PAIRS:
             self.added = self.added[greedy_cover(needy, self.added.values, self.epsilon)]
 
     def _polish(self) -> None:
-        """Move added designs onto the front if no objective gets worse, so that they still cover the same points."""
+        """Move added designs onto the front if no objective worsens, so that they still cover the same points."""
         if len(self.added) > _POLISHED:
             return
         for index, evaluator in enumerate(self.evaluators):

@@ -1,7 +1,7 @@
-"""A quantity of a swing, enclosed over boxes of designs at chosen places of the swing.
+"""A quantity of a swing, enclosed over boxes of designs at selected points of the swing.
 
-The greatest value of a curve over the swing is at least its value at any one place, and the least value is at most
-that. Slider travel and crank angle are known in closed form and bounded from both sides.
+A curve's greatest value over the swing is at least its value at any one point; its least value is at most that value.
+Slider travel and crank angle have closed forms with bounds on both sides.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from .crank_angles import angle_near, crank_at
 from .enclosure import Enclosure, constant, side_by_side, sign_of
 from .machine import BoxMachine, Numbers
 
-_SIDE_STEP = 1e-9  # fraction of the time: on one side of a corner of the law, or of a step
+_SIDE_STEP = 1e-9  # fraction of the time; moves to one side of a corner in the law, or of a step
 _FARTHEST = 0.25
 
 
@@ -45,7 +45,10 @@ class _Ends(NamedTuple):
 
 
 class _State(NamedTuple):
-    """A state. driver_way: 1 towards greater places of the driver. way: 1 where the crank turns counter-clockwise."""
+    """State at a point of the swing.
+
+    driver_way: 1 if the driver's position increases. way: 1 if the crank turns counter-clockwise.
+    """
 
     sine: Enclosure
     cosine: Enclosure
@@ -91,9 +94,9 @@ class SwingBoxes:
         )
 
     def at_time(self, numbers: Numbers, share: Array, probe: Array, back: Array) -> _State:
-        """Return the state at fractions of the time (n, p); NaN where some designs of a box lack it.
+        """Return the state at fractions of the time (n, p); NaN where some designs in a box have none.
 
-        probe: fractions on the same side of a corner of the law. back: 1 on the return stroke.
+        probe: fractions on the same side of a corner in the law. back: 1 on the return stroke.
         """
         direction = 1.0 - 2.0 * back
         way, way_1, way_2, _ = way_at(code_of(self.swing.law), self.swing.table, share, probe)
@@ -102,7 +105,7 @@ class SwingBoxes:
         )
 
     def at_way(self, numbers: Numbers, way: Array, direction: Any = 1.0, way_1: Any = 0.0, way_2: Any = 0.0) -> _State:
-        """Return the state at fractions of the travel (n, p), with their derivatives by the fraction of the time."""
+        """Return the state at fractions of the travel (n, p), with its derivatives by the fraction of the time."""
         d, block = self.machine.design(numbers)
         ends = self.ends(numbers, d)
         first, last = ends.positions if self.slider else ends.angles
@@ -139,7 +142,7 @@ class SwingBoxes:
         return force
 
     def error(self, at: _State) -> Enclosure:
-        """Return the error of the driven side, m at the slider or rad at the crank."""
+        """Return the error on the driven side, m at the slider or rad at the crank."""
         i = influences(at.sine, at.cosine, at.m, at.d.l)
         error: Enclosure
         if not self.slider:
@@ -151,7 +154,7 @@ class SwingBoxes:
         return error
 
     def angle(self, numbers: Numbers, way: Array) -> Enclosure:
-        """Return the transmission angle of the driven side at fractions of the travel (n, p), rad."""
+        """Return the transmission angle on the driven side at fractions of the travel (n, p), rad."""
         at = self.at_way(numbers, way)
         sine = magnitude(toggle_distance(at.sine, at.cosine, at.m) if self.slider else at.m.l_sin) / at.d.l
         angle: Enclosure = np.arcsin(sine)
@@ -168,7 +171,7 @@ class SwingBoxes:
 
 
 class SwingCurve:
-    """A quantity of a swing over boxes of designs: the greatest value of a state, or with `least` the least."""
+    """A quantity of a swing over boxes of designs: the greatest value or, with `least`, the least value of a state."""
 
     def __init__(self, mechanism: Mechanism, quantity: SwingPeak | SwingLeast | SwingForm) -> None:
         assert quantity.swing is not None
@@ -179,18 +182,21 @@ class SwingCurve:
 
     @property
     def anywhere(self) -> tuple[float, ...]:
-        """A place for boxes whose middle design does not swing."""
+        """Position for boxes whose middle design does not swing."""
         return self._range[:1]
 
     @property
     def _range(self) -> tuple[float, float]:
-        """First and last place; see `enclose`."""
+        """First and last position; see `enclose`."""
         if isinstance(self.quantity, SwingLeast):
             return float(self.quantity.back), 1.0 + self.quantity.back
         return 0.0, 2.0 if isinstance(self.quantity, SwingPeak) else 1.0
 
     def places(self, designs: Array) -> Array:
-        """Return the place (n, 1) of each design's greatest value, or with `least` of its least, see `enclose`."""
+        """Return each design's position (n, 1) of the greatest value or, with `least`, of the least one.
+
+        See `enclose`.
+        """
         mechanism, swing, quantity = self.boxes.mechanism, self.quantity.swing, self.quantity
         assert swing is not None
         if isinstance(quantity, SwingForm):
@@ -204,16 +210,16 @@ class SwingCurve:
         return np.where(np.isfinite(found), np.clip(found, *self._range), self.anywhere)
 
     def enclose(self, numbers: Numbers, places: Array, middle: Array) -> Enclosure:
-        """Return the quantity's curve (n, p) at places (n, 1), and at both ends.
+        """Return the quantity's curve (n, p) at positions (n, 1), and at both ends.
 
-        A place is a fraction of the time, plus 1 on the return stroke; of an angle, a fraction of the travel.
+        A position is a fraction of the time, plus 1 on the return stroke; for an angle, a fraction of the travel.
         """
         at, (first, last) = places, self._range
         columns = [at, np.full_like(at, first), np.full_like(at, last)]
         if last - first > 1.0:
             columns += [np.full_like(at, 1.0), np.full_like(at, 1.0 + _SIDE_STEP)]
         if self.boxes.steps and not self.at_ends:
-            # A peak on a step moves with the design: beside it all designs of the box are on one side of the step.
+            # A peak at a step moves with the design: beside it, all designs in the box are on one side of the step.
             width: Any = sum(np.ptp(numbers[slot].ends(), axis=0) / numbers[slot].size for slot in (0, 1))
             away = np.minimum(4.0 * width, _FARTHEST)
             columns += [np.clip(at - away, first, last), np.clip(at + away, first, last)]
@@ -249,13 +255,13 @@ class SwingCurve:
 
 
 def _place_of_least_angle(mechanism: Mechanism, swing: Swing, designs: Array) -> Array:
-    """Return the fraction of the travel (n,) at which the transmission angle may be least between the ends, else 0."""
+    """Return the fraction of the travel (n,) at the transmission angle's minimum between the ends, 0 if none."""
     ends = ends_of(mechanism, swing, designs)
     r, l, e = designs[:, :3].T
-    if swing.driver == "slider":  # where crank and rod turn at one pace
+    if swing.driver == "slider":  # where crank and rod have the same angular velocity
         first, last = (motion(np.sin(at), np.cos(at), r, l, e, mechanism.sign).x for at in (ends.start, ends.end))
         found = -first / (last - first)
-    else:  # where the crank is normal to the slider line, on the side away from it first
+    else:  # where the crank is normal to the slider line, first on the side away from it
         angles = [ends.turned_into(angle) for angle in (0.5 * np.pi, 1.5 * np.pi)]
         far, near = np.where(e >= 0.0, angles[::-1], angles)
         found = (np.where(np.isnan(far), near, far) - ends.start) / (ends.end - ends.start)
@@ -263,7 +269,7 @@ def _place_of_least_angle(mechanism: Mechanism, swing: Swing, designs: Array) ->
 
 
 def swing_form(mechanism: Mechanism, quantity: SwingForm, numbers: Numbers) -> Enclosure:
-    """Return the travel of the slider, m, or the angle of the crank, rad, from both sides."""
+    """Return lower and upper bounds on the slider's travel, m, or the crank's angle, rad."""
     assert quantity.swing is not None
     boxes = SwingBoxes(mechanism, quantity.swing, slow=True)
     ends = boxes.ends(numbers, boxes.machine.design(numbers)[0])

@@ -1,4 +1,4 @@
-"""Branch and bound over the free unknowns: boxes that may still hold an uncovered design, largest excess first."""
+"""Branch and bound over the free unknowns: boxes that may still contain an uncovered design, largest excess first."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from ...model.arrays import Array, IntArray, Mask
 from ..search.candidates import Table
 from .boxes import Bounded, Boxes
 
-_FIRST = {0: 1, 1: 64, 2: 24, 3: 12, 4: 5, 5: 3}  # boxes along each axis to begin with; 2 of more axes
-_CHUNK = 2048  # boxes bounded at once: the working arrays stay in the cache
+_FIRST = {0: 1, 1: 64, 2: 24, 3: 12, 4: 5, 5: 3}  # initial boxes along each axis; 2 if there are more axes
+_CHUNK = 2048  # boxes bounded together: the working arrays stay in the cache
 _FINEST = 2.0**-40
-"""Width of a box, in the unit box, below which it is not split further."""
+"""Width of a box, as a fraction of the unit box, below which it is not split further."""
 
 
 @dataclass
 class Tree(Table):
-    """The open boxes of all branches.
+    """Open boxes of all branches.
 
     branch: (n,). lower, upper: (n, k), padded with zeros. corner: (n, m), scaled. excess: (n,).
-    counted_designs: (n,), number of designs that the excess counts. axis: (n,), the next axis to split; -1 if none is
-    left. bounded: boxes bounded so far.
+    counted_designs: (n,), number of designs already compared for the excess. axis: (n,), the next axis to split; -1 if
+    none is left. bounded: number of boxes bounded so far.
     """
 
     branch: IntArray
@@ -55,7 +55,7 @@ class Tree(Table):
         )
 
     def volume(self) -> float:
-        """Return the fraction of the design box that is open; all branches count alike."""
+        """Return the open fraction of the design box; all branches have equal weight."""
         total = 0.0
         for index, boxes in enumerate(self.branches):
             on_branch, k = self.branch == index, len(boxes.branch.free)
@@ -70,7 +70,7 @@ class Tree(Table):
         return places / count, (places + 1.0) / count
 
     def bound(self, index: int, lower: Array, upper: Array, pool: ThreadPoolExecutor) -> Bounded:
-        """Return the bounds of boxes of a branch, without boxes that cannot hold a feasible design."""
+        """Return the bounds for boxes of a branch, without boxes that cannot contain a feasible design."""
         self.bounded += len(lower)
         parts = [slice(begin, begin + _CHUNK) for begin in range(0, len(lower), _CHUNK)]
         first, *rest = pool.map(lambda part: self.branches[index].bound(lower[part], upper[part]), parts)
@@ -81,7 +81,8 @@ class Tree(Table):
         """Add boxes."""
         n, k = boxes.lower.shape
         wide = boxes.upper - boxes.lower
-        # Where nothing is known of what matters, the widest; a little of it always, so that none stays wide for ever.
+        # Without known effects, split the widest axis; a small weight on the width ensures that no axis stays wide
+        # forever.
         smear = np.where(np.isfinite(boxes.smear), boxes.smear, 0.0) + 0.05 * wide
         smear = np.where(wide > _FINEST, smear, -1.0)
         axis = np.where(smear.max(axis=1) < 0.0, -1, smear.argmax(axis=1)) if k else np.full(n, -1)
@@ -93,7 +94,7 @@ class Tree(Table):
         self.become(self[rows])
 
     def largest(self, count: int) -> IntArray:
-        """Return the splittable boxes of the largest excess."""
+        """Return the splittable boxes with the largest excess."""
         rows = np.flatnonzero(self.axis >= 0)
         if len(rows) <= count:
             return rows
@@ -111,7 +112,7 @@ class Tree(Table):
             middle = 0.5 * (low[at, axis] + high[at, axis])
             left, right = high.copy(), low.copy()
             left[at, axis] = right[at, axis] = middle
-            # Halves side by side: neighbours are likely to be covered by the same design.
+            # Halves are adjacent because neighbours are likely to be covered by the same design.
             lower = np.stack([low, right], axis=1).reshape(-1, k)
             upper = np.stack([left, high], axis=1).reshape(-1, k)
             halves.append((index, lower, upper))
@@ -120,5 +121,5 @@ class Tree(Table):
 
 
 def pool() -> ThreadPoolExecutor:
-    """Return a separate thread pool: bounding calls kernels that wait for the shared one."""
+    """Return a separate thread pool, because bounding calls kernels that wait for the shared pool."""
     return ThreadPoolExecutor(max_workers=cpu_count() or 1, thread_name_prefix="slidercrank-boxes")
