@@ -16,6 +16,7 @@ from fastapi import APIRouter, Depends, FastAPI, Request
 from starlette.middleware import Middleware
 from starlette.routing import BaseRoute
 
+from ..page import api_reference
 from ..page import router as page
 from ..store import Store
 from ..workers.heartbeat import EXHAUSTED, leave
@@ -80,7 +81,7 @@ def create_app(store: Store, settings: Settings = DEFAULT, computing: Computing 
         title="slidercrank",
         version=_version(),
         openapi_url=f"{PREFIX}/openapi.json",
-        docs_url=None,  # its pages come from other sites
+        docs_url=None,  # its pages come from other sites: see api_reference
         redoc_url=None,
         routes=_routes(),
         lifespan=_few_threads,
@@ -141,6 +142,7 @@ def _routes() -> list[BaseRoute]:
     root = APIRouter(generate_unique_id_function=lambda route: route.name)
     for part in _PARTS:
         root.include_router(import_module(f"{__package__}.{part}").router, prefix=PREFIX, responses=_COMMON)
+    root.include_router(api_reference.router, prefix=PREFIX)
     root.include_router(page.router, dependencies=[Depends(_prepare)])
     return root.routes
 
