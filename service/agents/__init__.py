@@ -1,1 +1,1 @@
-"""Tools for agents over the Model Context Protocol (MCP), with the answers of the command line."""
+"""Tools for agents over the Model Context Protocol (MCP); their answers match those of the command line."""

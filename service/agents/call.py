@@ -1,4 +1,4 @@
-"""A call of a tool: the folder that it may read and write, its cancellation, and its answer."""
+"""Tool call: the folder that it may read and write, its cancellation, and its answer."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
     from ..store import Store
 
 Job = str | dict[str, Any]
-_LONGEST = 255  # characters in a name; no file name is longer
+_LONGEST = 255  # characters in a name; no file system allows longer names
 
 
 @dataclass(frozen=True)
 class ToolResult:
-    """Answer of a tool. record: for programs. text: for people. is_error: whether the caller has to do something."""
+    """Answer of a tool. record: for programs. text: for people. is_error: whether the caller must act."""
 
     record: dict[str, Any]
     text: str
@@ -41,9 +41,11 @@ class ToolResult:
 
 @dataclass(frozen=True)
 class Call:
-    """A call. runs: folder of all reading and writing. allowed: functions, "module:function", that jobs may use.
+    """Tool call.
 
-    cancelled: whether the caller has given up. report: listener to the progress.
+    runs: the only folder that it reads and writes. allowed: functions that jobs may use, as "module:function".
+
+    cancelled: whether the caller has given up. report: progress listener.
     """
 
     runs: Path
@@ -52,7 +54,10 @@ class Call:
     report: Callable[[Progress], None]
 
     def folder(self, name: str) -> Path:
-        """Return the folder of a run. Raises `InputError` for a folder elsewhere, and for links that lead elsewhere."""
+        """Return the folder of a run.
+
+        Raises `InputError` for a folder outside `runs`, or for links that lead outside.
+        """
         self._require_inside(self.runs / name, name)
         folder = find_run(name, self.runs)
         for path in (folder, *folder.rglob("*")):
@@ -60,7 +65,10 @@ class Call:
         return folder
 
     def run(self, name: str) -> tuple[Path, Result]:
-        """Return the folder, as in `folder`, and the result of a run. Raises `RunError` without a result."""
+        """Return the folder of a run, as `folder` does, and its result.
+
+        Raises `RunError` for a run without a result.
+        """
         folder = self.folder(name)
         return folder, read_run(folder, "optimise with resume =")
 
@@ -76,7 +84,7 @@ class Call:
             )
 
     def front(self, name: str) -> tuple[Path, Result]:
-        """Return a run with designs, as in `run`. Raises `InfeasibleError` for a run without designs."""
+        """Return a run that has designs, as `run` does. Raises `InfeasibleError` for a run without designs."""
         folder, result = self.run(name)
         if not result.designs:
             raise InfeasibleError(result.message)
@@ -97,22 +105,27 @@ class Call:
         return bounded(parse_allowed(tables, self.allowed, require_feasible=feasible), seconds)
 
     def problem_again(self, tables: Mapping[str, Any], folder: Path) -> Problem:
-        """Return the problem of a search to be continued in a folder. Raises `JobError`."""
+        """Return the problem of a search that is to continue in a folder. Raises `JobError`."""
         require_allowed(tables, self.allowed)
         return bounded(parse_job(tables, folder=folder), LONGEST_CALL)
 
     @contextlib.contextmanager
     def store(self) -> Iterator[Store]:
-        """Yield the store of the runs, closed at the end. Raises `StoreError` if it cannot be written."""
+        """Yield the store of the runs, and close it afterwards.
+
+        Raises `StoreError` for a store that cannot be written.
+        """
         with open_store(None, self.runs) as store:
             store.require_writable()
             yield store
 
 
 def tables_of(job: Job, files: Mapping[str, str]) -> dict[str, Any]:
-    """Return the tables of a job with the contents of its files inserted. job: tables, TOML text, or an included job.
+    """Return the tables of a job with the contents of its files inserted.
 
-    Raises `JobError`, also for a file that was not given: no file is read.
+    job: tables, TOML text, or the name of an included job.
+
+    Raises `JobError`, also for a referenced file that the caller did not supply: no file is read.
     """
     if isinstance(job, str) and "=" not in job:
         jobs = shipped_jobs()

@@ -1,4 +1,4 @@
-"""Inputs of several tools, in groups; their descriptions for agents follow from declarations elsewhere."""
+"""Groups of inputs that several tools share; their descriptions for agents come from declarations elsewhere."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ Dimension = Annotated[
 
 @dataclass(frozen=True)
 class FrontPart:
-    """Part of a front in an answer."""
+    """Part of the front in an answer."""
 
     rows: Rows = ROWS
     columns: Annotated[
@@ -97,14 +97,14 @@ class FrontPart:
     units: Units = "metric"
 
     def keys(self, columns: list[str], usual: list[str]) -> list[str] | None:
-        """Return the requested columns, None for all. Raises `InputError` for unknown columns."""
+        """Return the requested columns, or None for all. Raises `InputError` for unknown columns."""
         if self.columns == [ALL]:
             return None
         return usual if self.columns is None else [find_column(name, columns).key for name in self.columns]
 
 
 class Machine(NamedTuple):
-    """A machine with a linkage, and the problem of its job or run."""
+    """Machine with a linkage, and the problem of its job or run."""
 
     mechanism: Mechanism
     linkage: Linkage
@@ -113,7 +113,7 @@ class Machine(NamedTuple):
 
 @dataclass(frozen=True)
 class Design:
-    """A design of a run, or one with given lengths for a job."""
+    """Design of a run, or a design with given lengths for a job."""
 
     run: Annotated[str | None, Field(description='Name of a run, or "latest"; instead of a job and lengths.')] = None
     design: Number = None
@@ -127,7 +127,7 @@ class Design:
     )
 
     def machine(self, call: Call) -> Machine:
-        """Return the machine. Raises `InputError` without one, and for two."""
+        """Return the machine. Raises `InputError` for neither or for both."""
         if (self.run is None) == (self.job is None):
             received = "both" if self.run else "neither"
             raise InputError(f"a design must come from a run or a job; got {received}; give one of them")
@@ -214,7 +214,7 @@ class TopicRequest:
 
     @property
     def alone(self) -> str | None:
-        """The topic that is a separate command, None without one."""
+        """Topic that is a separate command, or None."""
         return next((name for name in self.topics if name in QUESTION_COMMANDS or name in FRONT_OR_JOB_QUESTIONS), None)
 
     @property

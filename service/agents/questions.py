@@ -112,10 +112,10 @@ def describe(
 
 
 def ask(call: Call, *, subject: Design, question: TopicRequest) -> ToolResult:
-    """Analyse one design: all its quantities, how it meets the rules of its job, and topics such as static_forces.
+    """Analyse one design: its quantities, how it meets the requirements of its job, and topics such as static_forces.
 
-    The design is one of a run, its knee if none is named, or has lengths of your own for a job. Some topics are of
-    the front of a run, such as wish, of several runs, compare, or of a job, such as sweep.
+    The design comes from a run (its knee by default), or has your own lengths for a job. Some topics concern the front
+    of a run (wish), several runs (compare), or a job (sweep).
     """
     if question.alone in FRONT_OR_JOB_QUESTIONS:
         return _ask_front_or_job(call, subject, question, FRONT_OR_JOB_QUESTIONS[question.alone])
@@ -130,7 +130,7 @@ def ask(call: Call, *, subject: Design, question: TopicRequest) -> ToolResult:
 
 
 def check(call: Call, *, job: JobInput, files: Files = {}) -> ToolResult:  # noqa: B006
-    """Check a job before it is searched: what was understood, or what is wrong or contradictory, with the remedy."""
+    """Check a job before a search: how it was understood, or any mistake or contradiction with its remedy."""
     from ...objectives.own.quantity import OwnQuantity
     from ..preview.preview import look_at
     from ..text.job_in_words import freedom_in_words, job_in_words
@@ -160,7 +160,7 @@ def check(call: Call, *, job: JobInput, files: Files = {}) -> ToolResult:  # noq
 def _analyse_rotating(
     call: Call, machine: Machine, options: Mapping[str, dict[str, Any]], question: TopicRequest
 ) -> ToolResult:
-    """Analyse a design that rotates fully. options: options of each topic."""
+    """Analyse a design that rotates fully. options: options for each topic."""
     from ..questions.analysis_text import show_analysis
     from ..questions.design_analysis import analysis_of, judge_design, quantities_of_design
 
@@ -183,7 +183,7 @@ def _analyse_rotating(
 
 
 def _analyse_by_command(name: str, machine: Machine, question: TopicRequest) -> ToolResult:
-    """Answer a question about a design that is a separate command."""
+    """Answer a question about a design, if the question is a separate command."""
     from ..designs.display_units import record_in
 
     bound_question = DESIGN_QUESTIONS[name].for_problem(
@@ -215,7 +215,7 @@ def _ask_front_or_job(
 
 
 def _plain_text(blocks: Sequence[Block], notes: Sequence[str], units: System) -> str:
-    """Return the blocks of an answer as plain text, with its notes below."""
+    """Return the blocks of an answer as plain text, followed by its notes."""
     from ..render.terminal import print_blocks
 
     return "\n".join((text_of(lambda screen: print_blocks(screen, blocks, units)), *notes))
@@ -235,7 +235,7 @@ def _topic(question: DesignQuestion | FrontOrJobQuestion) -> dict[str, Any]:
 
 
 def _runs(call: Call) -> Iterator[dict[str, Any]]:
-    """Yield the latest runs with the outcome of each."""
+    """Yield the latest runs, each with its outcome."""
     for folder in sorted(run_folders(call.runs), key=lambda folder: folder.name, reverse=True)[:_MOST_RUNS]:
         try:
             _, result = call.run(folder.name)
@@ -252,7 +252,7 @@ def _runs(call: Call) -> Iterator[dict[str, Any]]:
 
 
 def _key(name: str) -> dict[str, Any]:
-    """Return the description of a key of job files, and of the keys in it. Raises `NotFound`."""
+    """Return the description of a job-file key and of the keys within it. Raises `NotFound`."""
     schema, path = schema_of(Job), list[str | int]()
     for part in [] if name == "job" else name.replace("[", "").replace("]", "").split("."):
         path.append(part)

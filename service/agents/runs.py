@@ -1,4 +1,4 @@
-"""Tools that create and read runs: a search, its front, files of its designs."""
+"""Tools that create and read runs: search, front, and files of designs."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ _NAMES |= {
     what: f"design-{{}}{ending}" if ending == f".{what}" else f"design-{{}}-{what}{ending}"
     for what, (ending, *_) in ENDINGS.items()
 }
-"""Names of the files that are written, with the number of the design."""
+"""Names of the files to write, each with the design number."""
 
 
 @dataclass(frozen=True)
 class Search:
-    """A new search, or a stopped one."""
+    """New search, or an interrupted one."""
 
     job: OptionalJob = None
     files: Files = field(default_factory=dict)
@@ -62,7 +62,7 @@ class Search:
     ] = None
 
     def open_run(self, call: Call, store: Store, settings: SettingOptions) -> AbstractContextManager[Opened]:
-        """Return the context of its run. Raises `InputError` if neither or both of job and run are given."""
+        """Return the context of the run. Raises `InputError` unless exactly one of job and run is given."""
         from ..workers.direct_search import new_run, resumed_run, with_settings
 
         if (self.job is None) == (self.resume is None):
@@ -78,11 +78,11 @@ class Search:
 
 
 def optimise(call: Call, *, search: Search, settings: SettingOptions, part: FrontPart) -> ToolResult:
-    """Search the Pareto front of a job, and keep it as a run.
+    """Search for the Pareto front of a job, and save it as a run.
 
-    Takes from a second to minutes; reports progress. Cancelled, it keeps what it found, and `resume` goes on with it
-    and ends as if it had never stopped. The answer has some designs of the front; `front` chooses others. numbers are
-    those of the designs, knee and extremes their places in the answer.
+    Takes a second to several minutes; reports progress. A cancelled search keeps its results; `resume` continues it and
+    ends with the same front as an uninterrupted search. The answer contains some designs of the front; `front` selects
+    others. numbers: their design numbers; knee and extremes: positions in the answer.
     """
     from ..store import Limits
     from ..workers.direct_search import keep_front, renewing_claim
@@ -112,9 +112,9 @@ def optimise(call: Call, *, search: Search, settings: SettingOptions, part: Fron
 
 
 def front(call: Call, *, run: Run, selection: Selection, pick: Pick, part: FrontPart) -> ToolResult:
-    """Show the front of a run, part of it, or one chosen design with all its quantities and trade-offs.
+    """Show the front of a run, part of it, or one selected design with all its quantities and trade-offs.
 
-    numbers are those of the designs; knee and extremes are their places in the answer.
+    numbers: design numbers; knee and extremes: positions in the answer.
     """
     folder, result = call.front(run)
     chosen = selection.rows(result)
@@ -149,10 +149,10 @@ def files(
     design: Number = None,
     units: Units = "metric",
 ) -> ToolResult:
-    """Write files of a run into its folder, and say where they are.
+    """Write files of a run into its folder, and return their paths.
 
-    Of the run its designs as CSV or JSON, and figures of its front. Of one design, the knee if none is named: a report
-    as HTML or PDF, a drawing at true scale as DXF or SVG, its motion as HTML or GIF, its cycle as CSV.
+    For the run: its designs as CSV or JSON, and figures of its front. For one design (the knee by default): an HTML or
+    PDF report, a true-scale DXF or SVG drawing, an HTML or GIF animation, its cycle as CSV.
     """
     if design is not None and _OF_RUN.issuperset(write):
         raise InputError(f"{', '.join(write)} cover all designs of a run; got design {design}; leave it out")
@@ -189,13 +189,13 @@ def files(
 
 
 def _record(result: Result, rows: Sequence[int], part: FrontPart) -> dict[str, Any]:
-    """Return some designs of a result, with their numbers, for JSON."""
+    """Return some designs of a result with their numbers, ready for JSON."""
     names = part.keys(list(result.designs[0]), usual_keys(result)) if result.designs else None
     return result_part(result, rows).record(names) | {"numbers": [row + 1 for row in rows]}
 
 
 def _chosen_number(result: Result, chosen: Sequence[int], pick: Pick) -> int | None:
-    """Return the number of the design named, or chosen by its values, None without either."""
+    """Return the number of the design selected by name or by value, or None for neither."""
     if pick.design is None:
         return pick.row(result, chosen)
     require_single_choice(pick.design, result, has_other_choice=pick.chooses_by_value)
@@ -203,7 +203,7 @@ def _chosen_number(result: Result, chosen: Sequence[int], pick: Pick) -> int | N
 
 
 def _trade_offs(call: Call, folder: Path, result: Result, row: int, units: System) -> list[str]:
-    """Return the trade-off rates at a design as sentences; empty if the design has none."""
+    """Return the trade-off rates at a design as sentences; empty if it has none."""
     from ..designs.trade_offs import trade_offs_of
 
     try:

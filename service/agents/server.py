@@ -59,9 +59,11 @@ Values have units in quotes: "2400 rpm", "80 mm", "0.8 kg". Columns of answers e
 
 
 def serve(place: Path, allowed: frozenset[str], *, interrupted: Callable[[], None]) -> None:
-    """Serve agents until standard input ends. place: folder of all reading and writing. allowed: functions of jobs.
+    """Serve agents until standard input ends.
 
-    interrupted: function called after SIGINT or SIGTERM, once no call is running; it ends the process.
+    place: the only folder read and written. allowed: functions that jobs may use.
+
+    interrupted: function called after SIGINT or SIGTERM once no call is running; must end the process.
 
     Raises `MissingExtra` at import without the package `mcp`.
     """
@@ -96,7 +98,7 @@ async def _serve(place: Path, allowed: frozenset[str], interrupted: Callable[[],
         on_call_tool=on_call_tool,
     )
     async with anyio.create_task_group() as group, stdio_server() as (read, write):
-        if os.name == "posix":  # elsewhere event loops have no signals
+        if os.name == "posix":  # event loops on other systems have no signals
             group.start_soon(end_on_signal)
         await server.run(read, write, server.create_initialization_options())
         group.cancel_scope.cancel()
@@ -109,10 +111,9 @@ async def _execute_call(
     limiter: anyio.CapacityLimiter,
     stopping: threading.Event,
 ) -> ToolResult:
-    """Answer a call in a thread, which notices a cancellation and reports its progress.
+    """Answer a call in a thread that responds to cancellation and reports progress.
 
-    make: function that creates the call from its ways to notice a cancellation and to report. stopping: set when the
-    server ends.
+    make: creates the call from its cancellation check and its progress listener. stopping: set when the server stops.
     """
     cancelled, loop = threading.Event(), asyncio.get_running_loop()
     send, receive = anyio.create_memory_object_stream[Progress](math.inf)
@@ -145,7 +146,7 @@ async def _set_when_cancelled(cancelled: threading.Event) -> None:
 
 
 def _run(name: str, arguments: Mapping[str, Any], call: Call) -> ToolResult:
-    """Return the answer of a tool, or one sentence on why there is none."""
+    """Return the answer of a tool, or one sentence that says why there is none."""
     try:
         if name not in _BY_NAME:
             return _error_result(f"there is no tool {name[:60]!r}; choose from {', '.join(_BY_NAME)}")

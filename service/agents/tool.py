@@ -1,4 +1,4 @@
-"""A tool: a function whose parameters are its inputs, from which schema and validation follow."""
+"""A tool is a function; its input schema and validation follow from its parameters."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from .call import Call, ToolResult
 
 @dataclass(frozen=True)
 class Tool:
-    """A tool. run: takes a call, and inputs by name; its docstring is the description.
+    """Tool. run: function of a call and named inputs; its docstring is the description.
 
-    A parameter is annotated like a command-line option, including its help, or with a pydantic `Field`; a dataclass
-    parameter stands for its fields. writes: whether it writes files.
+    Annotate each parameter like a command-line option, help included, or with a pydantic `Field`; a dataclass parameter
+    stands for its fields. writes: whether it writes files.
     """
 
     name: str
@@ -37,13 +37,13 @@ class Tool:
 
     @cached_property
     def groups(self) -> dict[str, Any]:
-        """Dataclasses of inputs, by parameter."""
+        """Input dataclasses, by parameter."""
         hints = get_type_hints(self.run, include_extras=True)
         return {name: hint for name, hint in hints.items() if is_dataclass(hint) and name not in ("call", "return")}
 
     @cached_property
     def inputs(self) -> type[BaseModel]:
-        """Model of the inputs."""
+        """Pydantic model of the inputs."""
         hints, definitions = get_type_hints(self.run, include_extras=True), dict[str, Any]()
         for name, parameter in inspect.signature(self.run).parameters.items():
             if name in self.groups:
@@ -86,14 +86,14 @@ class Tool:
 
 
 def _default_of(item: Any) -> Any:
-    """Return the default of a dataclass field in the form of a parameter default."""
+    """Return the default of a dataclass field as a parameter default."""
     if item.default_factory is not MISSING:
         return item.default_factory()
     return inspect.Parameter.empty if item.default is MISSING else item.default
 
 
 def _field(hint: Any, default: Any) -> tuple[Any, FieldInfo]:
-    """Return type and field of a parameter."""
+    """Return type and field for a parameter."""
     kind, *annotations = get_args(hint)
     field = next((metadata for metadata in annotations if isinstance(metadata, FieldInfo)), None)
     if field is None:

@@ -1,4 +1,4 @@
-"""Active constraints of the designs of a front."""
+"""Active constraints among the designs of a front."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ Side = Literal["lower", "upper"]
 
 
 class LimitModel(BaseModel):
-    """A limit on which designs rest, in its unit. designs: their numbers. wider: a value to try.
+    """Limit that is active for some designs, in its unit. designs: their numbers. wider: a value to try.
 
-    words: in metric units. wider is null where the job says the limit in a way that another number cannot replace.
+    words: in metric units. wider: null if the job states the limit in a form that no single number can replace.
     """
 
     of: LIMIT_PATH
@@ -39,7 +39,7 @@ class LimitModel(BaseModel):
 
 
 class ActiveLimitsModel(BaseModel):
-    """The limits on which designs of a front rest, those with most designs first."""
+    """Active limits of a front, those with the most designs first."""
 
     job: int = Field(examples=[7])
     count: int = Field(description="number of all designs", examples=[100])
@@ -48,7 +48,7 @@ class ActiveLimitsModel(BaseModel):
 
 @router.get("/jobs/{number}/binding", responses=problem_responses(409))
 def list_active_limits(stored_front: FrontDep, store: StoreDep) -> ActiveLimitsModel:
-    """Give the limits of a job on which designs of its front rest: what a wider one may gain."""
+    """List the active limits of a front, where a wider limit may improve designs."""
     limits = active_limits(stored_front.problem, stored_front.result, store.tables(stored_front.job.id))
     models = [
         LimitModel(

@@ -44,10 +44,10 @@ _NOTHING_TO_GAIN = "At this design nothing can be gained in one objective for a 
 
 
 class AnalysisModel(BaseModel):
-    """All numbers of a design.
+    """All numbers for a design.
 
-    analysis: what `slidercrank analyse --json` prints: every quantity, of every topic an object, and as `violated` by
-    how much the design goes beyond allowable values. notes: what is left out, and why.
+    analysis: output of `slidercrank analyse --json`: every quantity, an object per topic, and in `violated` the excess
+    beyond each allowable value. notes: omissions, with reasons.
     """
 
     analysis: Annotated[dict[str, Any], _TOPICS]
@@ -55,13 +55,13 @@ class AnalysisModel(BaseModel):
 
 
 class StoredAnalysisModel(OfDesign, AnalysisModel):
-    """All numbers of a design of a front."""
+    """All numbers for a design on a front."""
 
 
 class WhatIf(BaseModel, extra="forbid"):
-    """A job, and the dimensions of a design. Dimensions that the job fixes need not be repeated.
+    """Job, and the dimensions of a design. Dimensions fixed by the job may be omitted.
 
-    values: numbers of the job at other values, by their paths. show: topics to add.
+    values: replacements for numbers in the job, by path. show: topics to add.
     """
 
     job: dict[str, Any] = Field(description="the tables of a job file")
@@ -74,9 +74,9 @@ class WhatIf(BaseModel, extra="forbid"):
 
 
 class TradeOffsModel(OfDesign):
-    """Trade-offs of a design: the cost of one objective in the others, in words.
+    """Trade-offs of a design: the cost of each objective in terms of the others, in words.
 
-    note: why there is nothing, or empty. blocks: all of it.
+    note: why there are no trade-offs, or empty. blocks: the whole answer.
     """
 
     trade_offs: list[str] = Field(examples=[["1 deg more least transmission angle costs 0.8 N m more peak torque"]])
@@ -86,7 +86,7 @@ class TradeOffsModel(OfDesign):
 
 @router.get("/jobs/{number}/designs/{design}/analysis")
 def analyse_design(stored_front: FrontDep, design: DesignNumber, show: Show = []) -> StoredAnalysisModel:  # noqa: B006
-    """Analyse a design of a front anew, for its job, with the choices and the varying numbers that it has."""
+    """Analyse a design on a front again for its job, with its choices and extra variables."""
     topics = chosen_topics(show, job=True, word="show")
     stored = stored_front.design(design)
     if stored.part.motion is not None:
@@ -101,7 +101,7 @@ def analyse_design(stored_front: FrontDep, design: DesignNumber, show: Show = []
 
 @router.post("/analyse")
 def analyse_any(request: WhatIf, settings: SettingsDep) -> AnalysisModel:
-    """Analyse a design that need not be in any front: what if?"""
+    """Analyse a design that need not be on any front (what-if analysis)."""
     topics = chosen_topics(request.show, job=True, word="show")
     problem = problem_of_tables(request.job, settings.allowed_quantities, request.values, require_feasible=False)
     require_rotating_crank(problem.motion, "an analysis")
@@ -115,7 +115,7 @@ def analyse_any(request: WhatIf, settings: SettingsDep) -> AnalysisModel:
 
 @router.get("/jobs/{number}/designs/{design}/trade-offs")
 def show_trade_offs(stored_front: FrontDep, design: DesignNumber, units: UnitsParameter = "metric") -> TradeOffsModel:
-    """Give what one objective costs in the others at a design, to first order, its active constraints held."""
+    """Return the first-order trade-off rates between objectives at a design, with its active constraints held."""
     stored = stored_front.design(design)
     try:
         sentences, note = trade_offs_of(stored_front.front, design - 1, stored, units), ""
@@ -130,7 +130,7 @@ def show_trade_offs(stored_front: FrontDep, design: DesignNumber, units: UnitsPa
 def _with_topics(
     mechanism: Mechanism, linkage: Linkage, topics: tuple[str, ...], custom: Sequence[Quantity], *, lenient: bool
 ) -> tuple[dict[str, Any], list[str]]:
-    """Return the record of a design with its topics, ready for JSON, and notes."""
+    """Return the record of a design with its topics, ready for JSON, and its notes."""
     row, undefined = quantities_of_design(mechanism, linkage, custom)
     analysed = analysis_of(
         row, mechanism, linkage, topics, cancelled=lambda: False, lenient=lenient, undefined=undefined

@@ -1,4 +1,4 @@
-"""The application that serves the API: one ASGI application from store and settings, nothing else shared."""
+"""ASGI application that serves the API; it shares nothing but a store and settings."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _PARTS = (
     *("design_questions", "front_questions", "wish", "bookmarks", "design_files", "figures", "exports"),
     *("quantities", "health"),
 )
-"""Modules of the endpoints, in the order of their description."""
+"""Modules with the endpoints, in the order of the API description."""
 MODULES = (
     __name__,
     *(f"{__package__}.{part}" for part in _PARTS),
@@ -47,10 +47,10 @@ MODULES = (
     "scipy.optimize",
     "slidercrank.optimise.job",
 )
-"""Modules that `computing_app` needs, and those by which most answers begin."""
+"""Modules that `computing_app` and most answers need."""
 THREADS = 8
-"""Requests that are read for at a time. More threads take turns with the interpreter: of 100 requests at once the
-slowest then waits twice as long."""
+"""Requests that may read the store simultaneously. With more threads, which take turns in the interpreter, the slowest
+of 100 simultaneous requests waits twice as long."""
 _COMMON = problem_responses(400, 401, 403, 404, 413, 422, 503)
 _SCHEMAS = "#/components/schemas/"
 _EXAMPLE_TOML = """\
@@ -73,15 +73,15 @@ _FIRST = {"design": 1, "kept": 1}
 
 
 def create_app(store: Store, settings: Settings = DEFAULT, computing: Computing | None = None) -> FastAPI:
-    """Return the application for a store, which the caller opens and closes.
+    """Return the application for a store that the caller opens and closes.
 
-    computing: processes that answer computing requests; this process if None.
+    computing: processes that answer computing requests; None computes in this process.
     """
     app = FastAPI(
         title="slidercrank",
         version=_version(),
         openapi_url=f"{PREFIX}/openapi.json",
-        docs_url=None,  # its pages come from other sites: see api_reference
+        docs_url=None,  # its pages load from other sites: see api_reference
         redoc_url=None,
         routes=_routes(),
         lifespan=_few_threads,
@@ -93,7 +93,7 @@ def create_app(store: Store, settings: Settings = DEFAULT, computing: Computing 
     )
     app.state.store = store
     app.state.settings = settings
-    app.state.fault_times = {}  # logged faults with their times
+    app.state.fault_times = {}  # times of the logged faults
     app.state.reading = asyncio.Lock()
     app.state.computing = computing
     app.state.turn_here = asyncio.Lock()
@@ -121,7 +121,7 @@ async def _few_threads(_: FastAPI) -> AsyncIterator[None]:
 
 @contextmanager
 def computing_app(address: str, settings: Settings, *, most_queued: int, log_format: Format) -> Iterator[FastAPI]:
-    """Yield the application that answers in a process of `Computing`; its requests have passed the access checks."""
+    """Yield the application that runs in a process of `Computing`; its requests have passed the access checks."""
     set_up_logs(log_format)
     trusted = replace(settings, token=None, hosts=("*",), submissions_per_minute=0)
     with Store(address, most_queued=most_queued) as store:
@@ -131,14 +131,14 @@ def computing_app(address: str, settings: Settings, *, most_queued: int, log_for
 
 
 async def _prepare(request: Request) -> None:
-    """Start a process early, so that it is ready when a user of the page needs a computation."""
+    """Start a process early, to have it ready when a user of the page needs a computation."""
     if request.app.state.computing is not None:
         request.app.state.computing.prepare()
 
 
 @cache
 def _routes() -> list[BaseRoute]:
-    """Return the endpoints shared by all applications of a process; FastAPI reads signatures again when adding them."""
+    """Return the endpoints for all applications of a process; cached because FastAPI is slow to inspect signatures."""
     root = APIRouter(generate_unique_id_function=lambda route: route.name)
     for part in _PARTS:
         root.include_router(import_module(f"{__package__}.{part}").router, prefix=PREFIX, responses=_COMMON)
@@ -155,9 +155,9 @@ def _version() -> str:
 
 
 def _completed(schema: dict[str, Any], *, secured: bool) -> dict[str, Any]:
-    """Return the description of the API (OpenAPI 3.1), completed with facts that FastAPI cannot infer."""
+    """Return the OpenAPI 3.1 description of the API, with the facts that FastAPI cannot infer."""
     if "parquet" not in exports.formats():
-        schema["paths"].pop(f"{_NUMBER}/export.parquet")  # it reports what to install
+        schema["paths"].pop(f"{_NUMBER}/export.parquet")  # the endpoint reports what to install
     parts = schema.setdefault("components", {})
     shapes = parts.setdefault("schemas", {})
     shapes["Problem"] = Problem.model_json_schema()

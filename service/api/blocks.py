@@ -1,4 +1,4 @@
-"""Sentences and tables of an answer as data: the client chooses the units and formats the numbers."""
+"""Sentences and tables of an answer as data: the client selects the units and formats the numbers."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _SYSTEMS: tuple[System, ...] = ("metric", "inch")
 
 
 class NumberModel(BaseModel):
-    """A number in a system of units. digits: significant ones. decimals: digits after the point instead."""
+    """Number in one unit system. digits: significant digits. decimals: digits after the decimal point instead."""
 
     number: float | Literal["inf", "-inf"] | None = Field(
         description="value; null where it is not defined", examples=[280.0]
@@ -27,9 +27,9 @@ class NumberModel(BaseModel):
 
 
 class NumberPart(BaseModel):
-    """A number within a text, in both systems of units. sign: whether a positive one gets a plus.
+    """Number within a text, in both unit systems. sign: whether a positive number gets a plus sign.
 
-    missing: what stands for one that is not defined.
+    missing: text for an undefined number.
     """
 
     metric: NumberModel
@@ -39,27 +39,27 @@ class NumberPart(BaseModel):
 
 
 class PhrasePart(BaseModel):
-    """A unit, or words that name units, in both systems."""
+    """Unit, or words that name units, in both unit systems."""
 
     metric: str = Field(examples=["mm"])
     inch: str = Field(examples=["in"])
 
 
 Parts = list[str | NumberPart | PhrasePart]
-"""A text: words, numbers and units, one after the other."""
+"""Text: a sequence of words, numbers and units."""
 
 
 class ColumnPart(BaseModel):
-    """A column of a table. title: its head. right: whether it is aligned to the right."""
+    """Table column. title: its heading. right: whether it is right-aligned."""
 
     title: Parts = Field(examples=[["force, ", {"metric": "N", "inch": "lbf"}]])
     right: bool
 
 
 class AnswerBlock(BaseModel):
-    """A sentence, or a table where there are columns.
+    """Sentence, or a table if there are columns.
 
-    style: of a sentence: a heading, plain text, or a note on what precedes it. rows: the texts of the cells.
+    style: whether a sentence is a heading, plain text, or a note on the preceding block. rows: cell texts.
     """
 
     text: Parts = Field([], examples=[["Motor"]])
@@ -69,13 +69,13 @@ class AnswerBlock(BaseModel):
 
 
 def block_models(blocks: Sequence[Block], notes: Sequence[str] = ()) -> list[AnswerBlock]:
-    """Return blocks as data. notes: sentences after them, as notes without a capital and a full stop."""
+    """Return blocks as data. notes: sentences to append as notes, without capital and full stop."""
     note_blocks = (note(f"{text[:1].upper()}{text[1:]}.") for text in notes)
     return [_block(text) for text in (*blocks, *note_blocks)]
 
 
 def sentence_blocks(sentences: Sequence[str]) -> list[AnswerBlock]:
-    """Return sentences as data, with unchanged numbers."""
+    """Return sentences as data; numbers in them stay as text."""
     return block_models([sentence("{text}", text=text) for text in sentences])
 
 

@@ -1,4 +1,4 @@
-"""Bookmarked designs of a front, with name, note, star and the reasons for a decision."""
+"""Bookmarked designs of a front, each with name, note, star and the reasons for a decision."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ BookmarkNumber = Annotated[
 
 
 class NewBookmark(BaseModel, extra="forbid", strict=True):
-    """A design to keep: one of the front, that with other dimensions, or one of dimensions alone.
+    """Design to bookmark: one on the front, one with other dimensions, or dimensions alone.
 
-    A design that is kept already takes over the name, note, star, decision and reason that are given. decided: revokes
-    an earlier decision.
+    If the design already has a bookmark, that bookmark takes over the given name, note, star, decision and reason.
+    decided: revokes an earlier decision.
 
-    design: its number. dimensions: of a row of a table of designs, in place of those of the design; without a design
-    all of the lengths, varying numbers and choices. Lengths outside of the ranges of the job are allowed.
+    design: its number. dimensions: column values from a table of designs that replace those of the design; without a
+    design, all lengths, extra variables and choices. Lengths outside the ranges of the job are allowed.
     """
 
     design: int | None = Field(None, ge=1, le=2**31, examples=[1])
@@ -58,7 +58,10 @@ class NewBookmark(BaseModel, extra="forbid", strict=True):
 
 
 class BookmarkChange(BaseModel, extra="forbid", strict=True):
-    """Changes to a bookmark; fields left out stay. decided: revokes an earlier decision. reason: why, or why not."""
+    """Changes to a bookmark; omitted fields stay unchanged.
+
+    decided: revokes an earlier decision. reason: why, or why not.
+    """
 
     name: Annotated[str, Field(min_length=1, max_length=200)] = Field("", examples=["Round numbers"])
     note: _TEXT = Field("", examples=["rod from stock"])
@@ -68,12 +71,12 @@ class BookmarkChange(BaseModel, extra="forbid", strict=True):
 
 
 class BookmarkedDesign(BaseModel):
-    """A bookmarked design. at: when it was bookmarked, seconds since 1970. design: its origin in the front.
+    """Bookmarked design. at: time of bookmarking, seconds since 1970. design: number of its origin on the front.
 
-    changed: whether its dimensions are others than those of that design. numbers: the query that gives that design its
-    dimensions, empty if they are the same; null if no query can. decision: the decision for it in words, or empty.
-    cells: every quantity and the slacks. broken: columns of the requirements that it does not meet. outside: of
-    dimensions that are outside the job.
+    changed: whether its dimensions differ from those of its origin. numbers: query that gives the origin these
+    dimensions: empty if they are equal, null if none can. decision: its decision in words, or empty. cells: every
+    quantity and the slacks. broken: columns of unmet requirements. outside: columns of dimensions outside the job's
+    ranges.
     """
 
     number: int = Field(ge=1, examples=[1])
@@ -95,7 +98,7 @@ class BookmarkedDesign(BaseModel):
 
 
 class BookmarkList(BaseModel):
-    """The bookmarks of a job, oldest first."""
+    """Bookmarks of a job, oldest first."""
 
     job: int = Field(examples=[7])
     columns: list[ColumnModel]
@@ -112,9 +115,9 @@ def list_bookmarks(stored_front: FrontDep, store: StoreDep) -> BookmarkList:
 
 @router.post("/jobs/{number}/kept", status_code=HTTPStatus.CREATED)
 def add_bookmark(stored_front: FrontDep, request: NewBookmark, store: StoreDep) -> BookmarkedDesign:
-    """Keep a design with a name, a note and a star."""
+    """Bookmark a design with a name, a note and a star."""
     design = _requested_design(stored_front, request)
-    _varied(stored_front, design)  # reject what cannot be computed before storing it
+    _varied(stored_front, design)  # reject what cannot be computed before it is stored
     fields: dict[str, Any] = request.model_dump(exclude={"dimensions"})
     bookmark = keep_design(store, stored_front.job.id, dimensions=design.values, variant=design.variant, **fields)
     return _bookmark_model(stored_front, bookmark)
@@ -150,7 +153,7 @@ def export_bookmarks(stored_front: FrontDep, store: StoreDep, units: UnitsParame
 
 
 def _requested_design(stored_front: StoredFront, request: NewBookmark) -> StoredDesign:
-    """Return the design to bookmark. Raises `InputError` for dimensions that the job does not have."""
+    """Return the design to bookmark. Raises `InputError` for dimensions that the job does not define."""
     if request.design is None and not request.dimensions:
         raise InputError("a bookmark needs a design of the front or dimensions; got neither; give a design, or lengths")
     row = {} if request.design is None else stored_front.row(request.design)
@@ -202,7 +205,7 @@ def _bookmark_model(stored_front: StoredFront, bookmark: Bookmark) -> Bookmarked
 
 
 def _query(design: StoredDesign) -> dict[str, float | list[str]]:
-    """Return the query that gives another design of the same choices the dimensions of this one."""
+    """Return the query that gives a reference design with the same choices the dimensions of this one."""
     lengths = {key: 1e3 * value for key, value in zip(_LENGTHS, design.values[:3], strict=True)}
     pairs = zip(map(varying_column, design.part.mechanism.varying), design.values[3:], strict=True)
     values = [f"{column}={value * unit.factor!r}" for (column, unit), value in pairs]

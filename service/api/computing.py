@@ -1,8 +1,8 @@
-"""Computing requests, answered by separate processes, each within limits on memory and processor time.
+"""Separate processes that answer computing requests, each with limits on memory and processor time.
 
-A thread cannot be killed, and holds the interpreter while it computes. An executor of `concurrent.futures` can neither
-end one call nor return an answer in parts, so these are plain processes of `multiprocessing`. They come from a fork
-server, which has imported the required modules: a killed process is replaced quickly.
+A thread cannot be killed, and blocks the interpreter while it computes. They are plain `multiprocessing` processes,
+because an executor of `concurrent.futures` can neither cancel a running call nor return an answer in parts. A fork
+server that has imported the required modules creates them, so a killed process is replaced quickly.
 """
 
 from __future__ import annotations
@@ -29,19 +29,19 @@ from .computing_process import OUT_OF_TIME, ApplicationFactory, Question, is_las
 from .throttle import TurnQueue
 
 MOST = Limits(seconds=60.0, memory=10**9)
-"""What an answer may take: time of the processor, and memory beyond that of a process at rest."""
-_FAREWELL = 1.0  # s left for an answer after its client has gone: a process that finishes in time is kept
+"""Limits for one answer: processor time, and memory beyond that of an idle process."""
+_FAREWELL = 1.0  # s that an answer may still take after its client has left: a process that finishes in time is reused
 _SENT = ("type", "asgi", "http_version", "method", "scheme", "path", "raw_path", "query_string", "root_path", "headers")
 _REMEDY = "ask for less, or use a command such as slidercrank analyse, which has no limits"
 
 
 class QuickRoute(APIRoute):
-    """An endpoint with a short computation. Its requests never wait for long ones."""
+    """An endpoint with a short computation. Its requests never wait behind long ones."""
 
     turns: ClassVar = "quick"
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Let a process answer a request; without processes, answer it here, one at a time."""
+        """Let a process answer a request; without processes, answer requests here, one at a time."""
         state = scope["app"].state
         if state.computing is None:
             async with state.turn_here:
@@ -53,36 +53,39 @@ class QuickRoute(APIRoute):
 
 
 class LongRoute(QuickRoute):
-    """An endpoint that may compute for many seconds."""
+    """An endpoint whose computation may take many seconds."""
 
     turns: ClassVar = "long"
 
 
 class Computing:
-    """Processes that answer requests, each one at a time, started when needed; used by one event loop."""
+    """Processes for one event loop that start when needed and each answer one request at a time."""
 
     def __init__(self, make: ApplicationFactory, *, limits: Limits = MOST, modules: Iterable[str] = ()) -> None:
-        """Start nothing yet. make: function that gives a process its application. modules: fork server imports."""
+        """Start nothing yet.
+
+        make: function that creates the application in a process. modules: modules that the fork server imports.
+        """
         methods = multiprocessing.get_all_start_methods()
         self._context: Any = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
         self._context.set_forkserver_preload(list(modules))
         self._make, self._most = make, limits
         self._turns = {"quick": TurnQueue("quick analyses", 2), "long": TurnQueue("long analyses", 2)}
-        self._threads = CapacityLimiter(8)  # that wait for processes, apart from those that read
+        self._threads = CapacityLimiter(8)  # threads that wait for processes, separate from those that read
         self._idle: list[_Process] = []
         self._all: set[_Process] = set()
         self._prepared = False
 
     def prepare(self) -> None:
-        """Begin to start a first process, which takes seconds; once."""
+        """Start a first process in the background, which takes seconds; later calls have no effect."""
         if not self._prepared:
             self._prepared = True
             asyncio.get_running_loop().run_in_executor(None, self._start)
 
     async def handle(self, turns: str, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer a request in a free process, and kill the process if the client leaves early."""
+        """Answer a request in an idle process, and kill the process if the client leaves early."""
         question = {key: scope[key] for key in _SENT if key in scope}, await Request(scope, receive).body()
-        messages = asyncio.Queue[Message | None]()  # no process waits for a client that does not read
+        messages = asyncio.Queue[Message | None]()  # a client that does not read must not occupy a process
         answering = asyncio.create_task(self._compute(turns, question, messages.put_nowait))
         leaving = asyncio.create_task(_wait_for_disconnect(receive))
         for task in (answering, leaving):
@@ -98,7 +101,7 @@ class Computing:
             task.result()
 
     def close(self) -> None:
-        """Kill all processes, whatever they are doing."""
+        """Kill all processes, even busy ones."""
         for process in list(self._all):
             process.end()
 
@@ -108,7 +111,7 @@ class Computing:
                 await run_sync(self._start, limiter=self._threads)
             try:
                 last = await process.stream(question, give)
-                self._idle.append(process)  # before the client can ask again
+                self._idle.append(process)  # before the client can send its next request
                 give(last)
             except (EOFError, OSError):
                 raise self._refusal(await run_sync(process.exit_code, limiter=self._threads)) from None
@@ -144,20 +147,20 @@ class Computing:
 
 
 class _Process:
-    """An answering process, seen from the server."""
+    """Server-side handle of an answering process."""
 
     def __init__(self, context: Any, make: ApplicationFactory, limits: Limits, threads: CapacityLimiter) -> None:
         self._threads = threads
         self._connection, child_end = context.Pipe()
-        # A daemon is ended with this process, which would wait for others.
+        # A daemon process is ended together with this process, which would otherwise wait for it.
         self._process = context.Process(target=serve_requests, args=(child_end, make, limits), daemon=True)
         with child_end, block_interrupts():
             self._process.start()
 
     async def stream(self, question: Question, give: Callable[[Message], None]) -> Message:
-        """Pass on the messages of an answer but the last, which is returned.
+        """Pass on all messages of an answer except the last, and return that one.
 
-        Raises `EOFError` or `OSError` if the process ends early, and the error that prevents it from answering.
+        Raises `EOFError` or `OSError` if the process ends early, and forwards the error that prevents an answer.
         """
         message = await run_sync(self._send_request, question, abandon_on_cancel=True, limiter=self._threads)
         while True:
@@ -177,21 +180,24 @@ class _Process:
         return message
 
     def exit_code(self) -> int:
-        """Wait for its end and return its exit code."""
+        """Wait for the process to end and return its exit code."""
         self._process.join()
         return int(self._process.exitcode or 0)
 
     def is_alive(self) -> bool:
-        """Whether it can take a request: idle processes end after a while. The pipe closes before the end shows."""
+        """Whether the process can take a request: idle processes end after a while.
+
+        The pipe closes before the end of the process becomes visible.
+        """
         return bool(self._process.is_alive()) and not self._connection.poll()
 
     def end(self) -> None:
-        """Kill it, if it has not ended."""
+        """Kill the process if it is still running."""
         if self._process.is_alive():
             self._process.kill()
 
 
 async def _wait_for_disconnect(receive: Receive) -> None:
-    """Wait until the client of a request has gone, or has its answer."""
+    """Wait until the client of a request has left or has its answer."""
     while (await receive())["type"] != "http.disconnect":
         pass

@@ -1,4 +1,4 @@
-"""A process that answers computing requests, one after the other: the other end of `computing`."""
+"""Process that answers computing requests one after another; the counterpart of `computing`."""
 
 from __future__ import annotations
 
@@ -22,16 +22,17 @@ ApplicationFactory = Callable[[], AbstractContextManager[ASGIApp]]
 Question = tuple[dict[str, Any], bytes]
 """Scope and body of a request."""
 NICENESS = 5
-"""Niceness of an answer: it yields to requests that only read, and is ahead of the workers."""
+"""Niceness while answering: below requests that only read, above the workers."""
 OUT_OF_TIME = -27 if os.name == "nt" else -signal.SIGPROF
-"""Exit code of a process that took more time of the processor than an answer may."""
-_IDLE = 600.0  # s without a request after which it ends, and frees its memory
+"""Exit code of a process that exceeded the processor time for an answer."""
+_IDLE = 600.0  # s without a request until the process ends and frees its memory
 
 
 def serve_requests(connection: Connection, make: ApplicationFactory, limits: Limits) -> None:
-    """Answer one request after the other until no more come.
+    """Answer requests one after another until no more arrive.
 
-    Sends the messages of an answer, the last one when all is done, or an error if no application can be created.
+    Sends the messages of each answer, the last one only when the work is done, or an error if no application can be
+    created.
     """
     end_with_parent()
     if hasattr(os, "nice"):
@@ -48,7 +49,7 @@ def serve_requests(connection: Connection, make: ApplicationFactory, limits: Lim
     except SlidercrankError as error:
         connection.send(error)
     except (EOFError, OSError):
-        pass  # the other end is gone, or no longer needs an answer
+        pass  # the server has ended, or no longer needs an answer
 
 
 def is_last(message: Message) -> bool:
@@ -63,7 +64,7 @@ async def _run_request(app: ASGIApp, scope: dict[str, Any], body: bytes, give: C
 
     async def receive() -> Message:
         if not parts:
-            await asyncio.Event().wait()  # for a client to leave: then this process is killed
+            await asyncio.Event().wait()  # wait for the client to leave: the server then kills this process
         return parts.popleft()
 
     async def send(message: Message) -> None:
@@ -74,20 +75,20 @@ async def _run_request(app: ASGIApp, scope: dict[str, Any], body: bytes, give: C
 
 
 def _limit_memory(limit: int | None) -> None:
-    """Limit further memory of this process to a number of bytes, if the system supports it."""
+    """Limit additional memory of this process to a number of bytes, if the system supports it."""
     statistics = Path("/proc/self/statm")
     if limit is not None and statistics.exists():
         import resource
 
-        # Not a limit on total memory: libraries reserve memory for each processor, and wait forever if they get none.
+        # Total memory is not limited: libraries reserve memory for each processor, and wait forever if they get none.
         has = int(statistics.read_text().split()[5]) * resource.getpagesize()
         resource.setrlimit(resource.RLIMIT_DATA, (has + limit, resource.getrlimit(resource.RLIMIT_DATA)[1]))
 
 
 def _limit_time(seconds: float | None) -> None:
-    """Kill this process after a further amount of processor time; None: never.
+    """Kill this process after an additional amount of processor time; None: never.
 
-    A timer, unlike a resource limit, is not inherited by processes that compile kernels or run functions of users.
+    Unlike a resource limit, a timer is not inherited by processes that compile kernels or run custom functions.
     """
     if hasattr(signal, "setitimer"):
         signal.setitimer(signal.ITIMER_PROF, seconds or 0.0)

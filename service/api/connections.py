@@ -1,7 +1,7 @@
-"""Limits on connections of the web server: their number, and the size, duration and form of a request.
+"""Limits on connections to the web server: number of connections, and size, duration and form of a request.
 
-Requests rejected here never reach the application: opening a connection needs no token. Without these limits one client
-could hold all connections, or keep the server busy with an endless request.
+Requests rejected here never reach the application: anyone can open a connection without a token. Without these limits
+one client could take all connections, or keep the server busy with an endless request.
 """
 
 from __future__ import annotations
@@ -21,36 +21,36 @@ from .security import KNOWN
 
 _log = logging.getLogger(__name__)
 MOST_CONNECTIONS = 2000
-"""Connections at a time; fewer where the system allows fewer open files, see `raise_connection_limit`."""
+"""Simultaneous connections; fewer if the system allows fewer open files, see `raise_connection_limit`."""
 MOST_HEAD = 65_536
-"""Bytes of an address with the headers, and `_HEADER` more for each; of what comes with a body between its content."""
+"""Bytes of an address with its headers, plus `_HEADER` for each header; also bytes between the chunks of a body."""
 _HEADER = 128
-"""Bytes of memory that a header takes beside its own."""
+"""Bytes of memory per header, in addition to its text."""
 HEAD_SECONDS = 10.0
-"""From connecting, or from the first byte of a request, until its headers are there."""
+"""Seconds from the connection, or from the first byte of a request, to the end of its headers."""
 BODY_SECONDS = 60.0
-"""From the headers until the whole body is there."""
+"""Seconds from the end of the headers to the end of the body."""
 _PIECE = {"rest": 1024, "head": 1024, "body": 16_384}
-"""Bytes of each part that are read at a time: sizes are looked at in between."""
+"""Bytes read at a time; limits are checked after each read."""
 _PIECES = 32
-"""Pieces that are read in one turn, and `_TURN` bytes: then other connections have theirs."""
+"""Reads per turn, at most `_TURN` bytes; then other connections get their turn."""
 _TURN = 32_768
 _END = b"\n\r\n"
-"""What every head ends with, and with it most requests."""
+"""End of every header block, and so of most requests."""
 _WRITE_BUFFER = 16_384
-"""Bytes of an answer that may wait to be sent; the rest of it is written once the client takes them."""
+"""Bytes of an answer that may wait to be sent; the rest is written as the client reads."""
 _SHARE = 20
-"""One in so many connections is closed when there are too many."""
+"""Divisor for the fraction of connections that are closed when there are too many."""
 
 
 def raise_connection_limit() -> int:
-    """Return the maximum number of connections, after raising the limit of open files as far as possible.
+    """Return the maximum number of connections after raising the open-file limit as far as possible.
 
     Half of the open files are reserved for the database, workers and files.
     """
     try:
         import resource
-    except ImportError:  # not on Windows, which has no such limit
+    except ImportError:  # Windows has no such limit
         return MOST_CONNECTIONS
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     limit = 4 * MOST_CONNECTIONS if hard == resource.RLIM_INFINITY else min(hard, 4 * MOST_CONNECTIONS)
@@ -63,8 +63,8 @@ def raise_connection_limit() -> int:
 class Gate:
     """Connections of one server.
 
-    most: maximum number of connections. A new one beyond it replaces those that have waited longest, first those
-    without the token; it is refused if all others have the token and read their answers.
+    most: maximum number of connections. A connection beyond it replaces those that have waited longest, first those
+    without the token. It is refused if all others have the token and read their answers.
     """
 
     def __init__(self, limit: int = MOST_CONNECTIONS) -> None:
@@ -99,20 +99,21 @@ class Gate:
         if not waiting:
             self.log(f"refused: {self.most} connections were being answered")
             return False
-        for least in waiting[: 1 + self.most // _SHARE]:  # several, so that a flood is not scanned each time
+        # Close several, so that a flood does not trigger a scan for each connection.
+        for least in waiting[: 1 + self.most // _SHARE]:
             self.log(f"closed because there were more than {self.most}")
             least.transport.abort()
             least.connections.discard(least)
         return True
 
     def log(self, event: str) -> None:
-        """Log an event on connections, unless it was logged within the last minute."""
+        """Log a connection event, unless it was logged within the last minute."""
         if should_log(self._log_times, event):
             _log.warning("connections %s", event)
 
 
 class Connection(HttpToolsProtocol):
-    """A connection, with limits on the size and arrival time of a request.
+    """Connection that limits the size and arrival time of each request.
 
     Requests are read one at a time: later requests stay unread until the client has read the earlier answers. since:
     time of the last received data, s, on the loop's clock.
@@ -130,27 +131,27 @@ class Connection(HttpToolsProtocol):
         self.since = self.loop.time()
         self._gate = gate
         self._backlog = b""
-        self._part: Literal["rest", "head", "body"] = "rest"  # the part being received
-        self._size = 0  # bytes of it without content
+        self._part: Literal["rest", "head", "body"] = "rest"  # the request part being received
+        self._size = 0  # bytes of this part other than content
         self._deadline: asyncio.TimerHandle | None = None
 
     @property
     def is_known(self) -> bool:
-        """Whether its last request was admitted with the token."""
-        return KNOWN in getattr(self.cycle, "scope", ())  # none before the first request
+        """Whether its last request was accepted with the token."""
+        return KNOWN in getattr(self.cycle, "scope", ())  # None before the first request
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether nothing is being answered on it."""
+        """Whether no request is being answered."""
         return bool(getattr(self.cycle, "response_complete", True))
 
     @property
     def is_dispensable(self) -> bool:
-        """Whether it may be closed to make room: without a token, idle, or not reading its answers."""
+        """Whether it may be closed to free a slot: without a token, idle, or not reading its answers."""
         return not self.is_known or self.is_at_rest or bool(self._backlog) or self.flow.write_paused
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as in the parent
-        """Begin, unless there are too many."""
+        """Accept the connection, unless there are too many."""
         super().connection_made(transport)
         transport.set_write_buffer_limits(_WRITE_BUFFER)
         if self._gate.make_way_for(self):
@@ -169,7 +170,7 @@ class Connection(HttpToolsProtocol):
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
-        """Accept received data, unless it has to wait for answers."""
+        """Accept received data, unless earlier answers are still pending."""
         self.since = self.loop.time()
         self._backlog += data
         if len(self._backlog) == len(data):
@@ -183,7 +184,7 @@ class Connection(HttpToolsProtocol):
         return not self.pipeline and (self.is_at_rest or self._part != "rest")
 
     def read(self) -> None:
-        """Read received bytes up to the end of a request, a limited number per turn; refuse oversized parts early."""
+        """Read received bytes up to the end of a request, with a limit per turn; refuse oversized parts early."""
         begin = 0
         for _ in range(_PIECES):
             if not begin < min(len(self._backlog), _TURN) or not self._may_read:
@@ -225,7 +226,7 @@ class Connection(HttpToolsProtocol):
             self._size += _HEADER
 
     def on_headers_complete(self) -> None:
-        """Pass the request on."""
+        """Pass the request on to the application."""
         self._part, self._size = "body", 0
         self._wait(None)
         super().on_headers_complete()
@@ -236,13 +237,13 @@ class Connection(HttpToolsProtocol):
         super().on_body(body)
 
     def on_message_complete(self) -> None:
-        """Record the arrival of the whole request."""
+        """Record that the whole request has arrived."""
         self._part, self._size = "rest", 0
         self._wait(None)
         super().on_message_complete()
 
     def on_response_complete(self) -> None:
-        """Continue with data sent ahead."""
+        """Continue with data that the client sent ahead."""
         super().on_response_complete()
         if self._backlog:
             self.flow.pause_reading()
@@ -250,7 +251,7 @@ class Connection(HttpToolsProtocol):
             self._gate.queue(self)
 
     def send_400_response(self, msg: str) -> None:
-        """Reject data that are not HTTP."""
+        """Reject data that is not HTTP."""
         self._refuse(HTTPStatus.BAD_REQUEST, "a request must be HTTP/1.1; got something else; correct it")
 
     def _wait(self, seconds: float | None) -> None:
@@ -262,7 +263,7 @@ class Connection(HttpToolsProtocol):
     def _too_late(self, seconds: float) -> None:
         if self.transport.is_closing():
             return
-        if self._part == "rest":  # nobody waits for an answer
+        if self._part == "rest":  # no client waits for an answer
             self._gate.log(f"closed: no request within {seconds:g} s")
             self.transport.close()
             return

@@ -1,4 +1,4 @@
-"""Curves of a design over its cycle, and its outlines for drawing, as JSON."""
+"""Curves of a design over its cycle, and its outlines for drawings, as JSON."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .fronts import ColumnModel, OfDesign
 
 
 class BarrelModel(BaseModel):
-    """A cylinder about the slider line: places of its open end and of its head, the clearance included."""
+    """Cylinder on the slider line: positions of its open end and its head, clearance included."""
 
     bore_mm: float = Field(examples=[70.0])
     foot_mm: float = Field(examples=[65.0])
@@ -24,7 +24,7 @@ class BarrelModel(BaseModel):
 
 
 class ActuatorModel(BaseModel):
-    """An actuator of the slider, for show: ends of its barrel, the face towards the slider."""
+    """Schematic actuator of the slider: ends of its barrel and its face towards the slider."""
 
     face_mm: float = Field(examples=[3900.0])
     foot_mm: float = Field(examples=[6400.0])
@@ -32,7 +32,7 @@ class ActuatorModel(BaseModel):
 
 
 class BodyModel(BaseModel):
-    """A body on the crank: mass centre along and across the crank, and the side of its schematic square."""
+    """Body on the crank: mass centre along and across the crank, and side length of its schematic square."""
 
     along_mm: float = Field(examples=[700.0])
     across_mm: float = Field(examples=[0.0])
@@ -40,10 +40,10 @@ class BodyModel(BaseModel):
 
 
 class OutlinesModel(BaseModel):
-    """Sizes of the drawn parts of a design, mm; bore, clearance and mass centre are true, the rest is schematic.
+    """Sizes of the drawn parts, mm; bore, clearance and mass centre are true to scale, the rest is schematic.
 
-    extent_mm: left, bottom, right and top of what stands or moves. slider_height_mm: the bore where it is a piston.
-    actuator, body: null where the machine has none.
+    extent_mm: left, bottom, right and top of all parts over the cycle. slider_height_mm: the bore if the slider is a
+    piston. actuator, body: null if the machine has none.
     """
 
     extent_mm: tuple[float, float, float, float] = Field(examples=[(-43.0, -40.0, 150.0, 52.0)])
@@ -55,14 +55,14 @@ class OutlinesModel(BaseModel):
 
 
 class CycleModel(BaseModel):
-    """Curves over the cycle: a turn of the crank, two where a load repeats after 720 deg, or a swing.
+    """Curves over the cycle: one crank revolution, two if a load repeats every 720 deg, or a swing.
 
-    columns: what the curves are. curves: values by column, all of one length; null where friction leaves a force
-    undetermined. They are at even crank angles from 0 deg on; of a swing at even times of the way forth, half of them,
-    and of the way back. turns: of the crank, 0 of a swing, which has no dead centres. seconds: of the cycle; null
-    without a speed, and of a slow swing. slider_ends_mm: slider positions at the inner and the outer dead centre, or at
-    start and end of a swing. slow_stroke: outward, inward or equal; differs if cylinders differ. outlines: of the
-    moving parts, for drawing.
+    columns: descriptions of the curves. curves: values by column, equal in length; null where friction leaves a force
+    undetermined. Samples are at even crank angles from 0 deg; for a swing at even times, half of them forward and half
+    return. turns: crank revolutions; 0 for a swing, which has no dead centres. seconds: cycle duration; null without a
+    speed and for a quasi-static swing. slider_ends_mm: slider positions at the inner and outer dead centres, or at the
+    start and end of a swing. slow_stroke: outward, inward or equal; differs if cylinders differ. outlines: outlines of
+    the moving parts.
     """
 
     turns: int = Field(examples=[1])
@@ -79,7 +79,7 @@ class CycleModel(BaseModel):
 
 
 class CurvesModel(OfDesign, CycleModel):
-    """Curves of a design of a front over its cycle."""
+    """Curves of a design on a front over its cycle."""
 
 
 def cycle_model(design: StoredDesign, angles: int) -> CycleModel:
@@ -101,7 +101,7 @@ def cycle_model(design: StoredDesign, angles: int) -> CycleModel:
 
 
 def outlines_model(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) -> OutlinesModel:
-    """Return the parts of a design as in its drawings."""
+    """Return the outlines of a design as its drawings show them."""
     drawn = outlines(mechanism, linkage, swing)
     actuator, body = drawn.actuator, drawn.body
     return OutlinesModel(

@@ -1,4 +1,4 @@
-"""Files of a single design, unchanged or with other numbers: linkage for CAD, motion, report for a review."""
+"""Files of a single design, unchanged or with other numbers: linkage for CAD, animation, report for a review."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ router = APIRouter(
 )
 
 _PLAYING = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; sandbox allow-scripts"
-"""The motion runs its own script, but as a document of no origin."""
+"""The animation runs its own script, but as a document without an origin."""
 
 CrankAngle = Annotated[
     float | None,
@@ -63,19 +63,19 @@ def _drawing(request: RequestedDesign, crank_angle_deg: float | None) -> Drawing
 
 @router.get("/linkage.dxf", **file_responses("image/vnd.dxf"))
 def draw_dxf(request: RequestedDesignDep, crank_angle_deg: CrankAngle = None) -> Response:
-    """Give the linkage of a design at true scale for CAD, in millimetres: see docs/drawings.md for its layers."""
+    """Return the linkage of a design at true scale for CAD, in millimetres; docs/drawings.md lists its layers."""
     return _file(request, "dxf", "image/vnd.dxf", dxf_file(_drawing(request, crank_angle_deg)))
 
 
 @router.get("/linkage.svg", **file_responses("image/svg+xml"))
 def draw_linkage(request: RequestedDesignDep, crank_angle_deg: CrankAngle = None) -> Response:
-    """Give the same drawing as SVG."""
+    """Return the same drawing as SVG."""
     return _file(request, "svg", "image/svg+xml", svg_file(_drawing(request, crank_angle_deg)))
 
 
 @router.get("/motion.html", **file_responses("text/html"))
 def show_motion(request: RequestedDesignDep) -> Response:
-    """Give the moving linkage as one HTML file with its own script, which fetches nothing."""
+    """Return an animation of the linkage as one HTML file with its own script; it fetches nothing."""
     from ..motion.player_page import player_page
 
     design = request.design
@@ -86,7 +86,7 @@ def show_motion(request: RequestedDesignDep) -> Response:
 
 @router.get("/motion.gif", dependencies=[Depends(require_figures)], **file_responses("image/gif"))
 def animate_linkage(request: RequestedDesignDep) -> Response:
-    """Give the moving linkage as an animated GIF: a turn of the crank, or a swing back and forth."""
+    """Return an animated GIF of the linkage: one crank revolution, or a swing back and forth."""
     from ..motion.animated_gif import animated_gif
 
     design, named = request.design, {"name": request.stored_front.result.name, "design": request.words}
@@ -97,7 +97,7 @@ def animate_linkage(request: RequestedDesignDep) -> Response:
 
 @router.get("/report.html", dependencies=[Depends(require_figures)], **file_responses("text/html"))
 def report_design(request: RequestedDesignDep, store: StoreDep, units: UnitsParameter = "metric") -> Response:
-    """Give the report of a design for a review as one HTML file without script, which fetches nothing."""
+    """Return a design-review report as one HTML file without scripts; it fetches nothing."""
     from ..report.html import html_file
 
     content = request.cached_file(
@@ -109,7 +109,7 @@ def report_design(request: RequestedDesignDep, store: StoreDep, units: UnitsPara
 
 @router.get("/report.pdf", dependencies=[Depends(require_figures)], **file_responses("application/pdf"))
 def print_report(request: RequestedDesignDep, store: StoreDep, units: UnitsParameter = "metric") -> Response:
-    """Give the same report as PDF."""
+    """Return the same report as PDF."""
     from ..report.pdf import pdf_file
 
     content = request.cached_file(
@@ -120,13 +120,13 @@ def print_report(request: RequestedDesignDep, store: StoreDep, units: UnitsParam
 
 @router.get("/cycle.csv", **file_responses("text/csv"))
 def export_cycle(request: RequestedDesignDep, units: UnitsParameter = "metric") -> Response:
-    """Give the curves of a design as a table, as `export --cycle`: each degree, or both ways of a swing."""
+    """Return the curves of a design as a table, as `export --cycle`: per degree, or for both directions of a swing."""
     content = design_csv(request.design, units)
     return _file(request, "csv", "text/csv; charset=utf-8", content.encode(), label="-cycle")
 
 
 def _report(request: RequestedDesign, store: Store, units: System) -> Report:
-    """Return the report of a design, with further data from the store."""
+    """Return the report on a design, with additional data from the store."""
     from ..report.alternatives import alternatives_of
     from ..report.design_report import design_report
     from ..report.subject import Subject
@@ -154,5 +154,5 @@ def _report(request: RequestedDesign, store: Store, units: System) -> Report:
 
 
 def _bookmarks_version(request: RequestedDesign, store: Store) -> int:
-    """Return a number for the state of a job's bookmarks, which reports contain: it changes with each edit."""
+    """Return a number that changes with each edit of a job's bookmarks, which reports contain."""
     return hash(tuple(bookmarks_of(store, request.stored_front.job.id)))

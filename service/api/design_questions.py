@@ -1,6 +1,6 @@
-"""Questions about a design of a front: topics, as in `analyse --show`, commands of their own, and measured curves.
+"""Questions about a design on a front: topics (`analyse --show`), separate commands, and measured curves.
 
-Each answer equals the output of the command of the same name with --json.
+Each answer equals the `--json` output of the command with the same name.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ router = APIRouter(
 
 
 def _drawn(request: RequestedDesign, key: str, kind: Literal["png", "svg"], draw: Callable[[], Figure]) -> Response:
-    """Return a figure of a question about a design. key: name in the cache."""
+    """Return the figure for a question about a design. key: name in the cache."""
 
     def make() -> tuple[tuple[str], bytes]:
         from ..figures.style import figure_bytes
@@ -58,10 +58,10 @@ TopicName = Annotated[
 
 
 class BlockModel(BaseModel):
-    """A sentence, or a table where there are rows.
+    """Sentence, or a table if there are rows.
 
-    heading: whether the sentence heads what follows. heads: of the columns, empty where they have none. right: whether
-    a column is aligned to the right. rows: the texts of the cells.
+    heading: whether the sentence is the heading of the next blocks. heads: column headings, empty without any. right:
+    whether a column is right-aligned. rows: cell texts.
     """
 
     sentence: str = Field(examples=["Motor"])
@@ -72,7 +72,7 @@ class BlockModel(BaseModel):
 
 
 class TopicAnswer(OfDesign):
-    """A topic of a design. numbers: what `analyse --json` has under its name. told: its text. blocks: that as data."""
+    """Topic of a design. numbers: its part of `analyse --json`. told: its text. blocks: the text as data."""
 
     name: str = Field(examples=["balance"])
     numbers: Annotated[dict[str, Any], RecordSchema(lambda: [topic.record_type for topic in TOPICS.values()])]
@@ -88,7 +88,7 @@ TopicInputsDep = Annotated[dict[str, str], inputs_in_address(INPUTS.values(), _P
 def draw_topic_svg(
     request: RequestedDesignDep, topic: TopicName, inputs: TopicInputsDep, units: UnitsParameter = "metric"
 ) -> Response:
-    """Draw the figure of one topic of a design, as found or with other numbers."""
+    """Draw the figure for one topic of a design, as stored or with other numbers."""
     return _topic_figure(request, topic, inputs, units, "svg")
 
 
@@ -96,7 +96,7 @@ def draw_topic_svg(
 def draw_topic_png(
     request: RequestedDesignDep, topic: TopicName, inputs: TopicInputsDep, units: UnitsParameter = "metric"
 ) -> Response:
-    """Draw the figure of one topic of a design, as found or with other numbers."""
+    """Draw the figure for one topic of a design, as stored or with other numbers."""
     return _topic_figure(request, topic, inputs, units, "png")
 
 
@@ -104,7 +104,7 @@ def draw_topic_png(
 def show_topic(
     request: RequestedDesignDep, topic: TopicName, inputs: TopicInputsDep, units: UnitsParameter = "metric"
 ) -> Response:
-    """Give the numbers of one topic of a design, as found or with other numbers, and its text."""
+    """Return the numbers and the text for one topic of a design, as stored or with other numbers."""
     bound_question = _bind(request, topic, inputs)
 
     def make() -> tuple[tuple[str], bytes]:
@@ -133,7 +133,7 @@ def _topic_figure(
 
 
 def _bind(request: RequestedDesign, topic: str, inputs: dict[str, str]) -> BoundQuestion:
-    """Return a topic of a design. Raises `NotFound` for an unknown name, and the errors of `for_problem`."""
+    """Return a topic for a design. Raises `NotFound` for an unknown name, and the errors of `for_problem`."""
     if topic not in TOPICS:
         raise NotFound(f"there is no topic {topic!r}; choose from {', '.join(TOPICS)}")
     design = request.design
@@ -141,7 +141,7 @@ def _bind(request: RequestedDesign, topic: str, inputs: dict[str, str]) -> Bound
 
 
 def _add(name: str, says: QuestionCommand) -> None:
-    """Add the endpoints of a question that is a command: its answer and its figure."""
+    """Add the endpoints of a question that is also a command: its answer and its figure."""
     question = DESIGN_QUESTIONS[name]
     numbers_field: Any = (Annotated[dict[str, Any], RecordSchema(lambda: [question.record_type])], ...)
     description = (
@@ -189,7 +189,7 @@ for _name, _says in QUESTION_COMMANDS.items():
 
 
 class MeasuredCurves(BaseModel, extra="forbid", strict=True):
-    """Measured curves as a CSV file has them. Its first line names the columns, each with its unit."""
+    """Measured curves, as text of a CSV file. The first line names the columns with their units."""
 
     csv: str = Field(
         description="text of the file: crank_angle_deg, or time_s at the job's speed, and curves such as torque_Nm",
@@ -198,10 +198,10 @@ class MeasuredCurves(BaseModel, extra="forbid", strict=True):
 
 
 class MeasuredModel(OfDesign):
-    """Deviation of measured curves from those of a design of a front.
+    """Deviation of measured curves from those of a design on a front.
 
-    measured: of `slidercrank analyse --measured --json`; measured minus computed, by curve. What is to be added to the
-    crank angles and values for the best fit is told, not applied.
+    measured: output of `slidercrank analyse --measured --json`; measured minus computed, by curve. The shifts of crank
+    angle and value for the best fit are reported, not applied.
     """
 
     measured: Annotated[dict[str, Any], RecordSchema(lambda: [MEASURED.record_type])]
@@ -210,7 +210,7 @@ class MeasuredModel(OfDesign):
 def compare_measured(
     stored_front: FrontDep, design: DesignNumber, measured_curves: MeasuredCurves, units: UnitsParameter = "metric"
 ) -> MeasuredModel:
-    """Compare measured curves with those of a design: deviations, and the shifts that fit best."""
+    """Compare measured curves with those of a design: deviations, and the best-fit shifts."""
     stored = stored_front.design(design)
     require_rotating_crank(stored.part.motion, "a comparison with measured curves")
     samples = read_measured(measured_curves.csv, stored.mechanism, stored.linkage)

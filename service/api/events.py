@@ -1,8 +1,8 @@
-"""Events of a job: as server-sent events while they happen, or as a page of JSON.
+"""Events of a job: live as server-sent events, or as a page of JSON.
 
-Streams never hold a thread while they wait, and never miss an event: one task looks up the events of all followed jobs
-and wakes their streams. A stream knows the number of the last event that it sent. It takes the next ones from the
-recent events of the task, or from the store if it is further behind.
+A waiting stream holds no thread and misses no event: one task looks up the events of all followed jobs and wakes their
+streams. A stream remembers the number of the last event that it sent. It takes the next events from the task's recent
+ones, or from the store if it is further behind.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ from .settings import StoreDep
 
 router = APIRouter(tags=["jobs"])
 HEARTBEAT = 15.0
-"""Seconds without an event after which a comment is sent, so that nothing on the way takes the stream for dead."""
+"""Seconds without an event until a comment is sent, so that no proxy considers the stream dead."""
 STREAM = "text/event-stream"
 STREAM_HEADERS = {"Cache-Control": "no-cache", "X-Accel-Buffering": "no"}
-"""So that nothing on the way keeps a stream back."""
+"""Headers that stop proxies from buffering a stream."""
 _FIRST = b"retry: 2000\n\n"
 _EXAMPLE = (
     'event: state\ndata: {"number":1,"at":1795375800.0,"kind":"state","data":{"state":"queued","reason":""}}\nid: 1\n\n'
@@ -47,14 +47,14 @@ _STREAMED: dict[int | str, dict[str, Any]] = {
 }
 _log = logging.getLogger(__name__)
 POLL = 0.1
-"""Seconds between two looks."""
-_PATIENCE = 2.0  # s until the next try after the store was unreachable
-_RECENT = 256  # events of a job that are kept
+"""Seconds between two look-ups."""
+_PATIENCE = 2.0  # s until the next attempt while the store is unreachable
+_RECENT = 256  # recent events kept per job
 _PAGE = 500
 
 
 class Channel:
-    """A job that streams follow. last: its last known event. over: whether no more will come."""
+    """Job that streams follow. last: number of its last known event. over: whether no more events will come."""
 
     def __init__(self, last: int) -> None:
         self.last = last
@@ -74,7 +74,7 @@ class Channel:
             self._changed = asyncio.Event()
 
     def since(self, number: int) -> list[Event] | None:
-        """Return the events after one, None if they are no longer kept."""
+        """Return the events after a given one, or None if they are no longer in memory."""
         if number >= self.last:
             return []
         if not self.recent or self.recent[0].number > number + 1:
@@ -82,7 +82,7 @@ class Channel:
         return [event for event in self.recent if event.number > number]
 
     async def news(self, seconds: float) -> bool:
-        """Wait for new events, and return whether any came in that time."""
+        """Wait for new events; return whether any arrived in time."""
         changed = self._changed
         try:
             await asyncio.wait_for(changed.wait(), seconds)
@@ -92,7 +92,7 @@ class Channel:
 
 
 class Feed:
-    """The streams of one application and the task that serves them, which runs while there are any."""
+    """Streams of one application, and the task that serves them while there are any."""
 
     def __init__(self, store: Store) -> None:
         self.store = store
@@ -102,16 +102,16 @@ class Feed:
         self._closed = False
 
     def close(self) -> None:
-        """End all streams after the known events, as the service stops. Call it in the loop that serves them."""
+        """End all streams after their known events when the service stops. Call it in the event loop of the streams."""
         self._closed = True
         for channel in self._channels.values():
             channel.publish([], ended=True)
 
     async def stream(self, number: int, after: int, *, last: int, heartbeat: float) -> AsyncIterator[Event | None]:
-        """Yield the events of a job after a given one as they come, up to its last one.
+        """Yield the events of a job after a given one as they happen, up to its last one.
 
-        last: number of an event already received. Yields None if nothing came for `heartbeat` seconds. Also ends when
-        the job is deleted.
+        last: number of the last event already received. Yields None after `heartbeat` seconds without an event. Also
+        ends when the job is deleted.
         """
         with self._following(number, last) as channel:
             position = after
@@ -135,7 +135,7 @@ class Feed:
     @contextlib.contextmanager
     def _following(self, number: int, last: int) -> Iterator[Channel]:
         channel = self._channels.get(number)
-        if channel is None or channel.over:  # a job that had ended may have been resumed since
+        if channel is None or channel.over:  # an ended job may have been resumed since
             channel = self._channels[number] = Channel(last)
         channel.followers += 1
         if self._closed:
@@ -150,8 +150,8 @@ class Feed:
                 del self._channels[number]
 
     async def _look(self) -> None:
-        """Look up new events of followed jobs, as long as there are any."""
-        # A separate thread: requests that occupy all others do not delay streams.
+        """Look up new events of followed jobs while there are any."""
+        # A separate thread, so that requests that occupy all others do not delay streams.
         self._thread = self._thread or CapacityLimiter(1)
         while self._channels:
             after = {number: channel.last for number, channel in self._channels.items() if not channel.over}
@@ -164,7 +164,7 @@ class Feed:
             for number, last in after.items():
                 channel = self._channels.get(number)
                 if channel is None or channel.last != last:
-                    continue  # streams left it meanwhile, and perhaps follow it again
+                    continue  # its streams may have left, and perhaps returned, meanwhile
                 if number in news:
                     channel.publish(news[number].events, ended=news[number].is_over)
                 else:

@@ -22,22 +22,22 @@ router = APIRouter(route_class=QuickRoute, tags=["fronts"], responses=problem_re
 
 
 SEALED = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; sandbox"
-"""Policy of what is a document of this origin when it is opened by itself: it runs nothing and fetches nothing."""
+"""Security policy for a file that a browser may open as a document of this origin: no scripts, no requests."""
 
 
 def formats() -> list[str]:
-    """Return the file endings available for a front here: Parquet only if pyarrow is installed."""
+    """Return the file endings available for a front: Parquet only if pyarrow is installed."""
     return ["csv", "json", *(["parquet"] if is_installed("pyarrow") else [])]
 
 
 def file_responses(media_type: str, *refusals: int) -> dict[str, Any]:
-    """Return the options of an endpoint that returns a file, and may refuse with further statuses."""
+    """Return the options of an endpoint that returns a file. Further statuses are those of its refusals."""
     responses = {200: {"content": {media_type: {}}}, **problem_responses(*refusals)}
     return {"response_class": Response, "responses": responses}
 
 
 def download(content: str | bytes, media_type: str, name: str, *, policy: str = "") -> Response:
-    """Return a file that a browser saves under a name. policy: security policy (CSP) if a browser opens it anyway."""
+    """Return a file for a browser to save under a name. policy: security policy (CSP) if a browser opens it anyway."""
     headers = {"Content-Disposition": f'attachment; filename="{name}"'}
     if policy:
         headers["Content-Security-Policy"] = policy
@@ -50,9 +50,9 @@ def _file(stored_front: StoredFront, ending: str, media_type: str, content: str 
 
 @router.get("/jobs/{number}/export.csv", **file_responses("text/csv"))
 def export_csv(stored_front: FrontDep, units: UnitsParameter = "metric") -> Response:
-    """Give every design with its number and all its quantities at full precision.
+    """Return every design with its number and all its quantities at full precision.
 
-    A text cell that a spreadsheet would take for a formula has an apostrophe before it. Infinity is written inf.
+    Text cells that a spreadsheet would read as a formula begin with an apostrophe. Infinity is written inf.
     """
     content = csv_text(numbered_rows(rows_in(stored_front.result.designs, units)), spreadsheet=True)
     return _file(stored_front, "csv", "text/csv; charset=utf-8", content)
@@ -60,15 +60,15 @@ def export_csv(stored_front: FrontDep, units: UnitsParameter = "metric") -> Resp
 
 @router.get("/jobs/{number}/export.json", **file_responses("application/json"))
 def export_json(stored_front: FrontDep, units: UnitsParameter = "metric") -> Response:
-    """Give the whole front, as `slidercrank export --json` does but in one line."""
+    """Return the whole front as `slidercrank export --json` does, but on one line."""
     result = result_in(stored_front.result, units, None if units == "metric" else stored_front.problem)
-    content = to_json(result.record(), inf_nan_mode="null")  # a tenth of the time of json's
+    content = to_json(result.record(), inf_nan_mode="null")  # takes a tenth of the time of the `json` module
     return _file(stored_front, "json", "application/json", content)
 
 
 @router.get("/jobs/{number}/export.parquet", **file_responses("application/vnd.apache.parquet", 501))
 def export_parquet(stored_front: FrontDep, units: UnitsParameter = "metric") -> Response:
-    """Give every design with all its quantities as a table of columns; needs pyarrow where the service runs."""
+    """Return every design with all its quantities as a column-oriented table; needs pyarrow on the server."""
     import pandas as pd
 
     required("pyarrow", "fronts as Parquet need")

@@ -32,7 +32,7 @@ _DESIGN = re.compile(r"design_([1-9][0-9]{0,8})")
 
 
 def require_figures(settings: SettingsDep) -> None:
-    """Raise an error if the service draws no figures."""
+    """Raise an error if figures are disabled on this service."""
     if not settings.figures:
         raise NotFound("this service cannot draw figures; ask its operator to start it with figures")
 
@@ -53,14 +53,14 @@ Name = Annotated[
 
 
 class FigureModel(BaseModel):
-    """A figure. name: in its path, with .png or .svg."""
+    """Figure. name: in its path, followed by .png or .svg."""
 
     name: str = Field(examples=["scatter_matrix"])
     title: str = Field(examples=["every pair of objectives"])
 
 
 class FiguresModel(BaseModel):
-    """The figures of a front."""
+    """Figures of a front."""
 
     job: int = Field(examples=[7])
     figures: list[FigureModel]
@@ -68,7 +68,10 @@ class FiguresModel(BaseModel):
 
 @router.get("/jobs/{number}/figures")
 def list_figures(stored_front: FrontDep) -> FiguresModel:
-    """List the figures of the whole front; the sheet of every design is at `figures/design_{number}.png` or `.svg`."""
+    """List the figures of the whole front.
+
+    The datasheet of each design is at `figures/design_{number}.png` or `.svg`.
+    """
     from ..figures.front import front_figures
 
     drawn = front_figures(stored_front.front) if stored_front.result.designs else []
@@ -80,7 +83,7 @@ def list_figures(stored_front: FrontDep) -> FiguresModel:
 def draw_png(
     stored_front: FrontDep, name: Name, numbers: NumbersDep, store: StoreDep, units: UnitsParameter = "metric"
 ) -> Response:
-    """Draw a figure; the sheet of a design also with other numbers."""
+    """Draw a figure; the datasheet of a design accepts other numbers."""
     return _image(stored_front, name, "png", numbers, bookmarks_of(store, stored_front.job.id), units)
 
 
@@ -88,7 +91,7 @@ def draw_png(
 def draw_svg(
     stored_front: FrontDep, name: Name, numbers: NumbersDep, store: StoreDep, units: UnitsParameter = "metric"
 ) -> Response:
-    """Draw a figure; the sheet of a design also with other numbers."""
+    """Draw a figure; the datasheet of a design accepts other numbers."""
     return _image(stored_front, name, "svg", numbers, bookmarks_of(store, stored_front.job.id), units)
 
 
@@ -100,7 +103,7 @@ def _image(
     bookmarks: Sequence[Bookmark],
     units: System,
 ) -> Response:
-    """Return a figure; the datasheet of a design has the name of its file. Drawn figures are cached."""
+    """Return a figure; the datasheet of a design is named like its file. Drawn figures are cached."""
     from ..figures.style import figure_bytes
 
     single = _DESIGN.fullmatch(name)
@@ -122,13 +125,13 @@ def _image(
 
 
 def figure_response(content: bytes, kind: Kind, headers: Mapping[str, str] = MappingProxyType({})) -> Response:
-    """Return a drawn figure; as SVG it may neither run nor fetch anything."""
+    """Return a drawn figure; as SVG it can neither run scripts nor fetch anything."""
     sealed = {"Content-Security-Policy": SEALED} if kind == "svg" else {}
     return Response(content, media_type=_MEDIA[kind], headers={**sealed, **headers})
 
 
 def _front_figure(stored_front: StoredFront, name: str, units: System) -> FrontFigure:
-    """Return a figure of a whole front. Raises `NotFound` with the available names."""
+    """Return a figure of a whole front. Raises `NotFound`, which lists the available names."""
     from ..figures.front import front_figures
 
     listed = front_figures(stored_front.front, units) if stored_front.result.designs else []

@@ -1,4 +1,4 @@
-"""Questions about a front or several, as the commands `like`, `round`, `certify` and `compare` answer them."""
+"""Questions about one or several fronts, answered as by the commands `like`, `round`, `certify` and `compare`."""
 
 from __future__ import annotations
 
@@ -33,12 +33,14 @@ from .stored_fronts import DesignNumber, FrontDep, FrontsDep, StoredFront
 router = APIRouter(route_class=LongRoute, responses=problem_responses(409))
 LIKE, ROUND, CERTIFY, COMPARE = (FRONT_OR_JOB_QUESTIONS[name] for name in ("like", "round", "certify", "compare"))
 MOST = 6
-"""Runs in a comparison."""
+"""Maximum number of runs in a comparison."""
 _LIKE_EXAMPLE = {"status": "done", "message": "1 design, 4120 evaluated", "distance": 0.21, "moved": {"rod_mm": -12.5}}
 
 
 class LikeModel(OfDesign):
-    """Design like one of a front. like: what `slidercrank like --json` prints; without a design status and message.
+    """Design that resembles one on a front.
+
+    like: output of `slidercrank like --json`; only status and message if there is no design.
 
     blocks: the answer as sentences and tables.
     """
@@ -48,7 +50,7 @@ class LikeModel(OfDesign):
 
 
 def find_like(stored_front: FrontDep, design: DesignNumber, given: Any, units: UnitsParameter = "metric") -> LikeModel:
-    """Find the design most like one of a front that also meets further conditions; nothing is saved."""
+    """Find the design most similar to one on a front that also meets further conditions; nothing is saved."""
     stored_front.row(design)
     nearest = LIKE.ask(stored_front.front, given.model_dump(), row=design - 1)
     record, blocks = json_ready(nearest.record(units)), block_models(nearest.blocks)
@@ -63,10 +65,10 @@ _CERTIFY_EXAMPLE = {"status": "proven", "epsilon_asked": 0.01, "epsilon": 0.0098
 
 
 class CertificateModel(BaseModel):
-    """A proof of how far a front can be from the true one.
+    """Upper bound, with proof, on the distance between a front and the true one.
 
-    proven: whether that which was asked for is proven. sentences: the proof in words, in metric units. certificate:
-    what `slidercrank certify --json` prints. blocks: the sentences as data.
+    proven: whether the requested accuracy is proven. sentences: the proof in words, in metric units. certificate:
+    output of `slidercrank certify --json`. blocks: the sentences as data.
     """
 
     job: int = Field(examples=[7])
@@ -78,7 +80,7 @@ class CertificateModel(BaseModel):
 
 @router.get("/jobs/{number}/certificate", tags=["fronts"], response_model=CertificateModel)
 def certify_front(stored_front: FrontDep, given: CertificateInputs) -> Response:
-    """Prove how far a front can be from the true one; without designs, that nothing is feasible."""
+    """Prove how far a front can be from the true one; without designs, prove that no design is feasible."""
     name = " ".join(map(repr, given.values()))
 
     def make() -> tuple[tuple[str], bytes]:
@@ -105,16 +107,16 @@ _COMPARE_EXAMPLE = {"tolerance": 1e-6, "union_hypervolume": 0.71, "coverage": [[
 
 
 class DifferenceModel(BaseModel):
-    """A place at which jobs differ. values: what each job has there, null for nothing."""
+    """Path at which jobs differ. values: value in each job, null if absent."""
 
     place: str = Field(examples=["variables.rod"])
     values: list[str | None] = Field(examples=[["50 mm to 250 mm", "50 mm to 300 mm"]])
 
 
 class ComparisonModel(BaseModel):
-    """Runs against each other. sentences: who is better where; only of runs with designs. blocks: all of it.
+    """Comparison of runs. sentences: which run is better where; only for runs with designs. blocks: the whole answer.
 
-    comparison: what `slidercrank compare --json` prints; without measures unless the objectives are the same.
+    comparison: output of `slidercrank compare --json`; has no measures unless the objectives are equal.
     """
 
     jobs: list[int] = Field(examples=[[1, 2]])
@@ -132,7 +134,7 @@ def compare_runs(
     given: ComparisonInputs,
     units: UnitsParameter = "metric",
 ) -> ComparisonModel:
-    """Say what differs between the jobs of runs, and which of their fronts is better where."""
+    """Compare runs: the differences between their jobs, and which front is better where."""
     runs = [ComparedRun(f"run {number}", number, fronts.get(number).result, store.tables(number)) for number in job]
     answer = COMPARE.ask(runs, given)
     record = json_ready(answer.record(units))
@@ -185,12 +187,12 @@ _ROUNDED_STREAM = (
     'event: rounded\ndata: {"job":7,"number":3,"rounded":{"met":true}}\n\n'
 )
 _Event = tuple[str, str]
-"""Kind and data of an event."""
+"""Kind and data of each event."""
 _Events = Generator[_Event, None, None]
 
 
 class RoundedModel(OfDesign):
-    """Rounded neighbours of a design of a front. rounded: what `slidercrank round --json` prints."""
+    """Rounded neighbours of a design on a front. rounded: output of `slidercrank round --json`."""
 
     rounded: dict[str, Any] = Field(examples=[_ROUNDED_EXAMPLE])
 
@@ -206,15 +208,16 @@ _ROUNDED_RESPONSES: dict[int | str, dict[str, Any]] = {
 def round_design(
     request: Request, stored_front: FrontDep, design: DesignNumber, given: Any, units: UnitsParameter = "metric"
 ) -> Response:
-    """Find the best designs of round numbers near a design that meet every requirement, and what each costs.
+    """Find the best designs with round numbers near a design that meet every requirement, and the cost of each.
 
-    Where none meets all within what is allowed, the nearest are listed, with each miss as a number; `met` is then
-    false. With `Accept: text/event-stream` the progress is streamed; closing the connection then ends the search.
+    If no design meets all requirements within the allowances, the nearest designs are listed, each with its violations;
+    `met` is then false. With `Accept: text/event-stream` the progress is streamed; closing the connection ends the
+    search.
     """
     stored_front.row(design)
 
     def search() -> _Events:
-        """Yield kind and data of the events."""
+        """Yield the kind and data of each event."""
         from ..questions.round.analysis import search
 
         words = {item.name: item.name for item in ROUND.inputs}
@@ -226,7 +229,7 @@ def round_design(
         yield "rounded", RoundedModel(job=stored_front.job.id, number=design, rounded=record).model_dump_json()
 
     events = search()
-    first = next(events)  # an invalid request is refused before anything is sent
+    first = next(events)  # an invalid request is rejected before anything is sent
     if STREAM not in request.headers.get("accept", ""):
         *_, (_, data) = itertools.chain([first], events)
         return Response(data, media_type="application/json")

@@ -1,6 +1,6 @@
-"""Fronts: the result of a job, one chosen design, and its designs, filtered, sorted, by pages or by columns.
+"""Fronts: the result of a job, one selected design, and its designs, filtered, sorted, by page or by column.
 
-All data are read from the result of a job; nothing is computed.
+All data comes from the result of a job; nothing is computed.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ router = APIRouter(tags=["fronts"], responses=problem_responses(409))
 
 MOST_ROWS = 1000
 _WORTHWHILE = 16_384
-"""Bytes from which an answer is compressed. At the quickest level 10,000 designs of 8 columns take 40 ms and shrink to
-half: worth it once for all who ask, not for each."""
+"""Bytes above which an answer is compressed. The fastest level takes 40 ms for 10,000 designs with 8 columns and halves
+their size: worth doing once and caching, not per request."""
 Cells = dict[str, float | str | None]
-"""A design: numbers and words by column; null for what is not defined, "inf" and "-inf" for infinity."""
+"""Design: numbers and words by column; null if undefined, "inf" and "-inf" for infinity."""
 
 Where = Annotated[
     list[Annotated[str, Field(max_length=500)]],
@@ -50,7 +50,7 @@ _EXAMPLE: Cells = {"crank_mm": 40.0, "rod_mm": 64.0, "offset_mm": 20.0, "peak_to
 
 
 class ObjectiveModel(BaseModel):
-    """An objective. column: its key in the designs. target: in `unit`, if the sense is "target"."""
+    """Objective. column: its key in the designs. target: in `unit`, if the sense is "target"."""
 
     quantity: str = Field(examples=["peak_torque"])
     sense: str = Field(examples=["minimise"])
@@ -61,7 +61,7 @@ class ObjectiveModel(BaseModel):
 
 
 class ColumnModel(BaseModel):
-    """A column of the designs."""
+    """Column in a table of designs."""
 
     key: str = Field(examples=["peak_torque_Nm"])
     title: str = Field(examples=["peak drive torque"])
@@ -89,7 +89,7 @@ Violations = Annotated[
 
 
 class FrontModel(BaseModel):
-    """The front that a job found, without its designs."""
+    """Front found by a job, without its designs."""
 
     job: int = Field(examples=[7])
     run: str = Field(examples=["20261121-193012-feeder"])
@@ -124,21 +124,21 @@ class FrontModel(BaseModel):
 
 
 class OfDesign(BaseModel):
-    """Part of every answer about a design of a front. number: counted from 1."""
+    """Fields common to all answers about a design on a front. number: counted from 1."""
 
     job: int = Field(examples=[7])
     number: int = Field(examples=[3])
 
 
 class PickedModel(OfDesign):
-    """A design that was chosen. number: counted from 1."""
+    """Selected design. number: counted from 1."""
 
     number: int = Field(examples=[42])
     design: Cells = Field(examples=[{"crank_mm": 40.0, "peak_torque_Nm": 1.8, "slow_stroke": "inward"}])
 
 
 class DesignsModel(BaseModel):
-    """A page of designs. numbers: of each in its front, counted from 1, as on the command line."""
+    """Page of designs. numbers: number of each design on its front, counted from 1, as on the command line."""
 
     job: int = Field(examples=[7])
     count: int = Field(description="number of designs on the front", examples=[100])
@@ -160,7 +160,7 @@ Violated = Annotated[
 
 
 class DesignModel(OfDesign):
-    """A design with all its numbers."""
+    """Design with all its numbers."""
 
     columns: list[ColumnModel]
     design: Cells = Field(examples=[_EXAMPLE])
@@ -169,7 +169,7 @@ class DesignModel(OfDesign):
 
 
 class ColumnsModel(BaseModel):
-    """All values of some columns, in the order of the front; null: not defined, "inf" and "-inf": infinite."""
+    """All values in some columns, in the order of the front; null if undefined, "inf" and "-inf" if infinite."""
 
     job: int = Field(examples=[7])
     count: int = Field(description="number of designs on the front", examples=[100])
@@ -182,7 +182,7 @@ class ColumnsModel(BaseModel):
 
 @router.get("/jobs/{number}/front")
 def show_front(number: JobNumber, store: StoreDep, fronts: FrontsDep) -> FrontModel:
-    """Give how a front was found and what is marked in it; its designs are at `/jobs/{number}/designs`."""
+    """Return how a front was found and its marked designs; all its designs are at `/jobs/{number}/designs`."""
     record = json_ready(store.record(number))
     columns = column_models(all_columns(record.pop("columns")))
     sentences = front_violations_in_words(fronts.get(number).result) if record.get("violated") else []
@@ -213,7 +213,7 @@ def pick_design(
     ] = None,
     where: Where = [],  # noqa: B006 - the framework copies it
 ) -> PickedModel:
-    """Choose among the designs that meet all conditions, in one of three ways."""
+    """Select one of the designs that meet all conditions, by one of three methods."""
     result = stored_front.result
     if not (knee or topsis is not None or lexicographic is not None):
         raise InputError("a design must be chosen by knee, topsis or lexicographic; got none; give one")
@@ -242,7 +242,7 @@ def list_designs(
     offset: Annotated[int, Query(ge=0, le=2**31, description="number of designs to skip"), PLAIN_DIGITS] = 0,
     limit: Annotated[int, Query(ge=1, le=MOST_ROWS, description="maximum number of designs"), PLAIN_DIGITS] = 100,
 ) -> DesignsModel:
-    """Give the designs that meet all conditions, in the order of the front unless sorted."""
+    """Return the designs that meet all conditions, in the order of the front unless sorted."""
     result = stored_front.result
     chosen_columns = _requested_columns(stored_front, columns)
     chosen = chosen_rows(result, where, sort=sort, reverse=reverse)
@@ -263,7 +263,7 @@ def list_designs(
 
 @router.get("/jobs/{number}/designs/{design}")
 def show_design(stored_front: FrontDep, design: DesignNumber) -> DesignModel:
-    """Give all numbers of a design, by its number in the front."""
+    """Return all numbers for a design, by its number on the front."""
     row = stored_front.row(design)
     violated = {key: excess for key, [excess] in result_part(stored_front.result, [design - 1]).violated.items()}
     return DesignModel(
@@ -283,7 +283,7 @@ def list_columns(
     columns: Columns = None,
     accept_encoding: Annotated[str, Header(include_in_schema=False)] = "",
 ) -> Response:
-    """Give columns of the designs, each as one array of all designs: a front of 10,000 in one small answer."""
+    """Return columns of the designs, each as one array over all designs: compact even for a front of 10,000."""
     chosen_columns = _requested_columns(stored_front, columns)
 
     def respond() -> Response:
@@ -295,13 +295,13 @@ def list_columns(
         headers = {"Content-Encoding": "gzip"} if content.startswith(b"\x1f\x8b") else None
         return Response(content, media_type="application/json", headers=headers)
 
-    # The result of a job does not change, unless it continues: then it ends at another time.
+    # The result of a job only changes if the job is resumed; its end time then changes too.
     tag = None if stored_front.job.finished is None else f'"{stored_front.job.id}-{stored_front.job.finished}"'
     return response_with_etag(request, tag, respond, {"Vary": "Accept-Encoding"})
 
 
 def _requested_columns(stored_front: StoredFront, columns: str | None) -> Sequence[Column]:
-    """Return the columns in a list of names, each once; all without a list."""
+    """Return the columns in a list of names without duplicates, or all columns if there is no list."""
     if columns is None or not stored_front.result.designs:
         return stored_front.columns
     return list({column.key: column for column in find_columns(columns, list(stored_front.result.designs[0]))}.values())

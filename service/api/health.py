@@ -1,4 +1,4 @@
-"""Health of the service: whether it answers, whether it can work, and its metrics for Prometheus."""
+"""Health of the service: whether it answers and is ready for work, and its metrics for Prometheus."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class Live(ResponseModel):
 
 
 class Ready(ResponseModel):
-    """The service has its database. takes_jobs: whether a worker was heard of lately, be it busy.
+    """Readiness: the database is available. takes_jobs: whether a worker, idle or busy, sent a recent heartbeat.
 
-    busy: how many of the workers have a job. waiting: how many jobs have none.
+    busy: number of workers with a job. waiting: number of jobs without a worker.
     """
 
     status: Literal["ready"] = "ready"
@@ -42,20 +42,20 @@ class Ready(ResponseModel):
 
 @router.get("/health/live", openapi_extra={"security": []})
 async def show_live() -> Live:
-    """Return that the service answers; needs no token."""
+    """Report that the service answers; needs no token."""
     return Live()
 
 
 @router.get("/health/ready")
 def show_ready(store: StoreDep) -> Ready:
-    """Return that the database can be read and written, how many workers there are, and how many jobs wait."""
+    """Report whether the database can be read and written, the number of workers, and the number of waiting jobs."""
     store.require_ready()
     crew = store.crew()
     return Ready(takes_jobs=crew.workers > 0, **vars(crew))
 
 
 class Metrics(Collector):
-    """The metrics of one application, in a separate registry."""
+    """Metrics of one application, in a separate registry."""
 
     def __init__(self, store: Store) -> None:
         self._store = store
@@ -95,13 +95,13 @@ class Metrics(Collector):
     responses={200: {"content": {"text/plain": {"schema": {"type": "string"}}}}},
 )
 def show_metrics(metrics: Annotated[Metrics, part_of_app("metrics")]) -> Response:
-    """Return figures in the text format of Prometheus: jobs by state, age of the queue, workers, times of requests."""
+    """Return metrics in the Prometheus text format: jobs by state, age of the queue, workers, request times."""
     return Response(metrics.text(), media_type=CONTENT_TYPE_LATEST)
 
 
 @dataclass
 class Timed:
-    """ASGI middleware: measures the time of every request until its answer begins."""
+    """ASGI middleware: measures the time from each request to the start of its answer."""
 
     app: ASGIApp
 
@@ -114,7 +114,7 @@ class Timed:
 
         async def timed(message: Message) -> None:
             if message["type"] == "http.response.start":
-                # By the name of the endpoint: paths invented by clients must not become series.
+                # Labelled with the endpoint name: paths invented by clients must not become time series.
                 operation = getattr(scope.get("route"), "name", "none")
                 method = scope["method"] if operation != "none" else "any"
                 metrics: Metrics = scope["app"].state.metrics

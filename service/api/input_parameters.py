@@ -1,4 +1,4 @@
-"""Parameters of an address or a body for the inputs of a question."""
+"""Address or body parameters for the inputs of a question."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _REQUEST = inspect.Parameter("request", inspect.Parameter.KEYWORD_ONLY, annotati
 
 
 def parameter_of(item: Input, prefix: str = "") -> inspect.Parameter:
-    """Return the parameter of an input. prefix: beginning of its description."""
+    """Return the parameter for an input. prefix: start of its description."""
     kind = float if item.words is None else item.words
     examples = [round(item.unit.factor * item.read(item.example, item.name), 9)] if item.example else None
     query = Query(**_limits(item), description=f"{prefix}{item.help}", examples=examples)
@@ -32,7 +32,7 @@ def parameter_of(item: Input, prefix: str = "") -> inspect.Parameter:
 
 
 def body_of(question: FrontOrJobQuestion, name: str, **more: Any) -> Any:
-    """Return the model of a body with the inputs of a question. more: further fields for `create_model`."""
+    """Return the body model for the inputs of a question. more: further fields for `create_model`."""
     fields: dict[str, Any] = {item.name: _field(item) for item in question.inputs if isinstance(item, TypedInput)}
     description = f"What `{question.name}` is asked with. {question.help.partition(chr(10))[0]}"
     return create_model(name, __config__=ConfigDict(extra="forbid", strict=True), __doc__=description, **fields, **more)
@@ -44,7 +44,7 @@ _TYPES: dict[Any, Any] = {list: list[_Text], dict: dict[_Text, _Value]}
 
 
 def _field(item: TypedInput) -> tuple[Any, Any]:
-    """Return type and field of an input in a body."""
+    """Return type and field for an input in a body."""
     default = ... if item.required else item.value if get_origin(item.type) is None else []
     examples = None if item.sent is None else [item.sent]
     field = Field(default, description=item.help, examples=examples, **_limits(item))
@@ -66,9 +66,9 @@ def _limits(item: Input) -> dict[str, Any]:
 
 
 def inputs_in_address(inputs: Collection[Input], parameters: Iterable[inspect.Parameter]) -> Any:
-    """Return the dependency that reads inputs in an address by name, as text with their units.
+    """Return the dependency that reads the inputs of an address by name, as text with units.
 
-    It raises `InputError` for an input without its unit, which would otherwise be lost.
+    It raises `InputError` for an input without its unit, since the unit would otherwise be lost.
     """
 
     def named(request: Request, **given: float | str | None) -> dict[str, str]:

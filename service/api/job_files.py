@@ -1,6 +1,6 @@
-"""Job files before anything runs: schema, shipped jobs, reading, checking and writing.
+"""Job files before a run: schema, included jobs, reading, checking and writing.
 
-Nothing is queued, and no file of the service is read.
+Nothing is queued, and no file on the server is read.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ router = APIRouter(route_class=QuickRoute, tags=["jobs"])
 
 
 class PresetDesign(BaseModel):
-    """A linkage of the front of a shipped job, near its knee. from_deg, to_deg: of a crank that swings.
+    """Linkage near the knee of an included job's front. from_deg, to_deg: swing range of the crank.
 
-    outlines: of what moves, to draw it.
+    outlines: outlines of the moving parts, for a drawing.
     """
 
     crank_mm: float = Field(examples=[37.62])
@@ -39,7 +39,7 @@ class PresetDesign(BaseModel):
 
 
 class PresetModel(BaseModel):
-    """A shipped job. name: as in an address of the page. design: to show of what kind its machine is."""
+    """Included job. name: as in the page address. design: an example that shows the type of machine."""
 
     name: str = Field(examples=["feeder"])
     title: str = Field(examples=["Feeder with rod = 3.2 offset"])
@@ -55,13 +55,13 @@ class PresetList(BaseModel):
 
 
 class Tables(BaseModel, extra="forbid", strict=True):
-    """The tables of a job."""
+    """Tables of a job."""
 
     job: dict[str, Any] = Field(description="the tables of a job file", examples=[EXAMPLE])
 
 
 class CatalogueText(BaseModel, extra="forbid", strict=True):
-    """A catalogue as a table. own: names of the job's own quantities, which it may limit."""
+    """Catalogue as a table. own: names of the job's custom quantities, which it may limit."""
 
     table: str = Field(
         max_length=10_000_000,
@@ -72,14 +72,14 @@ class CatalogueText(BaseModel, extra="forbid", strict=True):
 
 
 class CatalogueModel(BaseModel):
-    """The options of a choice, as a job has them; those that others beat are only named. rows: of the table."""
+    """Options of a choice, as in a job; dominated options are only named. rows: number of table rows."""
 
     option: list[dict[str, Any]] = Field(examples=[[{"name": "GM 40", "constraints": {}}]])
     rows: int = Field(examples=[3])
 
 
 class FloorModel(BaseModel):
-    """The least allowed value of a quantity, of the job or by default."""
+    """Minimum allowed value of a quantity, from the job or by default."""
 
     quantity: str = Field(examples=["self_locking_margin"])
     least: float = Field(description="least allowed value, in the unit", examples=[5.0])
@@ -88,7 +88,7 @@ class FloorModel(BaseModel):
 
 
 class ChangeModel(BaseModel):
-    """A change of a job that settles a sentence on it. path: key in its tables. value: null takes the key away."""
+    """Change to a job that resolves a warning. path: key in its tables. value: null removes the key."""
 
     sentence: str = Field(examples=["no crank within these ranges rotates fully: ..."])
     path: str = Field(examples=["variables.rod"])
@@ -97,7 +97,7 @@ class ChangeModel(BaseModel):
 
 
 class Understood(BaseModel):
-    """A job in words, as it was understood."""
+    """Job in words, as the service understood it."""
 
     name: str = Field(examples=["Feeder"])
     given: list[str] = Field(examples=[["crank speed 2400 rpm (counter-clockwise)"]])
@@ -124,7 +124,7 @@ class Understood(BaseModel):
 @router.get("/presets")
 @cache
 def list_presets() -> PresetList:
-    """Give the shipped jobs, to start from."""
+    """Return the included jobs to start from."""
     return PresetList(
         presets=[
             PresetModel(
@@ -140,7 +140,7 @@ def list_presets() -> PresetList:
 
 
 def _drawn(job: dict[str, Any], design: Design) -> PresetDesign:
-    """Return the design of a shipped job with its outlines for drawing."""
+    """Return the example design of an included job with its outlines for a drawing."""
     from ...optimise.job import parse_job
 
     problem = parse_job(job)
@@ -151,13 +151,13 @@ def _drawn(job: dict[str, Any], design: Design) -> PresetDesign:
 
 @router.post("/parse", responses=problem_responses(415))
 def parse_file(request: Annotated[RequestedJob, Depends(requested_job)]) -> Tables:
-    """Give the tables of a job file, which is sent as for a submission. Whether the job is valid is not checked."""
+    """Return the tables of a job file that is sent as for a submission. The validity of the job is not checked."""
     return Tables(job=dict(request.tables))
 
 
 @router.post("/catalogue")
 def read_catalogue(catalogue_text: CatalogueText) -> CatalogueModel:
-    """Give the options of a catalogue that is sent as a table, without rows that no design can need."""
+    """Return the options of a catalogue that is sent as a table, without rows that no design can need."""
     from ...optimise.job.catalogue import read_catalogue
 
     catalogue = read_catalogue(catalogue_text.table, "the table", frozenset(catalogue_text.own))
@@ -170,7 +170,7 @@ def read_catalogue(catalogue_text: CatalogueText) -> CatalogueModel:
     responses={200: {"description": "A job file", "content": {TOML: {"schema": {"type": "string"}}}}},
 )
 def write_file(tables: Tables) -> Response:
-    """Give the tables of a job as a job file in TOML; reading it gives the same tables."""
+    """Return the tables of a job as a TOML job file; reading it gives the same tables."""
     from ...optimise.job.file import require_few
     from ..jobs.job_toml import job_toml
 
@@ -180,7 +180,7 @@ def write_file(tables: Tables) -> Response:
 
 @router.get("/schema")
 def show_schema() -> dict[str, Any]:
-    """Give the JSON Schema (draft 2020-12) of a job, with a description and examples for every key."""
+    """Return the JSON Schema (draft 2020-12) of a job, with a description and examples for every key."""
     from ...optimise.job import job_schema
 
     return job_schema()
@@ -188,7 +188,7 @@ def show_schema() -> dict[str, Any]:
 
 @router.post("/check", responses=problem_responses(415))
 def check_job(request: Annotated[RequestedJob, Depends(requested_job)], settings: SettingsDep) -> Understood:
-    """Check a job and say in words what was understood; nothing is queued. It comes as for a submission."""
+    """Check a job and return in words how it was understood; nothing is queued. The job is sent as for a submission."""
     return understood(problem_of_tables(request.tables, settings.allowed_quantities), request.tables)
 
 

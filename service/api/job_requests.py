@@ -1,4 +1,4 @@
-"""Jobs sent by clients: JSON with options or a job file, their content, their problem."""
+"""Jobs sent by clients: JSON with options or a job file, its content, its problem."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ EXAMPLE = {
     "objectives": {"time_ratio": "maximise", "transmission_angle": "maximise"},
     "optimiser": {"designs": 20, "seed": 1},
 }
-"""A job that can be solved."""
+"""Job that can be solved."""
 Priority = Annotated[int, Field(ge=-1000, le=1000, description="priority; jobs with higher ones are solved first")]
 IdempotencyKey = Annotated[
     str | None,
@@ -47,11 +47,11 @@ IdempotencyKey = Annotated[
         examples=["4c7a1f0e-feeder"],
     ),
 ]
-"""The header of a submission."""
+"""Header of a submission."""
 
 
 class RequestedLimits(BaseModel, extra="forbid", strict=True):
-    """Limits that a client asks for a job; the service's own hold where one is left out."""
+    """Limits that a client requests for a job; those of the service replace omitted ones."""
 
     seconds: float | None = Field(None, gt=0, le=LARGEST, description="time limit of the search, s", examples=[600])
     evaluations: int | None = Field(
@@ -61,7 +61,7 @@ class RequestedLimits(BaseModel, extra="forbid", strict=True):
 
 
 class Submission(BaseModel, extra="forbid", strict=True):
-    """A job and how it is to be solved."""
+    """Job with its limits and priority."""
 
     job: dict[str, Any] = Field(description="the tables of a job file, see GET /api/v1/schema", examples=[EXAMPLE])
     files: dict[str, str] = Field(
@@ -82,7 +82,7 @@ class Submission(BaseModel, extra="forbid", strict=True):
 
 
 class Clone(BaseModel, extra="forbid", strict=True):
-    """The changes in a copy of a job."""
+    """Changes to make in a copy of a job."""
 
     changes: dict[str, Any] = Field(
         default_factory=dict,
@@ -95,7 +95,7 @@ class Clone(BaseModel, extra="forbid", strict=True):
 
 @dataclass(frozen=True, kw_only=True)
 class RequestedJob:
-    """A parsed submission. source: job file, if one was sent. origin: number of the job that it copies."""
+    """Parsed submission. source: the job file, if one was sent. origin: number of the job that was copied."""
 
     tables: Mapping[str, Any]
     priority: int = 0
@@ -105,7 +105,10 @@ class RequestedJob:
 
 
 async def requested_job(request: Request) -> RequestedJob:
-    """Return the submission that a request contains; a dependency. Raises the errors that become 400, 415 or 422."""
+    """Return the submission in a request; a dependency.
+
+    Raises the errors that are answered with status 400, 415 or 422.
+    """
     body = await request.body()
     settings: Settings = request.app.state.settings
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
@@ -162,7 +165,10 @@ def insert_files(stated: Submission) -> dict[str, Any]:
 
 
 def limits_within(requested: RequestedLimits, allowed: Limits) -> Limits:
-    """Return the limits of a job: requested ones, else the service's maximum. Raises `InputError` beyond it."""
+    """Return the limits of a job: the requested values, or else the maxima of the service.
+
+    Raises `InputError` for values beyond the maxima.
+    """
     limits = Limits(seconds=requested.seconds, evaluations=requested.evaluations, memory=requested.memory_bytes)
     for name, requested_value, highest in zip(
         RequestedLimits.model_fields, astuple(limits), astuple(allowed), strict=True
@@ -181,11 +187,11 @@ def problem_of_tables(
     *,
     require_feasible: bool = True,
 ) -> Problem:
-    """Return the problem that a job states.
+    """Return the problem that a job defines.
 
-    allowed: functions, "module:function", that it may name as quantities. values: numbers that replace those in the
-    job, by their paths. require_feasible: whether a job that no design can meet is rejected. Raises `JobError`, also
-    for a job that names a missing file.
+    allowed: functions, "module:function", that it may use as custom quantities. values: replacements for numbers in the
+    job, by path. require_feasible: whether to reject a job that no design can meet. Raises `JobError`, also for a job
+    that names a missing file.
     """
     return bounded(parse_allowed(tables, allowed, values, require_feasible=require_feasible), LONGEST_WAIT)
 

@@ -1,4 +1,4 @@
-"""Jobs: listed, shown, cancelled, resumed, deleted, and their files."""
+"""Jobs: list, show, cancel, resume and delete them, and get their files."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def list_jobs(
         Order, Query(description="state: waiting and running ones first; decided: those decided first")
     ] = "newest",
 ) -> dict[str, Any]:
-    """Return jobs as a list shows them: `/jobs/{number}` has all of one, `/front-points` pictures."""
+    """Return jobs with a few fields each: `/jobs/{number}` returns all fields of one, `/front-points` small fronts."""
     jobs = store.jobs(states=state, name=name, before=before, limit=limit + 1, order=sort)
     page = jobs[:limit]
     rows = [job.record() if job.state == "running" else {**job.record(), "progress": None} for job in page]
@@ -62,7 +62,7 @@ def list_front_points(
         list[_Number], Query(min_length=1, max_length=_MOST_FRONTS, description="the numbers of jobs", examples=[[1]])
     ],
 ) -> Response:
-    """Return some designs of the fronts of jobs, of those that run of their fronts so far."""
+    """Return some designs of the fronts of jobs; for running jobs, of their fronts so far."""
     jobs = store.jobs(numbers=set(job), limit=_MOST_FRONTS)
     content = to_json(
         {"fronts": [{"job": stored_job.id, **stored_job.front_points()} for stored_job in reversed(jobs)]}
@@ -74,53 +74,53 @@ def list_front_points(
 
 @router.get("/jobs/{number}", response_model=JobStateModel)
 def show_job(number: JobNumber, store: StoreDep) -> dict[str, Any]:
-    """Return where a job stands."""
+    """Return the state of a job."""
     return store.job(number).record()
 
 
 @router.delete("/jobs/{number}", status_code=HTTPStatus.NO_CONTENT, responses=problem_responses(409))
 def delete_job(number: JobNumber, store: StoreDep) -> None:
-    """Delete a job that has ended, and everything of it."""
+    """Delete an ended job and all its data."""
     with _conflict_on_refusal():
         store.delete(number)
 
 
 @router.post("/jobs/{number}/cancel", response_model=JobStateModel)
 def cancel_job(number: JobNumber, store: StoreDep) -> dict[str, Any]:
-    """Cancel a job; it keeps what it found, and can go on. One that has ended stays as it is."""
+    """Cancel a job; its results are kept, and it can be resumed. An ended job does not change."""
     return store.cancel(number).record()
 
 
 @router.post("/jobs/{number}/resume", response_model=JobStateModel, responses=problem_responses(409))
 def resume_job(number: JobNumber, store: StoreDep) -> dict[str, Any]:
-    """Queue a cancelled or failed job again, to go on from where it was."""
+    """Queue a cancelled or failed job again, to continue where it stopped."""
     with _conflict_on_refusal():
         return store.resume(number).record()
 
 
 @router.get("/jobs/{number}/job")
 def show_tables(number: JobNumber, store: StoreDep) -> dict[str, Any]:
-    """Return the tables of a job, as its job file has them."""
+    """Return the tables of a job, as in its job file."""
     return store.tables(number)
 
 
 @router.get("/jobs/{number}/files", response_model=JobFiles)
 def list_files(number: JobNumber, store: StoreDep) -> dict[str, Any]:
-    """Return the names of a job's files, and what its front is exported as."""
+    """Return the names of a job's files, and the export formats of its front."""
     return {"files": store.artefacts(number), "exports": formats()}
 
 
 @router.get("/jobs/{number}/files/{name}", response_class=Response, responses=_FILE)
 def fetch_file(number: JobNumber, name: FileName, store: StoreDep) -> Response:
-    """Return a file of a job, as it was given or made."""
+    """Return a file of a job, as it was sent or created."""
     file = store.artefact(number, name)
-    # Saved, never shown: files that came with a job must not run in a browser that has the token.
+    # Always a download: files sent with a job must not run in a browser that has the token.
     return download(file.content, file.media_type, re.sub(r"[^A-Za-z0-9._-]", "_", file.name))
 
 
 @contextlib.contextmanager
 def _conflict_on_refusal() -> Iterator[None]:
-    """Report an operation that the state of a job does not allow as a conflict."""
+    """Report an operation that is not allowed in the job's state as a conflict."""
     try:
         yield
     except NotFound:

@@ -1,4 +1,4 @@
-"""JSON models of the API's answers about jobs, the source of its schema."""
+"""JSON models for the API's answers about jobs; the API schema follows from them."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ def _plain(text: Any) -> Any:
 
 
 PLAIN_DIGITS = BeforeValidator(_plain)
-"""Validator of a whole number in an address: digits only, not "6.0", "1_0" or " 6", which Python accepts.
+"""Validator for a whole number in an address: digits only, not "6.0", "1_0" or " 6", which Python accepts.
 
-It must follow the limits of the number; otherwise the schema lists them under names unknown to JSON Schema.
+It must follow the numeric limits; otherwise the schema lists them under names unknown to JSON Schema.
 """
 JobNumber = Annotated[int, Path(ge=1, le=LARGEST, description="the number of a job", examples=[1]), PLAIN_DIGITS]
 """A path parameter."""
@@ -41,7 +41,7 @@ class ResponseModel(BaseModel, frozen=True):
 
 
 class JobLimits(ResponseModel):
-    """Limits of a job on time, evaluations and memory; null is no limit."""
+    """Limits of a job on time, evaluations and memory; null means no limit."""
 
     seconds: float | None = Field(description="time limit of the search, s")
     evaluations: int | None = Field(description="maximum number of designs that the search evaluates")
@@ -49,7 +49,7 @@ class JobLimits(ResponseModel):
 
 
 class FrontProgress(ResponseModel):
-    """Some designs of the front that a search has by now, objectives only."""
+    """Some designs of a search's front so far, objectives only."""
 
     columns: list[str] = Field(description="columns of the objectives, as the designs will have them")
     points: list[list[float | None]] = Field(
@@ -58,7 +58,7 @@ class FrontProgress(ResponseModel):
 
 
 class RowProgress(ResponseModel):
-    """Progress of a search in a list."""
+    """Progress of a search, as in a list."""
 
     stage: str
     round: int
@@ -83,14 +83,14 @@ class JobProgress(RowProgress):
 
 
 class RowSummary(ResponseModel):
-    """Summary of the result of a job in a list."""
+    """Summary of a job's result, as in a list."""
 
     designs: Count
     best: dict[str, float | str | None] = Field(description="the best value of each objective, by column")
 
 
 class JobSummary(RowSummary):
-    """Summary of the result of a job."""
+    """Summary of a job's result."""
 
     hypervolume: float | None
     evaluations: Count
@@ -100,7 +100,7 @@ class JobSummary(RowSummary):
 
 
 class JobRow(ResponseModel):
-    """State of a job in a list. Times are seconds since 1970, UTC."""
+    """State of a job, as in a list. Times are in seconds since 1970, UTC."""
 
     id: int = Field(ge=1, description="number of the job", examples=[1])
     name: str = Field(examples=["Feeder"])
@@ -119,7 +119,7 @@ class JobRow(ResponseModel):
 
 
 class JobStateModel(JobRow, title="Job"):
-    """State of a job. Times are seconds since 1970, UTC."""
+    """State of a job. Times are in seconds since 1970, UTC."""
 
     key: str | None = Field(description="key of its submission")
     run: str = Field(description="the name of its run folder, wherever it is exported")
@@ -137,7 +137,7 @@ class JobStateModel(JobRow, title="Job"):
 
 
 class JobPage(ResponseModel):
-    """Some jobs in the order that was asked for."""
+    """Some jobs in the requested order."""
 
     jobs: list[JobRow]
     workers: str = Field(description="summary of the workers", examples=["2 workers, 1 busy, 3 waiting"])
@@ -145,7 +145,7 @@ class JobPage(ResponseModel):
 
 
 class FrontPoints(ResponseModel):
-    """Some designs of the front of a job, for a small picture; no points where no front is known."""
+    """Some designs of a job's front, for a small picture; empty if no front is known."""
 
     job: int = Field(examples=[1])
     columns: list[str] = Field(
@@ -157,13 +157,13 @@ class FrontPoints(ResponseModel):
 
 
 class FrontPointsList(ResponseModel):
-    """Points of the fronts of jobs, in the order of their numbers; jobs that are gone are left out."""
+    """Points of the fronts of jobs, in order of job number; deleted jobs are omitted."""
 
     fronts: list[FrontPoints]
 
 
 class EventModel(ResponseModel, title="Event"):
-    """Something that happened to a job."""
+    """Event in the life of a job."""
 
     number: int = Field(ge=1, description="1, 2, 3, ... without gaps")
     at: float = Field(description="seconds since 1970, UTC")

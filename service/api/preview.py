@@ -1,4 +1,4 @@
-"""Preview of a job while it is being written: mistakes, possible values, and an example linkage."""
+"""Preview of a job during editing: mistakes, possible values, and an example linkage."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Draft(BaseModel, extra="forbid", strict=True):
 
 
 class WrongModel(BaseModel):
-    """Something that is wrong with a job. path: the key, "" for the whole job, "submission.seconds" and the like.
+    """Mistake in a job. path: the key, "" for the whole job, or a name such as "submission.seconds".
 
     infeasible: whether the input is valid but no design can meet it.
     """
@@ -65,12 +65,12 @@ class WrongModel(BaseModel):
 class AllowedModel(BaseModel):
     """Values that the ranges of crank, rod and offset allow, from samples.
 
-    turning_share: fraction of the box that rotates fully. stroke_mm, time_ratio, transmission_angle_deg: from
-    least to greatest while all other requirements on the dimensions hold; null where they exclude each other.
-    slow_strokes: slow strokes of the designs that meet all requirements which were checked, else of those that rotate
-    fully. feasible_share: fraction of the `sampled` designs, spread uniformly, that meet all checked requirements;
-    equalities are met exactly. hardest, hardest_share: the requirement that the fewest fully rotating designs meet.
-    unchecked: requirements that need more than a moment, or numbers of the machine that are still missing.
+    turning_share: fraction of the box that rotates fully. stroke_mm, time_ratio, transmission_angle_deg: ranges,
+    subject to all other requirements on the dimensions; null if these exclude each other. slow_strokes: slow strokes of
+    the designs that meet all checked requirements, or else of those that rotate fully. feasible_share: fraction of the
+    `sampled` designs, spread uniformly, that meet all checked requirements; equalities are met exactly. hardest,
+    hardest_share: the requirement that the fewest fully rotating designs meet. unchecked: requirements that take too
+    long to check, or for which numbers of the machine are missing.
     """
 
     turning_share: float = Field(examples=[0.83])
@@ -88,7 +88,7 @@ class AllowedModel(BaseModel):
 
 
 class MotionModel(BaseModel):
-    """Slider motion over a turn at the speed of the job, else at 1 rad/s, evenly spaced from 0 deg."""
+    """Slider motion over one crank revolution at the speed of the job, or at 1 rad/s, evenly spaced from 0 deg."""
 
     crank_angle_deg: list[float]
     slider_position_mm: list[float]
@@ -98,9 +98,9 @@ class MotionModel(BaseModel):
 
 
 class ExampleModel(BaseModel):
-    """A linkage within the ranges. feasible: whether it meets all checked requirements.
+    """Linkage within the ranges. feasible: whether it meets all checked requirements.
 
-    slider_ends_mm, dead_centres_deg: slider positions and crank angles at the inner and the outer dead centre.
+    slider_ends_mm, dead_centres_deg: slider positions and crank angles at the inner and outer dead centres.
     """
 
     crank_mm: float = Field(examples=[40.0])
@@ -118,14 +118,14 @@ class ExampleModel(BaseModel):
 
 
 class SwingCurve(BaseModel):
-    """The slider over a turn of the crank, evenly spaced from 0 deg; null beyond the swing."""
+    """Slider motion over one crank revolution, evenly spaced from 0 deg; null outside the swing."""
 
     crank_angle_deg: list[float]
     slider_position_mm: list[float | None]
 
 
 class SwingExample(BaseModel):
-    """A linkage within the ranges that makes the swing. feasible: whether it meets all checked requirements.
+    """Linkage within the ranges that makes the swing. feasible: whether it meets all checked requirements.
 
     slider_ends_mm: slider positions at the start and end of the swing.
     """
@@ -140,9 +140,9 @@ class SwingExample(BaseModel):
 
 
 class SwingPreview(BaseModel):
-    """Values that the ranges of a job of a swing allow, from samples.
+    """Values that the ranges of a swing job allow, from samples.
 
-    closing_share: fraction of the box that makes the swing. travel_mm: of the slider between its two ends.
+    closing_share: fraction of the box that makes the swing. travel_mm: slider travel between its ends.
     feasible_share: fraction of the uniform samples that meet all checked requirements.
     """
 
@@ -159,9 +159,9 @@ class SwingPreview(BaseModel):
 
 
 class FormulaModel(BaseModel):
-    """A formula of a job: its place, as mistakes name it, and the kind and unit of its values.
+    """Formula in a job: its path, as in mistakes, and the kind and unit of its values.
 
-    kind and unit are null for a mistake, and while those of a name in it are not known.
+    kind and unit: null for a mistake, or while those of a name in the formula are unknown.
     """
 
     path: str = Field(examples=['constraints."2 * crank + rod"'])
@@ -170,7 +170,7 @@ class FormulaModel(BaseModel):
 
 
 class NameModel(BaseModel):
-    """A name that formulas of this job alone may have: a quantity of its own, or a number that varies."""
+    """Name that only formulas of this job may use: a custom quantity, or a variable."""
 
     name: str = Field(examples=["clearance"])
     title: str = Field(examples=["clearance beside the crank"])
@@ -178,7 +178,7 @@ class NameModel(BaseModel):
 
 
 class PreviewModel(BaseModel):
-    """Findings about a job while it is being written."""
+    """Findings about a job during editing."""
 
     wrong: list[WrongModel]
     understood: Understood | None = Field(description="the job as it was understood, once nothing is wrong")
@@ -195,7 +195,7 @@ class PreviewModel(BaseModel):
 
 @router.post("/preview")
 def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
-    """Look at a job that may be incomplete: what is wrong, and where; what its ranges allow; an example."""
+    """Preview a job that may be incomplete: mistakes and their places, values that its ranges allow, and an example."""
     from ..preview.preview import look_at
 
     look = look_at(draft.job, lambda tables: problem_of_tables(tables, settings.allowed_quantities))
@@ -300,7 +300,7 @@ def _swing_example(possible: PossibleSwing, lengths: tuple[float, float, float])
 
     swing, design = possible.example_swing or possible.swing, np.array([lengths])
     low, high = sorted((math.degrees(swing.start), math.degrees(swing.end)))
-    # One point per degree; from a full revolution those of the swing, and one beyond each end at the end's position.
+    # One point per degree: from a full revolution those of the swing, plus one beyond each end at the end's position.
     angles = range(math.floor(low), math.floor(high) + 2)
     clipped_angles = np.radians(np.clip(angles, low, high))
     places = {

@@ -1,4 +1,4 @@
-"""Problem documents (RFC 9457) that tell a client why a request was refused or failed."""
+"""Problem documents (RFC 9457) that explain to a client why a request was refused or failed."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ from ...model.errors import (
 
 _log = logging.getLogger(__name__)
 MEDIA_TYPE = "application/problem+json"
-_MOST = 8  # problems listed for one request
-_LONGEST = 4000  # characters of a sentence
+_MOST = 8  # maximum number of problems listed for one request
+_LONGEST = 4000  # maximum characters in a sentence
 FAULT = "this is a bug in the service, not in the request; its log has the details; tell its operator"
 _STATUS: tuple[tuple[type[SlidercrankError], HTTPStatus], ...] = (
     (QueueFull, HTTPStatus.SERVICE_UNAVAILABLE),
@@ -76,13 +76,13 @@ def problem_responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
 
 
 def tagged_json(model: type[BaseModel], description: str) -> dict[str, Any]:
-    """Return the options of an endpoint that returns JSON with an ETag, or 304 to a client that has it."""
+    """Return the options of an endpoint that returns JSON with an ETag, or 304 if the client is up to date."""
     same = {"description": "They are those of the ETag in If-None-Match"}
     return {"response_class": Response, "responses": {200: {"model": model, "description": description}, 304: same}}
 
 
 def handle_expected_errors(app: FastAPI) -> None:
-    """Let an application answer every expected exception with a problem document."""
+    """Answer every expected exception of an application with a problem document."""
     app.add_exception_handler(SlidercrankError, _refused)
     app.add_exception_handler(RequestValidationError, _not_valid)
     app.add_exception_handler(HTTPException, _http)
@@ -98,7 +98,7 @@ async def _refused(request: Request, error: Exception) -> Response:
 
 
 def should_log(last_logged: dict[str, float], sentence: str) -> bool:
-    """Whether a sentence was not logged within the last minute: many requests meet the same fault."""
+    """Whether a sentence was not logged within the last minute, since many requests meet the same fault."""
     now = time.monotonic()
     if now - last_logged.get(sentence, -_QUIET) < _QUIET:
         return False
@@ -111,7 +111,7 @@ def should_log(last_logged: dict[str, float], sentence: str) -> bool:
 async def _not_valid(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
     errors = error.errors()
-    if any(isinstance(details["input"], bytes) for details in errors):  # what is not JSON by its type stays as it came
+    if any(isinstance(details["input"], bytes) for details in errors):  # text of other types passes unchanged
         kind = request.headers.get("content-type", "no type")[:100]
         turned = ", see POST /api/v1/parse for a job file as JSON" if "toml" in kind else ""
         sentence = f"body: must be a JSON object of type application/json; got {kind}; send it as such{turned}"
@@ -133,7 +133,7 @@ async def _http(request: Request, error: Exception) -> Response:
 
 
 def _methods(request: Request) -> list[str]:
-    """Return the methods of a path: the framework names only those of its first endpoint."""
+    """Return the methods of a path: the framework only names those of its first endpoint."""
 
     def is_known(method: str) -> bool:
         scope = {**request.scope, "method": method}
@@ -143,7 +143,7 @@ def _methods(request: Request) -> list[str]:
 
 
 def rule_and_value(details: Mapping[str, Any]) -> str:
-    """Return the message for an error that pydantic reports: rule, value, remedy."""
+    """Return the message for an error from pydantic: rule, value, remedy."""
     from ...objectives.units import quote
     from ...optimise.job.messages import rule_of
 
@@ -156,7 +156,7 @@ def rule_and_value(details: Mapping[str, Any]) -> str:
 
 
 def _place(location: Sequence[Any]) -> str:
-    """Return the place of a mistake: "query limit", "body priority"; keys from the client are shortened."""
+    """Return the location of a mistake, such as "query limit" or "body priority", with long keys shortened."""
     first, *rest = [str(part) for part in location] or ["request"]
     text = ".".join(rest)
     return f"{first} {text[:100]}" if text else first

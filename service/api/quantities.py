@@ -1,4 +1,4 @@
-"""Meanings of the dimensions and quantities, their display units, and the topics of designs."""
+"""Meanings and display units of dimensions and quantities, and the topics available for designs."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ router = APIRouter(tags=["designs"])
 class QuantityModel(BaseModel):
     """A quantity, explained.
 
-    name: as in job files. column: the key in tables and JSON. unit: of the column. picture: what a picture of the
-    linkage points out for it. section: of docs/theory.md, where it is derived. source: of the equations.
+    name: as in job files. column: key in tables and JSON. unit: unit of the column. picture: what a picture of the
+    linkage highlights for it. section: section of docs/theory.md with its derivation. source: source of the equations.
     """
 
     name: str = Field(examples=["stroke"])
@@ -49,7 +49,7 @@ class QuantityModel(BaseModel):
 
 
 class FunctionModel(BaseModel):
-    """A function of formulas, and how many arguments it takes."""
+    """Function for formulas, and its number of arguments."""
 
     name: str = Field(examples=["max"])
     least: int = Field(examples=[2])
@@ -57,30 +57,30 @@ class FunctionModel(BaseModel):
 
 
 class QuantityList(BaseModel):
-    """All quantities: dimensions, those of designs, those of desired motions. functions: of formulas of these."""
+    """All quantities: dimensions, design quantities, and those of motion laws. functions: functions for formulas."""
 
     quantities: list[QuantityModel]
     functions: list[FunctionModel]
 
 
 class UnitModel(BaseModel):
-    """A unit that the API speaks in another system. factor: what one of the API's unit is in it."""
+    """Unit of the API in another unit system. factor: value in it of one unit of the API."""
 
     unit: str = Field(examples=["in"])
     factor: float = Field(examples=[1 / 25.4])
 
 
 class TypedUnit(BaseModel):
-    """A unit that values may be typed in. factor: what one of it is in SI."""
+    """Unit that users may type. factor: its value in SI."""
 
     unit: str = Field(examples=["mm"])
     factor: float = Field(examples=[1e-3])
 
 
 class KindModel(BaseModel):
-    """A kind of value. units: that a form offers, the SI unit first. si, inch: the unit that a form begins with.
+    """Kind of value. units: units that a form offers, the SI unit first. si, inch: default unit in a form.
 
-    spoken: other words for units that values of this kind may have, each with the unit that it means there.
+    spoken: words other than units that values of this kind may have, each with the unit that it stands for.
     """
 
     name: str = Field(examples=["length"])
@@ -91,10 +91,10 @@ class KindModel(BaseModel):
 
 
 class UnitTable(BaseModel):
-    """Units of values, as they are shown and as they are typed.
+    """Units of values, for display and for input.
 
-    inch: by the unit that the API speaks, the unit of US customary units; the others are the same there. suffixes: how
-    keys of values in a unit that the API speaks end, by that unit. titles: of quantities whose columns say other words.
+    inch: US customary unit for each API unit that differs. suffixes: key endings for values in an API unit, by unit.
+    titles: titles of quantities whose columns are worded differently.
     """
 
     kinds: list[KindModel]
@@ -104,10 +104,10 @@ class UnitTable(BaseModel):
 
 
 class InputModel(BaseModel):
-    """An input of a question. key: name in the address. title: label of its field. unit: of the key. usual: default.
+    """Input of a question. key: name in the address. title: label of its field. unit: of the key. usual: default.
 
-    words: that it may be, none for a number. several: whether it is a list of texts. required: whether there is no
-    answer without it. example: as typed.
+    words: allowed words, none for a number. several: whether it is a list of texts. required: whether it is mandatory.
+    example: as typed.
     """
 
     key: str = Field(examples=["crank_angle_deg"])
@@ -122,10 +122,10 @@ class InputModel(BaseModel):
 
 
 class TopicModel(BaseModel):
-    """A question to a design. path: after that of the design. title: for a heading. shows: what it is about, in words.
+    """Question about a design. path: path below that of the design. title: heading. shows: its subject, in words.
 
-    command: of the command line, which tells the same. figure: whether it is drawn at the path with .svg. posted:
-    whether the inputs are the body of the request.
+    command: equivalent command of the command line. figure: whether the path with .svg gives a figure. posted: whether
+    the inputs form the request body.
     """
 
     name: str = Field(examples=["balance"])
@@ -139,9 +139,9 @@ class TopicModel(BaseModel):
 
 
 class TopicList(BaseModel):
-    """The topics that a design may have, in their order. questions: those that are commands of their own.
+    """Topics that a design may have, in order. questions: those that are separate commands.
 
-    fronts: questions to a front; their paths are whole, with the numbers of job and design in braces.
+    fronts: questions about a front; their paths are complete, with the numbers of job and design in braces.
     """
 
     topics: list[TopicModel]
@@ -151,7 +151,7 @@ class TopicList(BaseModel):
 
 @router.get("/units")
 def list_units() -> UnitTable:
-    """List the units of every kind, and what the units of the API are in inches and pounds."""
+    """List the units for every kind, and the equivalents of API units in inches and pounds."""
     from ...objectives.column_keys import split_unit
     from ...objectives.registry import FACTS
     from ...objectives.units import per_si
@@ -195,7 +195,7 @@ def list_quantities() -> QuantityList:
 
 @router.get("/topics")
 def list_topics() -> TopicList:
-    """List the topics that a design may have, and the questions to a design or a front that are commands."""
+    """List the topics that a design may have, and the questions about a design or a front that are commands."""
     topics = [
         _topic(question, f"topics/{question.name}", f"analyse --show {question.name}") for question in TOPICS.values()
     ]

@@ -1,4 +1,4 @@
-"""Access to the service: only with the token, not from pages of other sites, not under another host name."""
+"""Access to the service: only with the token, not from pages of other sites, and not under another host name."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from .settings import Settings
 
 _log = logging.getLogger(__name__)
 OPEN = "/api/v1/health/live"
-"""The one place that needs no token: it says only that the service answers."""
+"""The only path that needs no token: it reports only that the service answers."""
 KNOWN = "slidercrank.known"
-"""Key of a request's scope, there once the request is let in with the token, or where none is asked for."""
+"""Key in a request's scope, set once the request is admitted with the token, or if no token is required."""
 _HEADERS = {
     "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'",
     "X-Content-Type-Options": "nosniff",
@@ -36,9 +36,9 @@ _HEADERS = {
 class Guard:
     """ASGI middleware: refuses requests, answers unexpected errors, and adds headers for browsers.
 
-    It refuses, in this order: a Host that is not one of the service's names, as after DNS rebinding; an Origin other
-    than the service, including the port, since cookies do not distinguish ports; a wrong or missing token. The token
-    comes as `Authorization: Bearer ...`. A browser instead has the cookie set by `GET /?token=...`, which holds a value
+    Refuses, in this order: a Host that is not a name of the service, as after DNS rebinding; an Origin that differs
+    from the service, also by port, since cookies do not distinguish ports; a wrong or missing token. The token is sent
+    as `Authorization: Bearer ...`. A browser instead has the cookie set by `GET /?token=...`, which holds a value
     derived from the token, not the token itself.
     """
 
@@ -76,7 +76,7 @@ class Guard:
         except Exception as error:
             _log.exception("%s %s", scope["method"], scope["path"])
             if started:
-                raise  # so that the server breaks the connection off: half a response must not look whole
+                raise  # makes the server close the connection: half a response must not look complete
             fault = problem(HTTPStatus.INTERNAL_SERVER_ERROR, f"unexpected {type(error).__name__}; {FAULT}")
             await fault(scope, receive, protected)
 
@@ -114,7 +114,7 @@ class Guard:
         return None
 
     def _let_in(self, connection: HTTPConnection) -> Response:
-        """Return the answer to an address with a token: a cookie, and the same address without it."""
+        """Answer an address that contains the token: set a cookie, and redirect to the address without it."""
         scope = connection.scope
         tokens = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])
         if len(tokens) != 1 or not self._is_token(tokens[0]):
@@ -138,7 +138,7 @@ class Guard:
         )
 
     def _is_token(self, token: str) -> bool:
-        """Whether it is the token, compared in constant time."""
+        """Whether a text is the token, compared in constant time."""
         return self.token is not None and hmac.compare_digest(token.encode(errors="replace"), self.token)
 
 
@@ -147,7 +147,7 @@ def _unauthorised(text: str) -> Response:
 
 
 def _made_of(token: bytes, purpose: str) -> str:
-    """Return a text that can be made only with the token, and from which the token cannot be recovered."""
+    """Return a text that only the token can produce and that does not reveal the token."""
     return hmac.new(token, f"slidercrank {purpose}".encode(), hashlib.sha256).hexdigest()
 
 

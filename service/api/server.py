@@ -1,4 +1,4 @@
-"""The web server of the API: its address, its names, and its end."""
+"""Web server for the API: its address, its host names, and its shutdown."""
 
 from __future__ import annotations
 
@@ -19,13 +19,14 @@ if TYPE_CHECKING:
 _WAITING = 2048
 """Connections that may wait to be accepted."""
 STALL_SECONDS = 60.0
-"""Time that a client may take nothing of its answer; then the system breaks the connection off (Linux)."""
+"""Seconds that a client may go without reading its answer; then the system closes the connection (Linux)."""
 _BUFFER = 16_384
-"""Bytes that the system keeps for each direction of a connection, beside those on their way, instead of megabytes."""
+"""Bytes that the system buffers for each direction of a connection, apart from data in transit, instead of
+megabytes."""
 _KEEP_ALIVE = 75
-"""Seconds that a connection at rest stays open: longer than clients keep theirs, so none is closed as it is used."""
+"""Seconds that an idle connection stays open: longer than clients keep theirs, so none is closed while in use."""
 _FAREWELL = 2
-"""Seconds that requests and streams of events have to end once the server stops; clients come back to the next."""
+"""Seconds that requests and event streams have to end after the server stops; clients reconnect to the next one."""
 _ANY = ("0.0.0.0", "::")
 
 
@@ -55,8 +56,8 @@ def listen(host: str, port: int) -> socket.socket:
             f"the service needs an address of this machine and a free port; {host} port {port} gave: {_why(error)}; "
             "choose another one with --port (0 takes any that is free) or --host"
         ) from None
-    # Connections inherit these. Without TCP_NODELAY the second answer on one waits 40 ms for a delayed acknowledgement;
-    # asyncio sets it itself only if the listening socket was created with the protocol named.
+    # Connections inherit these. Without TCP_NODELAY the second answer on a connection waits 40 ms for a delayed
+    # acknowledgement; asyncio sets it only if the listening socket was created with an explicit protocol.
     options = {"TCP_NODELAY": 1, "TCP_USER_TIMEOUT": round(1e3 * STALL_SECONDS), "TCP_NOTSENT_LOWAT": _BUFFER}
     for name in filter(partial(hasattr, socket), options):
         listening.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), options[name])
@@ -72,14 +73,14 @@ def _why(error: OSError | UnicodeError) -> str:
 
 
 def url_of(host: str, listening: socket.socket, token: str | None) -> str:
-    """Return the address of a service for a browser, with its token if it is given."""
+    """Return the address of a service for a browser, with its token if there is one."""
     name = socket.gethostname() if host in _ANY else host
     address = f"http://{_bracketed(name)}:{listening.getsockname()[1]}/"
     return address if token is None else f"{address}?token={token}"
 
 
 def spare_imports() -> None:
-    """Exempt imported objects from garbage collection: scanning them stops all requests for 0.2 s each time."""
+    """Exempt imported objects from garbage collection: each scan of them stops all requests for 0.2 s."""
     gc.collect()
     gc.freeze()
 
@@ -92,9 +93,9 @@ def config_of(app: FastAPI) -> Config:
 
     return Config(
         app,
-        http=cast("Any", partial(Connection, Gate(raise_connection_limit()))),  # any factory of protocols works
+        http=cast("Any", partial(Connection, Gate(raise_connection_limit()))),  # any protocol factory works
         log_config=None,
-        access_log=False,  # the address that carries the token would be in it
+        access_log=False,  # it would contain the address with the token
         server_header=False,
         ws="none",
         timeout_keep_alive=_KEEP_ALIVE,
@@ -111,13 +112,13 @@ def run_server(
 ) -> None:
     """Serve an application until SIGTERM or Ctrl-C, which are passed on to the previous handlers.
 
-    stop_requested: whether a signal came before the server installed its own handlers. stopping: function called when
-    the server begins to stop, before the grace period for running requests.
+    stop_requested: whether a signal arrived before the server installed its own handlers. stopping: function called
+    when the server starts to stop, before the grace period for running requests.
     """
     import uvicorn
 
     class Server(uvicorn.Server):
-        """Server that ends the event streams first: they would otherwise wait until they are cut."""
+        """Server that ends the event streams first: otherwise they would wait until they are cut off."""
 
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:
             self.should_exit = self.should_exit or stop_requested()

@@ -1,4 +1,4 @@
-"""Settings of the API, chosen by its operator, and access of requests to them and to the store."""
+"""API settings chosen by the operator, and how requests reach them and the store."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
 class Settings:
     """Settings of an API.
 
-    token: token required in every request; None admits everybody who can reach the service. hosts: host names of the
+    token: token required in every request; None admits anyone who can reach the service. hosts: host names of the
     service, without ports; "*" is any. most_body: maximum size of a request, bytes. most_depth: maximum nesting of
     tables in a JSON body. submissions_per_minute: maximum for all clients together; 0 is no limit. allowed_quantities:
-    functions that jobs may name as custom quantities, as "module:function"; they run on the workers with all
-    permissions of these. limits: maximum limits of a job, also the default. figures: whether figures are drawn.
+    functions that jobs may name as custom quantities, as "module:function"; they run on the workers with all their
+    permissions. limits: maximum limits of a job, also the default. figures: whether figures are drawn.
     """
 
     token: str | None = None
@@ -40,14 +40,14 @@ DEFAULT = Settings()
 def part_of_app(name: str) -> Any:
     """Return the dependency that provides a part of the application's state."""
 
-    async def part(request: Request) -> Any:  # not in a separate thread, as for plain functions
+    async def part(request: Request) -> Any:  # async, so not run in a separate thread as plain functions are
         return getattr(request.app.state, name)
 
     return Depends(part)
 
 
 StoreDep = Annotated[Store, part_of_app("store")]
-"""The store; its calls block, so endpoints that use it are plain functions, which run in a thread of their own."""
+"""Store; its calls block, so endpoints that use it are plain functions, which run in threads."""
 
 SettingsDep = Annotated[Settings, part_of_app("settings")]
-"""Settings of the API, chosen by its operator."""
+"""API settings chosen by the operator."""

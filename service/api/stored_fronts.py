@@ -1,6 +1,6 @@
-"""Fronts of ended jobs, and their designs, each with its stored numbers or with others given in an address.
+"""Fronts of ended jobs and their designs, each with its stored numbers or with others from an address.
 
-Fronts are kept in memory: they never change, and reading 10,000 designs takes a while.
+Fronts are cached in memory: they never change, and reading 10,000 designs takes a while.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
     from ...optimise.front.front import ParetoFront
 
 MOST_DESIGNS = 40_000
-"""Designs kept at hand, of all fronts together; 140 MB."""
-_MOST_CACHED = 10_000_000  # bytes of a front's figures, files and columns, and one if it is longer
+"""Maximum number of cached designs, over all fronts; 140 MB."""
+_MOST_CACHED = 10_000_000  # bytes of cached figures, files and columns per front; one larger item is still cached
 
 DesignNumber = Annotated[
     int, Path(ge=1, le=2**31, description="number of a design in its front, counted from 1", examples=[3]), PLAIN_DIGITS
@@ -45,7 +45,7 @@ DesignNumber = Annotated[
 
 
 class StoredFront:
-    """The front of an ended job, with derived data computed when first needed."""
+    """Front of an ended job; derived data is computed when first needed."""
 
     def __init__(self, job: Job, result: Result, problem: Callable[[], Problem]) -> None:
         self.job = job
@@ -56,34 +56,34 @@ class StoredFront:
 
     @cached_property
     def problem(self) -> Problem:
-        """The problem that the job stated, with the seed of its search. Raises `JobError`."""
+        """Problem that the job stated, with the seed of its search. Raises `JobError`."""
         problem = self._read()
         return replace(problem, settings=replace(problem.settings, seed=self.result.seed))
 
     @cached_property
     def columns(self) -> list[Column]:
-        """The columns of the designs; none without designs."""
+        """Columns of the designs; empty if there are no designs."""
         return all_columns(self.result.designs[0] if self.result.designs else ())
 
     @cached_property
     def front(self) -> ParetoFront:
-        """The front in the form for figures."""
+        """Front data in the form that figures need."""
         return front_of(self.problem, self.result)
 
     @cached_property
     def wishes(self) -> Wishes:
-        """The starts for wishes on the front. Raises `InputError` if no wish is possible."""
+        """Starting points for wishes on the front. Raises `InputError` if no wish is possible."""
         from ...optimise.decisions.wish import Wishes
 
         return Wishes(self.front)
 
     @cached_property
     def minimised(self) -> Array:
-        """The objectives of the designs (n, m), as they are minimised, in display units."""
+        """Objectives of the designs (n, m), all minimised, in display units."""
         return minimised_values(self.result)
 
     def cached(self, name: str, kind: str, make: Callable[[], tuple[Sequence[str], bytes]]) -> bytes:
-        """Return a cached item derived from the front, or make and cache it.
+        """Return a cached item derived from the front, or create and cache it.
 
         make: function that returns all names of the item, and its content.
         """
@@ -105,13 +105,13 @@ class StoredFront:
         return self.result.designs[number - 1]
 
     def design(self, number: int) -> StoredDesign:
-        """Return a design, by its number, as a machine."""
+        """Return a design as a machine, by its number."""
         self.row(number)
         return stored_design(self.problem, self.result, number)
 
 
 class StoredFronts:
-    """The most recently requested fronts, with a bounded number of designs. Threads may share it."""
+    """Cache of the most recently requested fronts, with a bounded number of designs. Threads may share it."""
 
     def __init__(self, store: Store, *, allowed: Collection[str] = (), most_designs: int = MOST_DESIGNS) -> None:
         """Read from a store. allowed: functions, "module:function", that its jobs may name as quantities."""
@@ -125,7 +125,7 @@ class StoredFronts:
         """Return the front of a job. Raises `NotFound` for a missing job, `RunError` without a result."""
         job = self._store.job(number)
         key = (job.id, job.finished)
-        with self._reading:  # who asks for the same front at the same time waits for it, instead of reading it too
+        with self._reading:  # simultaneous requests for the same front wait for it instead of reading it again
             front = self._cached.get(key)
             if front is None:
                 front = StoredFront(
@@ -149,7 +149,7 @@ class StoredFronts:
 
 
 FrontsDep = Annotated[StoredFronts, part_of_app("fronts")]
-"""The fronts of all jobs."""
+"""Fronts of all jobs."""
 
 
 def _front(number: JobNumber, fronts: FrontsDep) -> StoredFront:
@@ -157,16 +157,16 @@ def _front(number: JobNumber, fronts: FrontsDep) -> StoredFront:
 
 
 FrontDep = Annotated[StoredFront, Depends(_front)]
-"""The front of the job in the path, with its designs."""
+"""Front of the job in the path, with its designs."""
 
 
 LONGEST = 1e7  # mm
 SHORTEST = 1e-4  # mm
-_SAME = 1e-9  # of a length: an address has the design's own
+_SAME = 1e-9  # relative tolerance of a length: an address may repeat the length of the design
 
 Length = Annotated[float, Field(ge=SHORTEST, le=LONGEST, allow_inf_nan=False)]
 Numbers = Mapping[str, float]
-"""Numbers of a design by column, in its unit."""
+"""Numbers of a design by column, each in the column's unit."""
 _LENGTHS = ("crank_mm", "rod_mm", "offset_mm")
 
 _OTHER = "mm, instead of that of the design; crank_mm, rod_mm and offset_mm come together"
@@ -205,14 +205,15 @@ def _value(text: str) -> tuple[str, float]:
 
 
 NumbersDep = Annotated[Numbers | None, Depends(_numbers)]
-"""Numbers that an address gives a design, None for its own. Raises `InputError` for one or two lengths."""
+"""Numbers that an address sets for a design, None for those of the design itself. Raises `InputError` if it sets only
+one or two lengths."""
 
 
 @dataclass(frozen=True)
 class RequestedDesign:
-    """A design of a front, perhaps with other numbers. changed: whether its numbers differ from the stored ones.
+    """Design on a front, perhaps with other numbers. changed: whether its numbers differ from the stored ones.
 
-    bookmarks: those of the job, one of which may name the design.
+    bookmarks: bookmarks of the job, which may name the design.
     """
 
     stored_front: StoredFront
@@ -223,23 +224,23 @@ class RequestedDesign:
 
     @property
     def words(self) -> str:
-        """The design in titles: the name of its bookmark, or its number."""
+        """Name of the design in titles: that of its bookmark, or its number."""
         variant, values = self.design.variant, self.design.values
         names = (bookmark.name for bookmark in self.bookmarks if bookmark.is_of(variant, values))
         return next(names, f"design {self.number}" + (", changed" if self.changed else ""))
 
     @property
     def stem(self) -> str:
-        """The design in file names."""
+        """Name of the design in file names."""
         return slug(self.words)
 
     @property
     def key(self) -> str:
-        """The key of the design in the cache of the front."""
+        """Key of the design in the cache of the front."""
         return f"design_{self.number}" + (f" {self.design.values}" if self.changed else "")
 
     def cached_file(self, kind: str, make: Callable[[], bytes]) -> bytes:
-        """Return a cached file of the design, which shows its words, or make and cache it."""
+        """Return a cached file of the design that shows its name, or create and cache it."""
         key = f"{self.key} {self.words}"
         return self.stored_front.cached(key, kind, lambda: ((key,), make()))
 
@@ -253,7 +254,10 @@ class RequestedDesign:
 def requested_design(
     stored_front: StoredFront, number: int, numbers: Numbers | None, bookmarks: Sequence[Bookmark] = ()
 ) -> RequestedDesign:
-    """Return a design of a front with numbers. Raises `NotFound`; `InputError` without full rotation."""
+    """Return a design on a front with other numbers.
+
+    Raises `NotFound`, and `InputError` if it does not rotate fully.
+    """
     stored, row = stored_front.design(number), stored_front.row(number)
     cells = {column: row.get(column) for column in numbers or ()}
     stored_numbers = {column: cell if isinstance(cell, float) else math.nan for column, cell in cells.items()}
@@ -277,4 +281,4 @@ def _requested_design(
 
 
 RequestedDesignDep = Annotated[RequestedDesign, Depends(_requested_design)]
-"""The design in the path, with the numbers in the query."""
+"""Design in the path, with the numbers in the query."""

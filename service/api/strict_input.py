@@ -1,4 +1,4 @@
-"""Rejection of bodies that are too large, and of JSON that no job contains, before anything else reads them."""
+"""Rejection of oversized bodies, and of JSON that no job contains, before anything else reads them."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from .security import KNOWN
 T = TypeVar("T")
 _JSON = re.compile(r"application/(json|[\w.+-]+\+json)\s*(;.*)?", re.IGNORECASE)
 _LARGEST = 2**53
-"""Whole numbers beyond it change on their way through the numbers of other languages (RFC 8259, 6)."""
+"""Larger whole numbers change in languages that store numbers as floats (RFC 8259, section 6)."""
 _DIGITS = 4 * len(str(_LARGEST))
-_LARGE = 16_384  # bytes; longer bodies are read in a thread, one at a time, so that other requests go on meanwhile
+_LARGE = 16_384  # bytes; longer bodies are parsed in a thread, one at a time, so that other requests continue meanwhile
 PARSED_BODY = "slidercrank.json"
-"""Key of a request's scope with what its body says, if that is JSON."""
+"""Key in a request's scope for the content of a JSON body."""
 
 
 @dataclass
@@ -43,7 +43,7 @@ class StrictInput:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Refuse a request, or pass it on."""
-        if KNOWN not in scope:  # bodies are kept only with the token
+        if KNOWN not in scope:  # only bodies of requests with the token are read
             await self.app(scope, receive, send)
             return
         if "\0" in scope["path"] or b"%00" in scope["query_string"] or b"\0" in scope["query_string"]:
@@ -65,7 +65,10 @@ class StrictInput:
         await self.app(scope, _again(body, receive), send)
 
     async def _body(self, headers: Headers, receive: Receive) -> bytes | None:
-        """Return the whole body; None if too large. It is counted on arrival: a stated length may be wrong."""
+        """Return the whole body; None if it is too large.
+
+        Bytes are counted on arrival: the stated length may be wrong.
+        """
         length = headers.get("content-length", "0")
         if not length.isdecimal() or len(length) > 15 or int(length) > self.most_body:
             return None
@@ -73,7 +76,7 @@ class StrictInput:
         while is_incomplete:
             message = await receive()
             if message["type"] != "http.request":
-                break  # the client has gone: what follows finds out
+                break  # the client has left: the application will notice
             parts.append(message.get("body", b""))
             size += len(parts[-1])
             if size > self.most_body:
@@ -83,7 +86,7 @@ class StrictInput:
 
 
 async def read_in_turn(app: Any, body: bytes, read: Callable[..., T], *of: Any) -> T:
-    """Return the content of a body; large bodies are read in turn, as each blocks the interpreter for long."""
+    """Return the content of a body; large bodies take turns, as parsing one blocks the interpreter for long."""
     if len(body) <= _LARGE:
         return read(*of)
     turn: asyncio.Lock = app.state.reading
@@ -92,7 +95,7 @@ async def read_in_turn(app: Any, body: bytes, read: Callable[..., T], *of: Any) 
 
 
 def _again(body: bytes, receive: Receive) -> Receive:
-    """Return a receive function that gives the body again, then further messages."""
+    """Return a receive function that replays the body and then passes on further messages."""
     first = True
 
     async def replayed() -> Message:
@@ -123,7 +126,7 @@ def read_json(body: bytes, most_depth: int) -> Any:
 
 
 def require_moderate(value: Any, most_depth: int) -> None:
-    """Reject data that are nested too deeply, and numbers and texts that other programs would not read unchanged.
+    """Reject data with too many levels, and numbers and texts that other programs would not read unchanged.
 
     Raises `InputError` for infinities, NaN, integers beyond 2^53, dates, and text with NUL or lone surrogates.
     """
@@ -166,7 +169,7 @@ def _no_number(text: str) -> None:
 
 
 def _parse_integer(text: str) -> int:
-    if len(text) > _DIGITS:  # the time grows with the square of the length
+    if len(text) > _DIGITS:  # parsing time grows with the square of the length
         raise _too_large()
     return int(text)
 

@@ -1,4 +1,4 @@
-"""Submissions: a job as sent, or a copy of a job with changes, wider limits, or ranges around a design."""
+"""Submissions: a job as sent, or a copy with changes, with wider limits, or with ranges around a design."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ from .throttle import limit_submissions
 
 
 class SubmissionRoute(QuickRoute):
-    """An endpoint that submits jobs: only a limited number per minute is admitted."""
+    """Endpoint that submits jobs, with a maximum number of requests per minute."""
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer a request, or refuse it if too many came before."""
+        """Answer a request, or refuse it above the rate limit."""
         if scope["method"] in (self.methods or ()):
             limit_submissions(scope["app"])
         await super().handle(scope, receive, send)
@@ -49,7 +49,7 @@ _COPIED = {**_SUBMITTED, "tags": ["fronts"], "responses": problem_responses(409,
 
 
 class OtherLimit(BaseModel, extra="forbid", strict=True):
-    """Another value for a limit of a job, in the unit of the limit."""
+    """New value for a limit of a job, in the unit of the limit."""
 
     of: LIMIT_PATH
     side: Side = Field(examples=["upper"])
@@ -57,13 +57,13 @@ class OtherLimit(BaseModel, extra="forbid", strict=True):
 
 
 class Widening(BaseModel, extra="forbid", strict=True):
-    """The limits that are wider in a copy of a job."""
+    """Limits to widen in a copy of a job."""
 
     limits: list[OtherLimit] = Field(min_length=1, max_length=50)
 
 
 class Nearby(BaseModel, extra="forbid", strict=True):
-    """Lengths that a copy of a job varies around. share: of each length, on either side."""
+    """Lengths around which a copy of a job searches. share: fraction of each length, on either side."""
 
     crank_mm: Length = Field(examples=[40.0])
     rod_mm: Length = Field(examples=[64.0])
@@ -73,7 +73,7 @@ class Nearby(BaseModel, extra="forbid", strict=True):
 
 @dataclass(frozen=True)
 class Queue:
-    """The queue of jobs as one request sees it. idempotency_key: key of the submission."""
+    """Job queue for one request. idempotency_key: key of the submission."""
 
     store: StoreDep
     settings: SettingsDep
@@ -81,7 +81,7 @@ class Queue:
     idempotency_key: IdempotencyKey = None
 
     def submit(self, request: RequestedJob, *, origin: int | None = None) -> dict[str, Any]:
-        """Queue a job and return its record. origin: number of the job from which it was copied and changed."""
+        """Queue a job and return its record. origin: number of the job from which it was copied."""
         problem = problem_of_tables(request.tables, self.settings.allowed_quantities)
         files = [request.source or job_json(request.tables)]
         options: dict[str, Any] = {"priority": request.priority, "key": self.idempotency_key, "limits": request.limits}
@@ -106,7 +106,7 @@ def submit_job(request: Annotated[RequestedJob, Depends(requested_job)], queue: 
 
 @router.post("/jobs/{number}/clone", **_SENT)
 def clone_job(number: JobNumber, clone: Clone, queue: QueueDep) -> dict[str, Any]:
-    """Queue a copy of a job, with changes."""
+    """Queue a copy of a job with changes."""
     job = queue.store.job(number)
     copy = RequestedJob(
         tables=merge_patch(queue.store.tables(number), clone.changes),
@@ -118,7 +118,7 @@ def clone_job(number: JobNumber, clone: Clone, queue: QueueDep) -> dict[str, Any
 
 @router.post("/jobs/{number}/widened", **_COPIED)
 def run_widened(stored_front: FrontDep, request: Widening, queue: QueueDep) -> dict[str, Any]:
-    """Queue a copy of a job with wider limits; the copy knows the job that it came from."""
+    """Queue a copy of a job with wider limits; the copy records its origin."""
     wider = [(limit.of, limit.side, limit.value) for limit in request.limits]
     return queue.submit_copy(
         stored_front.job, widen_limits(stored_front.problem, queue.store.tables(stored_front.job.id), wider)
@@ -127,7 +127,7 @@ def run_widened(stored_front: FrontDep, request: Widening, queue: QueueDep) -> d
 
 @router.post("/jobs/{number}/nearby", **_COPIED)
 def run_nearby(stored_front: FrontDep, request: Nearby, queue: QueueDep) -> dict[str, Any]:
-    """Queue a copy of a job that searches around given lengths, also outside of its ranges."""
+    """Queue a copy of a job that searches around given lengths, which may lie outside its ranges."""
     lengths = (request.crank_mm, request.rod_mm, request.offset_mm)
     tables = job_near_lengths(
         stored_front.problem, queue.store.tables(stored_front.job.id), lengths, share=request.share

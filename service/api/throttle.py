@@ -1,4 +1,4 @@
-"""Limits on simultaneous requests and on requests per minute, so that the service stays quick."""
+"""Limits on simultaneous requests and on requests per minute, to keep the service responsive."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ _MOST = 200  # requests that wait
 
 
 class TurnQueue:
-    """A kind of request with a limited number answered at a time, while others wait. For one event loop."""
+    """Queue for one type of request: a limited number is answered at a time, the others wait. For one event loop."""
 
     def __init__(self, name: str, limit: int) -> None:
-        """Begin. name: name of these requests, in the plural. limit: number answered at a time."""
+        """Create an empty queue. name: name of these requests, in the plural. limit: number answered at a time."""
         self.name, self.most = name, limit
         self._free = asyncio.Semaphore(limit)
         self._waiting = 0
 
     @contextlib.asynccontextmanager
     async def turn(self) -> AsyncIterator[None]:
-        """Wait for a turn; refuse with a 503 and its reason if too many wait or no turn comes soon."""
+        """Wait for a turn; refuse with status 503 and a reason if too many wait or no turn comes soon."""
         if self._waiting >= _MOST:
             raise self._busy(f"{_MOST} others wait")
         self._waiting += 1
@@ -49,17 +49,17 @@ class TurnQueue:
 
 
 class RateLimit:
-    """Rate limit: admits a number immediately, and as many again over every minute. For one thread."""
+    """Rate limiter: admits a burst of a given number, and as many again over every minute. For one thread."""
 
     def __init__(self, per_minute: int, clock: Callable[[], float] = time.monotonic) -> None:
-        """Begin. per_minute: number per minute; 0 is no limit. clock: clock in s."""
+        """Create a limiter. per_minute: number per minute; 0 is no limit. clock: clock in s."""
         self.per_minute = per_minute
         self._clock = clock
         self._left = float(per_minute)
         self._at = clock()
 
     def wait(self) -> float:
-        """Return 0 for an admitted request, else the time until it can be admitted, s."""
+        """Return 0 for an admitted request, or else the time until one can be admitted, s."""
         if not self.per_minute:
             return 0.0
         now, rate = self._clock(), self.per_minute / 60.0
@@ -72,7 +72,7 @@ class RateLimit:
 
 
 def limit_submissions(app: Any) -> None:
-    """Refuse a submission if too many came within a minute."""
+    """Refuse a submission above the rate limit per minute."""
     limit: RateLimit = app.state.submissions
     wait = limit.wait()
     if wait:

@@ -30,9 +30,9 @@ _MOST_NUMBERS = 20
 
 
 class RequirementModel(BaseModel):
-    """A quantity that must lie between two values, in its unit; null leaves a side open.
+    """Quantity with a lower and an upper bound, in its unit; null leaves a side open.
 
-    column: its key in the designs. slack: the key of the distance to the nearer bound, less than 0 where it is broken.
+    column: its key in the designs. slack: key of the distance to the nearer bound, negative if the bound is violated.
     """
 
     quantity: str = Field(examples=["transmission_angle"])
@@ -45,12 +45,11 @@ class RequirementModel(BaseModel):
 
 
 class RequirementsModel(OfDesign):
-    """The requirements of a job on a design, with the choices that the design made.
+    """Requirements of a job on a design, for the choices of the design.
 
-    name: what the design is called: by its bookmark, or by its number.
-    ranges: least and greatest of crank, rod, offset and the numbers that vary besides, by column. speed_rpm: of its
-    crank, positive counter-clockwise.
-    names: of quantities, as in job files, by column. tolerances: whether the machine has any.
+    name: name of the design: that of its bookmark, or its number. ranges: minimum and maximum of crank, rod, offset and
+    the extra variables, by column. speed_rpm: crank speed, positive counter-clockwise. names: names of quantities as in
+    job files, by column. tolerances: whether the machine has any.
     """
 
     name: str = Field(examples=["Round numbers", "design 3"])
@@ -63,12 +62,12 @@ class RequirementsModel(OfDesign):
 
 
 class OtherLengths(BaseModel, extra="forbid", strict=True):
-    """Lengths for a design of a front. values: other numbers that vary, by column, within their ranges.
+    """Lengths for a design on a front. values: other extra variables, by column, within their ranges.
 
-    angles: of its curves, evenly spaced; 0 for none.
+    angles: number of curve samples, evenly spaced; 0 for none.
 
-    hold: the length that was moved, so that the others follow and the rules that ask for exact values still hold; null
-    to take the lengths as they are.
+    hold: the changed length; the others then follow, so that rules with exact values still hold; null leaves all
+    lengths as given.
     """
 
     crank_mm: Length = Field(examples=[40.0])
@@ -82,13 +81,12 @@ class OtherLengths(BaseModel, extra="forbid", strict=True):
 
 
 class WhatIfModel(OfDesign):
-    """A design with other lengths, beside its front. name: what it is called, as in `RequirementsModel`.
+    """Design with other lengths, compared with its front. name: as in `RequirementsModel`.
 
-    design: every quantity and the slacks; undefined: why some of them have no value, by column. broken: columns of the
-    requirements that it does not meet. outside: columns of lengths that leave their range. dominated_by: numbers of
-    designs of the front that are as good in every objective and better in one; dominates: of those that it beats so;
-    the greatest difference first, at most 20. violated, violations: as of a design of the front. cycle: null if no
-    curves were asked for.
+    design: every quantity and the slacks; undefined: why some of them have no value, by column. broken: columns of
+    unmet requirements. outside: columns of lengths outside their range. dominated_by: numbers of the front designs that
+    dominate this one; dominates: of those that it dominates; largest difference first, at most 20. violated,
+    violations: as for a design on the front. cycle: null if no curves were requested.
     """
 
     name: str = Field(examples=["design 3, changed"])
@@ -116,13 +114,13 @@ def show_curves(
         PLAIN_DIGITS,
     ] = 360,
 ) -> CurvesModel:
-    """Give slider motion, drive, transmission angle and joint forces over the cycle: see the answer's description."""
+    """Return slider motion, drive, transmission angle and joint forces over the cycle; see the answer's description."""
     return CurvesModel(job=stored_front.job.id, number=design, **dict(cycle_model(stored_front.design(design), angles)))
 
 
 @router.get("/jobs/{number}/designs/{design}/requirements")
 def show_requirements(stored_front: FrontDep, design: DesignNumber, store: StoreDep) -> RequirementsModel:
-    """Give the ranges and the constraints that hold for a design, the floors that hold without being asked included."""
+    """Return the ranges and constraints that apply to a design, including default minimum values."""
     stored = stored_front.design(design)
     requirements = [RequirementModel(**vars(item), slack=item.slack) for item in requirements_of(stored.part)]
     return RequirementsModel(
@@ -140,7 +138,7 @@ def show_requirements(stored_front: FrontDep, design: DesignNumber, store: Store
 
 @router.post("/jobs/{number}/designs/{design}/what-if")
 def change_lengths(stored_front: FrontDep, design: DesignNumber, request: OtherLengths, store: StoreDep) -> WhatIfModel:
-    """Analyse a design with other lengths and varying numbers, its choices kept; what if?"""
+    """Analyse a design with other lengths and extra variables but the same choices (what-if analysis)."""
     if 0 < request.angles < LEAST:
         raise InputError(
             f"curves must have {LEAST} to {MOST} crank angles, or 0 for none; got {request.angles}; ask for a number "

@@ -1,4 +1,4 @@
-"""Choice by wishes: the optimal design nearest to wished values, found by a new search."""
+"""Wishes: finds the optimal design nearest to desired values by a new search."""
 
 from __future__ import annotations
 
@@ -28,14 +28,17 @@ WishesGiven = body_of(QUESTION, "WishesGiven", design=(int | None, _DESIGN))
 
 
 class WishModel(BaseModel):
-    """A wish for an objective. value: that is wished, or that it may worsen to, in the unit of the objective."""
+    """Wish for an objective.
+
+    value: desired value, or the limit to which it may worsen, in the unit of the objective.
+    """
 
     wish: Literal["value", "improve", "keep", "limit"]
     value: float | None = Field(examples=[45.0])
 
 
 class WishRecordModel(BaseModel):
-    """A wish that somebody made of a front. wishes: by objective. design: that classes speak of. at: s since 1970."""
+    """Wish recorded for a front. wishes: by objective. design: reference design of the classes. at: s since 1970."""
 
     number: int = Field(examples=[3])
     wishes: dict[str, WishModel]
@@ -44,18 +47,18 @@ class WishRecordModel(BaseModel):
 
 
 class WishesModel(BaseModel):
-    """The wishes that were made of the front of a job, the latest first."""
+    """Wishes recorded for the front of a job, newest first."""
 
     job: int = Field(examples=[7])
     made: list[WishRecordModel]
 
 
 class OutcomeModel(BaseModel):
-    """Wish and outcome of an objective, in its unit.
+    """Wish for an objective and its outcome, in the unit of the objective.
 
-    wish: its kind. wished: the value that is wished, or that it may worsen to. before: of the design that classes speak
-    of. short: by how much it is worse than wished, changed: than before; below 0 where it is better. met: whether it
-    is as wished, or within what is allowed. A number that does not apply is null.
+    wish: its kind. wished: desired value, or the limit to which it may worsen. before: value of the reference design.
+    short: shortfall from the desired value. changed: worsening from the
+    reference; both are negative if better. met: whether the wish is met. A number that does not apply is null.
     """
 
     quantity: str = Field(examples=["transmission_angle"])
@@ -71,11 +74,11 @@ class OutcomeModel(BaseModel):
 
 
 class WishedModel(BaseModel):
-    """The design that comes nearest to wishes.
+    """Design that comes nearest to the wishes.
 
-    number: of the design that classes speak of. possible: whether everything wished is reached. sentences: the answer
-    in words. achievement: value of the achievement function. objectives: none without a design. design: as a row of the
-    front, with its stationarity residual; null where no design stays within what may worsen.
+    number: reference design of the classes. possible: whether every wish is met. sentences: the answer in words.
+    achievement: value of the achievement function. objectives: empty if there is no design. design: as a row of the
+    front, with its stationarity residual; null if no design stays within the allowed worsening.
     """
 
     job: int = Field(examples=[7])
@@ -89,9 +92,9 @@ class WishedModel(BaseModel):
 
 
 def make_wish(stored_front: FrontDep, given: Any, store: StoreDep, units: UnitsParameter = "metric") -> WishedModel:
-    """Find the optimal design that comes nearest to wished values of the objectives, or from a design as asked.
+    """Find the optimal design nearest to desired objective values, or to changes requested from a design.
 
-    The wish is noted among those of the job.
+    The wish is recorded with those of the job.
     """
     if given.design is not None:
         stored_front.row(given.design)
@@ -110,7 +113,7 @@ router.add_api_route("/jobs/{number}/wish", make_wish, methods=["POST"])
 
 @router.get("/jobs/{number}/wishes")
 def list_wishes(stored_front: FrontDep, store: StoreDep) -> WishesModel:
-    """List the wishes that were made of the front of a job, the latest first."""
+    """List the wishes recorded for the front of a job, newest first."""
     records = [
         WishRecordModel(
             number=record.number,
