@@ -13,6 +13,7 @@ against the motion, which adds to the push outward and to the pull inward.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,10 +21,11 @@ import numpy as np
 from ..arrays import Array
 from ..checks import require_all_finite, require_numbers
 from ..errors import InputError
+from ..machine.lever_cylinder import Cylinder, buckling_number
 from ..machine.loads.load import require_word
-from ..swing.law import way
 from ..swing.swing_types import LeverLaw
-from .lever import TurningCylinder, Vectors
+from .lever import DimensionErrors, TurningCylinder, Vectors
+from .states import LeverNumbers, lever_state, lift
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,15 +85,7 @@ class LeverMachine:
 
     def energy_to_lift(self, start: float, end: float) -> float:
         """Return the work, J, against gravity from one lever angle to another, rad."""
-        angles = np.array([start, end])
-        motion, gravity = self.sizes.at(angles), complex(*self.gravity)
-        centres = (
-            complex(self.lever.moment_along, self.lever.moment_across) * np.exp(1j * angles)
-            + self.barrel.mass * (1j * self.sizes.offset + 0.5 * self.barrel.length) * motion.line
-            + self.piston_rod.mass * (self.sizes.crank * motion.radial - 0.5 * self.piston_rod.length * motion.line)
-        )
-        heights = -_dot(centres, gravity)
-        return float(heights[1] - heights[0])
+        return float(lift(numbers_of_machine(self, LeverSwing(start, end))))
 
 
 @dataclass(frozen=True)
@@ -143,53 +137,40 @@ class LeverCurves:
     cylinder_pivot: Vectors
 
 
-def lever_curves(machine: LeverMachine, swing: LeverSwing, share: Array) -> LeverCurves:
-    """Return the curves at fractions (n,) of the time of the way out."""
-    sizes = machine.sizes
-    first, last = (float(sizes.length(angle)) for angle in (swing.start, swing.end))
-    s, s_1, s_2 = way(swing.law, share)
-    rate = 0.0 if swing.duration is None else 1.0 / swing.duration
-    travel = last - first
-    angle = sizes.lever_angle(first + travel * s, near=0.5 * (swing.start + swing.end))
-    motion = sizes.at(angle)
-    speed, acceleration = travel * s_1 * rate, travel * s_2 * rate * rate
-    turn = speed / motion.length_1
-    turn_rate = (acceleration - motion.length_2 * turn**2) / motion.length_1
-    lever, gravity = machine.lever, complex(*machine.gravity)
-    line, line_1, line_2 = motion.line, motion.turn_1 * turn, motion.turn_2 * turn**2 + motion.turn_1 * turn_rate
-    moment = complex(lever.moment_along, lever.moment_across) * np.exp(1j * angle)
-    barrel = (1j * sizes.offset + 0.5 * machine.barrel.length) * line
-    barrel_force = machine.barrel.mass * (gravity - _turning(barrel, line_1, line_2))
-    arm = 0.5 * machine.piston_rod.length * line
-    pin = sizes.crank * motion.radial
-    rod_force = machine.piston_rod.mass * (gravity - _turning(pin, turn, turn_rate) + _turning(arm, line_1, line_2))
-    inertia = machine.barrel.inertia + machine.piston_rod.inertia
-    about_a = _cross(barrel, barrel_force) + _cross(motion.span - arm, rod_force) - inertia * line_2
-    about_o = lever.inertia * turn_rate - _cross(moment, gravity)
-    force = (about_a * pin - about_o * motion.span) / _cross(motion.span, pin)
-    return LeverCurves(
-        share=share,
-        lever_angle=angle,
-        lever_speed=turn,
-        cylinder_angle=np.unwrap(np.angle(line)),
-        length=motion.length,
-        speed=speed,
-        transmission=motion.transmission,
-        push=_dot(force - rod_force, line),
-        pin=force,
-        pivot=_turning(moment, turn, turn_rate) - lever.mass * gravity - force,
-        cylinder_pivot=force - barrel_force - rod_force,
+def numbers_of_machine(
+    machine: LeverMachine, swing: LeverSwing, cylinder: Cylinder | None = None, errors: DimensionErrors | None = None
+) -> LeverNumbers:
+    """Return the numbers of one machine over a swing."""
+    sizes, lever, barrel, rod = machine.sizes, machine.lever, machine.barrel, machine.piston_rod
+    cylinder = cylinder or Cylinder()
+    return LeverNumbers(
+        *(sizes.crank, sizes.frame, sizes.frame_angle, sizes.offset, sizes.pin_angle),
+        *(swing.start, swing.end, 0.0 if swing.duration is None else 1.0 / swing.duration),
+        *(lever.mass, lever.moment_along, lever.moment_across, lever.inertia),
+        *machine.gravity,
+        *(barrel.mass, barrel.length, rod.mass, rod.length),
+        *(errors or DimensionErrors()),
+        cylinder.seal_friction,
+        *(cylinder.areas or (math.nan, math.nan)),
+        math.nan if cylinder.supply_pressure is None else cylinder.supply_pressure,
+        math.nan if cylinder.rod is None else buckling_number(cylinder.rod, cylinder.modulus),
     )
 
 
-def _turning(vector: Vectors, speed: Array, rate: Array) -> Vectors:
-    """Return the acceleration of the tip of a vector that turns with a body."""
-    return np.asarray(vector * (1j * rate - speed**2))
-
-
-def _cross(first: Vectors, second: Vectors | complex) -> Array:
-    return np.asarray((first.conj() * second).imag)
-
-
-def _dot(first: Vectors, second: Vectors | complex) -> Array:
-    return np.asarray((first.conj() * second).real)
+def lever_curves(machine: LeverMachine, swing: LeverSwing, share: Array) -> LeverCurves:
+    """Return the curves at fractions (n,) of the time of the way out."""
+    state = lever_state(numbers_of_machine(machine, swing), swing.law, share, share)
+    pin, pivot, cylinder_pivot = (part[0] + 1j * part[1] for part in (state.pin, state.pivot, state.cylinder_pivot))
+    return LeverCurves(
+        share=share,
+        lever_angle=state.lever_angle,
+        lever_speed=state.lever_speed,
+        cylinder_angle=np.unwrap(np.arctan2(state.line[1], state.line[0])),
+        length=state.length,
+        speed=state.speed,
+        transmission=machine.sizes.at(state.lever_angle).transmission,
+        push=state.push,
+        pin=pin,
+        pivot=pivot,
+        cylinder_pivot=cylinder_pivot,
+    )

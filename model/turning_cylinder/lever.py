@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..checks import require_numbers
 from ..errors import AssemblyError, InputError
+from ..kernel.arithmetic import magnitude
 
 _TURN = 2.0 * math.pi
 Vectors = NDArray[np.complex128]
@@ -69,11 +70,7 @@ class TurningCylinder:
 
         near: a lever angle on the same side of the dead points, at most half a turn from the results.
         """
-        psi = self.relative_angle(near)
-        turns = math.floor(psi / _TURN + 0.5)
-        side = 1.0 if psi - _TURN * turns >= 0.0 else -1.0
-        angle = side * angle_at_length(self.crank, self.frame, self.offset, length)
-        return angle + (_TURN * turns + self.frame_angle - self.pin_angle)
+        return lever_angle_at(self, length, near)
 
     @property
     def length_range(self) -> tuple[float, float]:
@@ -127,19 +124,10 @@ class TurningCylinder:
 
     def at(self, lever_angle: Array) -> LeverMotion:
         """Return the motion of lever and cylinder at lever angles (n,), rad."""
-        r, e = self.crank, self.offset
-        radial = np.exp(1j * (lever_angle + self.pin_angle))
-        span = r * radial - self.frame * np.exp(1j * self.frame_angle)
-        length = np.sqrt(np.abs(span) ** 2 - e * e)
-        line = span / (length + 1j * e)
-        bend = radial * line.conj()
-        turn_1 = r * bend.real / length
-        length_1 = e * turn_1 - r * bend.imag
-        turn_2 = (-r * bend.imag * (1.0 - turn_1) - turn_1 * length_1) / length
-        length_2 = (r * self.frame * np.cos(self.relative_angle(lever_angle)) - length_1**2) / length
+        motion = motion_at(self, lever_angle)
+        radial, span, line = (part[0] + 1j * part[1] for part in (motion.radial, motion.span, motion.line))
         sine = np.abs((span.conj() * radial).imag) / np.abs(span)
-        transmission = np.arcsin(np.minimum(sine, 1.0))
-        return LeverMotion(radial, span, line, length, length_1, length_2, turn_1, turn_2, transmission)
+        return LeverMotion(radial, span, line, *motion[3:], np.arcsin(np.minimum(sine, 1.0)))
 
     def angle_error(self, lever_angle: Array, errors: DimensionErrors) -> Array:
         """Return the worst-case error of the lever angle, rad, to first order.
@@ -147,15 +135,7 @@ class TurningCylinder:
         L^2 = r^2 + f^2 - 2 r f cos(psi) - e^2 at a given length: r f sin(psi) dpsi = L dL + e de - (r - f cos(psi)) dr
         - (f - r cos(psi)) df. Without bound at a dead point.
         """
-        r, f, psi = self.crank, self.frame, self.relative_angle(lever_angle)
-        cosine = np.cos(psi)
-        total = (
-            self.length(lever_angle) * errors.length
-            + abs(self.offset) * errors.offset
-            + np.abs(r - f * cosine) * errors.crank
-            + np.abs(f - r * cosine) * errors.frame
-        )
-        return np.asarray(total / np.abs(r * f * np.sin(psi)))
+        return np.asarray(angle_error_at(self, self.relative_angle(lever_angle), self.length(lever_angle), errors))
 
     @property
     def time_ratio(self) -> float | None:
@@ -199,6 +179,53 @@ class LeverMotion(NamedTuple):
     turn_1: Array
     turn_2: Array
     transmission: Array
+
+
+class Motion(NamedTuple):
+    """Motion of lever and cylinder as `LeverMotion` has it; vectors by their components x and y."""
+
+    radial: tuple[Any, Any]
+    span: tuple[Any, Any]
+    line: tuple[Any, Any]
+    length: Any
+    length_1: Any
+    length_2: Any
+    turn_1: Any
+    turn_2: Any
+
+
+def motion_at(sizes: Any, lever_angle: Any) -> Motion:
+    """Return the motion at lever angles, rad; complex for complex steps. sizes: numbers of `TurningCylinder`."""
+    r, f, e = sizes.crank, sizes.frame, sizes.offset
+    pin_direction = lever_angle + sizes.pin_angle
+    rx, ry = np.cos(pin_direction), np.sin(pin_direction)
+    sx, sy = r * rx - f * np.cos(sizes.frame_angle), r * ry - f * np.sin(sizes.frame_angle)
+    square = sx * sx + sy * sy
+    length = np.sqrt(square - e * e)
+    lx, ly = (sx * length + sy * e) / square, (sy * length - sx * e) / square
+    along, across = rx * lx + ry * ly, ry * lx - rx * ly
+    turn_1 = r * along / length
+    length_1 = e * turn_1 - r * across
+    turn_2 = (-r * across * (1.0 - turn_1) - turn_1 * length_1) / length
+    length_2 = (r * f * np.cos(pin_direction - sizes.frame_angle) - length_1 * length_1) / length
+    return Motion((rx, ry), (sx, sy), (lx, ly), length, length_1, length_2, turn_1, turn_2)
+
+
+def lever_angle_at(sizes: Any, length: Any, near: Any) -> Any:
+    """Return the lever angles of `TurningCylinder.lever_angle` for many levers; complex for complex steps."""
+    shift = sizes.pin_angle - sizes.frame_angle
+    psi = np.real(near + shift)
+    turns = np.floor(psi / _TURN + 0.5)
+    side = np.where(psi - _TURN * turns >= 0.0, 1.0, -1.0)
+    return side * angle_at_length(sizes.crank, sizes.frame, sizes.offset, length) + (_TURN * turns - shift)
+
+
+def angle_error_at(sizes: Any, psi: Any, length: Any, errors: Any) -> Any:
+    """Return the errors of `TurningCylinder.angle_error` at angles psi, rad; complex for complex steps."""
+    r, f, cosine = sizes.crank, sizes.frame, np.cos(psi)
+    total = length * errors.length + magnitude(sizes.offset) * errors.offset
+    total = total + magnitude(r - f * cosine) * errors.crank + magnitude(f - r * cosine) * errors.frame
+    return total / (r * f * magnitude(np.sin(psi)))
 
 
 def pin_distance(crank: Any, frame: Any, psi: Any) -> Any:

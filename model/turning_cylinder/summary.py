@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
-from .cylinder import Cylinder
-from .forces import LeverCurves, LeverMachine, LeverSwing, lever_curves
+from ..machine.lever_cylinder import Cylinder
+from .forces import LeverCurves, LeverMachine, LeverSwing, lever_curves, numbers_of_machine
 from .lever import DimensionErrors, sizes_for_stroke
+from .peaks import LeverBatch, lever_peaks
+from .states import LeverNumbers
 
-_SAMPLES, _ZOOMS, _ZOOMED = 721, 7, 41
+_CURVES = (
+    *("push", "pull", "pin", "pivot", "cylinder_pivot"),
+    *("angle_error", "speed", "push_power", "pull_power"),
+)
 
 
 @dataclass(frozen=True)
@@ -75,41 +78,35 @@ def summarise(
     shortest, longest = sorted((first, last))
     fitting = _fitting_sizes(machine, swing, cylinder)
     cylinder.require_lengths(shortest, longest, _remedy(fitting))
-    ends = _curves_at_rest(machine, swing)
     rub, travel = cylinder.seal_friction, longest - shortest
-    push = _least_or_zero(machine, swing, lambda curves: -(curves.push + rub))
-    pull = _least_or_zero(machine, swing, lambda curves: curves.push - rub)
+    rest = lever_curves(machine, LeverSwing(swing.start, swing.end), np.array([0.0, 1.0]))
+    greatest = _greatest_points(machine, swing, cylinder, errors)
+    push, pull = (_or_zero(greatest[name]) for name in ("push", "pull"))
     cylinder.require_pressure(push.value, pull.value)
     lift = machine.energy_to_lift(swing.start, swing.end)
-    speed = None if swing.duration is None else _greatest(machine, swing, lambda curves: np.abs(curves.speed))
-
-    def margin(curves: LeverCurves) -> Array:
-        found = cylinder.buckling_margin(curves.length, curves.push + rub)
-        return np.full_like(curves.length, np.inf) if found is None else found
-
-    buckling = _least(machine, swing, margin) if cylinder.rod is not None and push.value > 0.0 else None
-    if buckling is not None:
+    speed = None if swing.duration is None else greatest["speed"]
+    power = max(greatest["push_power"], greatest["pull_power"], key=lambda point: point.value)
+    buckling = None
+    if cylinder.rod is not None and push.value > 0.0:
+        share = greatest["buckling_share"]
+        buckling = LeverPoint(1.0 / share.value, share.lever_angle, share.length)
         cylinder.require_stiffness(buckling.value, buckling.length)
     return LeverSummary(
         lengths=(first, last),
         extension_ratio=longest / shortest,
-        hold=(float(ends.push[0]), float(ends.push[1])),
+        hold=(float(rest.push[0]), float(rest.push[1])),
         push=push,
         pull=pull,
         energy_out=lift + rub * travel,
         energy_back=rub * travel - lift,
-        transmission=_least(machine, swing, lambda curves: curves.transmission),
+        transmission=_least_transmission(rest),
         dead_point_margin=sizes.dead_point_margin(swing.start, swing.end),
-        pin=_greatest(machine, swing, lambda curves: np.abs(curves.pin)),
-        pivot=_greatest(machine, swing, lambda curves: np.abs(curves.pivot)),
-        cylinder_pivot=_greatest(machine, swing, lambda curves: np.abs(curves.cylinder_pivot)),
-        angle_error=None
-        if errors is None or not any(errors)
-        else _greatest(machine, swing, lambda curves: sizes.angle_error(curves.lever_angle, errors)),
+        pin=greatest["pin"],
+        pivot=greatest["pivot"],
+        cylinder_pivot=greatest["cylinder_pivot"],
+        angle_error=greatest["angle_error"] if errors is not None and any(errors) else None,
         speed=speed,
-        power=None
-        if speed is None
-        else _greatest(machine, swing, lambda curves: (np.abs(curves.push) + rub) * np.abs(curves.speed)),
+        power=None if speed is None else power,
         pressures=cylinder.pressures(push.value, pull.value),
         flows=None if speed is None or cylinder.areas is None else _flows(cylinder.areas, speed.value),
         buckling_margin=buckling,
@@ -140,34 +137,27 @@ def _remedy(fitting: tuple[float, float] | None) -> str:
     return f"choose another cylinder, or a crank of {crank} and a frame of {frame}, which take its whole stroke"
 
 
-def _greatest(machine: LeverMachine, swing: LeverSwing, curve: Callable[[LeverCurves], Array]) -> LeverPoint:
-    least = _least(machine, swing, lambda curves: -curve(curves))
-    return LeverPoint(-least.value, least.lever_angle, least.length)
+def _greatest_points(
+    machine: LeverMachine, swing: LeverSwing, cylinder: Cylinder, errors: DimensionErrors | None
+) -> dict[str, LeverPoint]:
+    """Return where each curve is greatest, from one search."""
+    numbers = LeverNumbers(*map(np.atleast_1d, numbers_of_machine(machine, swing, cylinder, errors)))
+    names = _CURVES if cylinder.rod is None else (*_CURVES, "buckling_share")
+    peaks = lever_peaks(LeverBatch(numbers, swing.law), names)
+    values, places = (part.reshape(len(names), -1) for part in (peaks.values, peaks.places))
+    best = values.argmax(axis=1)[:, None]
+    value, place = (np.take_along_axis(part, best, axis=1)[:, 0] for part in (values, places))
+    at = lever_curves(machine, swing, np.where(place < 2.0, place, place - 2.0))
+    points = map(LeverPoint, value.tolist(), at.lever_angle.tolist(), at.length.tolist())
+    return dict(zip(names, points, strict=True))
 
 
-def _least_or_zero(machine: LeverMachine, swing: LeverSwing, curve: Callable[[LeverCurves], Array]) -> LeverPoint:
-    """Return the size of the least value of a curve if it is negative, otherwise zero."""
-    least = _least(machine, swing, curve)
-    return LeverPoint(max(-least.value, 0.0), least.lever_angle, least.length)
+def _or_zero(point: LeverPoint) -> LeverPoint:
+    """Return a point whose value is zero if it is negative."""
+    return LeverPoint(max(point.value, 0.0), point.lever_angle, point.length)
 
 
-def _least(machine: LeverMachine, swing: LeverSwing, curve: Callable[[LeverCurves], Array]) -> LeverPoint:
-    """Return the least value of a curve: of samples, then of finer ones around it, or at rest.
-
-    A law that starts with a jump of speed or acceleration has other forces at its ends than the cylinder that holds.
-    """
-    share = np.linspace(0.0, 1.0, _SAMPLES)
-    for _ in range(_ZOOMS + 1):
-        curves = lever_curves(machine, swing, share)
-        values = curve(curves)
-        best = int(np.argmin(values))
-        share = np.linspace(share[max(best - 1, 0)], share[min(best + 1, len(share) - 1)], _ZOOMED)
-    moving = LeverPoint(float(values[best]), float(curves.lever_angle[best]), float(curves.length[best]))
-    rest = _curves_at_rest(machine, swing)
-    points = map(LeverPoint, curve(rest).tolist(), rest.lever_angle.tolist(), rest.length.tolist())
-    return min(moving, *points, key=lambda point: point.value)
-
-
-def _curves_at_rest(machine: LeverMachine, swing: LeverSwing) -> LeverCurves:
-    """Return the curves of a cylinder that holds the lever at start and end."""
-    return lever_curves(machine, LeverSwing(swing.start, swing.end), np.array([0.0, 1.0]))
+def _least_transmission(ends: LeverCurves) -> LeverPoint:
+    """Return the least transmission angle, which is at an end: its sine has at most a maximum between dead points."""
+    least = int(np.argmin(ends.transmission))
+    return LeverPoint(float(ends.transmission[least]), float(ends.lever_angle[least]), float(ends.length[least]))

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.figure import Figure
 
-from ...model.turning_cylinder.cylinder import Cylinder
+from ...model.machine.lever_cylinder import Cylinder
 from ...model.turning_cylinder.forces import LeverMachine, LeverSwing, lever_curves
 from ...objectives.kinds import ANGLE, FORCE, LENGTH, SPEED, System
 from ...objectives.tables.swing_curves import POINTS

@@ -11,10 +11,10 @@ from ....model.cycle.cycle import design_of
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.design import Design
+from ....model.machine.lever_cylinder import Cylinder
 from ....model.machine.mechanism import Mechanism
 from ....model.swing.swing import Swing, placed
 from ....model.swing.swing_types import LeverLaw
-from ....model.turning_cylinder.cylinder import Cylinder
 from ....model.turning_cylinder.forces import LeverBody, LeverMachine, LeverSwing, UniformBar
 from ....model.turning_cylinder.lever import DimensionErrors, TurningCylinder
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
+from slidercrank.model.machine.lever_cylinder import Cylinder
 from slidercrank.model.swing.swing_types import LeverLaw
-from slidercrank.model.turning_cylinder.cylinder import Cylinder
 from slidercrank.model.turning_cylinder.forces import LeverSwing, lever_curves
 from slidercrank.model.turning_cylinder.lever import DimensionErrors, TurningCylinder
 from slidercrank.model.turning_cylinder.summary import summarise

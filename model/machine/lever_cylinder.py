@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +22,8 @@ class Cylinder:
 
     closed_length: least length between the pins A and B along the line, m. stroke: m. bore, rod: diameters, m.
     supply_pressure: Pa above that of the other side. seal_friction: N, against the motion. modulus: modulus of
-    elasticity of the piston rod, Pa.
+    elasticity of the piston rod, Pa. barrel_mass, rod_mass: kg, uniform bars as long as the closed cylinder, or as its
+    least length in the swing. length_tolerance: of its length, m.
     """
 
     closed_length: float | None = None
@@ -31,12 +33,17 @@ class Cylinder:
     supply_pressure: float | None = None
     seal_friction: float = 0.0
     modulus: float = STEEL
+    barrel_mass: float = 0.0
+    rod_mass: float = 0.0
+    length_tolerance: float = 0.0
 
     def __post_init__(self) -> None:
         for name in tuple(self.__dataclass_fields__)[:4]:
             require_numbers(self, name, phrase=f"the {name.replace('_', ' ')} of a cylinder", above=0.0, unit="m")
         require_numbers(self, "supply_pressure", "modulus", phrase="the {} of a cylinder", above=0.0, unit="Pa")
         require_numbers(self, "seal_friction", phrase="the friction of a seal", least=0.0, unit="N")
+        require_numbers(self, "barrel_mass", "rod_mass", phrase="the {} of a cylinder", least=0.0, unit="kg")
+        require_numbers(self, "length_tolerance", phrase="the {} of a cylinder", least=0.0, unit="m")
         if (self.closed_length is None) != (self.stroke is None):
             given = "no stroke" if self.stroke is None else "no closed length"
             raise InputError(
@@ -62,10 +69,7 @@ class Cylinder:
     @property
     def areas(self) -> tuple[float, float] | None:
         """Full area, which pushes, and annular area, which pulls, m^2; None without a bore, both full without a rod."""
-        if self.bore is None:
-            return None
-        rod = self.rod or 0.0
-        return 0.25 * math.pi * self.bore**2, 0.25 * math.pi * (self.bore**2 - rod**2)
+        return None if self.bore is None else piston_areas(self.bore, self.rod or 0.0)
 
     def require_lengths(self, shortest: float, longest: float, remedy: str) -> None:
         """Raise `InputError` unless the cylinder has all lengths between two, m. remedy: last part of the sentence."""
@@ -122,9 +126,19 @@ class Cylinder:
         """
         if self.rod is None:
             return None
-        load = math.pi**2 * self.modulus * (math.pi * self.rod**4 / 64.0) / length**2
+        load = buckling_number(self.rod, self.modulus) / length**2
         margin: Array = np.divide(load, push, out=np.full(np.shape(push), np.inf), where=push > 0.0)
         return margin
+
+
+def piston_areas(bore: Any, rod: Any) -> tuple[Any, Any]:
+    """Return full area, which pushes, and annular area, which pulls, m^2."""
+    return 0.25 * math.pi * bore * bore, 0.25 * math.pi * (bore * bore - rod * rod)
+
+
+def buckling_number(rod: Any, modulus: float) -> Any:
+    """Return Euler's load times length^2, N m^2; see `Cylinder.buckling_margin`."""
+    return math.pi**2 * modulus * (math.pi * rod**4 / 64.0)
 
 
 def _rounded_up(amount: float) -> float:

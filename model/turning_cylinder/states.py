@@ -1,0 +1,183 @@
+"""Numbers of many levers with their turning cylinders, and their state over a swing.
+
+The formulas take real numbers, or complex ones whose imaginary part is a step. Vectors have two components.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..swing.law import NO_TABLE, code_of, way_at
+from ..swing.swing_types import LeverLaw
+from .lever import Motion, angle_error_at, cylinder_length, lever_angle_at, motion_at
+
+Vector = tuple[Any, Any]
+
+
+class LeverNumbers(NamedTuple):
+    """Numbers of one lever or of many, SI and radians; see `lever`, `forces` and `machine.lever_cylinder`.
+
+    rate: 1 / duration of one way, 0 for a slow swing. along, across: first moments of the lever. areas: full and
+    annular area; NaN without a bore. buckling: push times length^2 that buckles the piston rod, N m^2; NaN without one.
+    supply: pressure; NaN without one.
+    """
+
+    crank: Any
+    frame: Any
+    frame_angle: Any
+    offset: Any
+    pin_angle: Any
+    start: Any
+    end: Any
+    rate: Any
+    lever_mass: Any
+    along: Any
+    across: Any
+    inertia: Any
+    gravity_x: Any
+    gravity_y: Any
+    barrel_mass: Any
+    barrel_length: Any
+    rod_mass: Any
+    rod_length: Any
+    crank_error: Any
+    frame_error: Any
+    offset_error: Any
+    length_error: Any
+    rub: Any
+    full_area: Any
+    annular_area: Any
+    supply: Any
+    buckling: Any
+
+    def length(self, lever_angle: Any) -> Any:
+        """Return the length of the cylinder, m, at lever angles, rad."""
+        return cylinder_length(self.crank, self.frame, self.offset, lever_angle + self.pin_angle - self.frame_angle)
+
+    @property
+    def ends(self) -> tuple[Any, Any]:
+        """Length of the cylinder at start and end, m."""
+        return self.length(self.start), self.length(self.end)
+
+    @property
+    def middle(self) -> Any:
+        """Lever angle half-way, rad."""
+        return 0.5 * (self.start + self.end)
+
+    @property
+    def errors(self) -> _Errors:
+        """Tolerances as `angle_error_at` takes them."""
+        return _Errors(self.crank_error, self.frame_error, self.offset_error, self.length_error)
+
+
+class _Errors(NamedTuple):
+    crank: Any
+    frame: Any
+    offset: Any
+    length: Any
+
+
+class LeverState(NamedTuple):
+    """State of a lever and its cylinder; see `forces.LeverCurves`. line: direction of the cylinder."""
+
+    lever_angle: Any
+    lever_speed: Any
+    length: Any
+    speed: Any
+    line: Vector
+    push: Any
+    pin: Vector
+    pivot: Vector
+    cylinder_pivot: Vector
+    angle_error: Any
+
+
+def lever_state(c: LeverNumbers, law: LeverLaw, share: Any, probe: Any) -> LeverState:
+    """Return the state at fractions of the time of the way out.
+
+    probe: fractions on the same side of the law's corners.
+    """
+    first, last = c.ends
+    travel = last - first
+    s, s_1, s_2, _ = way_at(code_of(law), NO_TABLE, share, probe)
+    angle = lever_angle_at(c, first + travel * s, c.middle)
+    motion = motion_at(c, angle)
+    speed, acceleration = travel * s_1 * c.rate, travel * s_2 * c.rate * c.rate
+    turn = speed / motion.length_1
+    rise = (acceleration - motion.length_2 * turn * turn) / motion.length_1
+    push, pin, pivot, cylinder_pivot = _forces(c, angle, motion, turn, rise)
+    error = angle_error_at(c, angle + c.pin_angle - c.frame_angle, motion.length, c.errors)
+    return LeverState(angle, turn, motion.length, speed, motion.line, push, pin, pivot, cylinder_pivot, error)
+
+
+def _forces(c: LeverNumbers, angle: Any, motion: Motion, turn: Any, rise: Any) -> tuple[Any, Vector, Vector, Vector]:
+    """Return push and the forces on the lever at B and O and on the cylinder at A. turn, rise: of the lever."""
+    gravity = c.gravity_x, c.gravity_y
+    line_1, line_2 = motion.turn_1 * turn, motion.turn_2 * turn * turn + motion.turn_1 * rise
+    cosine, sine = np.cos(angle), np.sin(angle)
+    moment = c.along * cosine - c.across * sine, c.along * sine + c.across * cosine
+    x, y = motion.line
+    half = 0.5 * c.barrel_length
+    barrel = half * x - c.offset * y, half * y + c.offset * x
+    barrel_force = _scaled(c.barrel_mass, _difference(gravity, _turning(barrel, line_1, line_2)))
+    arm = _scaled(0.5 * c.rod_length, motion.line)
+    pin = _scaled(c.crank, motion.radial)
+    rod_acceleration = _difference(_turning(pin, turn, rise), _turning(arm, line_1, line_2))
+    rod_force = _scaled(c.rod_mass, _difference(gravity, rod_acceleration))
+    inertia = (c.barrel_mass * c.barrel_length * c.barrel_length + c.rod_mass * c.rod_length * c.rod_length) / 12.0
+    about_a = cross(barrel, barrel_force) + cross(_difference(motion.span, arm), rod_force) - inertia * line_2
+    about_o = c.inertia * rise - cross(moment, gravity)
+    force = _difference(_scaled(about_a, pin), _scaled(about_o, motion.span))
+    force = _scaled(1.0 / cross(motion.span, pin), force)
+    carried = _difference(_turning(moment, turn, rise), _scaled(c.lever_mass, gravity))
+    on_rod = _difference(force, rod_force)
+    return dot(on_rod, motion.line), force, _difference(carried, force), _difference(on_rod, barrel_force)
+
+
+def lift(c: LeverNumbers) -> Any:
+    """Return the work against gravity from start to end, J."""
+    first, last = (_potential(c, angle) for angle in (c.start, c.end))
+    return last - first
+
+
+def _potential(c: LeverNumbers, angle: Any) -> Any:
+    motion = motion_at(c, angle)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    (x, y), (rx, ry) = motion.line, motion.radial
+    half, back = 0.5 * c.barrel_length, 0.5 * c.rod_length
+    moment_x = c.along * cosine - c.across * sine
+    moment_x = moment_x + c.barrel_mass * (half * x - c.offset * y) + c.rod_mass * (c.crank * rx - back * x)
+    moment_y = c.along * sine + c.across * cosine
+    moment_y = moment_y + c.barrel_mass * (half * y + c.offset * x) + c.rod_mass * (c.crank * ry - back * y)
+    return -(c.gravity_x * moment_x + c.gravity_y * moment_y)
+
+
+def _turning(vector: Vector, speed: Any, rate: Any) -> Vector:
+    """Return the acceleration of the tip of a vector that turns with a body."""
+    square = speed * speed
+    return -vector[0] * square - vector[1] * rate, vector[0] * rate - vector[1] * square
+
+
+def _scaled(factor: Any, vector: Vector) -> Vector:
+    return factor * vector[0], factor * vector[1]
+
+
+def _difference(first: Vector, second: Vector) -> Vector:
+    return first[0] - second[0], first[1] - second[1]
+
+
+def cross(first: Vector, second: Vector) -> Any:
+    """Return the component of the cross product normal to the plane."""
+    return first[0] * second[1] - first[1] * second[0]
+
+
+def dot(first: Vector, second: Vector) -> Any:
+    """Return the scalar product."""
+    return first[0] * second[0] + first[1] * second[1]
+
+
+def size(vector: Vector) -> Any:
+    """Return the magnitude of a vector."""
+    return np.sqrt(dot(vector, vector))
