@@ -1,4 +1,7 @@
-"""Average torques: root mean square over time, which heats a motor, and mean over the crank angle, work per angle."""
+"""Average torques: root mean square over time, which heats a motor, and mean over the crank angle.
+
+The mean over the crank angle is work per angle.
+"""
 
 from functools import partial
 

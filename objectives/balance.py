@@ -1,6 +1,6 @@
-"""Balance: effect of the moving masses on the frame over the cycle, without gravity and load.
+"""Balance: how the moving masses act on the frame over the cycle, without gravity and load.
 
-See `model.dynamics.inertia`. With several cylinders it is the total, see `model.signals.shaft_statistics`.
+See `model.dynamics.inertia`. With several cylinders, the totals count; see `model.signals.shaft_statistics`.
 """
 
 from functools import partial

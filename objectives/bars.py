@@ -1,4 +1,4 @@
-"""Pieces of quantities of crank and rod as bars: joined, times closed forms, inverted."""
+"""Pieces of the quantities that judge crank and rod as bars: joined, multiplied by closed forms, inverted."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from .quantity import Array, Formula, Group, Pieces, Quantity, Values, fact, und
 
 
 class Link(NamedTuple):
-    """A link among the numbers of a machine: its part, its length, width and depth, and its far pin."""
+    """A link in a machine's raw numbers: its part, slots of length, width and depth, and its far pin."""
 
     part: int
     length: int
@@ -32,7 +32,7 @@ class Link(NamedTuple):
     depth: int
     far: str
     end_condition: float
-    """End condition C of buckling in the plane of motion."""
+    """End condition C for buckling in the plane of motion."""
 
 
 LINKS = {
@@ -40,7 +40,7 @@ LINKS = {
     "crank": Link(CRANK, Raw.CRANK, Raw.CRANK_WIDTH, Raw.CRANK_WIDTH + 1, "crank_pivot", 0.25),
 }
 NEAR = "crank_pin"
-"""The pin that both links have."""
+"""The pin that crank and rod share."""
 FORCE = {
     "crank_pivot": Signal.PIVOT_FORCE,
     "crank_pin": Signal.CRANK_PIN_FORCE,
@@ -50,23 +50,25 @@ FORCE = {
 
 Criteria = tuple[tuple[float, float], ...]
 STATIC: Criteria = ((1.0, 0.0), (0.0, 1.0))
-"""Greatest tension and greatest compression."""
+"""Maximum tension and maximum compression."""
 
 
 class Part(NamedTuple):
-    """Smooth pieces of n designs: values (n, k), gradients (n, k, 3 + v) if requested, labels (n, k)."""
+    """Smooth pieces for n designs: values (n, k), gradients (n, k, 3 + v) if requested, labels (n, k)."""
 
     values: Array
     gradients: Array | None
     labels: Array
 
     def times(self, factor: tuple[Array, Array | None]) -> Part:
-        """Return the pieces times a positive closed form (n,) with its gradients."""
+        """Return the pieces multiplied by a positive closed form (n,) with its gradients."""
         values, slopes = factor
         return self._with_slopes(values[:, None] * self.values, values[:, None], slopes, self.values)
 
     def dividing(self, factor: tuple[Array, Array | None]) -> Part:
-        """Return a closed form (n,) divided by the pieces, highest first; +inf where these are absent or not positive.
+        """Return a closed form (n,) divided by the pieces, highest piece first.
+
+        The result is +inf where a piece is absent or not positive.
 
         If the closed form is negative, only the highest piece counts.
         """
@@ -79,7 +81,7 @@ class Part(NamedTuple):
         return part
 
     def _with_slopes(self, values: Array, outer: Array, slopes: Array | None, inner: Array) -> Part:
-        """Return values with derivatives `outer` with respect to the pieces and `inner` to the factor."""
+        """Return values with gradients from `outer` derivatives by the pieces and `inner` ones by the factor."""
         if self.gradients is None or slopes is None:
             return Part(values, None, self.labels)
         finite = np.isfinite(self.values) & np.isfinite(values)
@@ -90,7 +92,7 @@ class Part(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class OfBars(Quantity):
-    """A quantity that is the greatest or least value over several parts of crank and rod."""
+    """A quantity that is the maximum or minimum over several parts of crank and rod."""
 
     group: Group = fact(Group.STRENGTH)
     section: str = fact("22. Strength of crank and rod")
@@ -98,19 +100,19 @@ class OfBars(Quantity):
     least: bool = False
 
     def allowable(self, mechanism: Mechanism) -> float:
-        """Return 1, below which a safety fails; quantities other than a safety override this; see `Quantity`."""
+        """Return 1, the limit below which a safety factor fails; other quantities override this; see `Quantity`."""
         return 1.0
 
     @abstractmethod
     def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
-        """Return the relevant parts for designs (n, 3 + k). piece_count: number of pieces of each."""
+        """Return the parts that count for designs (n, 3 + k). piece_count: number of pieces per part."""
 
     def bars(self, mechanism: Mechanism) -> list[str]:
-        """Return which of its links are bars."""
+        """Return those of its links that have a bar section."""
         return [name for name in self.links if isinstance(getattr(mechanism, name), Bar)]
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
-        """Return the quantity for designs (n, 3 + k); NaN without any parts; see `Quantity`."""
+        """Return the quantity for designs (n, 3 + k); NaN if no link is a bar; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return undefined(dimensions, gradients)
         all_parts = self.joined(mechanism, dimensions, 1, gradients)
@@ -130,7 +132,7 @@ class OfBars(Quantity):
         return Pieces(all_parts.values, all_parts.gradients, all_parts.labels, self.least).take(order)
 
     def joined(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Part:
-        """Return all parts side by side, with labels that tell them apart; see `parts`."""
+        """Return all parts side by side, with labels that distinguish them; see `parts`."""
         parts = self.parts(mechanism, designs, piece_count, gradients)
         return Part(
             np.concatenate([part.values for part in parts], axis=1),
@@ -142,9 +144,9 @@ class OfBars(Quantity):
 
 
 class Demand(NamedTuple):
-    """A greatest stress at a location or force of a pin, and the section that bears it.
+    """Maximum stress at a location or maximum force on a pin, and the section that carries it.
 
-    section: formula of an area or a width, None for 1. scale: see `BarPeak`. eye: link and pin, of an eye.
+    section: formula for an area or a width, None for 1. scale: see `BarPeak`. eye: link and pin of an eye.
     """
 
     peak: StressLocation | str
@@ -155,18 +157,18 @@ class Demand(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class BarPeak(OfBars):
-    """The greatest of scale peak / section or, if `least`, the least of scale section / peak over its demands."""
+    """Maximum of scale peak / section or, if `least`, minimum of scale section / peak over all demands."""
 
     @abstractmethod
     def demands(self, mechanism: Mechanism) -> list[Demand]:
         """Return the loads on the bars."""
 
     def criteria(self, mechanism: Mechanism) -> Criteria:
-        """Return p and q of the greatest p sigma - q sigma: by default greatest tension and greatest compression."""
+        """Return p and q for each criterion max(p sigma - q sigma): by default maximum tension and compression."""
         return STATIC
 
     def locations(self, mechanism: Mechanism) -> tuple[StressLocation, ...]:
-        """Return the locations whose stresses are searched together."""
+        """Return the stress locations that one search covers."""
         return tuple(demand.peak for demand in self.demands(mechanism) if not isinstance(demand.peak, str))
 
     def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
@@ -189,7 +191,7 @@ class BarPeak(OfBars):
 
 
 def strength_of(mechanism: Mechanism) -> Strength:
-    """Return material and pins of a machine that has them."""
+    """Return the bars' material and the pins of a machine that has both."""
     assert mechanism.strength is not None
     return mechanism.strength
 
@@ -203,22 +205,22 @@ def stresses(
     piece_count: int,
     gradients: bool,
 ) -> list[Part]:
-    """Return the greatest p sigma - q sigma at each place, for each (p, q) of the criteria; see `stress_peaks`."""
+    """Return the maximum of p sigma - q sigma at each location, for each (p, q) in the criteria; see `stress_peaks`."""
     peaks = stress_peaks(mechanism, places, designs, np.array(criteria), gradients=gradients, limit=piece_count)
     return [Part(each.values, each.gradients, each.labels) for each in peaks]
 
 
 @memoise_by_batch
 def pin_force(mechanism: Mechanism, designs: Array, pin: str, piece_count: int, gradients: bool) -> Part:
-    """Return the greatest force of a pin over the cycle, N."""
+    """Return the maximum force on a pin over the cycle, N."""
     peaks = find_peaks(mechanism, FORCE[pin], designs, gradients=gradients, limit=piece_count)
     return Part(peaks.values, peaks.gradients, np.nan_to_num(peaks.angles))
 
 
 def eyes_of(link: str, pin: str) -> list[Eye]:
-    """Return the critical edges of a link's eye: the bore, and both edges where the torque bends it.
+    """Return the critical edges of a link's eye: the bore, and both edges if the torque bends it.
 
-    The torque bends the eye at the crank's pivot. Bending of an eye by friction of its pin is neglected.
+    The torque bends the eye at the crank pivot. Bending of an eye by the friction of its pin is neglected.
     """
     sizes = LINKS[link]
     bent = sizes.part == CRANK and pin == sizes.far
@@ -227,12 +229,12 @@ def eyes_of(link: str, pin: str) -> list[Eye]:
 
 
 def net_width(eye: Eye) -> Formula:
-    """Return the formula of the net width of an eye, w - D, m."""
+    """Return the formula for the net width of an eye, w - D, m."""
     return lambda number: number(eye.width) - number(eye.pin)
 
 
 def net_section(link: str, pin: str) -> Formula:
-    """Return the formula of the net section of a link's eye, (w - D) t, m^2."""
+    """Return the formula for the net section of a link's eye, (w - D) t, m^2."""
     sizes = LINKS[link]
     return lambda number: (number(sizes.width) - number(PINS[pin])) * number(sizes.depth)
 
@@ -243,7 +245,7 @@ def _scaled(factor: tuple[Array, Array | None], scale: float) -> tuple[Array, Ar
 
 
 def force_over_area(force: Part, area: tuple[Array, Array | None], factor: float = 1.0) -> Part:
-    """Return a force over an area times a number; infinite where there is no area."""
+    """Return a scaled force divided by an area; infinite if the area is zero."""
     values, slopes = area
     has_area = values > 0.0
     safe = np.where(has_area, values, 1.0)

@@ -1,4 +1,4 @@
-"""Amounts that come with a chosen option: the price or the mass of a gearmotor in a catalogue."""
+"""Amounts that a catalogue option brings, such as the price or the mass of a gearmotor."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ _NONE = float("nan")
 
 @dataclass(frozen=True, kw_only=True)
 class Amount(Quantity):
-    """A number that depends only on a choice. value: SI; NaN without a chosen option. choice: its name."""
+    """A number that depends only on the chosen option.
+
+    value: SI; NaN if no option is chosen. choice: name of the choice.
+    """
 
     value: float = _NONE
     choice: str = ""
@@ -29,16 +32,16 @@ class Amount(Quantity):
 
     @property
     def blank(self) -> str:
-        """Sentence for an option without this amount."""
+        """Message for an option without this amount."""
         return "the catalogue has none for what is chosen"
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
-        """Return the amount for designs (n, 3 + k), with slopes of zero; see `Quantity`."""
+        """Return the amount for designs (n, 3 + k), with zero gradients; see `Quantity`."""
         return Values(np.full(len(dimensions), self.value), np.zeros(np.shape(dimensions)) if gradients else None)
 
 
 def with_amounts(quantity: Quantity, values: dict[str, float]) -> Quantity:
-    """Return a quantity with the amounts in it, itself or its parts, replaced by those of a choice. values: SI."""
+    """Return a quantity with its amounts replaced by those of a chosen option. values: SI."""
     if isinstance(quantity, Amount):
         return replace(quantity, value=values.get(quantity.name, _NONE))
     parts = tuple(with_amounts(part, values) for part in quantity.made_of)
@@ -46,7 +49,7 @@ def with_amounts(quantity: Quantity, values: dict[str, float]) -> Quantity:
 
 
 def kind_of_amount(unit: str) -> Kind:
-    """Return the kind of amounts in a unit: that of a known unit, else a new kind."""
+    """Return the kind for amounts in a unit: the kind of a known unit, else a new kind."""
     try:
         return kind_in(unit, per_si(unit), kind_for(unit)) if unit else RATIO
     except InputError:
@@ -54,6 +57,6 @@ def kind_of_amount(unit: str) -> Kind:
 
 
 def amount_of(text: str | float) -> tuple[float, str] | None:
-    """Return number and unit of an amount such as "280 EUR"; None if it is not one."""
+    """Return the number and the unit of an amount such as "280 EUR"; None if the text is not an amount."""
     parts = number_and_unit(text) if isinstance(text, str) else (str(text), "")
     return None if parts is None else (float(parts[0]), parts[1])

@@ -19,9 +19,10 @@ from .quantity import Array, Formula, Number, Pieces, Quantity, Values, fact
 
 @dataclass(frozen=True, kw_only=True)
 class ClosedFormQuantity(Quantity):
-    """A quantity given by one closed form, or by the greatest of several (`forms`).
+    """A quantity given by one closed form, or by the maximum of several (`forms`).
 
-    rises: whether it rises with crank, rod and |offset|, if the derivatives have one sign for all that rotate fully.
+    rises: whether it rises with crank, rod and |offset|, if each derivative has the same sign for all fully rotating
+    designs.
     """
 
     section: str = fact("2. Closed forms")
@@ -39,11 +40,11 @@ class ClosedFormQuantity(Quantity):
         return True
 
     def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
-        """Return its forms where they hold for a machine; see `Quantity`."""
+        """Return its closed forms if they hold for a machine; see `Quantity`."""
         return [partial(_of_numbers, form) for form in self.forms] if self.is_closed(mechanism) else ()
 
     def bounds_for(self, mechanism: Mechanism) -> QuantityBounds | None:
-        """Return its bounds if the closed form holds for the machine."""
+        """Return its bounds if the closed form holds for a machine."""
         return self.bounds if self.is_closed(mechanism) else None
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
@@ -57,7 +58,7 @@ class ClosedFormQuantity(Quantity):
         return Values(values, slopes)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the quantity as the greatest of its forms; see `Quantity`."""
+        """Return the quantity as the maximum of its closed forms; see `Quantity`."""
         parts = [_evaluate(form, mechanism, dimensions, True) for form in self.forms]
         values, slopes = parts[0]
         if slopes is not None and len(parts) == 1:
@@ -72,7 +73,7 @@ def _of_numbers(form: ClosedForm, number: Number) -> Any:
 
 
 def _evaluate(form: ClosedForm, mechanism: Mechanism, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
-    """Return values (n,) and gradients (n, 3 + k): a closed form follows from the three dimensions alone."""
+    """Return values (n,) and gradients (n, 3 + k); a closed form depends on the three dimensions alone."""
     designs = np.asarray(designs, dtype=np.float64)
     require_width(mechanism, designs)
     values, slopes = evaluate_closed_form(form, designs[:, :3], gradients=gradients)

@@ -1,4 +1,4 @@
-"""Keys that end with their unit, as in columns and JSON: `peak_torque_Nm`, `crank_in`."""
+"""Keys that end with a unit, as in table columns and JSON: `peak_torque_Nm`, `crank_in`."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from .kinds import DISPLAYED_KINDS, INERTIA, LENGTH, PRESSURE, RATIO, DisplayUnit, Kind, System, display_unit, kind_in
 
-# Suffixes of column names: longest first, as "_lbf_in" ends like "_in".
+# Suffixes of column names, longest first because "_lbf_in" also ends with "_in".
 _DISPLAY_UNITS = sorted(
     {unit for kind in DISPLAYED_KINDS for unit in (kind.metric, kind.inch) if unit is not None},
     key=lambda unit: -len(unit.suffix),
@@ -19,14 +19,14 @@ _TO_INCH = {
     if kind.inch is not None
 }
 _EXTRA_UNITS = {
-    display_unit("bar", 1e-5): PRESSURE,  # of suction and discharge
-    display_unit("um", 1e6): LENGTH,  # of small steps, such as saving_per_um
+    display_unit("bar", 1e-5): PRESSURE,  # for suction and discharge
+    display_unit("um", 1e6): LENGTH,  # for small steps, such as saving_per_um
     DisplayUnit("kg m^2", "_kgm2"): INERTIA,  # of flywheels
 }
-"""Units of keys beside those of their kinds."""
+"""Units in keys beyond those of the kinds."""
 _DISPLAY_UNITS += _EXTRA_UNITS
-_DISPLAY_UNITS += (display_unit("1/min", 60.0), display_unit("1/s"))  # of catalogues, such as an output speed
-_CURRENCY = re.compile("_([A-Z]{3})$")  # ISO 4217, of an amount such as a price
+_DISPLAY_UNITS += (display_unit("1/min", 60.0), display_unit("1/s"))  # for catalogues, such as an output speed
+_CURRENCY = re.compile("_([A-Z]{3})$")  # ISO 4217, for an amount such as a price
 _TO_METRIC = {inch: metric for metric, (inch, _) in _TO_INCH.items()}
 for _unit, _kind in _EXTRA_UNITS.items():
     _KINDS[_unit.suffix] = replace(_kind, metric=_unit)
@@ -34,13 +34,13 @@ for _unit, _kind in _EXTRA_UNITS.items():
 
 
 def split_unit(key: str) -> tuple[str, str, float]:
-    """Return the name, the unit and the factor from SI of a key such as "peak_torque_Nm"."""
+    """Return the name, the unit and the factor from SI for a key such as "peak_torque_Nm"."""
     unit = _display_unit_of(key)
     return (key, "", 1.0) if unit is None else (key.removesuffix(unit.suffix), unit.symbol, unit.factor)
 
 
 def kind_of_key(key: str) -> tuple[str, Kind]:
-    """Return the name and the kind of a metric key; a ratio if it ends without a unit."""
+    """Return the name and the kind of a metric key; the kind is a ratio if the key has no unit."""
     unit = _display_unit_of(key)
     if unit is None:
         return key, RATIO
@@ -48,11 +48,11 @@ def kind_of_key(key: str) -> tuple[str, Kind]:
 
 
 def key_in(key: str, system: System) -> tuple[str, float]:
-    """Return the key of a metric column in a system of units, and the factor for its values."""
+    """Return the key for a metric column in a system of units, and the factor for its values."""
     unit = _display_unit_of(key)
     if system == "metric" or unit is None:
         return key, 1.0
-    if key.removesuffix(unit.suffix).endswith("_per"):  # a quotient that no kind has: of both its units
+    if key.removesuffix(unit.suffix).endswith("_per"):  # a quotient without a kind: convert both its units
         numerator, _, denominator = key.rpartition("_per_")
         (upper, up), (lower, down) = key_in(numerator, system), key_in(f"_{denominator}", system)
         return f"{upper}_per{lower}", up / down
@@ -63,7 +63,7 @@ def key_in(key: str, system: System) -> tuple[str, float]:
 
 
 def metric_key(key: str) -> str:
-    """Return the metric key of a column of any system."""
+    """Return the metric key for a column in any system of units."""
     unit = _display_unit_of(key)
     suffix = None if unit is None else _TO_METRIC.get(unit.suffix)
     return key if unit is None or suffix is None else key.removesuffix(unit.suffix) + suffix

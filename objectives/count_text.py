@@ -1,8 +1,8 @@
-"""Counts in messages, with their noun in singular or plural."""
+"""Counts in messages, with their noun in the singular or plural."""
 
 from __future__ import annotations
 
 
 def counted(count: int, noun: str) -> str:
-    """Return a count with its noun: "1 design", "20 designs". The plural adds an s."""
+    """Return a count with its noun: "1 design", "20 designs". The plural ends in s."""
     return f"{count} {noun}{'' if count == 1 else 's'}"

@@ -19,11 +19,11 @@ Statistic = Literal["mean", "rms"]
 
 @dataclass(frozen=True, kw_only=True)
 class CycleAverage(Quantity):
-    """The mean of a signal over the crank angle, or its root mean square over time.
+    """Mean of a signal over the crank angle, or its root mean square over time.
 
-    Heating and shaking depend on time; the mean of a torque over the crank angle is work per angle. The torque has a
-    sign. times_speed: the average multiplied by the mean speed over time; for the mean torque that is the mean power
-    over time.
+    Heating and shaking depend on time; the mean of a torque over the crank angle is its work per angle. The torque
+    keeps its sign. times_speed: whether the average is multiplied by the mean speed over time; for the mean torque this
+    gives the mean power over time.
     """
 
     section: str = fact("10. Motor and balance")

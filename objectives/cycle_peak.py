@@ -1,4 +1,4 @@
-"""Quantities that are the greatest value of a curve over the cycle."""
+"""Quantities that are the maximum of a curve over the cycle."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from .quantity import Array, Pieces, Quantity, Values
 
 @dataclass(frozen=True, kw_only=True)
 class CyclePeak(Quantity):
-    """The greatest value of `signal` over the cycle, or over one stroke.
+    """Maximum of `signal` over the cycle, or over one stroke.
 
-    Exact over continuous crank angle. `screen_peaks` is faster but less exact, for sorting thousands of designs.
+    Exact over the continuous crank angle. `screen_peaks` is faster but less exact, for ranking thousands of designs.
     """
 
     signal: Signal
@@ -40,8 +40,9 @@ class CyclePeak(Quantity):
 
 
 _NEAR = 0.02
-"""Share of the greatest torque within which that of a dead centre calls for the exact search: the peak may be its kink,
-or lie between it and the next sample. Of 600,000 random machines with loads that change there it missed none."""
+"""If the torque at a dead centre is within this fraction of the maximum, the exact search decides. The peak may then be
+a kink there, or lie between it and the next sample. It missed no peak among 600,000 random machines with loads that
+change at a dead centre."""
 
 
 def screened(
@@ -55,7 +56,7 @@ def screened(
 ) -> dict[str, Values]:
     """Return the quantities that vectorised screening supports, by name, for designs (n, 3 + k).
 
-    certain: whether a torque whose peak may be on a kink is left out, as NaN.
+    certain: whether a torque whose peak may be at a kink is left out, as NaN.
     """
     peaks = (item for item in quantities if isinstance(item, CyclePeak))
     quick = {peak.name: peak.signal for peak in peaks if screens(mechanism, peak.signal, during=peak.during)}
@@ -74,7 +75,7 @@ def screened(
 def screen_peaks(
     quantities: Sequence[CyclePeak], mechanism: Mechanism, dimensions: Array, *, gradients: bool = False
 ) -> tuple[Values, ...]:
-    """Return several quantities for designs (n, 3 + k) by vectorised screening: exact but for peaks on a kink."""
+    """Return several quantities for designs (n, 3 + k) by vectorised screening, exact except for peaks at a kink."""
     screened_values = screened(quantities, mechanism, dimensions, gradients=gradients)
     return tuple(
         screened_values.get(q.name) or q.evaluate(mechanism, dimensions, gradients=gradients) for q in quantities

@@ -1,4 +1,4 @@
-"""Slider near a dead centre: its speed where it meets the workpiece, and the crank angle of its dwell."""
+"""Slider near a dead centre: its speed when it meets the workpiece, and the crank angle of its dwell."""
 
 from __future__ import annotations
 
@@ -23,24 +23,27 @@ from .quantity import Array, Formula, Group, Number
 
 @dataclass(frozen=True, kw_only=True)
 class NearDeadCentre(GreatestOfFormulas):
-    """A closed form at a distance from a dead centre; NaN unless the stroke is longer. closed_form: its function."""
+    """A closed form evaluated at a distance from a dead centre; NaN unless the stroke exceeds the distance.
+
+    closed_form: its function.
+    """
 
     closed_form: Callable[[Mechanism, Number], Any] = field(repr=False)
 
     def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
-        """Return the formula if the machine has what it needs; see `Quantity`."""
+        """Return the formula if the machine defines the quantity; see `Quantity`."""
         return () if self.lacks(mechanism, "undefined") else (partial(self.closed_form, mechanism),)
 
     @property
     def blank(self) -> str:
-        """Why a design has none."""
+        """Reason why a design has no value."""
         return "its stroke is not longer than the distance from the dead centre"
 
 
 def _triangle_near_dead_centre(number: Number, distance: float, outer: bool) -> tuple[Any, ...]:
     """Return x, B^2, (l + r)^2 - B^2 and B^2 - (l - r)^2 near a dead centre.
 
-    B: distance between slider pin and crank pivot. The results are products, which do not cancel near the dead centre.
+    B: distance between slider pin and crank pivot. The results are products, so nothing cancels near the dead centre.
     """
     lengths = number(Raw.CRANK), number(Raw.ROD), number(Raw.OFFSET)
     far, near = outer_dead_centre(*lengths), inner_dead_centre(*lengths)
@@ -54,12 +57,12 @@ def _triangle_near_dead_centre(number: Number, distance: float, outer: bool) -> 
 
 
 def _travel_rate(machine: Mechanism, number: Number, distance: Any) -> Any:
-    """Return |x'|, m, before the dead centre: the area of the parallelogram of crank and rod over l cos(phi)."""
+    """Return |x'|, m, before the dead centre: the area of the parallelogram of crank and rod divided by l cos(phi)."""
     r, l, e = number(Raw.CRANK), number(Raw.ROD), number(Raw.OFFSET)
     outer = machine.slider.dead_centre == "outer"
     x, square, outer_product, inner_product = _triangle_near_dead_centre(number, distance, outer)
     area = 0.5 * root(outer_product * inner_product)
-    side = machine.sign * machine.direction * (1.0 if outer else -1.0)  # of the crank pin
+    side = machine.sign * machine.direction * (1.0 if outer else -1.0)  # for the crank pin
     lever = (0.5 * x * (square + (l + r) * (l - r)) - side * area * e) / square
     return area / lever
 
@@ -75,16 +78,18 @@ def _angle_from_line(machine: Mechanism, number: Number, distance: Any) -> Any:
 
 
 def before_dead_centre(machine: Mechanism, design: Array, distances: Array) -> tuple[Array, Array]:
-    """Return the crank angle, rad, before a dead centre and |x'|, m, at distances from it, m.
+    """Return the crank angle before a dead centre, rad, and |x'|, m, at distances from it, m.
 
-    design: crank, rod, offset, m, with a longer stroke. Results for small distances are accurate to the last digits.
+    design: crank, rod, offset, m; its stroke exceeds the distances. Small distances lose no accuracy.
     """
     lengths = dict(zip((int(Raw.CRANK), int(Raw.ROD), int(Raw.OFFSET)), design, strict=True))
     number: Number = lengths.__getitem__
     outer, e = machine.slider.dead_centre == "outer", design[2]
     dead = (outer_dead_centre if outer else inner_dead_centre)(*design)
     way = 1.0 if outer else -1.0
-    turned = way * np.arctan2(e * distances, (dead - way * distances) * dead + e * e)  # of the line, from there
+    turned = way * np.arctan2(
+        e * distances, (dead - way * distances) * dead + e * e
+    )  # angle of the line, measured from there
     angles = _angle_from_line(machine, number, distances) - machine.sign * machine.direction * turned
     return angles, _travel_rate(machine, number, distances)
 

@@ -1,4 +1,4 @@
-"""Loads on the motor of a drive train, behind its gear: torque, speed, power, energy and heating."""
+"""Loads on the motor of a drive train, upstream of its gear: torque, speed, power, energy and heating."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ from .quantity import Array, Formula, Group, Number, Pieces, Quantity, Values, f
 
 @dataclass(frozen=True, kw_only=True)
 class MotorQuantity(Quantity):
-    """A load on the motor. limit: key of [drive] that allows it. share: whether the quantity is the load over it."""
+    """A load on the motor.
+
+    limit: key of its limit in [drive]. share: whether the quantity is the load divided by the limit.
+    """
 
     group: Group = fact(Group.DRIVE)
     section: str = fact("10. Motor and balance")
@@ -31,23 +34,23 @@ class MotorQuantity(Quantity):
     share: bool = False
 
     def allowable(self, mechanism: Mechanism) -> float:
-        """Return the limit that the drive states, SI; infinite if it states none."""
+        """Return the limit stated for the drive, SI; infinite if there is none."""
         limit = None if mechanism.drive is None else getattr(mechanism.drive, self.limit)
         return math.inf if limit is None else float(limit)
 
     def scale(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool) -> tuple[Array, Array | None]:
-        """Return the factor (n,) from the load to the quantity, and its derivatives (n, 3 + k)."""
+        """Return the factor (n,) that converts the load to the quantity, and its derivatives (n, 3 + k)."""
         return formula_of_numbers(mechanism, dimensions, self.factor, gradients=gradients)
 
     def factor(self, number: Number) -> float:
-        """Return the factor from the load to the quantity, real, complex or enclosed."""
+        """Return the factor that converts the load to the quantity: real, complex, or an enclosure."""
         scale: float = 1.0 / number(DRIVE[self.limit]) if self.share else 1.0
         return scale
 
 
 @dataclass(frozen=True, kw_only=True)
 class MotorPeak(MotorQuantity):
-    """The greatest size of one of the motor's curves over the cycle."""
+    """Maximum magnitude of one of the motor's curves over the cycle."""
 
     curve: MotorCurve
 
@@ -69,7 +72,7 @@ class MotorPeak(MotorQuantity):
     def _highest(
         self, mechanism: Mechanism, dimensions: Array, count: int, gradients: bool
     ) -> tuple[Array, Array | None, Array]:
-        """Return values, derivatives and crank angles of the highest local peaks."""
+        """Return values, derivatives and crank angles for the highest local peaks."""
         peaks = motor_peaks(mechanism, dimensions, self.curve, gradients, count)
         scale, by_scale = self.scale(mechanism, dimensions, gradients=gradients)
         slopes = None
@@ -81,7 +84,7 @@ class MotorPeak(MotorQuantity):
 
 @dataclass(frozen=True, kw_only=True)
 class MotorRms(MotorQuantity):
-    """The root mean square of the motor's torque over time; infinite where friction locks."""
+    """Root mean square of the motor torque over time; infinite where friction locks the linkage."""
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
@@ -98,16 +101,19 @@ class MotorRms(MotorQuantity):
 
 @dataclass(frozen=True, kw_only=True)
 class MotorSpeed(MotorQuantity, GreatestOfFormulas):
-    """The greatest speed of the motor over the cycle."""
+    """Maximum motor speed over the cycle."""
 
     def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
-        """Return gear ratio times crank speed, at its greatest along the speed profile."""
+        """Return the gear ratio times the crank speed, at the maximum of the speed profile."""
         greatest = mechanism.direction * greatest_speed_ratio(mechanism)
         return (lambda number: greatest * number(DRIVE["gear_ratio"]) * number(Raw.SPEED) * self.factor(number),)
 
 
 class EnergyDrawn(MotorQuantity):
-    """Energy from the supply over a cycle, less what it takes back; infinite where friction locks."""
+    """Energy drawn from the supply over a cycle, less the recovered energy.
+
+    Infinite where friction locks the linkage.
+    """
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""

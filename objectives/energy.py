@@ -1,4 +1,4 @@
-"""Energy per cycle of one turn or two: work of the drive, friction heat, and efficiency."""
+"""Energy per cycle of one or two turns: work of the drive, friction heat, and efficiency."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from .machine_needs import DRIVEN, HEAT, LOAD_WORK, LOSSES, WORK
 from .quantity import Array, Domain, Formula, Group, Quantity, Values, undefined
 
 _TURN = 2.0 * math.pi
-_ROUNDING = 1e-12  # fraction of the friction heat below which the work done on the loads is rounding error
+_ROUNDING = 1e-12  # fraction of the friction heat; useful work below it is rounding error
 
 
 def _friction_circle_radius(slot: int) -> Formula:
-    """Return the formula of the radius of a friction circle, m. slot: of the pin's radius."""
+    """Return the formula for the radius of a friction circle, m. slot: slot of the pin radius."""
     return lambda number: number(slot) * number(slot + 1)
 
 
@@ -36,7 +36,10 @@ _COEFFICIENTS: dict[int, Formula] = {
 
 
 def _friction_heat(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[Array, Array | None]:
-    """Return the friction heat of a turn, J (n,), and its derivatives (n, 3 + k); infinite where friction locks."""
+    """Return the friction heat over a turn, J (n,), and its derivatives (n, 3 + k).
+
+    Infinite where friction locks the linkage.
+    """
     heat = np.zeros(len(designs))
     slopes = None if work.gradients is None else np.zeros(designs.shape)
     for place, formula in _COEFFICIENTS.items():
@@ -49,9 +52,9 @@ def _friction_heat(mechanism: Mechanism, designs: Array, work: TurnWork) -> tupl
 
 
 def _useful_work(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[Array, Array | None]:
-    """Return the work done against the loads in a turn, J (n,), and its derivatives (n, 3 + k).
+    """Return the work done against the loads over a turn, J (n,), and its derivatives (n, 3 + k).
 
-    A torque on the crank is not a force along a path: with such loads, it is the work that drives the loads alone.
+    A torque on the crank has no path: with such loads, the work that drives the loads alone is used instead.
     """
     if not any(load.on_crank for load in mechanism.loads):
         return _TURN * work.mean[:, LOAD], None if work.gradients is None else _TURN * work.gradients[:, LOAD]
@@ -61,14 +64,17 @@ def _useful_work(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[
 
 
 def _drive_work(mechanism: Mechanism, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
-    """Return the work of the drive torque over a cycle, J (n,), and its derivatives; NaN where friction locks."""
+    """Return the work of the drive torque over a cycle, J (n,), and its derivatives.
+
+    NaN where friction locks the linkage.
+    """
     averages = average_torque(mechanism, designs, gradients=gradients)
     factor = _TURN * cycle_turns(mechanism) * mechanism.direction
     return factor * averages.mean, None if averages.mean_gradients is None else factor * averages.mean_gradients
 
 
 class EnergyPerCycle(Quantity):
-    """Work of the drive torque over a cycle in the sense of rotation; infinite where friction locks."""
+    """Work of the drive torque over a cycle in the direction of rotation; infinite where friction locks the linkage."""
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
@@ -80,7 +86,7 @@ class EnergyPerCycle(Quantity):
 
 
 class DeliveredWork(Quantity):
-    """Minus the work of the drive torque over a cycle, in the direction of rotation."""
+    """Minus the work of the drive torque over a cycle, in the direction of rotation: the work delivered."""
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
@@ -89,7 +95,7 @@ class DeliveredWork(Quantity):
 
 
 class FrictionLoss(Quantity):
-    """Heat of all joints over a cycle; infinite where friction locks."""
+    """Heat from all joints over a cycle; infinite where friction locks the linkage."""
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
@@ -100,11 +106,11 @@ class FrictionLoss(Quantity):
 
 
 class Efficiency(Quantity):
-    """Work output divided by work input, from the work U on the loads and the friction heat H.
+    """Work output divided by work input, from the work U against the loads and the friction heat H.
 
-    U / (U + H) if the loads take work; 1 - H / -U if they supply it and the crank delivers the rest; 0 if friction
-    takes all of it. Loads on the crank count. NaN for a design whose loads neither take nor supply net work; -inf
-    where friction locks.
+    U / (U + H) if the loads absorb work; 1 - H / -U if they supply it and the crank delivers the rest; 0 if friction
+    absorbs all of it. Loads on the crank are included. NaN for a design whose loads neither absorb nor supply net work;
+    -inf where friction locks the linkage.
     """
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:

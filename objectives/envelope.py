@@ -1,12 +1,12 @@
-"""Envelope of the moving links: length and height of the space that crank and rod sweep, including their widths.
+"""Envelope of the moving links: length and height of the space that crank and rod sweep, widths included.
 
-A link is a bar with half-discs about its pin centres; without a section, it is its centre line. Crank pivot and crank
-pin stay within r of the pivot, the slider pin on its line between the dead centres, and a bar reaches farthest at one
-of its ends. With the half widths h_c and h_r, the greater of them h, and the outer dead centre x_out:
+A link is a bar with semicircular ends about its pin centres; without a section, it is its centre line. Crank pivot and
+crank pin stay within r of the pivot; the slider pin moves along its line between the dead centres. A bar reaches
+farthest at one of its ends. With the half widths h_c and h_r, their maximum h, and the outer dead centre x_out:
 
     length = (r + h) + max(x_out + h_r, r + h_c)        height = (r + h) + max(r + h, |e| + h_r)
 
-since x_out > r, x_in > 0. Slider, guide, pins and counterweight have no size here.
+since x_out > r, x_in > 0. Slider, guide, pins and counterweight are ignored here.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from .proportions import FOOTPRINT
 from .quantity import Formula, Group
 
 Extent = Callable[[Any, Any, Any, Any, Any], Any]
-"""A smooth extent, m, of crank, rod and size of the offset, and half the widths of crank and rod."""
+"""A smooth extent, m, as a function of crank, rod, |offset|, and half the widths of crank and rod."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Envelope(GreatestOfFormulas):
-    """The greatest of several extents."""
+    """Maximum of several extents."""
 
     extents: Sequence[Extent]
 

@@ -1,4 +1,4 @@
-"""Delivered flow of pumps and compressors, and its ripple over the cycle."""
+"""Flow delivered by pumps and compressors, and its ripple over the cycle."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ from .machine_needs import COMPRESSOR, EVEN_SPEED, SPEED, Need
 from .quantity import Array, Group, Pieces, Quantity, Values, undefined
 
 _MOST_PIECES = 3
-"""Local peaks, and local troughs, of the flow that pieces are made of."""
-_LABEL_STEP = 10.0  # labels of peaks are crank angles, below 2 pi
+"""Local peaks, and local troughs, of the flow from which pieces are built."""
+_LABEL_STEP = 10.0  # labels of peaks are crank angles, hence below 2 pi
 
 
 @dataclass(frozen=True, kw_only=True)
 class Flow(Quantity):
-    """Volume that pumps and compressors deliver over a turn, times turns per time."""
+    """Volume that pumps and compressors deliver in a turn, times turns per unit of time."""
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
@@ -51,11 +51,11 @@ class Flow(Quantity):
 
 
 class FlowRipple(Quantity):
-    """Greatest minus least flow of all liquid pumps together, divided by the mean flow.
+    """Maximum minus minimum of the combined flow of all liquid pumps, divided by the mean flow.
 
-    Without masses, pumps that resist with 1 Pa in their delivery strokes need a drive torque, N m, equal to the
-    delivered volume per crank angle, m^3/rad. After subtracting its greatest value, the greatest magnitude is the
-    difference between greatest and least flow.
+    Consider massless pumps that deliver against 1 Pa. Their drive torque, N m, then equals the delivered volume per
+    crank angle, m^3/rad. Subtract its maximum: the maximum magnitude of the result is the difference between maximum
+    and minimum flow.
     """
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
@@ -66,7 +66,7 @@ class FlowRipple(Quantity):
         return Values(differences.values[:, 0], differences.gradients[:, 0] if gradients else None)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the differences of local peaks and troughs; see `Quantity`."""
+        """Return the differences between local peaks and troughs; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return super().pieces(mechanism, dimensions)
         return self._differences(mechanism, np.asarray(dimensions, dtype=np.float64), _MOST_PIECES)
@@ -98,27 +98,30 @@ class FlowRipple(Quantity):
 
 
 def pumps_of(mechanism: Mechanism) -> dict[int, Cylinder]:
-    """Return the liquid pumps among the loads of a machine, by their indices."""
+    """Return the liquid pumps among a machine's loads, by index."""
     return {
         k: load for k, load in cylinders(mechanism) if isinstance(load, Compressor) and load.compression_exponent == 0.0
     }
 
 
 def _piston_area(k: int, number: Callable[[int], Any]) -> Any:
-    """Return the piston area of a load from its raw numbers, m^2."""
+    """Return the piston area of a load from a machine's raw numbers, m^2."""
     bore, rod = (number(Raw.END + LOAD_SLOTS * k + Cylinder.slots[name][0]) for name in ("bore", "piston_rod"))
     return 0.25 * math.pi * (bore * bore - rod * rod)
 
 
 def _mean_delivery(number: Callable[[int], Any], pumps: Iterable[int], count: int) -> Any:
-    """Return the mean volume that all cylinders deliver per crank angle over a turn, m^3/rad."""
+    """Return the mean volume per crank angle that all cylinders deliver over a turn, m^3/rad."""
     swept = stroke(number(Raw.CRANK), number(Raw.ROD), magnitude(number(Raw.OFFSET)))
     return swept * sum(_piston_area(k, number) for k in pumps) * (count / (2.0 * math.pi))
 
 
 @memoise_by_machine
 def _flow_as_torque(mechanism: Mechanism) -> Mechanism:
-    """Return the machine whose drive torque is the flow; designs end with the pumps' areas and a torque to deduct."""
+    """Return a machine whose drive torque equals the flow.
+
+    Its designs end with the pump areas and a torque to subtract.
+    """
     loads: list[Load] = []
     varying = []
     for place, pump in enumerate(pumps_of(mechanism).values()):

@@ -1,4 +1,4 @@
-"""Force transmission: ratio of the greatest force that moves the slider to the greatest force of the rod on it."""
+"""Force transmission: maximum force that moves the slider divided by the maximum force of the rod on it."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ from .quantity import Array, Domain, Group, Pieces, Quantity, Values
 
 
 class ForceTransmission(Quantity):
-    """max |B_x| / max |B| over the cycle, for the force B between rod and slider.
+    """max |B_x| / max |B| over the cycle, where B is the force between rod and slider.
 
-    For a massless rod under a constant force, it is the least |B_x| / |B| in the cycle, which is the sine of the least
-    transmission angle. In general that least ratio would be 0 for nearly every machine: inertia reverses B_x within
-    the turn while the rod's own mass keeps B_y. The ratio of the peaks always gives the useful fraction of the force
-    that sizes rod and pin. Each peak is exact over continuous crank angle; -inf where friction locks.
+    For a massless rod under a constant force, this is the minimum of |B_x| / |B| over the cycle: the sine of the
+    minimum transmission angle. In general that minimum would be 0 for nearly every machine: inertia reverses B_x during
+    the turn while the rod's own mass maintains B_y. The ratio of the peaks is always the useful fraction of the force
+    for which rod and pin are sized. Each peak is exact over the continuous crank angle; -inf where friction locks the
+    linkage.
     """
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
@@ -32,14 +33,14 @@ class ForceTransmission(Quantity):
         return Values(values[:, 0], slopes[:, 0] if gradients else None)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the ratios to the highest local peaks of |B|; the least ratio is the quantity; see `Quantity`."""
+        """Return the ratios for the highest local peaks of |B|; the minimum is the quantity; see `Quantity`."""
         line_peaks = find_peaks(mechanism, Signal.LINE_FORCE, dimensions, gradients=True, limit=1)
         pin_peaks = find_peaks(mechanism, Signal.SLIDER_PIN_FORCE, dimensions, gradients=True)
         return Pieces(*_force_ratios(line_peaks, pin_peaks), pin_peaks.angles, least=True)
 
 
 def _force_ratios(line_peaks: Peaks, pin_peaks: Peaks) -> tuple[Array, Array]:
-    """Return ratios (n, k) and their gradients: +inf for absent peaks, -inf where friction locks."""
+    """Return ratios (n, k) and their gradients: +inf for absent peaks, -inf where friction locks the linkage."""
     present = np.isfinite(pin_peaks.values)
     pin_forces = np.where(present & (pin_peaks.values > 0.0), pin_peaks.values, np.nan)
     ratios = line_peaks.values / pin_forces

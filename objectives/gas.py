@@ -1,4 +1,4 @@
-"""Gas cycle of a machine's cylinders: volumes, work, mean pressure, delivery of a compressor."""
+"""Gas cycle in a machine's cylinders: volumes, work, mean pressure, delivery of a compressor."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .quantity import Array, Domain, Group, Quantity, Values, undefined
 
 @dataclass(frozen=True, kw_only=True)
 class GasQuantity(Quantity):
-    """A closed-form number of the `GasCycle`. closed_form: its function."""
+    """A closed-form quantity of the `GasCycle`. closed_form: its function."""
 
     closed_form: Callable[[GasCycle], Any] = field(repr=False)
 
@@ -95,6 +95,6 @@ VOLUMETRIC_EFFICIENCY = _gas(
     example=0.8,
     better="high",
     domain=Domain.share("the volumetric efficiency", "0.6 to 0.9"),
-    floor=0.05,  # near zero the machine delivers nothing
+    floor=0.05,  # near zero, nothing is delivered
     needs=(COMPRESSOR,),
 )

@@ -1,4 +1,4 @@
-"""Quantities that are the greatest of one or more smooth formulas in a machine's numbers."""
+"""Quantities that are the maximum of one or more smooth formulas in a machine's numbers."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ from .quantity import Array, Pieces, Quantity, Values, undefined
 
 @dataclass(frozen=True, kw_only=True)
 class GreatestOfFormulas(Quantity):
-    """The greatest of its `formulas`, with exact derivatives by all varying numbers; NaN if any formula is NaN.
+    """Maximum of its `formulas`, with exact derivatives by all variables; NaN if any formula is NaN.
 
-    A formula takes complex numbers and, for bounds over ranges, enclosures: it must not branch on a design's numbers.
+    A formula accepts complex numbers and, for bounds over ranges, enclosures, so it must not branch on a design's
+    numbers.
     """
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:

@@ -1,4 +1,4 @@
-"""Inertia ratio of a motor: the inertia that it drives over that of its rotor."""
+"""Inertia ratio of a motor: driven inertia divided by rotor inertia."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ def _of_flywheel(number: Number) -> Any:
 
 @dataclass(frozen=True, kw_only=True)
 class InertiaRatio(Quantity):
-    """(J + J_f) / (i^2 J_m), for the greatest or the mean inertia J of the linkage at the crank.
+    """(J + J_f) / (i^2 J_m), with the maximum or mean inertia J of the linkage at the crank.
 
-    mean: whether for the mean over the crank angle.
+    mean: whether J is the mean over the crank angle.
     """
 
     mean: bool
@@ -47,7 +47,7 @@ class InertiaRatio(Quantity):
         return self._ratio(mechanism, dimensions, peaks.values[:, 0], slopes)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the ratios of the highest local peaks of the inertia; see `Quantity`."""
+        """Return the ratios for the highest local peaks of the inertia; see `Quantity`."""
         if self.mean or self.lacks(mechanism, "undefined"):
             return super().pieces(mechanism, dimensions)
         peaks = find_peaks(mechanism, Signal.REFLECTED_INERTIA, dimensions, gradients=True)

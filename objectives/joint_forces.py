@@ -1,4 +1,4 @@
-"""Joint forces: the greatest reactions at the pins and the guide over the cycle, and the moment on the guide."""
+"""Joint forces: maximum reactions at the pins and the guide over the cycle, and the moment on the guide."""
 
 from __future__ import annotations
 

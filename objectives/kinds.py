@@ -1,9 +1,9 @@
-"""Kinds of physical values and their display units: one table for files, tables, figures and the page.
+"""Kinds of physical values with their display units: one table for files, tables, figures and the page.
 
-Values are always SI inside the program. Columns and JSON have metric units. Inch units are the US customary ones that
-a reader may choose: inch, pound-mass, pound-force, second, and their combinations; horsepower and psi where usual.
-Factors are exact to rounding: inch and pound are defined (international, 1959), pound-force by the standard
-acceleration of gravity (3rd CGPM, 1901), horsepower as 550 foot-pounds-force per second.
+Values are always SI inside the program. Columns and JSON use metric units. Inch units are the US customary units that
+readers may choose: inch, pound-mass, pound-force, second, and combinations; horsepower and psi where usual. Factors are
+exact to rounding. Inch and pound have exact definitions (international, 1959); pound-force uses standard gravity (3rd
+CGPM, 1901), and horsepower is 550 foot-pounds-force per second.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from typing import Literal
 from ..model.input_warning import LONGEST
 
 System = Literal["metric", "inch"]
-"""Systems of units that values are shown in. Inch: US customary units of machine design, lengths in inches."""
+"""Systems of units in which values are shown. Inch: US customary units as in machine design, with lengths in inches."""
 
 
 @dataclass(frozen=True)
 class DisplayUnit:
-    """Unit of a kind in a system. symbol: its symbol. suffix: ending of its columns. factor: value of one SI unit."""
+    """Unit of a kind in a system. symbol: its symbol. suffix: suffix of its columns. factor: value of one SI unit."""
 
     symbol: str
     suffix: str
@@ -35,7 +35,7 @@ def display_unit(symbol: str, factor: float = 1.0) -> DisplayUnit:
 
 
 def quotient_unit(symbol: str, factor: float = 1.0) -> DisplayUnit:
-    """Return the display unit of a quotient, with "per" in its columns: N s/m gives _Ns_per_m."""
+    """Return the display unit for a quotient, with "per" in its columns: N s/m gives _Ns_per_m."""
     numerator, _, denominator = symbol.replace("^", "").partition("/")
     return DisplayUnit(symbol, f"_{numerator.replace('N ', 'N').replace(' ', '_')}_per_{denominator}", factor)
 
@@ -44,14 +44,13 @@ def quotient_unit(symbol: str, factor: float = 1.0) -> DisplayUnit:
 class Kind:
     """A kind of physical value.
 
-    name: name with its article, "a length". unit: the SI unit, "" if none. example: a value as in a job file.
-    limit: greatest credible magnitude in SI. It is orders of magnitude beyond any machine: a larger value means a
-    mistaken unit (80 Mm for 80 mm), and products of several values stay far from the limits of a double.
-    metric, inch: display units; inch is None where both systems use the same unit.
-    typed: units that a form offers, the SI unit first. usual: unit that the form selects first, by default the metric
-    one. spoken: units with a meaning only in values of this kind, each with that meaning.
-    believed: least and greatest credible magnitude in SI of a number without a unit; None for any.
-    amount: whether the unit is a text that stands for itself, such as a currency.
+    name: name with its article, "a length". unit: the SI unit, "" if none. example: a value as in a job file. limit:
+    largest credible magnitude in SI. It is orders of magnitude beyond any machine. A larger value indicates a wrong
+    unit (80 Mm for 80 mm), and products of several values stay in the range of a double. metric, inch: display units;
+    inch is None if both systems use the same unit. typed: units that a form offers, the SI unit first. usual: unit that
+    the form preselects, by default the metric one. spoken: units that are meaningful only in values of this kind, each
+    with its meaning. believed: smallest and largest credible magnitude in SI of a number without a unit; None for any.
+    amount: whether the unit is free text, such as a currency.
     """
 
     name: str
@@ -72,7 +71,7 @@ class Kind:
         return quotient_unit(self.unit) if "_per_" in self.metric.suffix else display_unit(self.unit)
 
     def is_plausible(self, number: float) -> bool:
-        """Return whether a number without a unit has a credible size in SI."""
+        """Return whether a number without a unit has a credible magnitude in SI."""
         return self.believed is None or self.believed[0] <= abs(number) < self.believed[1]
 
     def display_unit(self, system: System) -> DisplayUnit:
@@ -119,7 +118,7 @@ _PER_MINUTE = (
     *("spm", "SPM", "stroke/min", "strokes/min", "Strokes/min"),
 )
 _PLATES = (*((unit, "rpm") for unit in _PER_MINUTE), *((unit, "rev/s") for unit in ("Hz", "hz", "HZ")))
-"""Units on plates of motors and machines, which count turns."""
+"""Units on nameplates of motors and machines, where speed is in turns."""
 _SPEEDS = "rad/s, rpm, rev/s"
 ANGULAR_SPEED = _kind("an angular speed", _SPEEDS, "300 rpm", 1e6, metric=_RPM, believed=(0.0, 0.0), spoken=_PLATES)
 ANGULAR_ACCELERATION = _kind("an angular acceleration", "rad/s^2, deg/s^2", "20 rad/s^2", 1e9)
@@ -163,9 +162,9 @@ ENERGY = _kind("an energy", "J, kJ, ft lbf", "60 J", 1e15, display_unit("ft lbf"
 TIME = _kind("a time", "s, min", "30 s", 1e9)
 
 KINDS = tuple(kind for kind in list(globals().values()) if isinstance(kind, Kind))
-"""The kinds above, in their order: those of numbers of a job and of quantities."""
+"""The kinds above, in order: those of numbers in jobs and of quantities."""
 SMALL_LENGTH = replace(LENGTH, example="0.1 mm")
-"""Steps and misses, which are shorter than links."""
+"""Kinds of steps and deviations, which are shorter than links."""
 PERCENT = Kind("a percentage", "", "50 %", 1e4, display_unit("%", 100.0))
 STROKE_RATE = _kind("a number of strokes per minute", "", "30", 9e6)
 PER_ANGLE, PER_SQUARED_ANGLE, PER_CUBED_ANGLE = (
@@ -184,14 +183,14 @@ MASS_MOMENT = Kind(
 )
 
 DISPLAYED_KINDS = (*(kind for kind in KINDS if kind.unit), PER_ANGLE, PER_SQUARED_ANGLE, PER_CUBED_ANGLE, MASS_MOMENT)
-"""Kinds that columns are of: the one table of units for columns, figures, reports and the page."""
+"""Kinds of columns: the only table of units for columns, figures, reports and the page."""
 
 
 def metric_unit_in(symbol: str, system: System) -> tuple[str, float]:
-    """Return a system's display unit for a metric unit, and the metric unit's value in it.
+    """Return a system's display unit for a metric unit, and the value of one metric unit in it.
 
-    "mm" is ("in", 1 / 25.4) in the inch system. A unit that is not a metric one of `DISPLAYED_KINDS`, such as
-    that of a custom quantity, stays unchanged.
+    "mm" is ("in", 1 / 25.4) in the inch system. A unit that is not a metric unit in `DISPLAYED_KINDS`, such as that of
+    a custom quantity, stays unchanged.
     """
     for kind in DISPLAYED_KINDS if system == "inch" else ():
         if kind.inch is not None and kind.metric.symbol == symbol:
@@ -200,19 +199,19 @@ def metric_unit_in(symbol: str, system: System) -> tuple[str, float]:
 
 
 def unit_text(symbol: str) -> str:
-    """Return a unit as printed: m/s^2 with a raised 2."""
+    """Return a unit as printed: m/s^2 with a superscript 2."""
     return symbol.replace("^2", "²").replace("^3", "³")
 
 
 def amount_in(unit: str) -> Kind:
-    """Return the kind of an amount in a unit that is not physical, such as EUR."""
+    """Return the kind for an amount in a non-physical unit, such as EUR."""
     return Kind(f"an amount in {unit}", unit, f"100 {unit}", 1e15, display_unit(unit), typed=(unit,), amount=True)
 
 
 def kind_in(symbol: str, factor: float = 1.0, kind: Kind | None = None) -> Kind:
-    """Return the kind of a value displayed in any unit; the suffix derives from the unit's symbol.
+    """Return the kind for a value displayed in any unit; the suffix derives from the unit's symbol.
 
-    factor: value of one SI unit in it. kind: kind from the table, if known; else one named after the unit.
+    factor: value of one SI unit in it. kind: kind from the table if there is one, else a kind named after the unit.
     """
     if kind is None:
         return Kind(f"a value in {symbol or 'no unit'}", symbol, f"1 {symbol}", 1e30, display_unit(symbol, factor))

@@ -20,7 +20,7 @@ from .quantity import Formula, Group, Number
 
 @dataclass(frozen=True, kw_only=True)
 class Mass(GreatestOfFormulas):
-    """A mass in closed form. closed_form: its function of the raw numbers of a machine."""
+    """A mass in closed form. closed_form: its function of a machine's raw numbers."""
 
     closed_form: Formula = field(repr=False)
 

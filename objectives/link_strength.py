@@ -1,4 +1,4 @@
-"""Stresses of crank and rod, along the bars and in their eyes, and the safety against yield, fatigue and buckling."""
+"""Stresses in crank and rod, along the bars and in their eyes, and safety against yield, fatigue and buckling."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ CRANK = "crank"
 
 
 class LinkStress(BarPeak):
-    """The greatest stress along links and in the net sections of their eyes, or the yield strength divided by it."""
+    """Maximum stress along the links and in the net sections of their eyes, or the yield strength divided by it."""
 
     def locations(self, mechanism: Mechanism) -> tuple[StressLocation, ...]:
-        """Return those of both links, whichever is asked for."""
+        """Return the stress maxima for both links, even if only one is asked for."""
         return tuple(location for _, location in _locations(mechanism))
 
     def demands(self, mechanism: Mechanism) -> list[Demand]:
-        """Return the stress along the bars and in the pivot's eye, and the force on all eyes; see `BarPeak`."""
+        """Return the stress along the bars and in the eye at the pivot, and the force on all eyes; see `BarPeak`."""
         strength, bars = strength_of(mechanism), self.bars(mechanism)
         limit = strength.material.yield_strength if self.least else 1.0
         raised = strength.eye_concentration
@@ -49,11 +49,11 @@ class LinkStress(BarPeak):
 
 
 def eye_stresses(mechanism: Mechanism, design: Array) -> dict[str, dict[str, tuple[float, float]]]:
-    """Return greatest stress, Pa, and its crank angle, rad, in the eyes of each bar, by pin.
+    """Return the maximum stress, Pa, and its crank angle, rad, in the eyes of each bar, by pin.
 
     design: (1, 3 + k).
 
-    The angle is NaN where the stress is not finite.
+    The angle is NaN if the stress is not finite.
     """
     stresses_by_link: dict[str, dict[str, tuple[float, float]]] = {}
     quantity = replace(ROD_STRESS, links=tuple(LINKS))
@@ -62,7 +62,7 @@ def eye_stresses(mechanism: Mechanism, design: Array) -> dict[str, dict[str, tup
             continue
         name, pin = demand.eye
         value = float(part.values[0, 0])
-        # The label of a force is its angle.
+        # A force is labelled with its crank angle.
         angle = _angle_of(mechanism, demand.peak, design) if isinstance(demand.peak, Eye) else float(part.labels[0, 0])
         stress = (value, angle if math.isfinite(value) else math.nan)
         eyes = stresses_by_link.setdefault(name, {})
@@ -71,7 +71,7 @@ def eye_stresses(mechanism: Mechanism, design: Array) -> dict[str, dict[str, tup
 
 
 def _angle_of(mechanism: Mechanism, place: StressLocation, design: Array) -> float:
-    """Return the crank angle of the greatest stress of a place, tension or compression."""
+    """Return the crank angle of the maximum stress at a location, in tension or compression."""
     ends = []
     for column, criterion in enumerate(STATIC):
         (peak,) = stress_peaks(mechanism, (place,), design, np.array([criterion]), limit=1)
@@ -87,16 +87,16 @@ def _locations(mechanism: Mechanism) -> list[tuple[str, StressLocation]]:
 
 
 class FatigueSafety(BarPeak):
-    """Least 1 / (amplitude / S_e + mean / S_m) over all points of the bars and their eyes."""
+    """Minimum of 1 / (amplitude / S_e + mean / S_m) over all points of the bars and their eyes."""
 
     def criteria(self, mechanism: Mechanism) -> Criteria:
-        """Return those of amplitude and mean in terms of greatest and least stress, and of the amplitude alone."""
+        """Return the criteria for amplitude and mean as maximum and minimum stress, and for the amplitude alone."""
         strength = strength_of(mechanism)
         worn, steady = 0.5 / strength.material.endurance, 0.5 / strength.steady
         return ((worn + steady, worn - steady), (worn, worn))
 
     def demands(self, mechanism: Mechanism) -> list[Demand]:
-        """Return the stress of each bar and of each eye; see `BarPeak`."""
+        """Return the stress in each bar and in each eye; see `BarPeak`."""
         bars = self.bars(mechanism)
         eyes = [eye for name in bars for pin in (NEAR, LINKS[name].far) for eye in eyes_of(name, pin)]
         bodies = [Demand(LinkBody(LINKS[name].part), None) for name in bars]
@@ -104,18 +104,18 @@ class FatigueSafety(BarPeak):
 
 
 class BucklingSafety(BarPeak):
-    """Critical stress divided by the greatest compression, least value over bars and planes."""
+    """Critical stress divided by the maximum compression: minimum over bars and planes."""
 
     def criteria(self, mechanism: Mechanism) -> Criteria:
-        """Return that of the greatest compression."""
+        """Return the criterion for maximum compression."""
         return ((0.0, 1.0),)
 
     def locations(self, mechanism: Mechanism) -> tuple[StressLocation, ...]:
-        """Return each bar, which both planes share."""
+        """Return each bar as a location, which both planes share."""
         return tuple(LinkBody(LINKS[name].part, bent=False) for name in self.bars(mechanism))
 
     def demands(self, mechanism: Mechanism) -> list[Demand]:
-        """Return the compression of each bar in the plane of motion and out of it; see `BarPeak`."""
+        """Return the compression of each bar for buckling in the plane of motion and out of it; see `BarPeak`."""
         material = strength_of(mechanism).material
         return [
             Demand(
@@ -128,11 +128,11 @@ class BucklingSafety(BarPeak):
 
 
 def critical_stress(length: int, side: int, end_condition: float, elasticity: float, strength: float) -> Formula:
-    """Return the formula of the mean stress at which a bar of rectangular section buckles, Pa.
+    """Return the formula for the mean stress at which a bar with rectangular section buckles, Pa.
 
-    With the slenderness s = L sqrt(12) / side and s_1 = sqrt(2 pi^2 C E / S_y): Euler's C pi^2 E / s^2 beyond s_1,
-    Johnson's parabola S_y - (S_y s / 2 pi)^2 / (C E) up to it; value and slope agree there, at S_y / 2. So it is
-    C pi^2 E / max(s, s_1)^2 plus the rise of the parabola from s_1 to min(s, s_1). length, side: slots of the raw
+    With the slenderness s = L sqrt(12) / side and s_1 = sqrt(2 pi^2 C E / S_y): Euler's C pi^2 E / s^2 above s_1,
+    Johnson's parabola S_y - (S_y s / 2 pi)^2 / (C E) up to it; values and slopes match there, at S_y / 2. Hence it is C
+    pi^2 E / max(s, s_1)^2 plus the rise of the parabola from s_1 to min(s, s_1). length, side: slots of the raw
     numbers. end_condition: the end condition C.
     """
     euler = end_condition * math.pi**2 * elasticity

@@ -1,4 +1,4 @@
-"""Needs of quantities: what a machine must have so that a quantity is defined, or anything but zero."""
+"""Needs of quantities: the properties that a machine must have for a quantity to be defined or nonzero."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ Consequence = Literal["undefined", "equal", "zero"]
 
 @dataclass(frozen=True)
 class Need:
-    """A requirement of a quantity on the machine.
+    """A property that a quantity requires of a machine.
 
-    is_met: whether a machine meets it; with varying numbers, whether it may meet it. missing: rule, value and remedy;
-    "{instead}" stands for the quantities to use otherwise. consequence: effect of an unmet need: the quantity is
-    undefined, equals another one, or is zero for every design.
+    is_met: whether a machine meets it; with variables, whether it may meet it. missing: rule, value and remedy;
+    "{instead}" stands for alternative quantities. consequence: effect of an unmet need: the quantity is undefined,
+    equals another one, or is zero for every design.
     """
 
     is_met: Callable[[Mechanism], bool]
@@ -42,7 +42,7 @@ class Need:
 
     @property
     def rule(self) -> str:
-        """The requirement of the quantity, without value and remedy."""
+        """The rule alone, without value and remedy."""
         return self.missing.partition(";")[0]
 
 
@@ -77,13 +77,13 @@ MOTION = _defining(
     lambda machine: machine.fullest.speed != 0.0 or machine.fullest.acceleration != 0.0,
     _SPEED,
 )
-"""A crank that turns or is about to."""
+"""A crank that turns or is about to turn."""
 MASSES = Need(lambda machine: crank_weighs(machine.fullest) or moves(machine.fullest), _MASSES)
 SWINGING_MASSES = Need(
     lambda machine: moves(machine.fullest) or machine.fullest.acceleration != 0.0,
     _MASSES,
 )
-"""Masses whose angular momentum changes: a crank at constant speed shakes by a force through its pivot."""
+"""Masses whose angular momentum changes; at constant speed, the crank exerts only a shaking force through its pivot."""
 DRIVEN = Need(lambda machine: drive_loaded(machine.fullest), _LOADS)
 LOADED = Need(lambda machine: linkage_loaded(machine.fullest), _SLIDER_LOADS)
 """Masses or loads beyond the crank."""
@@ -119,7 +119,7 @@ LOSSES = (
         consequence="equal",
     ),
 )
-"""Friction, and joints that carry a force: else an efficiency is 1."""
+"""Friction, and joints that carry a force; otherwise the efficiency is 1."""
 CYLINDER = _defining(
     lambda machine: bool(cylinders(machine)),
     "it needs a cylinder; got none; add for example "
@@ -133,14 +133,14 @@ COMPRESSOR = _defining(
 
 
 def _rotates_unevenly(mechanism: Mechanism) -> bool:
-    """Return whether flywheel or rotor change their speed within the cycle."""
+    """Return whether the speed of flywheel or rotor varies within the cycle."""
     machine = mechanism.fullest
     turns = machine.drive is not None and machine.drive.inertia > 0.0
     return turns and (machine.speed_profile is not None or machine.acceleration != 0.0)
 
 
 def motor_limit(key: str, example: str) -> Need:
-    """Return the need of a limit of the motor. key: of [drive]. example: its value as in a job."""
+    """Return the need for a limit on the motor. key: key in [drive]. example: its value as in a job."""
     return _defining(
         lambda machine: machine.drive is not None and getattr(machine.drive, key) is not None,
         f'it needs the {key.replace("_", " ")} of the motor; got none; add for example [drive] {key} = "{example}"',
@@ -152,7 +152,7 @@ DRIVE_TRAIN = _defining(
     "it needs [drive]; got none; add for example [drive] gear_ratio = 5",
 )
 MOTOR_LOADED = Need(lambda machine: drive_loaded(machine.fullest) or _rotates_unevenly(machine), _LOADS)
-"""Loads on the motor: those of the drive torque, or the inertia of flywheel and rotor."""
+"""Loads on the motor: anything that requires drive torque, or the inertia of flywheel and rotor."""
 ROTOR = _defining(
     lambda machine: machine.drive is not None and machine.drive.motor_inertia > 0.0,
     'an inertia ratio needs the inertia of the rotor; got none; add for example [drive] motor_inertia = "5 kg cm^2"',
@@ -162,7 +162,7 @@ SHAKES = Need(
     "the shaking forces of these cylinders cancel for every design; got cranks and banks that stand against each other "
     "in pairs; use peak_rocking_couple, or leave it out",
 )
-"""Cylinders whose shaking forces leave something."""
+"""Cylinders whose shaking forces do not cancel."""
 COUPLES = _defining(
     has_rocking_couple,
     "a rocking couple comes from cylinders at places along the shaft whose forces do not cancel; got no "

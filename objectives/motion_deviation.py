@@ -1,6 +1,6 @@
 """Motion deviation: deviation of the slider's motion from a target motion given as points.
 
-These quantities exist for a target motion only; a `Problem` has them among its own quantities.
+These quantities exist only for a target motion; a `Problem` lists them among its own quantities.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from .quantity import Array, Group, Pieces, Quantity, Values
 
 @dataclass(frozen=True, kw_only=True)
 class MotionDeviation(Quantity):
-    """The deviation from a target motion, greatest or root mean square; free phase and shift are fitted.
+    """Maximum or root mean square deviation from a target motion; a free phase and a free shift are fitted.
 
-    target: the target motion; None before a job gives one: facts without values.
+    target: the target motion; None before a job gives one, when the quantity has facts but no values.
     """
 
     target: TargetMotion | None = None
@@ -47,13 +47,13 @@ class MotionDeviation(Quantity):
         return Values(pieces.values[:, 0], pieces.gradients[:, 0])
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the quantity as the greatest of smooth pieces; see `Quantity`."""
+        """Return the quantity as the maximum of smooth pieces; see `Quantity`."""
         fitted = fit_pieces(self._required_target, mechanism.sign, self.measure, dimensions[:, :3])
         further = dimensions.shape[1] - 3  # extra variables do not move the slider
         return Pieces(fitted.values, np.pad(fitted.gradients, ((0, 0), (0, 0), (0, further))), fitted.labels)
 
     def settings(self, mechanism: Mechanism, dimensions: Array) -> dict[str, Array]:
-        """Return the best fit's phase (deg) and shift (mm), each if free, for designs (n, 3), by column."""
+        """Return the best-fit phase (deg) and shift (mm), each if free, for designs (n, 3), by column."""
         best_fit: Fit = fit(self._required_target, mechanism.sign, self.measure, dimensions[:, :3])
         columns = {}
         suffix = "_rms" if self.measure == "rms" else ""
@@ -92,7 +92,7 @@ MOTION_DEVIATION_RMS = _deviation(
     example="0.2 mm",
 )
 DEVIATIONS = {each.name: each for each in (MOTION_DEVIATION, MOTION_DEVIATION_RMS)}
-"""Facts of the quantities that a target motion makes, by name."""
+"""Facts about the quantities that a target motion creates, by name."""
 
 
 def motion_deviations(target: TargetMotion) -> tuple[MotionDeviation, ...]:

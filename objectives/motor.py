@@ -1,4 +1,4 @@
-"""Loads on a motor besides its torque: greatest and mean power, greatest reflected inertia."""
+"""Loads on a motor besides its torque: maximum and mean power, maximum reflected inertia."""
 
 from functools import partial
 

@@ -1,4 +1,4 @@
-"""Peak torque: the greatest magnitude of the drive torque over the cycle, or over one stroke."""
+"""Peak torque: maximum magnitude of the drive torque over the cycle, or over one stroke."""
 
 from functools import partial
 

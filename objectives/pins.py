@@ -1,4 +1,4 @@
-"""Loads on the pins: bearing pressure and shear at the greatest force, rubbing and wear over a cycle."""
+"""Loads on the pins: bearing pressure and shear at the maximum force, rubbing and wear over a cycle."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _RUBS = {"crank_pivot": CRANK_PIVOT, "crank_pin": CRANK_PIN, "slider_pin": SLIDE
 
 @dataclass(frozen=True, kw_only=True)
 class PinPressure(BarPeak):
-    """The greatest pressure of a pin on the projected area D d of its bearing in a bar."""
+    """Maximum pressure of a pin on the projected area D d of its bearing in a bar."""
 
     pin: str
 
@@ -36,13 +36,13 @@ class PinPressure(BarPeak):
         return [Demand(self.pin, projected(self.pin, name)) for name in self.bars(mechanism)]
 
     def allowable(self, mechanism: Mechanism) -> float:
-        """Return the bearing pressure of the material, Pa."""
+        """Return the allowable bearing pressure of the material, Pa."""
         return strength_of(mechanism).material.bearing_pressure
 
 
 @dataclass(frozen=True, kw_only=True)
 class PinShear(BarPeak):
-    """The greatest mean shear stress of a pin in single shear."""
+    """Maximum mean shear stress in a pin under single shear."""
 
     pin: str
 
@@ -51,7 +51,9 @@ class PinShear(BarPeak):
         return [Demand(self.pin, lambda number: 0.25 * math.pi * number(PINS[self.pin]) ** 2)]
 
     def allowable(self, mechanism: Mechanism) -> float:
-        """Return the shear yield strength by distortion energy, S_y / sqrt(3), Pa; pins have the bars' material.
+        """Return the shear yield strength by distortion energy, S_y / sqrt(3), Pa.
+
+        Pins have the same material as the bars.
 
         Shigley, Mechanical Engineering Design, 9th ed., eq. 5-21.
         """
@@ -73,9 +75,10 @@ _OF_PINS = {
 def of_pin(
     pin: str, needs_before: tuple[Need, ...], needs_after: tuple[Need, ...] = (), *, bears: bool = True
 ) -> dict[str, Any]:
-    """Return the facts that quantities of a pin share.
+    """Return the facts that all quantities of a pin share.
 
-    needs_before, needs_after: needs besides its own. bears: whether it bears on the bars that it joins.
+    needs_before, needs_after: needs before and after the common ones. bears: whether it depends on the bars that the
+    pin joins.
     """
     picture, bar, loaded = _OF_PINS[pin]
     if not bears:
@@ -86,11 +89,11 @@ def of_pin(
 
 @dataclass(frozen=True, kw_only=True)
 class PinRubbing(OfBars):
-    """A factor over twice the bearing's length b times the mean of |F| |d psi / d theta|.
+    """A factor divided by twice the bearing length b, times the mean of |F| |d psi / d theta|.
 
     psi: relative rotation in the pin.
 
-    p = F / (D b) and a rubbing speed of D/2 |d psi / dt|: the pin's diameter D cancels.
+    p = F / (D b) and the rubbing speed is D/2 |d psi / dt|, so the pin diameter D cancels.
     """
 
     pin: str
@@ -111,7 +114,7 @@ class PinRubbing(OfBars):
 
 
 def _per_length(factor: Formula, depth: int) -> Formula:
-    """Return the formula of a factor over twice a length, 1/m. depth: slot of the length."""
+    """Return the formula for a factor divided by twice a length, 1/m. depth: slot of the length."""
     return lambda number: factor(number) / (2.0 * number(depth))
 
 
@@ -120,7 +123,7 @@ def _rubbing_speed(mechanism: Mechanism) -> Formula:
 
 
 def _wear_travel(mechanism: Mechanism) -> Formula:
-    """Return K times the crank angle of a million cycles; `PinRubbing` supplies the rest of K F s / A."""
+    """Return K times the crank angle in a million cycles; `PinRubbing` supplies the rest of K F s / A."""
     assert mechanism.strength is not None
     rate = mechanism.strength.wear_coefficient or math.nan
     return lambda number: rate * _CYCLES * cycle_turns(mechanism) * 2.0 * math.pi + 0.0 * number(Raw.CRANK)

@@ -1,4 +1,4 @@
-"""Position error: slider displacement due to tolerances, greatest over the cycle or over part of the stroke."""
+"""Position error: slider displacement due to tolerances, maximum over the cycle or over part of the stroke."""
 
 from functools import partial
 

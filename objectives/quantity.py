@@ -21,16 +21,15 @@ from .machine_needs import Consequence, Need
 
 Better = Literal["low", "high", ""]
 Offer = Literal["motion", "proportions", "requirement", "objective"]
-"""Parts of a form that ask for a quantity unasked: the wanted motion, rules of proportion, what must hold, what is
-wanted."""
+"""Parts of a form that always ask for a quantity: the target motion, rules of proportion, requirements, objectives."""
 Number = Callable[[int], Any]
-"""The raw number of a machine at a slot (`Raw`, `PINS`): of each design (n,), one for all, or enclosed over boxes."""
+"""Raw number of a machine at a slot (`Raw`, `PINS`): for each design (n,), one for all, or an enclosure over boxes."""
 Formula = Callable[[Number], Any]
 MECHANICS = "derived there from plane rigid-body mechanics"
 
 
 class Group(Enum):
-    """Groups in which quantities are shown, in their order."""
+    """Groups in which quantities are shown, in order."""
 
     DIMENSIONS = "Dimensions"
     MOTION = "Motion"
@@ -44,10 +43,10 @@ class Group(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Domain:
-    """The values that a quantity can have in some linkage: from lower to upper, SI.
+    """Values that a quantity can have in some linkage: from lower to upper, SI.
 
-    open: whether the ends are excluded. idle: whether a lower bound below the domain is accepted, as it has no effect.
-    rule, remedy: words for a message.
+    open: whether the ends are excluded. idle: whether a lower bound below the domain is accepted, because it has no
+    effect. rule, remedy: parts of a message.
     """
 
     lower: float
@@ -59,21 +58,21 @@ class Domain:
 
     @classmethod
     def share(cls, subject: str, usual: str) -> Domain:
-        """Return the domain of a fraction, 0 to 1."""
+        """Return the domain for a fraction, 0 to 1."""
         return cls(
             upper=1.0, lower=0.0, open=False, rule=f"{subject} lies between 0 and 1", remedy=f"{usual} are usual"
         )
 
     @classmethod
     def acute(cls, rule: str, usual: str) -> Domain:
-        """Return the domain of an acute angle, 0 to 90 deg. rule: the rule in words."""
+        """Return the domain for an acute angle, 0 to 90 deg. rule: the rule in words."""
         remedy = f"{usual} are usual (a plain number is in rad)"
         return cls(lower=0.0, upper=0.5 * math.pi, rule=f"{rule}, ends excluded", remedy=remedy)
 
     def refuses(self, value: float, *, least: bool) -> bool:
         """Return whether no linkage can have a value. least: whether the value is a lower bound.
 
-        A lower bound at the lower end has no effect, except that it switches off the quantity's floor if it has one.
+        A lower bound at the lower end has no effect, except that it disables the quantity's floor if there is one.
         """
         if least and (self.idle or value == self.lower):
             return False
@@ -82,17 +81,16 @@ class Domain:
 
 @dataclass(frozen=True)
 class Values:
-    """A quantity of n designs.
+    """Values of a quantity for n designs.
 
-    values: (n,), SI. gradients: (n, 3 + k), by crank, rod, offset and the machine's varying numbers; None unless
-    requested.
+    values: (n,), SI. gradients: (n, 3 + k), by crank, rod, offset and the machine's variables; None unless requested.
     """
 
     values: Array
     gradients: Array | None
 
     def times(self, factor: Values) -> Values:
-        """Return the product of two quantities of the same designs."""
+        """Return the product of two quantities for the same designs."""
         slopes = None
         if self.gradients is not None and factor.gradients is not None:
             slopes = self.gradients * factor.values[:, None] + self.values[:, None] * factor.gradients
@@ -100,21 +98,20 @@ class Values:
 
 
 def undefined(designs: Array, gradients: bool) -> Values:
-    """Return NaN for designs (n, 3 + k), in values and gradients."""
+    """Return NaN for designs (n, 3 + k), in both values and gradients."""
     blank = np.full(np.shape(designs), np.nan)
     return Values(blank[:, 0], blank if gradients else None)
 
 
 @dataclass(frozen=True)
 class Pieces:
-    """A quantity as the greatest of smooth pieces: the local peaks of a curve over the cycle, highest first.
+    """A quantity as the maximum of smooth pieces: the local peaks of a curve over the cycle, highest first.
 
-    values: (n, k), SI, -inf where a design has fewer than k pieces. gradients: (n, k, 3 + v) for v varying numbers.
-    labels: (n, k), labels that match the pieces of neighbouring designs: the crank angle of a peak, rad, or a number.
-    A tie between two pieces is a kink of the quantity; a solver treats it as a minimax.
-    least: whether the quantity is the least of its pieces instead, lowest first, +inf for absent ones. opposite: for a
-    quantity with kinks of both kinds, its pieces from the other side. Each side holds the kinks of the other one at the
-    active piece.
+    values: (n, k), SI, -inf where a design has fewer than k pieces. gradients: (n, k, 3 + v) for v variables. labels:
+    (n, k), labels that match pieces between neighbouring designs: the crank angle of a peak, rad, or a number. A tie
+    between two pieces is a kink in the quantity; a solver treats it as a minimax. least: whether the quantity is the
+    minimum of its pieces instead, lowest first, +inf for absent ones. opposite: for a quantity with kinks of both
+    kinds, its pieces from the other side. Each side freezes the kinks of the other one at the active piece.
     """
 
     values: Array
@@ -124,7 +121,7 @@ class Pieces:
     opposite: Pieces | None = None
 
     def take(self, places: IntArray) -> Pieces:
-        """Return the pieces at some indices (n, m) of each design."""
+        """Return the pieces at indices (n, m), row by row."""
         return Pieces(
             np.take_along_axis(self.values, places, axis=1),
             np.take_along_axis(self.gradients, places[:, :, None], axis=1),
@@ -134,7 +131,7 @@ class Pieces:
 
 
 def fact(default: Any) -> Any:
-    """Return a fact that is only reported: quantities that differ only in such facts compute the same values."""
+    """Return a display-only fact: quantities that differ only in such facts compute the same values."""
     return _field(default=default, compare=False)
 
 
@@ -142,23 +139,23 @@ def fact(default: Any) -> Any:
 class Quantity(ABC):
     """A number that judges a design: its facts, and its values and gradients for a batch of designs.
 
-    name: name in job files. title: title for people, by default the name in words. kind: kind of its values, with
-    units. key: first part of its column, by default the name. short: title for small spaces, by default the title.
+    name: name in job files. title: title for readers, by default the name in words. kind: kind of its values, with
+    units. key: first part of its column name, by default the name. short: title for small spaces, by default the title.
     place: rank in tables, lower first.
 
-    group: group in which it is shown. sentence: help for an engineer new to it. advice: usual values, or conflicting
-    quantities. formula: formula in plain text, with the symbols of docs/theory.md. section: section of docs/theory.md.
-    source: source of the equations. picture: the feature that a picture of the linkage points out.
+    group: group in which it is shown. sentence: explanation for an engineer new to it. advice: usual values, or
+    conflicting quantities. formula: formula in plain text, with the symbols of docs/theory.md. section: section of
+    docs/theory.md. source: source of the equations. picture: the feature highlighted in a picture of the linkage.
 
-    example: a usual value as in job files, by default that of the kind. better: its good side, low or high, as usual in
-    requirements and objectives; empty for one without. signed: whether it may be negative. instead_of_quotient: the
-    quantity to use where a formula would divide by it. domain: values that it can have in some linkage. floor: least
-    value where a job sets none, SI. in_line: its value for every design without offset. endless: reason why it may be
-    infinite for every design, as a sentence. needs: needs that a machine must meet. instead: quantities to use where a
-    need is not met. reach: bounds within ranges of the dimensions. allowed_by: origin of its allowable value, in words;
-    empty for one without. about_tolerances: whether it already includes tolerances. offered: parts of a form that offer
-    it. on_datasheet: whether the datasheet of a design has it. plain: whether it follows obviously from others, so that
-    a short table leaves it out. turning: whether it needs a crank that rotates fully, so that a swing has none.
+    example: a usual value as in job files, by default that of the kind. better: the preferred direction, low or high,
+    in requirements and objectives; empty if there is none. signed: whether it may be negative. instead_of_quotient: the
+    quantity to use where a formula would divide by it. domain: values that it can have in some linkage. floor: minimum
+    if a job sets none, SI. in_line: its value for every design without offset. endless: reason why it may be infinite
+    for every design, as a sentence. needs: needs that a machine must meet. instead: quantities to use if a need is not
+    met. reach: bounds within ranges of the dimensions. allowed_by: origin of its allowable value, in words; empty if
+    there is none. about_tolerances: whether it already includes tolerances. offered: parts of a form that offer it.
+    on_datasheet: whether the datasheet of a design shows it. plain: whether it follows obviously from others, so that a
+    short table omits it. turning: whether it needs a fully rotating crank, so that a swing does not have it.
     """
 
     name: str
@@ -192,19 +189,19 @@ class Quantity(ABC):
     plain: bool = fact(False)
     turning: bool = fact(True)
     table: ClassVar[str] = ""
-    """Table of a job without which there is no such quantity; none for one that every problem has."""
+    """Table that a job must have for the quantity to exist; empty if every problem has it."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "title", self.title or self.name.replace("_", " "))
 
     @property
     def stem(self) -> str:
-        """Its column without the unit."""
+        """Its column name without the unit."""
         return self.key or self.name
 
     @property
     def field(self) -> str:
-        """Key in tables and JSON, carrying the unit: "stroke_mm"."""
+        """Key in tables and JSON, including the unit: "stroke_mm"."""
         return self.stem + self.kind.metric.suffix
 
     @property
@@ -214,7 +211,7 @@ class Quantity(ABC):
 
     @property
     def short_title(self) -> str:
-        """Title for small spaces."""
+        """Short title for small spaces."""
         return self.short or self.title
 
     @property
@@ -226,13 +223,13 @@ class Quantity(ABC):
 
     @property
     def required(self) -> str:
-        """Requirements on a job that states it, in words; empty if every job meets them."""
+        """What it requires of a job, in words; empty if every job meets it."""
         table = [f"it needs the table [{self.table}]"] if self.table else []
         return "; ".join(dict.fromkeys([*table, *(need.rule for need in self.needs)]))
 
     @property
     def has_gradient(self) -> bool:
-        """Whether it has derivatives with respect to the dimensions."""
+        """Whether it has derivatives by the dimensions."""
         return True
 
     @property
@@ -242,11 +239,11 @@ class Quantity(ABC):
 
     @property
     def of_dimensions(self) -> bool:
-        """Whether it follows from crank, rod and offset alone, without a search over the cycle."""
+        """Whether it depends on crank, rod and offset alone, without a search over the cycle."""
         return False
 
     def follows_speed(self, mechanism: Mechanism) -> bool:
-        """Return whether the crank speed, its sign or its presence changes the quantity for a machine."""
+        """Return whether the magnitude, sign or presence of the crank speed changes the quantity for a machine."""
         numbers = [item.fullest for item in mechanism.varying]
         designs = np.array([[0.05, 0.2, offset, *numbers] for offset in (0.02, -0.02)])
         still, *moving = (
@@ -259,16 +256,19 @@ class Quantity(ABC):
         return self.bounds
 
     def allowable(self, mechanism: Mechanism) -> float:
-        """Return the greatest value that a machine withstands, the least if high is better, SI; see `allowed_by`."""
+        """Return the maximum that a machine withstands, or the minimum if high is better, SI; see `allowed_by`."""
         raise NotImplementedError(f"{self.name} has no allowable value")
 
     def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
-        """Return the formulas of raw numbers whose greatest value it is, for bounds over ranges; empty without any."""
+        """Return the formulas of raw numbers of which it is the maximum, for bounds over ranges.
+
+        Empty if there are none.
+        """
         return ()
 
     @property
     def made_of(self) -> tuple[Quantity, ...]:
-        """The quantities from which it is computed, if any."""
+        """The quantities from which it is computed."""
         return ()
 
     def with_parts(self, parts: tuple[Quantity, ...]) -> Quantity:
@@ -276,7 +276,7 @@ class Quantity(ABC):
         return self
 
     def lacks(self, mechanism: Mechanism, consequence: Consequence) -> str | None:
-        """Return rule, value and remedy for the first unmet need of a machine; None if there is none.
+        """Return rule, value and remedy for the first need that a machine does not meet; None if there is none.
 
         consequence: effect on the quantity: "undefined", "equal" to another one, or "zero" for every design.
         """
@@ -287,14 +287,14 @@ class Quantity(ABC):
 
     @property
     def blank(self) -> str:
-        """Reason why a design may have no value though the machine defines the quantity."""
+        """Reason why a design may have no value even though the machine defines the quantity."""
         needs = (need for need in self.needs if need.consequence == "undefined")
         return next((need.missing for need in needs), "it has no value for this design")
 
     def undefined_because(self, machines: Iterable[Mechanism]) -> str | None:
-        """Return rule, value and remedy if one of the machines does not define the quantity; None if all do.
+        """Return rule, value and remedy if any of the machines does not define the quantity; None if all do.
 
-        A quantity that only equals another one counts as undefined.
+        A quantity that merely equals another one counts as undefined.
         """
         reasons = (self.lacks(m, "undefined") or self.lacks(m, "equal") for m in machines)
         return next(filter(None, reasons), None)
@@ -306,13 +306,13 @@ class Quantity(ABC):
 
     @abstractmethod
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
-        """Return the quantity for designs (n, 3 + k) that all rotate fully.
+        """Return the quantity for designs (n, 3 + k), all fully rotating.
 
-        Columns: crank, rod, offset, m, then the value of each of the machine's varying numbers, SI.
+        Columns: crank, rod, offset, m, then the machine's variables, SI.
         """
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the quantity as the greatest of smooth pieces: a single one, unless its class has several."""
+        """Return the quantity as the maximum of smooth pieces: a single one, unless its class has several."""
         evaluation = self.evaluate(mechanism, dimensions, gradients=True)
         assert evaluation.gradients is not None
         return Pieces(evaluation.values[:, None], evaluation.gradients[:, None], np.zeros((len(evaluation.values), 1)))

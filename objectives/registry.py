@@ -1,4 +1,4 @@
-"""All quantities by name, found in the modules of this folder; their places give their order in tables."""
+"""All quantities by name, found in the modules of this folder; their `place` gives their order in tables."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .quantity import Quantity
 
 
 def declared(package: str) -> tuple[Quantity, ...]:
-    """Return every quantity that a package's modules declare, without sub-packages, in order of their places."""
+    """Return every quantity that a package's modules declare, without sub-packages, ordered by `place`."""
     quantities: dict[str, Quantity] = {}
     for module in pkgutil.iter_modules(import_module(package).__path__):
         if not module.ispkg and f"{package}.{module.name}" != __name__:
@@ -27,7 +27,7 @@ def declared(package: str) -> tuple[Quantity, ...]:
 _MOST_NAMES = 12  # of a message
 
 FACTS: dict[str, Quantity] = {quantity.name: quantity for quantity in declared(__package__)}
-"""Every quantity of the product, also those whose values need a table of the job."""
+"""All quantities, including those whose values need a table in the job."""
 QUANTITIES: dict[str, Quantity] = {name: quantity for name, quantity in FACTS.items() if not quantity.table}
 """Quantities that every problem has."""
 
@@ -37,9 +37,9 @@ def _of_product(name: str, changes: dict[str, Any]) -> Quantity:
 
 
 def _pickled_form(quantity: Quantity) -> tuple[Any, ...] | str:
-    """Return the pickled form of a quantity: a built-in one by its name and changes.
+    """Return the pickled form of a quantity: for a built-in one, its name and the changes to it.
 
-    Its formulas and the conditions of its needs may have no pickled form.
+    Its formulas and the conditions of its needs may not be picklable.
     """
     fact = FACTS.get(quantity.name)
     if type(fact) is not type(quantity):
@@ -54,7 +54,7 @@ for _kind in {type(of) for of in FACTS.values()}:
 
 
 def listed(names: Collection[str]) -> str:
-    """Return the first of many names for a message, a job's own ones before others, and where to find all."""
+    """Return the first names for a message, a job's own names first, and where to find the full list."""
     few = ", ".join(sorted(names, key=FACTS.__contains__)[:_MOST_NAMES])
     left_over = len(names) - _MOST_NAMES
     return (
@@ -65,10 +65,10 @@ def listed(names: Collection[str]) -> str:
 
 
 def quantity(name: str, custom: Collection[Quantity] = ()) -> Quantity:
-    """Return the quantity with a name; raise `InputError` with the nearest names for an unknown one.
+    """Return the quantity with a name; raise `InputError` with the closest names for an unknown one.
 
-    custom: quantities of a problem besides the built-in ones. If there is a problem, use `Problem.quantity`, which
-    includes its own.
+    custom: a problem's quantities besides the built-in ones. With a problem at hand, use `Problem.quantity`, which
+    includes its custom quantities.
     """
     match = next((of for of in custom if of.name == name), None) or QUANTITIES.get(name)
     if match is None:

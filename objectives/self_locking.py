@@ -1,4 +1,4 @@
-"""Self-locking margin: margin of the transmission angle above the angles of friction."""
+"""Self-locking margin: margin of the transmission angle above the friction angles."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .transmission_angle import TRANSMISSION_ANGLE
 
 
 class ClosedFormMargin(Quantity):
-    """The least transmission angle minus the angles of friction; -inf where the pins alone lock (no such angle)."""
+    """Minimum transmission angle minus the friction angles; -inf if the pins alone lock the linkage (no such angle)."""
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""

@@ -1,4 +1,4 @@
-"""Slider motion: greatest speed, acceleration and jerk over the cycle."""
+"""Slider motion: maximum speed, acceleration and jerk over the cycle."""
 
 from functools import partial
 

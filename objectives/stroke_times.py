@@ -30,7 +30,7 @@ def evaluate_stroke_times(
     *,
     cylinder: int = 0,
 ) -> tuple[Array, Array | None]:
-    """Return a smooth function (n,) of stroke times, and its derivatives by complex steps.
+    """Return a smooth function (n,) of the stroke times, and its derivatives by complex steps.
 
     designs: (n, 3 + k)."""
     designs = np.asarray(designs, dtype=np.float64)
@@ -49,7 +49,7 @@ def evaluate_stroke_times(
 
 @dataclass(frozen=True, kw_only=True)
 class StrokeTime(Quantity):
-    """The time of one stroke. outward: whether it is the outward stroke."""
+    """Time of one stroke. outward: whether it is the outward stroke."""
 
     outward: bool
 
@@ -77,7 +77,10 @@ def _per_speed(mechanism: Mechanism) -> Formula:
 def _even_formulas(
     mechanism: Mechanism, function: Callable[[ScaledStrokeTimes], Any], factor: Formula = lambda number: 1.0
 ) -> Sequence[Formula]:
-    """Return a function of stroke times, times a factor, as a formula of a machine's numbers; none along a profile."""
+    """Return a factor times a function of the stroke times, as a formula in a machine's numbers.
+
+    None along a profile.
+    """
     if mechanism.speed_profile is not None:
         return ()
     slots = (Raw.CRANK, Raw.ROD, Raw.OFFSET)
@@ -88,8 +91,8 @@ def _even_formulas(
 class StrokeTimeRatio(Quantity):
     """Time of one stroke divided by the other; along a profile, a slow stroke sets a lower bound on it.
 
-    For several cylinders along a profile it is the least value over the cylinders. outward: whether the outward stroke
-    is the numerator.
+    For several cylinders along a profile, it is the minimum over the cylinders. outward: whether the outward stroke is
+    the numerator.
     """
 
     outward: bool
@@ -110,14 +113,14 @@ class StrokeTimeRatio(Quantity):
         return Values(values[least, rows], None if slopes is None else slopes[least, rows])
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the quantity as the least of the ratios of its cylinders; see `Quantity`."""
+        """Return the quantity as the minimum of the ratios of its cylinders; see `Quantity`."""
         values, slopes = self._cylinder_ratios(mechanism, dimensions, True)
         assert slopes is not None
         labels = np.broadcast_to(np.arange(float(len(values))), values.T.shape)
         return Pieces(values.T, slopes.transpose(1, 0, 2), labels, least=True)
 
     def _cylinder_ratios(self, mechanism: Mechanism, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
-        """Return the ratios (c, n) of the cylinders that differ, and their derivatives (c, n, 3 + k)."""
+        """Return the ratios (c, n) for cylinders that differ, and their derivatives (c, n, 3 + k)."""
         count = 1 if mechanism.speed_profile is None else cylinder_count(mechanism)
         parts = [evaluate_stroke_times(mechanism, designs, self._ratio, gradients, cylinder=k) for k in range(count)]
         slopes = [ratio_slopes for _, ratio_slopes in parts if ratio_slopes is not None]
@@ -193,4 +196,4 @@ STROKE_TIME_RATIOS: dict[str, StrokeTimeRatio] = {
     "outward": OUTWARD_TO_INWARD_TIME_RATIO,
     "inward": INWARD_TO_OUTWARD_TIME_RATIO,
 }
-"""By stroke, the ratio of its time to that of the other stroke."""
+"""For each stroke, the ratio of its time to that of the other stroke."""

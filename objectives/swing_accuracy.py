@@ -1,4 +1,4 @@
-"""Position errors of the driven side over a limited swing."""
+"""Position errors at the driven side over a limited swing."""
 
 from functools import partial
 

@@ -1,4 +1,4 @@
-"""Drive of a limited swing: force or torque, holding force or torque, power, work and efficiency."""
+"""Drive over a limited swing: force or torque, holding force or torque, power, work and efficiency."""
 
 from functools import partial
 

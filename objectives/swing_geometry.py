@@ -1,4 +1,4 @@
-"""Geometry of a limited swing: transmission angle of the driven side, slider travel, crank angle travelled."""
+"""Geometry of a limited swing: transmission angle at the driven side, slider travel, crank travel."""
 
 import numpy as np
 

@@ -1,6 +1,6 @@
 """Quantities over a limited swing of the crank.
 
-They exist where the motion of a job is a swing; a `Problem` has them among its own quantities.
+They exist if the motion in a job is a swing; a `Problem` lists them among its own quantities.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from .quantity import MECHANICS, Array, Pieces, Quantity, Values
 
 @dataclass(frozen=True, kw_only=True)
 class SwingQuantity(Quantity):
-    """A number of a swing.
+    """A quantity over a swing.
 
-    swing: the swing; None before a job gives one: facts without values. driver: required driver, any if None. timed:
-    whether the swing must have a duration. tolerated: whether it comes from tolerances, including those of the
-    actuator. rubbing: the quantity or number that it equals without friction, "" for none.
+    swing: the swing; None before a job gives one, when the quantity has facts but no values. driver: required driver,
+    any if None. timed: whether the swing must have a duration. tolerated: whether it comes from tolerances, including
+    those of the actuator. rubbing: the quantity or number that it equals without friction, "" if there is none.
     """
 
     swing: Swing | None = None
@@ -73,9 +73,10 @@ class SwingQuantity(Quantity):
 
 @dataclass(frozen=True, kw_only=True)
 class SwingPeak(SwingQuantity):
-    """The greatest magnitude of a state over both ways.
+    """Maximum magnitude of a state over both strokes.
 
-    state: state of `points`; None for the drive at rest at the ends. free: whether the latter is without friction.
+    state: state in `points`; None for the drive at rest at the ends. free: whether the drive at rest is taken without
+    friction.
     """
 
     state: int | None
@@ -102,7 +103,7 @@ class SwingPeak(SwingQuantity):
 
 @dataclass(frozen=True, kw_only=True)
 class SwingLeast(SwingQuantity):
-    """The least drive along the motion of one way, without inertia: negative where loads drive the linkage."""
+    """Minimum drive effort along the motion of one stroke, without inertia: negative where loads drive the linkage."""
 
     back: bool
 
@@ -115,7 +116,7 @@ class SwingLeast(SwingQuantity):
         return Values(values, None if negated_peaks.gradients is None else -negated_peaks.gradients[:, 0])
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the lowest local dips; see `Quantity`."""
+        """Return the lowest local minima; see `Quantity`."""
         negated_peaks = least_drives(mechanism, self._required_swing, dimensions, back=self.back, gradients=True)
         assert negated_peaks.gradients is not None
         return Pieces(-negated_peaks.values + 0.0, -negated_peaks.gradients, negated_peaks.places, least=True)
@@ -123,7 +124,10 @@ class SwingLeast(SwingQuantity):
 
 @dataclass(frozen=True, kw_only=True)
 class SwingIntegral(SwingQuantity):
-    """A number from the drive's work. of: work on the forward stroke, or its fraction without friction."""
+    """A quantity from the drive's work.
+
+    integral: the work on the forward stroke, or the fraction needed without friction.
+    """
 
     integral: Literal["work", "share"]
 
@@ -136,9 +140,9 @@ class SwingIntegral(SwingQuantity):
 
 @dataclass(frozen=True, kw_only=True)
 class SwingForm(SwingQuantity):
-    """A closed form in lengths and ends: least transmission angle, slider travel, crank angle travelled.
+    """A closed form in lengths and ends: minimum transmission angle, slider travel, crank travel.
 
-    stated: the side whose ends must not be stated, as they already fix the value; None if either may be stated.
+    stated: the side whose ends must not be given, as they already fix the value; None if either may be given.
     """
 
     measure: Literal["angle", "travel", "swing"]
@@ -150,7 +154,7 @@ class SwingForm(SwingQuantity):
         return True
 
     def unfit(self, swing: Swing) -> str | None:
-        """Return rule, value and remedy if every design has the same value; see `SwingQuantity`."""
+        """Return rule, value and remedy if all designs have the same value; see `SwingQuantity`."""
         if swing.stated_for == self.stated:
             stated_value = self.unit.factor * abs(swing.end - swing.start)
             keys = "from and to" if swing.stated_for == "crank" else "slider_from and slider_to"
@@ -167,7 +171,7 @@ class SwingForm(SwingQuantity):
         return Values(pieces.values[:, 0], pieces.gradients[:, 0] if gradients else None)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the angles at the candidate places of the least one, lowest first; see `Quantity`."""
+        """Return the angles at the candidate locations of the minimum, lowest first; see `Quantity`."""
         designs = np.ascontiguousarray(dimensions, dtype=np.float64)
         rows = np.flatnonzero(passes(mechanism, self._required_swing, designs))
         if self.measure == "angle":

@@ -1,4 +1,4 @@
-"""Least drive on each way of a limited swing: whether the linkage overruns, or is self-locking."""
+"""Minimum drive effort on each stroke of a limited swing: whether the linkage overruns, or is self-locking."""
 
 from functools import partial
 

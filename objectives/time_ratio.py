@@ -1,4 +1,4 @@
-"""Time ratio and crank angle ratio: slower stroke to faster stroke, by time and by crank angle."""
+"""Time ratio and crank angle ratio: slower stroke to faster stroke, in time and in crank angle."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .stroke_times import evaluate_stroke_times
 
 
 def ratio_of(excess: float) -> float:
-    """Return the crank angle ratio for an excess angle, rad: the time ratio at constant speed."""
+    """Return the crank angle ratio for an excess angle, rad: at constant speed, the time ratio."""
     return (math.pi + excess) / (math.pi - excess)
 
 
@@ -35,7 +35,7 @@ def _time_ratio_bounds(box: LengthRanges) -> tuple[float, float]:
 
 @dataclass(frozen=True, kw_only=True)
 class TimeRatio(ClosedFormQuantity):
-    """The time ratio: a closed form at constant speed; along a profile, the greater ratio of the stroke times."""
+    """Time ratio: a closed form at constant speed; along a profile, the maximum of both stroke time ratios."""
 
     def is_closed(self, mechanism: Mechanism) -> bool:
         """Return whether the machine rotates at constant speed."""
@@ -51,7 +51,7 @@ class TimeRatio(ClosedFormQuantity):
         return Values(np.maximum(ratio, 1.0 / ratio), slopes)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the quantity as the greater of its two ratios; see `Quantity`."""
+        """Return the quantity as the maximum of its two ratios; see `Quantity`."""
         if self.is_closed(mechanism):
             return super().pieces(mechanism, dimensions)
         ratio, slopes = evaluate_stroke_times(mechanism, dimensions, lambda of: of.ratio, True)
@@ -99,7 +99,7 @@ TIME_RATIO = TimeRatio(
         rule="the time ratio is the slower stroke over the faster, so 1 or more",
         remedy="give the inverse (constraints.slow_stroke says which stroke is the slow one)",
     ),
-    # A drive's speed varies by about one percent itself, and without offset neither stroke is slow.
+    # A drive's own speed varies by about one percent; without offset neither stroke is slow.
     floor=1.01,
     in_line=1.0,
     needs=(ONE_TIMING,),

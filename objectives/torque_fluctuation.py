@@ -1,4 +1,4 @@
-"""Torque fluctuation: root mean square of the drive torque's deviation from its mean, over the crank angle."""
+"""Torque fluctuation: root mean square deviation of the drive torque from its mean, over the crank angle."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ _ROUNDING = 4e-15
 
 
 class TorqueFluctuation(Quantity):
-    """sqrt(rms^2 - mean^2) of the drive torque, both over the crank angle; infinite where friction locks."""
+    """sqrt(rms^2 - mean^2) of the drive torque, both over the crank angle.
+
+    Infinite where friction locks the linkage.
+    """
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
@@ -22,7 +25,7 @@ class TorqueFluctuation(Quantity):
         locks = np.isinf(averages.rms_over_angle)
         mean, rms = np.where(locks, 0.0, averages.mean), np.where(locks, 1.0, averages.rms_over_angle)
         difference = rms - np.abs(mean)
-        difference = np.where(difference > _ROUNDING * rms, difference, 0.0)  # of a constant torque
+        difference = np.where(difference > _ROUNDING * rms, difference, 0.0)  # for a constant torque
         values = np.sqrt(difference * (rms + np.abs(mean)))
         slopes = None
         if averages.mean_gradients is not None and averages.rms_over_angle_gradients is not None:

@@ -1,4 +1,4 @@
-"""Transmission angle: the least angle between rod and the normal of the slider line over the cycle."""
+"""Transmission angle: minimum angle between the rod and the normal of the slider line over the cycle."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
 """Physical values as people write them, "80 mm", "300 rpm", "0.05 inch", and their conversion to SI.
 
-A value is one number and one unit; a plain number is in SI. Units come from a short list of this project's own, read
-by pint, instead of pint's default registry, for three reasons. In the default registry an angle has no dimension, so
-that "5 s^-1" or "5 Bq" would pass for a crank speed in rad/s, wrong by 2 pi. Thousands of units from other fields make
-slips like "mM" or "degC" valid. And it takes 0.14 s to build, this one 3 ms.
+A value is one number and one unit; a plain number is in SI. Units come from this project's own short list, read by
+pint, rather than from pint's default registry, for three reasons. In the default registry an angle has no dimension, so
+"5 s^-1" or "5 Bq" would pass for a crank speed in rad/s, wrong by a factor of 2 pi. Thousands of units from other
+fields turn slips such as "mM" or "degC" into valid units. And it takes 0.14 s to build; this one takes 3 ms.
 
 Conversion is exact rational arithmetic, rounded once:
 "80 mm" is the double 0.08, and 360 deg is the double nearest 2 pi.
@@ -29,12 +29,12 @@ from .kinds import KINDS, DisplayUnit, Kind, amount_in, kind_in
 
 Sign = Literal["any", "positive", "zero or more"]
 Dimension = frozenset[tuple[str, int]]
-"""Base dimensions with their powers: {("[length]", 1), ("[time]", -1)} of a speed."""
+"""Base dimensions with their powers: {("[length]", 1), ("[time]", -1)} for a speed."""
 
 _OTHERS = (Kind("a frequency that may count turns or radians", "s^-1", "", 0.0, DisplayUnit("1/s", "")),)
 
-# Exact by definition: inch, pound (international, 1959) and the standard acceleration of gravity (3rd CGPM, 1901)
-# within the two forces. Degrees carry pi to 36 digits.
+# Exact by definition: inch, pound (international, 1959) and, in the two forces, standard gravity (3rd CGPM, 1901).
+# Degrees use pi to 36 digits.
 _DEFINITIONS = """
 nano- = 1e-9 = n-
 micro- = 1e-6 = µ- = μ- = u-
@@ -92,7 +92,7 @@ _COMMON = (
     *("mm", "cm", "m", "µm", "inch", "foot", "thou", "deg", "rad", "arcmin", "rpm", "rad/s", "kg", "g", "t"),
     *("pound", "s", "min", "N", "kN", "lbf", "kgf", "Nm", "W", "kW", "Pa", "MPa"),
 )
-# Names that most jobs need, as the definitions above have them (a test compares): pint takes 0.2 s to import.
+# Names that most jobs need, equal to the definitions above (a test compares them), because importing pint takes 0.2 s.
 _FORCE = (("[length]", 1), ("[mass]", 1), ("[time]", -2))
 _USUAL: dict[str, tuple[Fraction, tuple[tuple[str, int], ...]]] = {
     "m": (Fraction(1), (("[length]", 1),)),
@@ -123,11 +123,11 @@ _AMBIGUOUS_SYMBOLS = (
     ("Pa", r"J\b", "a heat per volume"),
     ("J/m^3", r"(Pa|bar|psi|ksi)\b|/\s*\w+?\^?2\b", "a pressure"),
 )
-"""Kinds of one dimension that are told apart: the SI unit of a kind, symbols of another one, and what that is."""
+"""Kinds that share a dimension but are kept apart: SI unit of one kind, symbols of the other, and its description."""
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
 PATTERN = rf"^\s*{_NUMBER.replace('[+-]', '[+−-]', 1)}\s*(1\s*/\s*)?[^\d\s.+-].*$"
-"""Pattern of a value with a unit, for a JSON Schema."""
+"""Pattern for a value with a unit, in a JSON Schema."""
 _VALUE = re.compile(rf"\s*({_NUMBER})(?:\s*([^\d\s.+\-].*)|\s+(1\s*/.*))?\s*", re.ASCII | re.DOTALL)
 _FACTOR = re.compile(r"\s*([*/·⋅-]?)\s*([A-Za-zµμ°_]+)(?:(?:\^|\*\*)?([+-]?\d))?", re.ASCII)
 _INVERSE = re.compile(r"^1?\s*/")
@@ -135,14 +135,14 @@ _SPREAD = re.compile(rf"({_NUMBER})\s*(.*?)\s*(?:\+/?-|±)\s*({_NUMBER})\s*(.*)"
 _WEIGHT = re.compile(r"\b(lb|oz|kg)s?\b")  # masses that people write for the force of their weight
 _IN = re.compile(r"\s*in[\s_]+(?=\S)(?!(?:lbf|ozf)\s*$)", re.IGNORECASE)
 _LONGEST = 60
-_GREATEST = 1e30  # of a number in a formula, SI: products of a few stay far from the ends of a double
+_GREATEST = 1e30  # largest magnitude of a number in a formula, SI: products of a few stay within the range of a double
 SPACES = "\u00a0\u2007\u2009\u202f"
-"""Spaces that do not break a line, as texts of pages and papers have them between number and unit."""
+"""Non-breaking spaces, which web pages and papers put between number and unit."""
 _TYPESET = str.maketrans(f"−⁻⁰¹²³⁴⁵⁶⁷⁸⁹{SPACES}", f"--0123456789{' ' * len(SPACES)}")
 
 
 def kind_of(symbol: str) -> Kind:
-    """Return the kind of value whose unit has the dimension of a symbol ("mm", "deg", "N m", "").
+    """Return the kind whose unit has the dimension of a symbol ("mm", "deg", "N m", "").
 
     Raises InputError for a symbol that is not a unit, or whose dimension has no kind.
     """
@@ -155,7 +155,7 @@ def kind_of(symbol: str) -> Kind:
 
 
 def kind_for(symbol: str) -> Kind:
-    """Return the kind of value of any unit, one of `KINDS` or a new one. Raises InputError unless it is a unit."""
+    """Return the kind for any unit, one of `KINDS` or a new one. Raises InputError unless it is a unit."""
     kind = kind_with(dimension_of(symbol), symbol)
     if kind in KINDS:
         return kind
@@ -164,19 +164,19 @@ def kind_for(symbol: str) -> Kind:
 
 
 def dimension_of(symbol: str) -> Dimension:
-    """Return the dimension of a unit, "" for none. Raises InputError unless it is a unit."""
+    """Return the dimension of a unit, "" if it has none. Raises InputError unless it is a unit."""
     return _parse_unit(symbol)[1]
 
 
 def dimension_of_kind(kind: Kind) -> Dimension:
-    """Return the dimension of a kind; an amount has one of its own."""
+    """Return the dimension of a kind; an amount has its own dimension."""
     return frozenset({(f"[{kind.unit}]", 1)}) if kind.amount else dimension_of(kind.unit)
 
 
 def kind_with(dimension: Dimension, symbol: str = "") -> Kind:
-    """Return the kind of value with a dimension: one of `KINDS`, or a new kind in base units.
+    """Return the kind with a dimension: one of `KINDS`, or a new kind in base units.
 
-    symbol: a unit, which distinguishes kinds with the same dimension, such as a torque and an energy.
+    symbol: a unit that distinguishes kinds with the same dimension, such as a torque and an energy.
     """
     candidates = [kind for kind in KINDS if dimension_of(kind.unit) == dimension]
     if candidates:
@@ -187,12 +187,15 @@ def kind_with(dimension: Dimension, symbol: str = "") -> Kind:
 
 
 def base_unit(base: str) -> str:
-    """Return the unit of a base dimension: "m" of "[length]"."""
+    """Return the unit of a base dimension: "m" for "[length]"."""
     return _BASES.get(base, base[1:-1])
 
 
 def number_in_si(digits: str, symbol: str) -> float:
-    """Return a number with a unit in SI. Raises InputError for an unknown unit, and for a size beyond any machine."""
+    """Return a number with a unit, converted to SI.
+
+    Raises InputError for an unknown unit, and for a magnitude beyond any machine.
+    """
     exact = Fraction(digits) * _parse_unit(symbol)[0]
     if abs(exact) > _GREATEST:
         raise InputError(f"{digits} {symbol} is beyond any machine: a number in SI is at most {_GREATEST:g}")
@@ -200,17 +203,17 @@ def number_in_si(digits: str, symbol: str) -> float:
 
 
 def per_si(symbol: str) -> float:
-    """Return the value of one SI unit in a unit: 1000 for "mm". Raises InputError for an unknown unit."""
+    """Return the value of one SI unit in another unit: 1000 for "mm". Raises InputError for an unknown unit."""
     return float(1 / _parse_unit(symbol)[0])
 
 
 def to_si(value: object, kind: Kind, *, sign: Sign = "any", plain: bool = True) -> float:
-    """Return a value in SI, from a string of number and unit, or from a plain number in SI.
+    """Return a value in SI, from a string with number and unit or from a plain number in SI.
 
-    sign: required sign of the value. plain: whether messages offer a plain number, which commands do not accept. A
-    ratio is a plain number, as a number or as a string.
-    Raises InputError, with rule, value and remedy, for anything else: another dimension, an unknown unit, an
-    expression, NaN, infinity, a boolean.
+    sign: required sign of the value. plain: whether messages suggest a plain number, which commands do not accept. A
+    ratio is a plain number, given as a number or as a string. Raises InputError, with rule, value and remedy, for
+    anything
+    else: another dimension, an unknown unit, an expression, NaN, infinity, a boolean.
     """
     rule = f"must be {kind.name}"
     example = f'"{kind.example}"' if kind.unit else kind.example
@@ -237,10 +240,10 @@ def to_si(value: object, kind: Kind, *, sign: Sign = "any", plain: bool = True) 
 
 
 def plus_minus_ends(value: object) -> tuple[str, str] | None:
-    """Return the ends of a range given by middle and half width, "180 mm +- 0.5 mm".
+    """Return the ends of a range given as middle and half width, "180 mm +- 0.5 mm".
 
-    Each is a text in the unit of the middle; a unit that is missing on one side is that of the other. None if the value
-    is not such a range. Raises InputError for units of two kinds.
+    Each is a text in the unit of the middle value; a unit missing on one side is taken from the other. None if the
+    value is not such a range. Raises InputError for units of different kinds.
     """
     parts = _SPREAD.fullmatch(value.translate(_TYPESET).strip()) if isinstance(value, str) else None
     if parts is None:
@@ -258,7 +261,7 @@ def plus_minus_ends(value: object) -> tuple[str, str] | None:
 
 
 def is_value(text: str) -> bool:
-    """Return whether a text is one number, alone or with any unit."""
+    """Return whether a text is a single number, alone or with any unit."""
     parts = number_and_unit(text)
     try:
         return parts is not None and (parts[1] in _SPOKEN or _parse_unit(parts[1]) is not None)
@@ -267,25 +270,25 @@ def is_value(text: str) -> bool:
 
 
 def number_and_unit(text: str) -> tuple[str, str] | None:
-    """Return digits and unit, known or not, of a text that is one number; None for any other text."""
+    """Return digits and unit, known or not, from a text that is a single number; None for any other text."""
     match = _VALUE.fullmatch(text.translate(_TYPESET)) if len(text) <= _LONGEST else None
     return None if match is None else (match[1], _unit_in(match))
 
 
 def _unit_in(match: re.Match[str]) -> str:
-    """Return the unit of a value, "" for none; one of `_SPOKEN` without spaces."""
+    """Return the unit of a value, "" if it has none; spaces are removed if it is in `_SPOKEN`."""
     unit = (match[2] or match[3] or "").strip()
     plain = "".join(unit.split())
     return plain if plain in _SPOKEN else unit
 
 
 def printable_name(name: str) -> str:
-    """Return a name for a message: as it is, or quoted if some of it cannot be printed."""
+    """Return a name for a message: unchanged, or quoted if part of it cannot be printed."""
     return name if name.isprintable() else quote(name)
 
 
 def quote(value: object) -> str:
-    """Return a value for a message: as a job file writes it, printable, of moderate length."""
+    """Return a value for a message: as in a job file, printable, of moderate length."""
     if value is None or isinstance(value, bool):
         return json.dumps(value)
     if isinstance(value, str):
@@ -307,7 +310,7 @@ def quote(value: object) -> str:
 
 
 def closest(word: str, words: Iterable[str]) -> str | None:
-    """Return the word that a misspelt one probably means; None if none is near."""
+    """Return the word that a misspelt one probably means; None if none is close."""
     by_fold = {candidate.casefold(): candidate for candidate in words}
     near = difflib.get_close_matches(word.casefold()[:_LONGEST], by_fold, n=1, cutoff=0.6)
     near = near or sorted((folded for folded in by_fold if word.casefold() in folded.split("_")), key=len)
@@ -320,9 +323,9 @@ def squeezed(unit: str) -> str:
 
 
 def without_in(text: str) -> str:
-    """Return a unit without the "in" of "force in N".
+    """Return a unit without the word "in" from "force in N".
 
-    The inch of lbf in and ozf in, the only torques with an inch, stays."""
+    The inch in lbf in and ozf in, the only torques with an inch, stays."""
     stated = _IN.match(text)
     return text if stated is None else text[stated.end() :]
 
@@ -394,7 +397,7 @@ def _read_exact_value(text: str, kind: Kind, rule: str, write: str) -> Fraction:
 
 
 def _other_kind(number: str, unit: str, kind: Kind) -> tuple[str, str]:
-    """Return in words which kind a unit is of, and what to write instead; each empty if unknown."""
+    """Return the kind of a unit in words, and what to write instead; each empty if unknown."""
     dimension = _parse_unit(unit)[1]
     kinds = [item for item in (*KINDS, *_OTHERS) if _parse_unit(item.unit)[1] == dimension]
     energies = [item for item in kinds if ("J" in item.unit) == bool(re.search(r"J\b", unit))]
@@ -410,10 +413,10 @@ def _other_kind(number: str, unit: str, kind: Kind) -> tuple[str, str]:
 
 @functools.lru_cache(maxsize=256)
 def _parse_unit(text: str) -> tuple[Fraction, Dimension]:
-    """Return the factor to SI and the dimension of a unit such as "kg m^2", "N s/m" or "m/s^2".
+    """Return the factor to SI and the dimension for a unit such as "kg m^2", "N s/m" or "m/s^2".
 
-    Names are separated by spaces, hyphens or signs of multiplication; one division sign, before the last name: a
-    product after it ("N/m s") reads either way and is refused. Nothing or a 1 may stand before it: "1/s".
+    Names are separated by spaces, hyphens or multiplication signs. One division sign is allowed, before the last name:
+    a product after it ("N/m s") is ambiguous and is refused. The text before it may be empty or 1: "1/s".
     """
     rest, factor, dimension = _INVERSE.sub("/", text.rstrip()), Fraction(1), dict[str, int]()
     divided, first = False, True
@@ -436,7 +439,7 @@ def _parse_unit(text: str) -> tuple[Fraction, Dimension]:
 
 
 def _lookup(name: str) -> tuple[Fraction, tuple[tuple[str, int], ...]]:
-    """Return the factor to SI and the dimension of one unit name, with its prefix."""
+    """Return the factor to SI and the dimension for a single unit name, with its prefix."""
     name = "deg" if name == "°" else name
     if name in _USUAL:
         return _USUAL[name]
@@ -453,7 +456,7 @@ def _lookup(name: str) -> tuple[Fraction, tuple[tuple[str, int], ...]]:
 
 @functools.cache
 def _unit_registry() -> Any:
-    """Return the registry of the units above, built when first needed."""
+    """Return the registry with the units above, built when first needed."""
     import pint
 
     registry: Any = pint.UnitRegistry(None, non_int_type=Fraction)

@@ -1,4 +1,4 @@
-"""Dimensions of formulas: checks of sums, comparisons and function arguments by the units of the names."""
+"""Dimensional analysis of formulas: checks sums, comparisons and function arguments by the units of the names."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from ..units import Dimension, base_unit, dimension_of, dimension_of_kind, kind_
 from .expression import ANGLES, INVERSES, Node, Number, Text, fold
 
 _LENGTH, _ANGLE = "[length]", "[angle]"
-_LARGEST = 9  # a power that a unit has a notation for
-_LONGEST = 60  # of a part in a message
+_LARGEST = 9  # highest power for which units have a notation
+_LONGEST = 60  # longest part shown in a message
 _SAID = {"+": "adds", "-": "subtracts", "min": "compares", "max": "compares"}
 Powers = Mapping[str, Fraction]
 
 
 @dataclass(frozen=True)
 class _Part:
-    """Dimension of a part of a formula, its text, and its value if it is a plain number."""
+    """Dimension of part of a formula, its text, and its value if it is a plain number."""
 
     powers: Powers
     written: tuple[str, int]
@@ -28,7 +28,7 @@ class _Part:
 
     @property
     def text(self) -> str:
-        """Its text, truncated if long."""
+        """Its text, truncated if it is long."""
         text = self.written[0]
         return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
 
@@ -38,7 +38,7 @@ class _Part:
 
 
 def kind_of_formula(node: Node, kinds: Mapping[str, Kind]) -> Kind:
-    """Return the kind of a formula's values. kinds: of the names in it. Raises InputError where dimensions clash."""
+    """Return the kind of a formula's values. kinds: kinds of the names in it. Raises InputError if dimensions clash."""
     part = fold(node, _Dimensions({name: _powers_of(dimension_of_kind(kind)) for name, kind in kinds.items()}))
     if any(power.denominator != 1 or abs(power) > _LARGEST for power in part.powers.values()):
         raise InputError(
@@ -117,7 +117,7 @@ def _raised_to_power(base: _Part, exponent: _Part, text: str) -> Powers:
 
 
 def _exponent(function: str, arguments: list[_Part]) -> Fraction | None:
-    """Return the value of an exponent such as 1/3; None if it is not a number or too large."""
+    """Return the value of an exponent such as 1/3; None if it is not a number, or is too large."""
     values = [item.value for item in arguments]
     first, last = values[0], values[-1]
     if first is None or last is None or max(map(abs, (first, last))) > 1000:
@@ -134,7 +134,7 @@ def _powers_of(dimension: Dimension) -> Powers:
 
 
 def _may_be_added(first: Powers, second: Powers) -> bool:
-    """Return whether values may be added: an angle times a length is a length, like an arc."""
+    """Return whether values may be added. An angle times a length counts as a length, like an arc."""
     return _without_arc(first) == _without_arc(second)
 
 
@@ -148,7 +148,7 @@ def _kind_of_powers(powers: Powers) -> Kind:
 
 
 def _unit(powers: Powers) -> str:
-    """Return the display unit for values of a dimension."""
+    """Return the display unit for values with a dimension."""
     significant = _without_arc(powers)
     if all(power.denominator == 1 and abs(power) <= _LARGEST for power in significant.values()):
         return _kind_of_powers(significant).metric.symbol or "no unit"

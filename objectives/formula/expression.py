@@ -1,4 +1,4 @@
-"""Formulas as trees of numbers in SI, names and functions; the algebra that folds a tree gives it a meaning."""
+"""Formulas as trees of numbers in SI, names and functions; evaluating a tree in an algebra gives it a meaning."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Name:
 
 @dataclass(frozen=True)
 class Call:
-    """A function of other nodes. function: a sign of `SIGNS`, "neg" for a minus before one node, or a name."""
+    """A function of other nodes. function: an operator in `SIGNS`, "neg" for a unary minus, or a name."""
 
     function: str
     arguments: tuple[Node, ...]
@@ -36,16 +36,16 @@ class Call:
 Node = Number | Name | Call
 
 SIGNS = {"+": 1, "-": 1, "*": 2, "/": 2, "neg": 3, "**": 4}
-"""Signs of operations and how strongly each binds; equally strong ones bind from the left, powers from the right."""
+"""Operators and how strongly each binds; equal operators associate to the left, powers to the right."""
 ANGLES = ("sin", "cos", "tan")
 INVERSES = ("asin", "acos", "atan")
 ARGUMENTS = {"sqrt": (1, 1), "abs": (1, 1), "min": (2, 20), "max": (2, 20), **dict.fromkeys(ANGLES + INVERSES, (1, 1))}
-"""Functions with the least and the greatest number of arguments."""
+"""Functions with their minimum and maximum number of arguments."""
 _ATOM = 9
 
 
 class Algebra(Protocol[T]):
-    """A meaning of formulas: values, units, ranges, text."""
+    """A meaning of formulas, such as values, units, ranges or text."""
 
     def number(self, number: Number) -> T:
         """Return the meaning of a number."""
@@ -56,7 +56,7 @@ class Algebra(Protocol[T]):
         ...
 
     def call(self, function: str, arguments: list[T]) -> T:
-        """Return the meaning of a function of these."""
+        """Return the meaning of a function, from the meanings of its arguments."""
         ...
 
 
@@ -70,7 +70,7 @@ def fold(node: Node, algebra: Algebra[T]) -> T:
 
 
 def names_in(node: Node) -> tuple[str, ...]:
-    """Return the names in a formula, each once, in order of appearance."""
+    """Return the names in a formula without repetition, in order of appearance."""
 
     def occurrences(node: Node) -> Iterator[str]:
         if isinstance(node, Name):
@@ -82,10 +82,10 @@ def names_in(node: Node) -> tuple[str, ...]:
 
 
 class Text:
-    """An algebra of texts with the fewest brackets, each with the binding strength of its outermost sign."""
+    """An algebra of texts with few brackets, each with the binding strength of its outermost operator."""
 
     def number(self, number: Number) -> tuple[str, int]:
-        """Return the text of a number."""
+        """Return a number as text."""
         plain = not number.unit and not number.digits.startswith("-")
         return f"{number.digits} {number.unit}".rstrip(), _ATOM if plain else SIGNS["neg"]
 
@@ -94,7 +94,7 @@ class Text:
         return name, _ATOM
 
     def call(self, function: str, arguments: list[tuple[str, int]]) -> tuple[str, int]:
-        """Return the text of a function."""
+        """Return a function as text."""
         if function not in SIGNS:
             return f"{function}({', '.join(text for text, _ in arguments)})", _ATOM
         strength = SIGNS[function]
@@ -112,5 +112,5 @@ def _bound_text(part: tuple[str, int], least: int) -> str:
 
 
 def text_of(node: Node) -> str:
-    """Return the text of a formula: the same for formulas that differ only in spaces and redundant brackets."""
+    """Return a formula as text, identical for formulas that differ only in spaces and redundant brackets."""
     return fold(node, Text())[0]

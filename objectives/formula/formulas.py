@@ -1,4 +1,4 @@
-"""Formulas of a job: parsed, checked against the meaning of their names, and converted to quantities."""
+"""Formulas in a job: parsed, checked against the meaning of their names, and converted to quantities."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ from .quantity import FormulaQuantity, key_of, leaves_of
 from .ranges import FormulaBounds, Interval
 
 ROOTS = ("mechanism", "load", "friction", "drive", "tolerances", "sections", "motion")
-"""Tables whose numbers may vary, and begin names of formulas then."""
+"""Tables whose numbers may vary, and then begin the names in formulas."""
 _WORD = re.compile(r"[A-Za-z_]\w*(?:\.\w+)*")
 _NEAREST = 3
 
 
 @dataclass(frozen=True)
 class Stated:
-    """A named formula as its table states it. unit: display unit; None for that of its kind."""
+    """A named formula as stated in its table. unit: display unit; None for the display unit of its kind."""
 
     formula: str
     title: str | None
@@ -42,12 +42,12 @@ class Stated:
 
 @dataclass(frozen=True)
 class Units:
-    """Units of numbers. names: names that are not units, even after a number and a sign."""
+    """Units that numbers may have. names: names that are never units, even after a number and an operator."""
 
     names: frozenset[str]
 
     def has(self, name: str) -> bool:
-        """Return whether a name is the name of a unit."""
+        """Return whether a name is a unit."""
         if name in self.names:
             return False
         try:
@@ -65,9 +65,9 @@ class Units:
 
 
 def is_formula(text: str, names: Iterable[str] = ()) -> bool:
-    """Return whether a bound is meant as a formula: it contains a name, or nearly one.
+    """Return whether a bound is meant as a formula: it contains a name or a misspelt one.
 
-    names: further names besides the quantities that every job may name.
+    names: names that bounds may use besides the quantities available in every job.
     """
     if is_value(text):
         return False
@@ -78,14 +78,14 @@ def is_formula(text: str, names: Iterable[str] = ()) -> bool:
 
 
 def words_of(text: object) -> list[str]:
-    """Return the words of a formula, names and units; empty if it is not a text."""
+    """Return the words in a formula, names and units; empty for anything but a text."""
     return _WORD.findall(text) if isinstance(text, str) else []
 
 
 def unknown_name(name: str, names: Iterable[str], units: Units, formula: str) -> InputError:
-    """Return the error for a name in a formula that is not a quantity, dimension or varying number.
+    """Return the error for a name in a formula that is not a quantity, a dimension or a variable.
 
-    names: the known names, one of which may be written with - for _.
+    names: known names, in which - is accepted for _.
     """
     every, written = list(names), re.sub(r"\s*-\s*", "_", formula.strip())
     same = [candidate for candidate in every if candidate.casefold() in (name.casefold(), written.casefold())]
@@ -113,9 +113,9 @@ class Ends(Protocol):
 
 
 class Formulas:
-    """The formulas of a job, and what their names mean.
+    """Formulas in a job, with the meaning of their names.
 
-    made: quantities of the formulas requested so far, in their order.
+    made: quantities already built from formulas, in order of request.
     """
 
     def __init__(
@@ -127,11 +127,10 @@ class Formulas:
         *,
         turning: bool = True,
     ) -> None:
-        """Take a job's custom quantities, its machine, the ranges of the dimensions and its named formulas.
+        """Take a job's custom quantities, its machine, the ranges of the dimensions, and the named formulas.
 
-        ranges: None if only values of the formulas are needed and nothing is known about the designs.
-        turning: whether the crank must rotate fully, which narrows the dimensions.
-        Raises JobError for a named formula that is wrong.
+        ranges: None if only values are needed and nothing is known about the designs. turning: whether the crank must
+        rotate fully, which narrows the dimensions. Raises JobError if a named formula is wrong.
         """
         self.formula_quantities: dict[str, FormulaQuantity] = {}
         self._machine, self._stated = machine, named
@@ -150,9 +149,9 @@ class Formulas:
             self._resolve_named(name)
 
     def quantity(self, text: str, key: str) -> Quantity:
-        """Return the quantity that a name or formula means. key: key in the job, for messages.
+        """Return the quantity for a name or a formula. key: key in the job, for messages.
 
-        Raises JobError, also for one that is the same for every design.
+        Raises JobError for an error in it, or if every design would have the same value.
         """
         try:
             quantity = self._resolve_text(text)
@@ -166,7 +165,7 @@ class Formulas:
         return quantity
 
     def bound(self, quantity: Quantity, value: object, key: str) -> tuple[Quantity, float]:
-        """Return the quantity and its bound; if the bound is a formula, their difference and 0.
+        """Return the quantity and its bound; if the bound is a formula, return their difference and 0.
 
         Raises JobError.
         """
@@ -177,7 +176,7 @@ class Formulas:
         except InputError as error:
             raise JobError(f"{key}: {error}") from None
 
-    # ---- how a formula becomes a quantity -------------------------------------------------------------------------
+    # ---- conversion of a formula to a quantity ---------------------------------------------------------------------
 
     def _resolve_text(self, text: str) -> Quantity:
         node = parse(text, self._units)
@@ -189,7 +188,7 @@ class Formulas:
         return self.formula_quantities[name]
 
     def _resolve_named(self, name: str) -> FormulaQuantity:
-        """Return the quantity of a named formula, after resolving those that it names. Raises JobError."""
+        """Return the quantity for a named formula, after resolving the formulas that it names. Raises JobError."""
         if name in self.formula_quantities:
             return self.formula_quantities[name]
         if name in self._open:
@@ -279,7 +278,7 @@ class Formulas:
         raise unknown_name(name, [*self._quantities, *self._places, *self._stated], self._units, formula)
 
     def _interval(self, quantity: Quantity) -> Interval:
-        """Return bounds of a quantity within the ranges; one that is never negative counts as never zero."""
+        """Return bounds of a quantity within the ranges; one that is never negative counts as nonzero."""
         if quantity.zero_because([self._machine]):
             return Interval(0.0, 0.0)
         low = -float("inf") if quantity.signed else 0.0 if quantity.domain is None else max(quantity.domain.lower, 0.0)
@@ -294,7 +293,7 @@ class Formulas:
         return Interval(lower, upper, sign_interval.excludes_zero)
 
     def _zero_remedy(self, name: str) -> str:
-        """Return the remedy that keeps a number away from zero."""
+        """Return advice on how to keep a number away from zero."""
         if name in self._places:
             interval = self._intervals[name]
             return f"keep variables.{name} off zero: it is from {_ends_text(interval, self._kinds[name])}"

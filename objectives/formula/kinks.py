@@ -1,12 +1,13 @@
-"""Pieces of formulas: kinks of quantities, of min, max and abs, passed on through sums, products and functions.
+"""Pieces of formulas: kinks from quantities, min, max and abs, propagated through sums, products and functions.
 
-Every part of a formula is seen from both sides. From above it is the greatest of smooth pieces, with its concave kinks
-held at the active piece; from below it is the least of smooth pieces, with its convex kinks held. A function that rises
-with its argument keeps the sides; one that falls swaps them. The difference of two peaks, from above, is the greatest
-of the first peak's pieces minus the second's highest one. Where nothing is held, as in a sum of peaks, both are exact.
+Every part of a formula is represented from above and from below. From above it is the maximum of smooth pieces; its
+concave kinks are frozen at the active piece. From below it is the minimum of smooth pieces; its convex kinks are
+frozen. An increasing function preserves the sides; a decreasing one swaps them. From above, for example, the difference
+of two peaks is the maximum of the first peak's pieces, minus the second's highest piece. Where nothing is frozen, as in
+a sum of peaks, both sides are exact.
 
-The number of pieces depends only on the formula, not on the designs: solvers match the rows of two designs.
-So the side that a function sees follows from signs that are known for all designs, if any are.
+The number of pieces depends only on the formula, not on the design, because solvers match pieces between designs. Which
+side of an argument a function uses therefore depends only on signs that hold for all designs.
 """
 
 from __future__ import annotations
@@ -22,14 +23,14 @@ from .expression import Number
 from .slopes import BINARY, UNARY, partials, sum_of
 
 _MOST_PIECES = 8
-"""Pieces of a part that may tie."""
+"""Maximum number of pieces of a part that may tie."""
 _LABEL_STEP = 50.0
 """rad, between the labels of the arguments of min and max."""
 
 
 @dataclass(frozen=True)
 class Side:
-    """Smooth pieces of one side, the active one first. values, labels, present: (n, k). gradients: (n, k, d)."""
+    """Smooth pieces for one side, active piece first. values, labels, present: (n, k). gradients: (n, k, d)."""
 
     values: Array
     gradients: Array
@@ -38,11 +39,11 @@ class Side:
 
     @property
     def active(self) -> Side:
-        """The active piece alone."""
+        """Only the active piece."""
         return Side(self.values[:, :1], self.gradients[:, :1], self.labels[:, :1], self.present[:, :1])
 
     def take(self, places: IntArray) -> Side:
-        """Return the pieces at some indices (n, m) of each design."""
+        """Return the pieces at indices (n, m), row by row."""
         return Side(
             np.take_along_axis(self.values, places, axis=1),
             np.take_along_axis(self.gradients, places[:, :, None], axis=1),
@@ -57,9 +58,9 @@ class Side:
         return Side(values, np.pad(self.gradients, [*widths, (0, 0)]), labels, present)
 
     def ordered(self, *, from_above: bool) -> Side:
-        """Return the pieces in order, without impossible ones; the active one stays first.
+        """Return the pieces in order, without impossible pieces; the active piece stays first.
 
-        A piece beyond the active one arises if a function does not rise all the way from one to the other.
+        A function that is not increasing all the way between two pieces can lift a piece beyond the active one.
         """
         top = self.values[:, :1]
         with np.errstate(invalid="ignore"):
@@ -73,9 +74,9 @@ class Side:
 
 @dataclass(frozen=True)
 class TwoSided:
-    """A part of a formula from above and from below; both have the same active piece.
+    """Part of a formula from above and from below; both sides have the same active piece.
 
-    sign: 1 if no design of the problem makes it negative, -1 if none makes it positive, 0 if nothing is known.
+    sign: 1 if no design in the problem makes it negative, -1 if none makes it positive, 0 if unknown.
     """
 
     from_above: Side
@@ -83,10 +84,10 @@ class TwoSided:
     sign: int = 0
 
     def side_for(self, slope: Array, known_sign: int, *, from_above: bool) -> Side:
-        """Return the side that a function sees from above or below.
+        """Return the side that a function uses, from above or below.
 
-        slope: (n,), derivative of the function by this part. known_sign: its sign if known, else 0. Designs with the
-        other sign are outside their ranges and have only their active piece.
+        slope: (n,), derivative of the function by this part. known_sign: sign of the slope if known, else 0. Designs
+        with the opposite sign are outside their ranges, and keep only their active piece.
         """
         same, swapped = (self.from_above, self.from_below) if from_above else (self.from_below, self.from_above)
         if known_sign:
@@ -97,7 +98,7 @@ class TwoSided:
 
 
 def two_sided(pieces: Pieces, factor: float, sign: int) -> TwoSided:
-    """Return a quantity's pieces from both sides. factor: label factor, so that sums distinguish the parts' pieces."""
+    """Return a quantity's pieces from both sides. factor: label factor, which makes the labels of sums distinct."""
     least = pieces.least
     places = np.argsort(pieces.values if least else -pieces.values, axis=1, kind="stable")
     ordered = pieces.take(places)
@@ -110,7 +111,7 @@ def two_sided(pieces: Pieces, factor: float, sign: int) -> TwoSided:
 
 @dataclass(frozen=True)
 class Kinks:
-    """An algebra of pieces. leaves: pieces of the names. n, d: number of designs, and of numbers in each."""
+    """An algebra of pieces. leaves: pieces of the names. n, d: number of designs, and of numbers in each design."""
 
     leaves: Mapping[str, TwoSided]
     n: int
@@ -126,7 +127,7 @@ class Kinks:
         return self.leaves[name]
 
     def call(self, function: str, arguments: list[TwoSided]) -> TwoSided:
-        """Return a function of its arguments."""
+        """Return a function from the pieces of its arguments."""
         if function == "abs":
             return replace(_extreme_of_parts("max", [arguments[0], self.call("neg", arguments)]), sign=1)
         if function in ("min", "max"):
@@ -145,18 +146,18 @@ class Kinks:
 
 
 def smooth(values: Array, gradients: Array) -> Side:
-    """Return one smooth piece (n,) with its gradients (n, d)."""
+    """Return a single smooth piece (n,) with its gradients (n, d)."""
     return Side(values[:, None], gradients[:, None], np.zeros((len(values), 1)), np.ones((len(values), 1), np.bool_))
 
 
 def pieces_of(formula: TwoSided) -> Pieces:
-    """Return a formula as the greatest of its pieces, with its other side where it has kinks of both kinds."""
+    """Return a formula as the maximum of its pieces, plus its other side if it has both kinds of kinks."""
     from_above, from_below = (
         Pieces(np.where(side.present, side.values, absent), side.gradients, side.labels, absent > 0.0)
         for side, absent in ((formula.from_above, -np.inf), (formula.from_below, np.inf))
     )
     for item, side in ((from_above, formula.from_above), (from_below, formula.from_below)):
-        item.values[:, 0] = side.values[:, 0]  # infinite where friction locks, NaN where undefined
+        item.values[:, 0] = side.values[:, 0]  # infinite where friction locks the linkage, NaN where undefined
     if from_below.values.shape[1] == 1:
         return from_above
     return Pieces(from_above.values, from_above.gradients, from_above.labels, opposite=from_below)
@@ -172,11 +173,11 @@ _RISING = {
     "atan": (1,),
     "tan": (1,),
 }
-"""Signs of the slopes of functions that rise or fall everywhere."""
+"""Signs of the slopes of functions that are monotone everywhere."""
 
 
 def _slope_signs(function: str, arguments: list[TwoSided]) -> tuple[tuple[int, ...], int]:
-    """Return the known signs of a function's slopes by its arguments, and of its value."""
+    """Return the known signs of a function's slopes by its arguments, and the known sign of its value."""
     first, last = arguments[0].sign, arguments[-1].sign
     if function == "*":
         return (last, first), first * last
@@ -193,7 +194,7 @@ def _function_values(function: str, arguments: list[Array]) -> Array:
 
 
 def _combine_pieces(function: str, sides: list[Side]) -> Side:
-    """Return a smooth function of every piece of one argument with every piece of the other."""
+    """Return a smooth function for every combination of one argument's pieces with the other's."""
     if len(sides) == 1:
         (first,) = sides
         values = _function_values(function, [first.values])
@@ -217,7 +218,7 @@ def _combine_pieces(function: str, sides: list[Side]) -> Side:
 
 
 def _extreme_of_parts(function: str, arguments: list[TwoSided]) -> TwoSided:
-    """Return the least or greatest of parts: all pieces on one side, the active part's on the other."""
+    """Return the minimum or maximum of parts: all pieces on one side, the active part's pieces on the other."""
     greatest = function == "max"
     wide = [item.from_above if greatest else item.from_below for item in arguments]
     wide = [Side(s.values, s.gradients, s.labels + _LABEL_STEP * place, s.present) for place, s in enumerate(wide)]
@@ -241,7 +242,7 @@ def _extreme_of_parts(function: str, arguments: list[TwoSided]) -> TwoSided:
 
 
 def _choose_side(rows: Mask, chosen: Side, alternative: Side) -> Side:
-    """Return the chosen side for `rows` (n,), the alternative elsewhere."""
+    """Return the chosen side in the marked `rows` (n,), the alternative elsewhere."""
     column = rows[:, None]
     return Side(
         np.where(column, chosen.values, alternative.values),

@@ -1,4 +1,4 @@
-"""Formulas that are linear in dimensions and varying numbers, exactly: their factors as fractions."""
+"""Formulas that are exactly linear in dimensions and variables, with their factors as fractions."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ from fractions import Fraction
 from .expression import Node, Number, fold
 
 SIZE = "|offset|"
-"""The offset without its sign, as a name of linear formulas."""
+"""Absolute value of the offset, as a name in linear formulas."""
 
 
 @dataclass(frozen=True)
 class Linear:
-    """A sum of factors times names, and a constant, SI. factors: none is zero, in the order of the names."""
+    """A sum of factors times names, plus a constant, SI. factors: none is zero, in the order of the names."""
 
     factors: tuple[tuple[str, Fraction], ...]
     constant: Fraction
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The names that it depends on."""
+        """The names on which it depends."""
         return tuple(name for name, _ in self.factors)
 
     def plus(self, addend: Linear, times: Fraction = Fraction(1)) -> Linear:
-        """Return the sum with another linear formula times a factor."""
+        """Return the sum with a multiple of another linear formula."""
         factors = dict(self.factors)
         for name, factor in addend.factors:
             factors[name] = factors.get(name, Fraction(0)) + times * factor
@@ -39,7 +39,7 @@ class Linear:
 
 @dataclass(frozen=True)
 class _LinearAlgebra:
-    """An algebra of linear formulas; None for any other formula. known: linear formulas of the names."""
+    """An algebra of linear formulas; None for any nonlinear formula. known: linear formulas of the names."""
 
     definitions: Mapping[str, Linear | None]
 
@@ -68,13 +68,13 @@ class _LinearAlgebra:
 
 
 def linear_of(node: Node, definitions: Mapping[str, Linear | None]) -> Linear | None:
-    """Return a formula as linear in the names in it; None if it is not linear.
+    """Return a formula as linear in the names that it contains; None if it is not linear.
 
-    definitions: linear formulas by name, those of `unknown` for dimensions and variables.
+    definitions: linear formulas by name; `unknown` gives those for dimensions and variables.
     """
     return fold(node, _LinearAlgebra(definitions))
 
 
 def unknown(name: str) -> Linear:
-    """Return a dimension or a varying number itself."""
+    """Return a dimension or a variable as a linear formula."""
     return Linear(((name, Fraction(1)),), Fraction(0))

@@ -1,4 +1,4 @@
-"""Parser of formulas: converts text to a tree; nothing in the text is ever run."""
+"""Parser for formulas: converts text to a tree; nothing in the text is ever executed."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from ..units import SPACES
 from .expression import ARGUMENTS, Call, Name, Node, Number
 
 LONGEST = 500
-"""Characters of a formula."""
+"""Maximum number of characters in a formula."""
 _MOST = 100
-"""Signs and functions of a formula, hence also the depth of its tree."""
+"""Maximum number of operators and functions in a formula, which also limits the depth of its tree."""
 DEEPEST = 40
-"""Brackets, functions and signs within each other."""
+"""Maximum nesting of brackets, functions and operators."""
 _TOKEN = re.compile(
     r"""\s*(?:
     (?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)
@@ -35,22 +35,22 @@ _EXAMPLE = '"offset - 2 * crank" or "min(crank, 30 mm)"'
 
 
 class Units(Protocol):
-    """The units that numbers of a formula may have."""
+    """Units that numbers in a formula may have."""
 
     def has(self, name: str) -> bool:
-        """Return whether a name after a number is the name of a unit."""
+        """Return whether a name after a number is a unit."""
         ...
 
     def si(self, digits: str, unit: str) -> float:
-        """Return a number in SI. Raises `InputError`, which begins with the unit, for an unknown unit."""
+        """Return a number in SI. Raises `InputError`, whose message begins with the unit, for an unknown unit."""
         ...
 
 
 def parse(text: str, units: Units) -> Node:
-    """Return the tree of a formula. Raises `InputError`, with rule, value and remedy, for anything else.
+    """Return the tree of a formula. Raises `InputError` for anything else.
 
-    Numbers may be followed by a unit: "3 mm", "2 N m", "7800 kg/m^3"; a name that does not follow a number is a
-    quantity or another number of the problem. Signs: + - * / ** (or ^) and brackets; functions: `ARGUMENTS`.
+    Numbers may be followed by a unit: "3 mm", "2 N m", "7800 kg/m^3". Any other name is a quantity or another number in
+    the problem. Operators: + - * / ** (or ^) and brackets; functions: `ARGUMENTS`.
     """
     if len(text) > LONGEST:
         raise InputError(f"a formula has at most {LONGEST} characters; got {len(text)}; give parts of it names")
@@ -69,7 +69,7 @@ class _Token:
 
 
 class _Reader:
-    """A text, read from left to right: one method for each binding strength of signs."""
+    """A text parsed from left to right, with one method for each level of binding strength."""
 
     def __init__(self, text: str, units: Units) -> None:
         self.text, self.units = text, units
@@ -78,7 +78,7 @@ class _Reader:
         self.step(0)
 
     def step(self, place: int | None = None) -> None:
-        """Move to the token after a place, by default the current one."""
+        """Move to the token after a position, by default the current one."""
         place = self.next.end if place is None else place
         match = _TOKEN.match(self.text, place)
         if match is not None:
@@ -89,7 +89,7 @@ class _Reader:
             self.next = _Token("end", "", len(self.text))
 
     def take(self, *signs: str) -> str | None:
-        """Return the next sign if it is one of `signs`, and move on; None otherwise."""
+        """Return the next operator if it is one of `signs`, and move past it; None otherwise."""
         sign = self.next.text
         if self.next.kind != "sign" or sign not in signs:
             return None
@@ -114,7 +114,7 @@ class _Reader:
             self.refuse(f"a formula has at most {_MOST} signs and functions", "give parts of it names")
         return Call(function, arguments)
 
-    # ---- one method for each strength ----------------------------------------------------------------------------
+    # ---- one method for each level of binding strength ---------------------------------------------------------------
 
     def sum(self) -> Node:
         self.deeper()
@@ -196,7 +196,7 @@ class _Reader:
         return Number(si, digits, unit)
 
     def unit(self, place: int) -> tuple[str, int]:
-        """Return the unit at a place, "" if there is none, and the place after it."""
+        """Return the unit at a position, "" if there is none, and the position after it."""
         text = ""
         match = _NEXT_UNIT.match(self.text, place)
         while match:

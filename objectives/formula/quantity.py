@@ -21,18 +21,18 @@ from .kinks import Kinks, TwoSided, pieces_of, smooth, two_sided
 from .linear import Linear, linear_of, unknown
 from .slopes import Slopes
 
-_GOLDEN = 0.6180339887498949  # labels of parts are added in proportions that hardly ever meet
+_GOLDEN = 0.6180339887498949  # parts' labels are added with incommensurate factors, so that they hardly ever coincide
 _LONGEST_KEY = 60
 _WORDS = {"+": "plus", "-": "minus", "*": "times", "/": "per", "**": "to_the"}
 
 
 @dataclass(frozen=True, kw_only=True)
 class FormulaQuantity(Quantity):
-    """A formula as a quantity. name: its text, or the name that a job gives it.
+    """A formula as a quantity. name: its text, or its name in the job.
 
-    expression: the formula. parts: the quantities that it names. dimensions: those of crank, rod and offset that it
-    names. varying: the other numbers that it names; one that does not vary has the machine's value.
-    signs: signs of dimensions and numbers that are never negative (1) or never positive (-1) in the problem's ranges.
+    expression: the formula. parts: quantities that it names. dimensions: its names among crank, rod and offset.
+    varying: other numbers that it names; one that does not vary has the machine's value. signs: 1 for dimensions and
+    numbers that are never negative within the problem's ranges, -1 for those that are never positive.
     """
 
     expression: Node
@@ -43,12 +43,12 @@ class FormulaQuantity(Quantity):
 
     @property
     def has_gradient(self) -> bool:
-        """Whether all its parts have derivatives."""
+        """Whether all its parts are differentiable."""
         return all(part.has_gradient for part in self.parts)
 
     @property
     def has_signed_offset(self) -> bool:
-        """Whether it contains the offset other than by its size, abs(offset)."""
+        """Whether it depends on the offset other than through abs(offset)."""
 
         def bare(node: Node) -> bool:
             if isinstance(node, Call):
@@ -61,12 +61,12 @@ class FormulaQuantity(Quantity):
 
     @property
     def of_dimensions(self) -> bool:
-        """Whether it follows from crank, rod and offset alone."""
+        """Whether it depends on crank, rod and offset alone."""
         return all(part.of_dimensions for part in self.parts) and not self.varying
 
     @property
     def constant(self) -> bool:
-        """Whether it is the same for every design of one machine: it contains only numbers and amounts."""
+        """Whether it is the same for all designs of one machine: it contains only numbers and amounts."""
         return all(part.constant for part in self.parts) and not self.dimensions and not self.varying
 
     @property
@@ -75,12 +75,12 @@ class FormulaQuantity(Quantity):
         return self.parts
 
     def with_parts(self, parts: tuple[Quantity, ...]) -> FormulaQuantity:
-        """Return the formula with other parts of the same names."""
+        """Return the formula with other parts that have the same names."""
         return replace(self, parts=parts)
 
     def lacks(self, mechanism: Mechanism, without: Consequence) -> str | None:
-        """Return why a machine does not define it: the unmet need of a part; None if all are met."""
-        if without == "zero":  # other terms may remain if a part is zero
+        """Return why a machine does not define it: a part's unmet need; None if all needs are met."""
+        if without == "zero":  # even if a part is zero, other terms may remain
             return None
         reasons = ((part.name, part.lacks(mechanism, without)) for part in self.parts)
         return next((f"{name}: {reason}" for name, reason in reasons if reason), None)
@@ -96,7 +96,7 @@ class FormulaQuantity(Quantity):
     ) -> Values:
         """Return the formula for designs (n, 3 + k).
 
-        part_values: values of its parts by name, with gradients if these are requested.
+        part_values: values of its parts by name, including gradients if these are requested.
         """
         n, d = dimensions.shape
         leaves = dict(part_values)
@@ -107,7 +107,7 @@ class FormulaQuantity(Quantity):
 
     @property
     def is_smooth(self) -> bool:
-        """Whether it has no kinks: its parts are smooth, and abs() is only applied to an offset with known sign."""
+        """Whether it has no kinks: its parts are smooth, and abs() applies only to an offset with known sign."""
 
         def has_kink(node: Node) -> bool:
             if not isinstance(node, Call):
@@ -122,7 +122,7 @@ class FormulaQuantity(Quantity):
         )
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the formula as the greatest of smooth pieces; see `Quantity`."""
+        """Return the formula as the maximum of smooth pieces; see `Quantity`."""
         if self.is_smooth:
             return super().pieces(mechanism, dimensions)
         require_width(mechanism, dimensions)
@@ -139,7 +139,7 @@ class FormulaQuantity(Quantity):
             return pieces_of(fold(self.expression, Kinks(leaves, n, d)))
 
     def _numbers(self, mechanism: Mechanism, designs: Array) -> Iterator[tuple[str, Array, int | None]]:
-        """Yield name, values (n,) and column of dimensions and varying numbers; a fixed number has no column."""
+        """Yield the name, values (n,) and column of each dimension and variable; a fixed number has no column."""
         for name in self.dimensions:
             place = DIMENSIONS.index(name)
             yield name, designs[:, place].astype(np.float64), place
@@ -159,9 +159,11 @@ def _slope(n: int, d: int, place: int | None) -> Array:
 
 
 def equation_of(formula: FormulaQuantity, value: float) -> Linear | None:
-    """Return the linear equation of a formula and a value; None if it is not linear in dimensions and numbers.
+    """Return the linear equation that sets a formula equal to a value.
 
-    A quotient of two linear formulas also gives one.
+    None if the formula is not linear in dimensions and numbers.
+
+    A quotient of two linear formulas gives one, too.
     """
     definitions, node = _named_linears(formula), formula.expression
     if isinstance(node, Call) and node.function == "/":
@@ -190,7 +192,7 @@ def linear_form(formula: FormulaQuantity) -> Linear | None:
 
 
 def leaves_of(quantities: Iterable[Quantity]) -> tuple[Quantity, ...]:
-    """Return the quantities from which others are computed: themselves, or the parts of formulas, each once."""
+    """Return the basic quantities: the quantities themselves, or the parts of formulas, without repetition."""
 
     def leaf_items(quantities: Iterable[Quantity]) -> Iterator[tuple[str, Quantity]]:
         for item in quantities:
@@ -210,7 +212,10 @@ def with_formulas(
     *,
     gradients: bool = False,
 ) -> list[Values]:
-    """Return the values of quantities, those of formulas combined. leaf_values: the values of `leaves_of` by name."""
+    """Return the values of quantities, combined as formulas require.
+
+    leaf_values: values of the `leaves_of` the quantities, by name.
+    """
     values = dict(leaf_values)
 
     def value(item: Quantity) -> Values:
@@ -223,11 +228,11 @@ def with_formulas(
 
 
 def key_of(text: str) -> str:
-    """Return the first part of a formula's column: "offset_minus_crank"."""
+    """Return the first part of a formula's column name: "offset_minus_crank"."""
     spaced = re.sub(r"\*\*|(?<=[\w)]) [-+*/] (?=.)", lambda sign: f" {_WORDS[sign[0].strip()]} ", text)
     key = re.sub("[^a-z0-9]+", "_", spaced.lower().replace("-", " minus ")).strip("_")
     plain = not re.search(r"\(|[A-Za-z_]\w*\.", text) and len(key) <= _LONGEST_KEY
-    if not plain:  # different formulas may read alike
+    if not plain:  # different formulas may give the same text
         from hashlib import blake2b
 
         key = f"{key[:_LONGEST_KEY].rstrip('_')}_{blake2b(text.encode(), digest_size=3).hexdigest()}"

@@ -1,4 +1,4 @@
-"""Bounds of formulas within the ranges of a problem: certain signs, and divisors that may be zero."""
+"""Bounds of formulas within a problem's ranges: guaranteed signs, and divisors that may be zero."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _ROUNDING = 1e-14
 
 @dataclass(frozen=True)
 class Interval:
-    """Values from lower to upper, SI. excludes_zero: whether zero is certainly excluded."""
+    """An interval from lower to upper, SI. excludes_zero: whether zero is certainly excluded."""
 
     lower: float
     upper: float
@@ -25,7 +25,7 @@ class Interval:
 
     @property
     def spans_zero(self) -> bool:
-        """Whether a value may be zero."""
+        """Whether a value in it may be zero."""
         return self.lower <= 0.0 <= self.upper and not self.excludes_zero
 
 
@@ -37,15 +37,15 @@ _IMAGES: dict[str, tuple[Callable[[float], float], float, float]] = {
     "acos": (math.acos, -1.0, 1.0),
     "atan": (math.atan, -math.inf, math.inf),
 }
-"""Functions that rise or fall all along, and where they are defined."""
+"""Functions that increase or decrease throughout, with their domains."""
 
 
 @dataclass(frozen=True)
 class FormulaBounds:
-    """Ranges of the names of formulas.
+    """Ranges for the names in formulas.
 
-    intervals: interval of every name, SI. linears: names that are linear in dimensions and varying numbers. advice:
-    remedies for names that may be zero.
+    intervals: interval for every name, SI. linears: names that are linear in dimensions and variables. advice: remedies
+    for names that may be zero.
     """
 
     intervals: Mapping[str, Interval]
@@ -84,7 +84,7 @@ class FormulaBounds:
         )
 
     def _linear(self, linear: Linear) -> Interval:
-        """Return the bounds of a linear formula where the linkage rotates fully: rod > crank + |offset|."""
+        """Return the bounds of a linear formula over fully rotating linkages: rod > crank + |offset|."""
         factors = {name: float(factor) for name, factor in linear.factors}
         least = greatest = float(linear.constant)
         for name, factor in factors.items():
@@ -102,9 +102,9 @@ class FormulaBounds:
         return Interval(least + low, greatest + high, bool(alone and all(zeros)))
 
     def _quotient(self, numerator: Linear | None, denominator: Linear | None) -> Interval:
-        """Return the bounds of a quotient of formulas linear in the dimensions where the linkage turns fully.
+        """Return the bounds of a quotient of two formulas, linear in the dimensions, over fully rotating linkages.
 
-        Its extremes are at corners. A bound that no design attains, at the edge of full rotation, is left out.
+        The extremes are at corners. A bound at the edge of full rotation, which no design attains, is left out.
         """
         if numerator is None or denominator is None or not {*numerator.names, *denominator.names} <= _TURNING:
             return ANY
@@ -128,7 +128,7 @@ class FormulaBounds:
         return Interval(low, high) if low <= high else ANY
 
     def _corners(self) -> list[_Corner]:
-        """Return the corners of the fully rotating part of the ranges, for either sign of the offset."""
+        """Return the corners of the fully rotating part of the ranges, for both signs of the offset."""
         crank, rod, offset = (self.intervals[name] for name in ("crank", "rod", "offset"))
         corners = []
         for sign in (1.0, -1.0):
@@ -137,7 +137,7 @@ class FormulaBounds:
                 continue
             ends = [(crank.lower, crank.upper), (rod.lower, rod.upper), (max(low, 0.0), high)]
             corners += [_Corner(x, y, z, sign) for x, y, z in itertools.product(*ends) if y > x + z]
-            # Where the plane rod = crank + |offset| cuts the edges of the box.
+            # Points where the plane rod = crank + |offset| cuts the edges of the box.
             cuts = [(y - z, y, z) for y, z in itertools.product(ends[1], ends[2])]
             cuts += [(x, x + z, z) for x, z in itertools.product(ends[0], ends[2])]
             cuts += [(x, y, y - x) for x, y in itertools.product(ends[0], ends[1])]
@@ -150,7 +150,7 @@ class FormulaBounds:
 
 
 class _Corner(NamedTuple):
-    """A corner of ranges: crank, rod, offset size and sign; whether it is at the edge of full rotation."""
+    """A corner of the ranges: crank, rod, |offset| and its sign; whether it is at the edge of full rotation."""
 
     crank: float
     rod: float
@@ -163,7 +163,7 @@ _TURNING = {"crank", "rod", "offset", SIZE}
 
 
 def _sum_of(factors: Mapping[str, float], corner: _Corner) -> float:
-    """Return the sum of factors times the dimensions at a corner."""
+    """Return the sum of factors times dimensions at a corner."""
     offset_factor = corner.sign * factors.get("offset", 0.0) + factors.get(SIZE, 0.0)
     return factors.get("crank", 0.0) * corner.crank + factors.get("rod", 0.0) * corner.rod + offset_factor * corner.size
 
@@ -219,7 +219,7 @@ def _interval_of_turn(function: str, angle: Interval) -> Interval:
         return ANY if function == "tan" else _TRIG
     image = {"sin": math.sin, "cos": math.cos, "tan": math.tan}[function]
     low, high = sorted((image(angle.lower), image(angle.upper)))
-    # The quarter turns at which sine and cosine are greatest and least, and the tangent is unbounded.
+    # Quarter turns at which sine and cosine have their extremes and the tangent is unbounded.
     quarters = {"sin": (1, 3), "cos": (0, 2), "tan": (1, 3)}[function]
     first, last = angle.lower / (0.5 * math.pi), angle.upper / (0.5 * math.pi)
     top, bottom = (math.floor((last - place) / 4.0) >= math.ceil((first - place) / 4.0) for place in quarters)
@@ -243,7 +243,7 @@ def _quotient(a: float, b: float) -> float:
 def _hull_of_ends(
     first: Interval, second: Interval, operation: Callable[[float, float], float], excludes_zero: bool
 ) -> Interval:
-    # A divisor that is never zero may approach it from one side: its end there has that side's sign.
+    # A divisor that is never zero may approach zero from one side: that end then has the sign of that side.
     ends = [end if end or second.upper > 0.0 else -0.0 for end in (second.lower, second.upper)]
     if second.lower < 0.0 < second.upper and operation is _quotient:
         return Interval(-math.inf, math.inf, excludes_zero)

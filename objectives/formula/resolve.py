@@ -1,4 +1,4 @@
-"""Names of quantities, which may also be formulas, as passed to Python functions and commands."""
+"""Names of quantities, or formulas, as accepted by Python functions and commands."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ def resolve_quantities(
 ) -> list[Quantity]:
     """Return the quantities for names and formulas.
 
-    custom: quantities of a problem besides the built-in ones. ranges: ranges of the dimensions; a formula that may
-    divide by zero within them is refused. Without ranges, such a formula has no value where it does. turning: whether
-    the crank must rotate fully. Raises `InputError` with the nearest names, or with the error in a formula.
+    custom: a problem's quantities besides the built-in ones. ranges: ranges of the dimensions; a formula that may
+    divide by zero within them is refused. Without ranges, such a formula has no value where its divisor is zero.
+    turning: whether the crank must rotate fully. Raises `InputError` with the closest names, or with the error in a
+    formula.
     """
     formulas: Formulas | None = None
     quantities = []
@@ -37,7 +38,7 @@ def resolve_quantities(
 
 
 def is_formula(name: object, mechanism: Mechanism, custom: Collection[Quantity] = ()) -> bool:
-    """Return whether a text is a formula, a dimension or a variable instead of the name of a quantity."""
+    """Return whether a text is a formula, a dimension or a variable rather than the name of a quantity."""
     if not isinstance(name, str) or name in QUANTITIES or any(quantity.name == name for quantity in custom):
         return False
     return name in DIMENSIONS or any(item.name == name for item in mechanism.varying) or not name.isidentifier()

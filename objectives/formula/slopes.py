@@ -1,4 +1,4 @@
-"""Values of formulas with their derivatives: the chain rule, number by number."""
+"""Values of formulas with their derivatives: the chain rule, node by node."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ UNARY: dict[str, tuple[Callable[[Array], Array], Slope]] = {
     "acos": (np.arccos, lambda x, y: -1.0 / np.sqrt((1.0 - x) * (1.0 + x))),
     "atan": (np.arctan, lambda x, y: 1.0 / (1.0 + x * x)),
 }
-"""Functions of one argument x, and their derivatives by x and the value y."""
+"""Functions of one argument x, with their derivative as a function of x and of the value y."""
 Partials = tuple[Array, Array]
 BINARY: dict[str, tuple[Callable[[Array, Array], Array], Callable[[Array, Array, Array], Partials]]] = {
     "+": (np.add, lambda a, b, y: (np.ones_like(a), np.ones_like(b))),
@@ -34,9 +34,9 @@ BINARY: dict[str, tuple[Callable[[Array, Array], Array], Callable[[Array, Array,
         lambda a, b, y: (np.where(b == 0.0, 0.0, b * np.power(a, b - 1.0)), y * np.log(a)),
     ),
 }
-"""Operations on two arguments a and b, and their derivatives by both and the value y.
+"""Operations on two arguments a and b, with both derivatives as functions of a, b and the value y.
 
-What divides by zero is undefined and not infinite: min, max and atan would make a number of that.
+Division by zero is undefined rather than infinite: min, max and atan would turn infinity into a number.
 """
 
 
@@ -44,7 +44,7 @@ What divides by zero is undefined and not infinite: min, max and atan would make
 class Slopes:
     """An algebra of values (n,) and gradients (n, d); without gradients if the leaves have none.
 
-    leaves: values of the names. n, d: shape of plain numbers' gradients, which are zero.
+    leaves: values of the names. n, d: shape of the zero gradients of plain numbers.
     """
 
     leaves: Mapping[str, Values]
@@ -61,7 +61,7 @@ class Slopes:
         return self.leaves[name]
 
     def call(self, function: str, arguments: list[Values]) -> Values:
-        """Return a function of its arguments; at a kink, with the slope of the first active one."""
+        """Return a function of its arguments; at a kink, with the slope for the first active argument."""
         if function in ("min", "max"):
             return _extreme(function, arguments)
         argument_values = [item.values for item in arguments]
@@ -78,14 +78,14 @@ class Slopes:
 
 
 def partials(function: str, arguments: list[Array], values: Array) -> tuple[Array, ...]:
-    """Return the derivatives of a smooth function by its arguments, each with the arguments' shape."""
+    """Return the derivatives of a smooth function by its arguments, each shaped like the arguments."""
     if function in UNARY:
         return (UNARY[function][1](arguments[0], values),)
     return BINARY[function][1](arguments[0], arguments[1], values)
 
 
 def sum_of(slopes: tuple[Array, ...], gradients: list[Array | None]) -> Array:
-    """Return the sum of gradients (..., d) times slopes (...); the slope is ignored where a gradient is zero."""
+    """Return the sum of gradients (..., d) weighted by slopes (...); a slope is ignored if its gradient is zero."""
     total: Array | None = None
     for slope, gradient in zip(slopes, gradients, strict=True):
         assert gradient is not None

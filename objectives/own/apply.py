@@ -1,4 +1,4 @@
-"""Call of a custom function on designs, and checks of its return value."""
+"""Calls a custom function with designs and checks its return value."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from .printable import printable
 Function = Callable[[Designs], Any]
 
 PIECES = 32
-"""Columns that a function may return."""
+"""Maximum number of columns that a function may return."""
 
 
 class Refused(Exception):
-    """Fault of a function in words: rule, value, place and remedy; printable, whatever the function raised."""
+    """Fault of a function in words: rule, value, location and remedy; printable, whatever the function raised."""
 
     def __init__(self, reason: str) -> None:
         """Take the reason."""
@@ -34,7 +34,7 @@ class Refused(Exception):
 
 @dataclass(frozen=True)
 class FunctionResult:
-    """Result of a function for n designs, as the greatest of k pieces.
+    """Result of a function for n designs, as the maximum of k pieces.
 
     values: (n, k), SI. slopes: derivatives by the stepped dimension, or None. angles: crank angles of peaks, or None.
     """
@@ -52,9 +52,10 @@ def apply(
     *,
     make: Callable[[Mechanism, NDArray[Any]], Designs] = Designs,
 ) -> FunctionResult:
-    """Return the answer for designs (n, 3); column: the dimension that carries a complex step, or None.
+    """Return the result for designs (n, 3). column: the dimension that carries a complex step, or None.
 
-    Raises `Refused` for a function that raises, or returns anything but finite numbers of the right shape and kind.
+    Raises `Refused` for a function that raises, or that returns anything but finite numbers of the right shape and
+    kind.
     """
     designs: NDArray[Any] = dimensions.copy()
     if column is not None:
@@ -64,7 +65,7 @@ def apply(
     try:
         with np.errstate(all="ignore"):
             returned = np.asanyarray(function(make(mechanism, designs)))
-    except InputError as error:  # of what the designs of this machine do not have
+    except InputError as error:  # for an attribute that this machine's designs do not have
         raise Refused(f"is not available for this machine: {error}{place(error, function)}") from None
     except BaseException as error:  # noqa: BLE001 - whatever it raises is what it did wrong
         kind = f"in complex numbers, for the gradient, {type(error).__name__}" if column is not None else ""
@@ -81,7 +82,7 @@ _NOT_COMPLEX = (
 
 
 def place(error: BaseException, function: Callable[..., Any]) -> str:
-    """Return where an error was raised: the last line of the function's own file, else the last line of all."""
+    """Return where an error was raised: the last line in the function's own file, else in the traceback."""
     frames = traceback.extract_tb(error.__traceback__)
     source_file = getattr(getattr(function, "__code__", None), "co_filename", "")
     frames_of_function = [frame for frame in frames if frame.filename == source_file] or list(frames)[-1:]

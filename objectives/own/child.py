@@ -1,7 +1,7 @@
-"""Process that runs a custom function: it may end, hang or print without harm to others.
+"""Process that runs a custom function, which may exit, hang or print without harm to others.
 
-Requests come pickled on standard input; answers go out as length, kind and raw numbers, so that no object from the
-function is ever unpickled. Output that the function prints goes to standard error.
+Requests arrive pickled on standard input. Results leave as length, kind and raw numbers, so no object from the function
+is ever unpickled. Output printed by the function goes to standard error.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ from .apply import Function, FunctionResult, Refused, apply, place
 from .designs import Designs, Numbers, Reactions
 
 HEAD = struct.Struct("<cQ")
-"""Kind of an answer (A numbers, E what is wrong, R ready, W wait: it takes time of its own) and its length."""
+"""Kind of a message (A numbers, E fault, R ready, W wait: time that does not count in the limit) and its length."""
 SHAPE = struct.Struct("<QQQ")
 
 
 def load(function: str, folders: list[str]) -> Function:
-    """Return the function named "module:name", from a module in one of the folders or an installed one.
+    """Return the function "module:name" from a module in one of the folders or from an installed module.
 
-    Raises `Refused`. The folders come first during the import, so that a module beside the job is found. Afterwards
-    they come last, so that none of them hides a library.
+    Raises `Refused`. The folders come first during the import, so that modules beside the job are found. Afterwards
+    they come last, so that none hides a library.
     """
     module, _, name = function.partition(":")
     before = list(sys.path)
@@ -57,10 +57,10 @@ def load(function: str, folders: list[str]) -> Function:
 
 
 class Watch:
-    """The time limit of a call: on expiry the process ends, even in a loop that never returns to Python."""
+    """Time limit of a call: on expiry the process ends, even in a loop that never returns to Python."""
 
     def __init__(self, limit: float, log: BinaryIO) -> None:
-        """Take the limit, s, and the file for the line that the function was running."""
+        """Take the limit, s, and the file that receives the line on which the function was running."""
         self.limit, self.log = limit, log
 
     def __enter__(self) -> None:
@@ -71,7 +71,7 @@ class Watch:
 
 
 class Timed(Designs):
-    """Designs whose first forces do not count in the time limit: a kernel may have to be compiled for them."""
+    """Designs whose first forces do not count in the time limit, because a kernel may have to be compiled."""
 
     watch: Watch
     wait: Callable[[], None]
@@ -90,27 +90,27 @@ class Timed(Designs):
 
 
 def packed(result: FunctionResult) -> bytes:
-    """Return an answer as bytes: shape, then values, slopes and angles, NaN where there are none."""
+    """Return a result as bytes: shape, then values, slopes and angles, NaN where there are none."""
     blank = np.full(result.values.shape, np.nan)
     parts = [blank if part is None else part for part in (result.values, result.slopes, result.angles)]
     return SHAPE.pack(3, *result.values.shape) + np.stack(parts).tobytes()
 
 
 def unpacked(data: bytes) -> FunctionResult:
-    """Return the answer that `packed` wrote."""
+    """Return the result that `packed` wrote."""
     shape = SHAPE.unpack_from(data)
     values, slopes, angles = np.frombuffer(data, offset=SHAPE.size).reshape(shape).copy()
     return FunctionResult(values, *(None if np.isnan(part).all() else part for part in (slopes, angles)))
 
 
 def main() -> None:
-    """Answer requests until standard input ends."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for who asked
+    """Serve requests until standard input ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the calling process
     requests, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)
     os.dup2(2, 1)
-    sys.stdout = sys.stderr  # each line immediately, even if the function is killed
+    sys.stdout = sys.stderr  # write each line immediately, in case the function is killed
     path, limit, name, folders = pickle.load(requests)
     with open(path, "wb", buffering=0) as log:  # noqa: PTH123 - its descriptor is what faulthandler needs
         faulthandler.enable(file=log)
@@ -134,7 +134,7 @@ def main() -> None:
             try:
                 machine, data, column = pickle.load(requests)
             except EOFError:
-                Path(path).unlink(missing_ok=True)  # whoever asked may have been killed
+                Path(path).unlink(missing_ok=True)  # the calling process may have been killed
                 return
             mechanism = machine or mechanism
             dimensions: Array = np.frombuffer(data).reshape(-1, 3)

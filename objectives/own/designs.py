@@ -1,4 +1,4 @@
-"""Arguments of a custom function: designs, with their motion and forces over the cycle."""
+"""Arguments for a custom function: designs, with their motion and forces over the cycle."""
 
 from __future__ import annotations
 
@@ -22,43 +22,46 @@ from ..machine_needs import ONE_TIMING
 Numbers = NDArray[Any]
 Curve = Callable[[Numbers], Numbers]
 
-_GRID = 128  # crank angles per turn, crowded where the linkage comes close to locking
+_GRID = 128  # crank angles per turn, denser where the linkage is close to locking
 _MEAN = 192
 _ZOOMS = 4
-_WITHIN = 9  # angles of a zoom
+_WITHIN = 9  # angles per zoom step
 _PEAKS = 3
 _TURN = 2.0 * np.pi
-_SIDE_STEP = 1e-9  # rad, from a dead centre to the side that counts
-_FIFTH = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0  # first and second derivative from five points
+_SIDE_STEP = 1e-9  # rad, from a dead centre, on the side that counts
+_FIFTH = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0  # first and second derivatives from five points
 _SECOND = np.array([-1.0, 16.0, -30.0, 16.0, -1.0]) / 12.0
 
 
 class Peaks(np.ndarray[Any, np.dtype[Any]]):
-    """Local peaks (n, k) with their crank angles, which arithmetic preserves: the search uses them to follow peaks."""
+    """Local peaks (n, k) with their crank angles, which arithmetic preserves.
+
+    The search follows peaks by these angles.
+    """
 
     angles: Array | None = None
 
     def __array_finalize__(self, of: object) -> None:
-        """Copy the angles from the array that this one derives from."""
+        """Copy the angles from the source array."""
         self.angles = getattr(of, "angles", None)
 
 
 class PinForce(NamedTuple):
-    """A force at a joint, (n, k), N: its components along x and y, and its size."""
+    """Joint force, (n, k), N: components along x and y, and magnitude."""
 
     x: Numbers
     y: Numbers
 
     @property
     def size(self) -> Numbers:
-        """Return the size, N."""
+        """Return the magnitude, N."""
         return cast(Numbers, np.sqrt(self.x * self.x + self.y * self.y))
 
 
 class Reactions(NamedTuple):
-    """Drive torque (N m) and forces (N) over crank angles, each (n, k); signs as in `model.dynamics`.
+    """Drive torque (N m) and forces (N) over the crank angle, each (n, k); signs as in `model.dynamics`.
 
-    load: load on the slider, positive outward. guide: force of the guide on the slider, along +y.
+    load: load on the slider, positive outward. guide: force from the guide on the slider, along +y.
     """
 
     torque: Numbers
@@ -70,11 +73,11 @@ class Reactions(NamedTuple):
 
 
 class Designs:
-    """Designs of one machine: n of them together, in real or complex numbers.
+    """A batch of n designs for one machine, in real or complex numbers.
 
     crank, rod, offset: (n, 1), m. mechanism: speed, masses, loads. Functions of the crank angle are methods; they take
-    angles (k,) or (n, k), rad, and return (n, k). SI throughout. In complex numbers the imaginary part carries a
-    derivative: write formulas with operators and numpy's sqrt, sin, exp ..., and `magnitude` in place of abs.
+    angles (k,) or (n, k), rad, and return (n, k). SI throughout. The imaginary part of a complex number carries a
+    derivative. Write formulas with operators and numpy's sqrt, sin, exp ..., and `magnitude` in place of abs.
     """
 
     def __init__(self, mechanism: Mechanism, dimensions: Numbers) -> None:
@@ -88,7 +91,7 @@ class Designs:
 
     @property
     def angles(self) -> Array:
-        """Crank angles (n, 128) around the cycle, closer together where the linkage comes close to locking."""
+        """Crank angles (n, 128) around the cycle, denser where the linkage is close to locking."""
         return self._uncrowded(np.linspace(-np.pi, np.pi, _GRID, endpoint=False))[0]
 
     # ---- closed forms ---------------------------------------------------------------------------------------------
@@ -100,7 +103,10 @@ class Designs:
 
     @property
     def time_ratio(self) -> Numbers:
-        """Duration of the slower stroke divided by the faster, (n, 1). Raises `InputError` if cylinders differ."""
+        """Duration of the slower stroke divided by that of the faster stroke, (n, 1).
+
+        Raises `InputError` if cylinders differ.
+        """
         if self.mechanism.speed_profile is None:
             return self.crank_angle_ratio
         if not ONE_TIMING.is_met(self.mechanism):
@@ -110,12 +116,12 @@ class Designs:
 
     @property
     def crank_angle_ratio(self) -> Numbers:
-        """Crank angle of the longer stroke divided by that of the shorter, (n, 1)."""
+        """Crank angle of the longer stroke divided by that of the shorter stroke, (n, 1)."""
         return cast(Numbers, geometry.time_ratio(self.crank, self.rod, magnitude(self.offset)))
 
     @property
     def least_transmission_angle(self) -> Numbers:
-        """Least transmission angle over the cycle, rad, (n, 1)."""
+        """Minimum transmission angle over the cycle, rad, (n, 1)."""
         return cast(Numbers, geometry.least_transmission_angle(self.crank, self.rod, magnitude(self.offset)))
 
     # ---- over the crank angle -------------------------------------------------------------------------------------
@@ -140,7 +146,7 @@ class Designs:
         return cast(Numbers, third * speed**3 + 3.0 * m.x_2 * speed * acceleration + m.x_1 * speed * bend)
 
     def rod_angle(self, angle: Numbers) -> Numbers:
-        """Return the angle between rod and slider line, rad, positive where the rod rises outward."""
+        """Return the angle between rod and slider line, rad, positive if the rod rises outward."""
         m = self._motion(angle)
         return cast(Numbers, np.arcsin(m.l_sin / self.rod))
 
@@ -149,7 +155,9 @@ class Designs:
         return cast(Numbers, 0.5 * np.pi - magnitude(self.rod_angle(angle)))
 
     def forces(self, angle: Numbers) -> Reactions:
-        """Return drive torque and joint forces of one cylinder, friction included; NaN where friction locks.
+        """Return drive torque and joint forces for one cylinder, friction included.
+
+        NaN where friction locks the linkage.
 
         Raises `InputError` along a speed profile, and for a cycle of two turns.
         """
@@ -170,21 +178,21 @@ class Designs:
     # ---- over the cycle -------------------------------------------------------------------------------------------
 
     def greatest(self, curve: Curve) -> Numbers:
-        """Return the greatest value of a curve over the cycle, (n, 1): the first of `peaks`."""
+        """Return the maximum of a curve over the cycle, (n, 1): the first of the `peaks`."""
         return self.peaks(curve).view(np.ndarray)[:, :1]
 
     def mean(self, curve: Curve) -> Numbers:
-        """Return the mean of a curve over crank angle, (n, 1); exact to rounding for smooth curves."""
+        """Return the mean of a curve over the crank angle, (n, 1); exact to rounding for smooth curves."""
         angle, share = self._uncrowded(np.linspace(-np.pi, np.pi, _MEAN, endpoint=False))
         return cast(Numbers, np.mean(curve(angle) * share, axis=1, keepdims=True))
 
     def peaks(self, curve: Curve) -> Peaks:
         """Return the three highest local peaks of a curve over the cycle, (n, 3), highest first.
 
-        Return them from your function unchanged, or with factors and terms that do not depend on the crank angle. The
-        quantity is the greatest; the others let the search handle ties. curve: takes angles (n, k) and returns (n, k).
-        Peaks are located to rounding where the curve is smooth and on jumps at the dead centres; to about 1e-5 of a
-        turn on other jumps and kinks.
+        Return them from your function unchanged, or scaled and shifted by terms that do not depend on the crank angle.
+        The maximum is the quantity; the other peaks let the search handle ties. curve: takes angles (n, k) and returns
+        (n, k). Peaks are located to rounding if the curve is smooth or jumps at the dead centres, and to about 1e-5 of
+        a turn at other jumps and kinks.
         """
         tau = np.broadcast_to(np.linspace(-np.pi, np.pi, _GRID, endpoint=False), (len(self), _GRID))
         spacing = _TURN / _GRID
@@ -192,7 +200,7 @@ class Designs:
         local = (samples >= np.roll(samples, 1, axis=1)) & (samples >= np.roll(samples, -1, axis=1))
         order = np.argsort(np.where(local, -samples, np.inf), axis=1, kind="stable")[:, :_PEAKS]
         is_peak = np.take_along_axis(local, order, axis=1)
-        order = np.where(is_peak, order, order[:, :1])  # fewer peaks: the highest again
+        order = np.where(is_peak, order, order[:, :1])  # with fewer peaks, repeat the highest
         centre, half = np.take_along_axis(tau, order, axis=1), spacing
         for _ in range(_ZOOMS):
             steps = np.linspace(-half, half, _WITHIN)
@@ -214,7 +222,7 @@ class Designs:
 
     @contextmanager
     def _real(self) -> Iterator[None]:
-        """Use real designs meanwhile: locating a peak needs no derivative, and real numbers are faster."""
+        """Use real numbers in the meantime: they are faster, and locating a peak needs no derivative."""
         designs = self._dimensions
         self._take(designs.real)
         try:
@@ -223,7 +231,7 @@ class Designs:
             self._take(designs)
 
     def _motion(self, angle: Numbers) -> Motion:
-        """Return the motion, reused from the previous call for the same angles: a curve uses it several times."""
+        """Return the motion, reused from the previous call for the same angles: a curve needs it several times."""
         if self._known is None or not np.array_equal(self._known[0], angle):
             sine, cosine = np.sin(angle), np.cos(angle)
             found = motion(sine, cosine, self.crank, self.rod, self.offset, self._branch)
@@ -245,7 +253,7 @@ class Designs:
         return mean * ratio, mean**2 * ratio * slope, mean**2 * (slope**2 + ratio * curvature)
 
     def _uncrowded(self, tau: Numbers) -> tuple[Array, Array]:
-        """Return crank angles (n, k) from crowded ones, with their derivative; see `segments.crowding`."""
+        """Return crank angles (n, k) for crowded angles, with their derivative; see `segments.crowding`."""
         q = (self.crank / (self.rod - magnitude(self.offset))).real
         kappa = np.sqrt(np.sqrt(np.maximum(1.0 - q * q, 1e-12)))
         sine, cosine = np.sin(tau), np.cos(tau)
@@ -269,7 +277,7 @@ class Designs:
         return self._sampled(curve, tau.reshape(len(centre), -1)).reshape(tau.shape)
 
     def _vertex(self, curve: Curve, centre: Numbers, half: float) -> Numbers:
-        """Return the zero of the derivative by one Newton step; the centre itself without a smooth peak."""
+        """Return the zero of the derivative after one Newton step; the centre itself if there is no smooth peak."""
         samples = self._sample_near(curve, centre, np.arange(-2.0, 3.0) * half)
         first, second = samples @ _FIFTH, samples @ _SECOND
         smooth = second < 0.0
@@ -277,7 +285,7 @@ class Designs:
         return centre + np.where(np.abs(step) <= 2.0, step * half, 0.0)
 
     def _dead_centres(self, curve: Curve, values: Numbers, angle: Numbers) -> tuple[Numbers, Array]:
-        """Return peaks and angles, those near a jump moved onto it: dead centres move with the design."""
+        """Return peaks and angles; a peak near a jump moves onto it, because dead centres move with the design."""
         dimensions = (self.crank, self.rod, self.offset)
         outer, inner = geometry.outer_crank_angle(*dimensions), geometry.inner_crank_angle(*dimensions)
         ends = np.concatenate([outer, inner], axis=1)
@@ -295,5 +303,5 @@ class Designs:
 
 
 def magnitude(values: Numbers) -> Numbers:
-    """Return the magnitudes of numbers: `abs` that preserves the derivative carried by complex numbers."""
+    """Return the magnitudes of numbers: `abs` that preserves the derivative carried by a complex number."""
     return cast(Numbers, _magnitude(values))

@@ -1,10 +1,10 @@
-"""Guard of a custom function process: its parent, which ends all that the function starts and bounds what it prints.
+"""Guard of a custom function process: its parent, which ends all that the function starts and limits output.
 
-The guard ends everything when the function's process ends, on SIGTERM, and when the calling process has ended for any
-reason. It forks the function's process before any large import, so it need not start another program.
+The guard ends everything when the function's process ends, on SIGTERM, and when the calling process ends for any
+reason. It forks the function's process before any large import, so no other program has to start.
 
-On Linux, a process whose parent has ended becomes a child of the guard, so neither `setsid` nor a double fork escapes.
-On other systems with forks, the group of the function's process is ended. On Windows there is no guard.
+On Linux, an orphaned descendant becomes a child of the guard, so neither `setsid` nor a double fork escapes. On other
+systems with fork, the process group of the function is ended. On Windows there is no guard.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ from pathlib import Path
 from .printable import printable
 
 PRINTED = 1_000_000
-"""Bytes that a function and all that it starts may print."""
+"""Bytes that a function and its descendants may print."""
 _LEFT_OUT = f"\nA custom function printed more than {PRINTED // 10**6} MB; the rest is left out; print less.\n"
 _DEATH_SIGNAL, _SUBREAPER = 1, 36  # PR_SET_PDEATHSIG and PR_SET_CHILD_SUBREAPER of <linux/prctl.h>
-_PAUSE, _LONGEST_PAUSE = 0.001, 0.1  # s between two searches for processes that are left: first, and at most
-_LOOK = 0.1  # s between two looks at the process that asks; the end of a pipe would wait for its forks, too
-_FLUSH = 1.0  # s for the last output, if nobody reads standard error
+_PAUSE, _LONGEST_PAUSE = 0.001, 0.1  # s between two searches for surviving processes: first and longest interval
+_LOOK = 0.1  # s between two checks that the calling process lives; its forks would keep a pipe open
+_FLUSH = 1.0  # s for writing the last output, if nobody reads standard error
 
 
 def main() -> None:
-    """Run the process of a function, behind a guard where processes can fork."""
+    """Run the process of a function, behind a guard if processes can fork."""
     asking, log = sys.argv[1:]
     del sys.argv[1:]  # modules of the user may read it
     if hasattr(os, "fork"):
@@ -41,13 +41,13 @@ def main() -> None:
 
 
 def _fork_function_process(asking: int, log: str) -> None:
-    """Fork the function's process and return only in it; the other process is the guard, and ends with it.
+    """Fork the function's process and return only there; the other process becomes the guard, which exits with it.
 
-    asking: number of the calling process. log: crash log, which nobody reads once that process has ended.
+    asking: process id of the calling process. log: crash log, which nobody reads after the calling process has ended.
     """
     signals = {signal.SIGCHLD, signal.SIGTERM, signal.SIGHUP}
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for who asked
-    signal.signal(signal.SIGCHLD, lambda *_: None)  # macOS drops a signal without a handler, even one waited for
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the calling process
+    signal.signal(signal.SIGCHLD, lambda *_: None)  # macOS drops a signal that has no handler, even one waited for
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, signals)
     _set_process_attribute(_SUBREAPER, 1)
     printed, output = os.pipe()
@@ -55,13 +55,13 @@ def _fork_function_process(asking: int, log: str) -> None:
     if not function:
         _set_process_attribute(_DEATH_SIGNAL, signal.SIGKILL)
         os.dup2(output, 2)
-        for pipe in {printed, output} - {2}:  # nobody may have had a standard error
+        for pipe in {printed, output} - {2}:  # there may be no standard error
             os.close(pipe)
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
         signal.pthread_sigmask(signal.SIG_SETMASK, mask)
         return
-    os.setpgid(function, function)  # a function that kills its own group leaves the guard alive
-    for pipe in (0, 1, output):  # requests and answers are the function's
+    os.setpgid(function, function)  # if a function kills its own process group, the guard survives
+    for pipe in (0, 1, output):  # only the function's process uses requests and results
         os.close(pipe)
     threading.Thread(target=_end_with, args=(asking,), daemon=True).start()
     relay = threading.Thread(target=_relay_output, args=(printed,), daemon=True)
@@ -77,18 +77,18 @@ def _fork_function_process(asking: int, log: str) -> None:
 
 
 class _Family:
-    """Process of a function and all its descendants.
+    """Process of a function, with all its descendants.
 
     code: its exit code, 128 + N after signal N as in shells; None while it runs.
     """
 
     def __init__(self, function: int) -> None:
-        """Take the number of the function's process, which leads its group."""
+        """Take the id of the function's process, which leads its group."""
         self.function = function
         self.code: int | None = None
 
     def reap(self) -> bool:
-        """Record children that have ended, and return whether others are left."""
+        """Record children that have ended; return whether any are left."""
         with contextlib.suppress(ChildProcessError):
             while (ended := os.waitpid(-1, os.WNOHANG))[0]:
                 if ended[0] == self.function:
@@ -98,9 +98,9 @@ class _Family:
         return False
 
     def end(self) -> None:
-        """Kill all of them until none is left; meanwhile some fork, and orphans become children."""
+        """Kill all processes until none is left; some may fork in the meantime, and orphans become children."""
         with contextlib.suppress(OSError):
-            os.killpg(self.function, signal.SIGKILL)  # a whole group at one moment, forks under way included
+            os.killpg(self.function, signal.SIGKILL)  # a whole group at once, including forks in progress
         pause = _PAUSE
         while self.reap():
             for process in _descendants(os.getpid()):
@@ -111,7 +111,7 @@ class _Family:
 
 
 def _descendants(process: int) -> Iterator[int]:
-    """Yield the processes that descend from another one, each once its children are listed (Linux)."""
+    """Yield the descendants of a process, each after its children are listed (Linux)."""
     waiting = [process]
     while waiting:
         parent = waiting.pop()
@@ -129,9 +129,11 @@ def _end_with(asking: int) -> None:
 
 
 def _relay_output(printed: int) -> None:
-    """Forward whole printable lines, up to `PRINTED`; read the rest too, so that no writer blocks on a full pipe.
+    """Forward complete printable lines, up to `PRINTED` bytes.
 
-    The last line gets a line end even if the function writes none: others write to the same log.
+    Also read the rest, so that no writer blocks on a full pipe.
+
+    The last line ends with a newline even if the function writes none, because others write to the same log.
     """
     left, unfinished = PRINTED, b""
     while piece := os.read(printed, 1 << 16):
@@ -152,7 +154,7 @@ def _write(text: bytes) -> None:
 
 
 def _set_process_attribute(attribute: int, value: int) -> None:
-    """Set an attribute of this process (Linux)."""
+    """Set an attribute of this process (Linux prctl)."""
     if sys.platform == "linux":
         import ctypes
 

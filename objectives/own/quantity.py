@@ -1,4 +1,4 @@
-"""A custom quantity: a Python function that judges designs, named in a job file or given from Python."""
+"""A custom quantity: a Python function that judges designs, named in a job file or passed from Python."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from .worker import Worker
 
 Gradient = Literal["complex step", "finite differences", "none"]
 GROUP = "slidercrank.quantities"
-"""Entry points that give quantities: each a `OwnQuantity`."""
+"""Entry points that provide quantities: each an `OwnQuantity`."""
 LIMIT = 30.0
-"""s; what a call of at most `_BATCH` designs may take unless the job says otherwise."""
+"""s; time limit for a call with at most `_BATCH` designs unless the job gives another"""
 _BATCH = 256
-_STEP = 2e-5  # of the nearest of locking and a crank of zero: truncation 4e-10 next to rounding 5e-12
+_STEP = 2e-5  # of the smaller of crank length and distance to locking: truncation error 4e-10, rounding error 5e-12
 _WITNESSES = 3  # designs on which a complex step is compared with differences
-_AGREE = 1e-4  # of the gradient's size
+_AGREE = 1e-4  # relative to the gradient's magnitude
 LONGEST_NAME = 60
 _NAME = re.compile(rf"[a-z][a-z0-9_]{{0,{LONGEST_NAME - 1}}}")
 FUNCTION = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*", re.ASCII)
@@ -38,10 +38,10 @@ Call = Callable[[Mechanism, Array, int | None], FunctionResult]
 
 
 class _Session:
-    """State kept between calls: the process, and the machines for which the gradient has been checked.
+    """State kept between calls: the process, and the machines with a checked gradient.
 
-    A copy in another process starts its own process but does not repeat the check: it may receive a single design
-    there, and one on a kink.
+    A copy in another process starts its own function process but does not repeat the check: it may receive only one
+    design there, and that may lie at a kink.
     """
 
     def __init__(self, checked: tuple[Mechanism, ...] = ()) -> None:
@@ -57,17 +57,16 @@ class _Session:
 
 @dataclass(frozen=True, kw_only=True)
 class OwnQuantity(Quantity):
-    """A function of designs as a quantity.
+    """A Python function of designs as a quantity.
 
-    function: takes `Designs` and returns (n,), or (n, k) whose greatest value counts, SI. "module:function" runs in its
-    own process, within the limit; a Python function runs in this process, without a limit. kind: a kind of the table,
-    or `kinds.kind_in` for any unit.
-    gradient: "complex step" for a function that runs on complex numbers, else "finite differences"; "none" for methods
-    that need no gradient. folders: folders that may contain the module. limit: time limit of a call for up to 256
-    designs, s. longest: time limit set by whoever runs the function, s, whatever `limit` is.
+    function: takes `Designs` and returns (n,), or (n, k) whose maximum counts, SI. "module:function" runs in its own
+    process, within the limit; a Python function runs in this process, without a limit. kind: a kind in the table, or
+    `kinds.kind_in` for any unit. gradient: "complex step" for a function that accepts complex numbers, else "finite
+    differences"; "none" for methods that need no gradient. folders: folders that may contain the module. limit: time
+    limit of a call for up to 256 designs, s. longest: upper bound on `limit` set by whoever runs the function, s.
 
-    Every method raises `InputError` naming the quantity if the function raises, returns anything but finite numbers
-    of the right shape, does not return in time, ends the process, or has no such gradient.
+    Every method raises `InputError` with the quantity's name if the function raises, exceeds the time limit, or ends
+    the process. It also does so if the result is not finite or has the wrong shape, or if there is no such gradient.
     """
 
     function: str | Function
@@ -79,7 +78,7 @@ class OwnQuantity(Quantity):
     _session: _Session = field(default_factory=_Session, init=False, compare=False, repr=False)
 
     def follows_speed(self, mechanism: Mechanism) -> bool:
-        """True: a function is not called before a search."""
+        """True, because a function is never called before a search."""
         return True
 
     def __post_init__(self) -> None:
@@ -94,11 +93,11 @@ class OwnQuantity(Quantity):
 
     @property
     def has_gradient(self) -> bool:
-        """Whether its job says how to obtain its derivatives."""
+        """Whether its derivatives can be computed in a stated way."""
         return self.gradient != "none"
 
     def undefined_because(self, machines: Iterable[Mechanism]) -> str | None:
-        """Return rule, value and remedy for machines with extra variables: a function gets only the dimensions."""
+        """Return rule, value and remedy for a machine with extra variables: a function receives only the dimensions."""
         varying = next((machine.varying for machine in machines if machine.varying), ())
         if not varying:
             return None
@@ -120,9 +119,9 @@ class OwnQuantity(Quantity):
         return Values(values, None)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the quantity as the greatest of its pieces; see `Quantity`.
+        """Return the quantity as the maximum of its pieces; see `Quantity`.
 
-        With finite differences there is one piece. Gradients are zero where the quantity has none.
+        With finite differences there is a single piece. Gradients are zero if the quantity has none.
         """
         dimensions = self._turning(dimensions)
         self._check(mechanism, dimensions)
@@ -141,12 +140,12 @@ class OwnQuantity(Quantity):
         return Pieces(values, gradients, labels)
 
     def close(self) -> None:
-        """End the function's process, if it has one; the next call starts another."""
+        """End the function's process, if there is one; the next call starts another."""
         call, self._session.call = self._session.call, None
         if isinstance(call, Worker):
             call.close()
 
-    # ---- how it is called -----------------------------------------------------------------------------------------
+    # ---- calls to the function ------------------------------------------------------------------------------------
 
     def _ask(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> FunctionResult:
         session = self._session
@@ -163,7 +162,7 @@ class OwnQuantity(Quantity):
         return lambda mechanism, dimensions, column: apply(function, mechanism, dimensions, column)
 
     def require_function(self) -> None:
-        """Raise `InputError` if the module of "module:function" is not found or lacks the function; runs nothing."""
+        """Raise `InputError` if the module in "module:function" is not found or lacks the function; runs nothing."""
         if not isinstance(self.function, str):
             return
         module, _, function = self.function.partition(":")
@@ -197,7 +196,7 @@ class OwnQuantity(Quantity):
         return turning(dimensions)
 
     def _batches(self, mechanism: Mechanism, dimensions: Array) -> Iterator[IntArray]:
-        """Yield the rows of designs that friction does not lock: the forces of the others are undetermined."""
+        """Yield the rows of designs that friction does not lock; forces in the others are undetermined."""
         rows = np.arange(len(dimensions))
         if mechanism.friction.acts:
             rows = rows[locking_margin(mechanism.friction, dimensions)[0] > 0.0]
@@ -212,7 +211,7 @@ class OwnQuantity(Quantity):
         gradients = np.stack([np.asarray(answer.slopes) for answer in answers], axis=2)
         angles = answers[0].angles
         labels = np.tile(np.arange(float(values.shape[1])), (len(values), 1)) if angles is None else angles
-        # Peaks that a curve does not have repeat its highest one.
+        # A curve with fewer peaks repeats its highest peak.
         top = np.argmax(values, axis=1)[:, None]
         same = (values == np.take_along_axis(values, top, axis=1)) & (labels == np.take_along_axis(labels, top, axis=1))
         again = same & (np.arange(values.shape[1]) != top)
@@ -228,7 +227,10 @@ class OwnQuantity(Quantity):
         return Pieces(values, slopes[:, None], np.zeros_like(values))
 
     def _differences(self, mechanism: Mechanism, dimensions: Array, share: float) -> Array:
-        """Return central differences (n, 3); steps are a fraction of the distance to locking and of the crank."""
+        """Return central differences (n, 3).
+
+        Steps are a fraction of the crank or, if smaller, of the distance to locking.
+        """
         crank, rod, offset = dimensions.T
         step = share * np.minimum(rod - crank - np.abs(offset), crank)
         slopes = np.empty((len(dimensions), 3))
@@ -243,9 +245,9 @@ class OwnQuantity(Quantity):
         return slopes
 
     def _check(self, mechanism: Mechanism, dimensions: Array) -> None:
-        """Raise an error if the complex step does not give the derivative, before a search uses it.
+        """Raise an error before a search uses a complex step that does not give the derivative.
 
-        Compares three designs with differences. One of them may lie on a kink; two hardly do.
+        Compares three designs with finite differences. One of them may lie at a kink; two hardly ever do.
         """
         if self.gradient != "complex step" or mechanism in self._session.checked:
             return
@@ -274,7 +276,7 @@ class OwnQuantity(Quantity):
 
 
 def require_name(name: str) -> None:
-    """Raise `InputError` for a name that cannot be a column of a table."""
+    """Raise `InputError` for a name that cannot be a table column."""
     if not _NAME.fullmatch(name):
         raise InputError(
             f"the name of a quantity has 1 to {LONGEST_NAME} small letters, digits and underscores, a letter first; "
@@ -283,7 +285,7 @@ def require_name(name: str) -> None:
 
 
 def bounded(quantity: Quantity, longest: float) -> Quantity:
-    """Return a quantity whose custom functions take at most `longest` s per call, even inside another quantity."""
+    """Return a quantity whose custom functions, even nested ones, take at most `longest` s per call."""
     if isinstance(quantity, OwnQuantity):
         return replace(quantity, longest=longest)
     return quantity.with_parts(tuple(bounded(part, longest) for part in quantity.made_of))
@@ -303,14 +305,17 @@ def runs_custom_function(quantity: Quantity) -> bool:
 
 
 def quantity_entry_points() -> dict[str, Any]:
-    """Return the entry points of installed packages that give quantities, by name; none is loaded yet."""
+    """Return the entry points of installed packages that provide quantities, by name, without loading any."""
     from importlib.metadata import entry_points
 
     return {entry.name: entry for entry in entry_points(group=GROUP)}
 
 
 def installed(name: str) -> OwnQuantity:
-    """Return the quantity that an installed package provides by a name. Raises `InputError` if it is not one."""
+    """Return the quantity with a name that an installed package provides.
+
+    Raises `InputError` if the entry point is not a quantity.
+    """
     entry = quantity_entry_points()[name]
     quantity = entry.load()
     if not isinstance(quantity, OwnQuantity) or quantity.name != name:

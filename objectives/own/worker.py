@@ -1,7 +1,8 @@
-"""The other end of `child`: starts the process, sends it requests, and explains how it ended.
+"""Caller's end of `child`: starts the process, sends requests, and explains how the process ended.
 
-The process has a guard (see `guard`), which is the one started here. It ends when this process ends for any reason,
-with all that the function started, even if the function holds the interpreter, ignores signals or forks.
+The process started here is a guard (see `guard_process`), the parent of the function's process. It ends when this
+process ends for any reason. It then ends everything that the function started, even if the function holds the
+interpreter, ignores signals or forks.
 """
 
 from __future__ import annotations
@@ -30,11 +31,11 @@ from ...model.machine.mechanism import Mechanism
 from .apply import FunctionResult, Refused
 from .child import HEAD, unpacked
 
-_START = 600.0  # s, for importing this software or compiling a kernel on a busy machine; neither counts in the limit
-_GRACE = 10.0  # s beyond the limit after which the process is ended from here
-_TICK = 0.1  # s between two questions whether the call is to end
-_PAUSE = 1.0  # s that a tick takes at most, on a busy machine; longer, and this process was suspended
-_ENDING = 5.0  # s that a process without an output has to end
+_START = 600.0  # s for importing this software or compiling a kernel on a busy machine; neither counts in the limit
+_GRACE = 10.0  # s beyond the limit before the process is ended from here
+_TICK = 0.1  # s between two checks whether the call should end
+_PAUSE = 1.0  # s that a tick takes at most on a busy machine; after a longer one, this process was suspended
+_ENDING = 5.0  # s within which a process must end after closing its output
 _FRAME = re.compile(r'File "([^"]+)", line (\d+)')
 _PROGRAM = "from slidercrank.objectives.own.guard_process import main; main()"
 _KILLED = 9, 128 + 9  # exit codes
@@ -44,7 +45,7 @@ Process = subprocess.Popen[bytes]
 
 
 def is_guard(command: Sequence[str]) -> bool:
-    """Whether a command line is that of a guard, or of its function's process."""
+    """Whether a command line starts a guard, or its function's process."""
     return _PROGRAM in command
 
 
@@ -52,7 +53,7 @@ _running: weakref.WeakSet[Worker] = weakref.WeakSet()
 
 
 def _forget_all() -> None:
-    """Leave all processes of functions, in a fork, to the process that started them."""
+    """Leave all function processes, in a fork, to the process that started them."""
     for worker in list(_running):
         worker.forget()
     _running.clear()
@@ -63,19 +64,19 @@ if hasattr(os, "register_at_fork"):
 
 
 class _Suspended(Exception):
-    """The time limit of a call expired while this process, and perhaps the whole machine, was suspended."""
+    """The time limit of a call expired while this process, or perhaps the whole machine, was suspended."""
 
 
 class Worker:
-    """A process that runs one function. Raises `Refused` for any fault of it, and is then closed.
+    """A process that runs one function. Raises `Refused` for any fault in the function, and is then closed.
 
-    An exception from `interruption.ask` also ends a call, and the process with it.
+    An exception from `interruption.ask` also ends the call and the process.
     """
 
     def __init__(self, function: str, folders: list[str], limit: float, longest: float = float("inf")) -> None:
-        """Take "module:function", the folders that may contain its module, and the time limit of a call, s.
+        """Take "module:function", the folders that may contain the module, and the time limit of a call, s.
 
-        longest: upper bound of the limit, s, set by whoever runs the function.
+        longest: upper bound on the limit, s, set by whoever runs the function.
         """
         self.function, self.folders = function, folders
         self.limit, self.longest = min(limit, longest), longest
@@ -85,7 +86,7 @@ class Worker:
         self._lock = threading.Lock()
 
     def __call__(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> FunctionResult:
-        """Return the function's answer for designs (n, 3); see `apply`."""
+        """Return the function's result for designs (n, 3); see `apply`."""
         with self._lock:
             while True:
                 with contextlib.suppress(_Suspended):
@@ -102,17 +103,17 @@ class Worker:
         return unpacked(self._await_message(self.limit))
 
     def close(self) -> None:
-        """End the process and all that it started."""
+        """End the process and everything that it started."""
         if self._process is not None:
             self._process = self._mechanism = None
             self._end()
 
     def _start(self) -> None:
-        # Only a name: the child opens it, and what it says of a crash is read here.
+        # Only a name: the child opens the file, and this process reads the crash report from it.
         handle, self._log = tempfile.mkstemp(prefix="slidercrank-", suffix=".log")
         os.close(handle)
         group: dict[str, Any] = {"process_group": 0} if os.name == "posix" else {}
-        # Without buffers: a fork would copy what they hold, and locks of them that a thread has at that moment.
+        # Unbuffered: a fork would copy the buffers, and their locks as a thread holds them at that moment.
         self._process = process = subprocess.Popen(
             (sys.executable, "-P", "-c", _PROGRAM, str(os.getpid()), self._log),
             stdin=subprocess.PIPE,
@@ -131,15 +132,15 @@ class Worker:
         self._await_message(_START + self.limit)
 
     def forget(self) -> None:
-        """Leave the process to its starter, of which this process is a fork."""
-        self._end.detach()  # at the end of this process, too
+        """Leave the process to its starter; this process is a fork of that one."""
+        self._end.detach()  # also when this process ends
         if self._process is not None:
             for pipe in (self._process.stdin, self._process.stdout):
                 if pipe is not None:
                     pipe.close()
             self._process.returncode = 0  # not a child of this process: nothing to wait for
         self._process = self._mechanism = None
-        self._lock = threading.Lock()  # a thread that is not here may have held the other one
+        self._lock = threading.Lock()  # a thread that does not exist here may have held the other lock
 
     def _send(self, request: tuple[Any, ...]) -> None:
         assert self._process is not None
@@ -160,11 +161,11 @@ class Worker:
         return content
 
     def _next_message(self, limit: float) -> Message:
-        """Return the next message of the process; empty if it has ended, or is ended here because it is late.
+        """Return the next message from the process; empty if it has ended, or if it is late and is ended here.
 
-        An interruption ends a slow process. Time for which this process is suspended does not count.
+        An interruption ends a slow process. Time during which this process is suspended does not count.
         """
-        # The child watches its time itself; this is for a child that cannot.
+        # The child enforces its own time limit; this is for a child that cannot.
         waited, before = 0.0, time.monotonic()
         try:
             while waited <= limit + _GRACE:
@@ -200,18 +201,18 @@ class Worker:
         assert self._process is not None
         try:
             code: int | None = self._process.wait(_ENDING)
-        except subprocess.TimeoutExpired:  # it closed its output but continues
+        except subprocess.TimeoutExpired:  # it closed its output but still runs
             self._end()
             code = self._process.poll()
         text = Path(self._log).read_text(encoding="utf-8", errors="replace") if Path(self._log).exists() else ""
-        if "Timeout (" in text and self._paused:  # its watch counts time for which it is suspended, too
+        if "Timeout (" in text and self._paused:  # its timer also counts time while it is suspended
             self.close()
             raise _Suspended
         frames = [(Path(file), line) for file, line in _FRAME.findall(text)]
         module = self.function.partition(":")[0].rpartition(".")[2]
         frames_of_function = [
             frame for frame in frames if frame[0].stem == module
-        ] or frames  # the last call comes first
+        ] or frames  # the most recent call comes first
         place = f" ({frames_of_function[0][0].name}:{frames_of_function[0][1]})" if frames_of_function else ""
         if "Timeout (" in text or self._late:
             raised = "correct it, or raise the limit if it is only slow"
@@ -223,7 +224,7 @@ class Worker:
 
 
 def _queue_messages(stream: IO[bytes], messages: queue.SimpleQueue[Message]) -> None:
-    """Put the messages of a process into a queue, and an empty message at the end."""
+    """Put messages from a process into a queue, then an empty message at the end."""
     with stream, contextlib.suppress(OSError, ValueError):
         while len(head := _read(stream, HEAD.size)) == HEAD.size:
             kind, length = HEAD.unpack(head)
@@ -235,7 +236,7 @@ def _queue_messages(stream: IO[bytes], messages: queue.SimpleQueue[Message]) -> 
 
 
 def _read(stream: IO[bytes], length: int) -> bytes:
-    """Return `length` bytes, fewer only at the end."""
+    """Return `length` bytes; fewer only at the end of the stream."""
     content = bytearray()
     while len(content) < length and (chunk := stream.read(length - len(content))):
         content += chunk
@@ -243,13 +244,16 @@ def _read(stream: IO[bytes], length: int) -> bytes:
 
 
 def _end(process: Process, log: str) -> None:
-    """End a process by its guard, which may be suspended. Only the guard stays, with processes that it may not kill."""
+    """End a process through its guard, which may be suspended.
+
+    Only the guard stays, with the processes that it may not kill.
+    """
     process.terminate()
     if os.name == "posix":
         process.send_signal(signal.SIGCONT)
     with contextlib.suppress(subprocess.TimeoutExpired):
         process.wait(_ENDING)
     assert process.stdin is not None
-    with contextlib.suppress(OSError):  # what was not sent yet has nobody to read it
+    with contextlib.suppress(OSError):  # nobody is left to read the unsent rest
         process.stdin.close()
     Path(log).unlink(missing_ok=True)

@@ -1,4 +1,4 @@
-"""A quantity at points of the tolerance box around designs, with its pieces kept separate."""
+"""A quantity at points in the tolerance boxes around designs, with its pieces kept separate."""
 
 from __future__ import annotations
 
@@ -12,16 +12,17 @@ from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ..quantity import Array, Quantity
 
-_SAME = 0.3  # labels (rad) farther apart are not the same peak; as the polish has it
+_SAME = 0.3  # labels (rad) farther apart belong to different peaks; the polish uses the same value
 
 
 @dataclass(frozen=True)
 class PointValues:
     """A quantity at q points around each of n designs.
 
-    values: (n, q, p), values of its pieces, -inf where absent; +inf in the first where the linkage does not rotate
-    fully. gradients: (n, q, p, 3 + k), by the design, not by the point: a tolerance may grow with its dimension.
-    local: (n, q, p, 3), by the point. labels: (n, q, p). turns: (n, q), whether the linkage rotates fully.
+    values: (n, q, p), values of its pieces, -inf where absent; +inf in the first piece where the linkage does not
+    rotate fully. gradients: (n, q, p, 3 + k), with respect to the design rather than the point: a tolerance may grow
+    with its dimension. local: (n, q, p, 3), with respect to the point. labels: (n, q, p). turns: (n, q), whether the
+    linkage rotates fully.
     """
 
     values: Array
@@ -31,17 +32,18 @@ class PointValues:
     turns: Mask
 
     def highest(self, slopes: Array) -> tuple[Array, Array]:
-        """Return the values (n, q) of the highest piece at each point, and its slopes."""
+        """Return the value (n, q) of the highest piece at each point, with its gradients."""
         first = np.argmax(self.values, axis=2)[:, :, None]
         values = np.take_along_axis(self.values, first, axis=2)[:, :, 0]
         return values, np.take_along_axis(slopes, first[:, :, :, None], axis=2)[:, :, 0]
 
 
 def limits_of(mechanism: Mechanism, dimensions: Array) -> Array:
-    """Return the tolerances of crank, rod and offset of designs (n, 3 + k), (n, 3), m.
+    """Return the tolerances of crank, rod and offset for designs (n, 3 + k), (n, 3), m.
 
-    The tolerance of the crank angle is left out: no quantity of a whole cycle depends on the start of the cycle. So are
-    clearances: pins and guide are ideal except in position errors. Raises `InputError` for tolerances that vary.
+    The tolerance of the crank angle is excluded: no quantity over a whole cycle depends on where the cycle starts.
+    Clearances are excluded, too: pins and guide are ideal except in position errors. Raises `InputError` if tolerances
+    are variables.
     """
     for item in mechanism.varying:
         if any(path.startswith("tolerances.") for path in item.paths):
@@ -55,13 +57,13 @@ def limits_of(mechanism: Mechanism, dimensions: Array) -> Array:
 
 
 def uncertain(mechanism: Mechanism) -> list[int]:
-    """Return which of crank, rod and offset (0, 1, 2) have a tolerance."""
+    """Return the indices among crank, rod and offset (0, 1, 2) that have a tolerance."""
     absolute, fraction = _nominal_and_tolerances(mechanism)
     return np.flatnonzero((absolute > 0.0) | (fraction > 0.0)).tolist()
 
 
 def corners(columns: list[int]) -> Array:
-    """Return the corners of the box, (2^d, 3), in units of the limits; opposite corners are mirrored rows."""
+    """Return the corners of the box, (2^d, 3), in units of the limits; opposite corners are in mirrored rows."""
     points = np.zeros((2 ** len(columns), 3))
     points[:, columns] = list(itertools.product((-1.0, 1.0), repeat=len(columns)))
     return points
@@ -70,7 +72,7 @@ def corners(columns: list[int]) -> Array:
 def in_line(columns: list[int], dimensions: Array, limits: Array) -> tuple[IntArray, Array]:
     """Return the designs (m,) whose offset may be zero within the limits, and their points (m, q, 3) there.
 
-    The points are the corners of the other dimensions' box, in units of the limits.
+    The points are the corners of the box in the other dimensions, in units of the limits.
     """
     if 2 not in columns:
         return np.zeros(0, np.int64), np.zeros((0, 0, 3))
@@ -82,9 +84,9 @@ def in_line(columns: list[int], dimensions: Array, limits: Array) -> tuple[IntAr
 
 
 def star(columns: list[int]) -> Array:
-    """Return the points (q, 3) that fit a full quadratic, in units of the limits. Here q = 1 + 2 d + d (d - 1).
+    """Return the points (q, 3) for fitting a full quadratic, in units of the limits. Here q = 1 + 2 d + d (d - 1).
 
-    The centre, both ends along each axis, and two opposite corners in each plane: cubic terms then cancel in the mixed
+    The centre, both ends of each axis, and two opposite corners in each plane. Cubic terms then cancel in the mixed
     second derivatives as they do in the pure ones.
     """
     rows = [np.zeros(3)]
@@ -98,7 +100,7 @@ def star(columns: list[int]) -> Array:
 def evaluate_points(quantity: Quantity, mechanism: Mechanism, dimensions: Array, points: Array) -> PointValues:
     """Return a quantity at points (q, 3) around designs (n, 3 + k), in units of the limits.
 
-    points: points of all designs, or (n, q, 3) for each.
+    points: common to all designs, or (n, q, 3) for each.
     """
     absolute, fraction = _nominal_and_tolerances(mechanism)
     n, q, width = len(dimensions), points.shape[-2], dimensions.shape[1]
@@ -118,13 +120,13 @@ def evaluate_points(quantity: Quantity, mechanism: Mechanism, dimensions: Array,
 
 
 def match_pieces(point_values: PointValues) -> tuple[Array, Array, Mask]:
-    """Return the pieces of the first point (the centre) at all points: values (n, q, p), gradients, and a mask.
+    """Return the centre's pieces at all points: values (n, q, p), gradients, and a mask.
 
-    A piece is found at a point if a piece there has nearly the same label; the mask tells where.
+    The centre is the first point. The mask marks where a piece with nearly the same label exists.
     """
     distance = np.abs(
         point_values.labels[:, :, None, :] - point_values.labels[:, :1, :, None]
-    )  # (n, q, p of the centre, p)
+    )  # (n, q, p at the centre, p)
     distance = np.minimum(distance, np.abs(distance - 2.0 * np.pi))
     distance = np.where(np.isfinite(point_values.values)[:, :, None, :], distance, np.inf)
     twin = np.argmin(distance, axis=3)

@@ -1,17 +1,17 @@
-"""A quantile of a quantity over the tolerances: quasi-Monte Carlo with common random numbers.
+"""Quantile of a quantity over the tolerances: quasi-Monte Carlo with common random numbers.
 
-Every design sees the same sample, scrambled Sobol points as deviations, so that the quantile is a smooth function of
-the design and designs compare without noise (I. M. Sobol 1967; A. B. Owen, "Randomly permuted (t,m,s)-nets", 1995).
+Every design sees the same sample: scrambled Sobol points as deviations. The quantile is therefore a smooth function of
+the design, and designs compare without noise (I. M. Sobol 1967; A. B. Owen, "Randomly permuted (t,m,s)-nets", 1995).
 
-Within a tolerance box a quantity is quadratic to a few parts in 10^9 of itself. It is evaluated exactly at the points
-of a star, a full quadratic is fitted through them, and the sample is drawn from that. Where the offset may be zero,
-quantities that depend on its size have a kink, and every machine of the sample is evaluated instead. The quantile is
-the estimate of Harrell and Davis ("A new distribution-free quantile estimator", Biometrika 69(3), 1982): a mean of all
-order statistics with the weights of a beta distribution, hence without the kinks of a single one.
+Within a tolerance box, a quantity is quadratic to a relative accuracy of a few parts in 10^9. It is evaluated exactly
+at the points of a star and fitted with a full quadratic, from which the sample is drawn. If the offset may be zero,
+quantities that depend on its magnitude have a kink; every machine in the sample is then evaluated instead. The
+estimator is that of Harrell and Davis ("A new distribution-free quantile estimator", Biometrika 69(3), 1982). It is a
+mean of all order statistics with weights from a beta distribution, and so lacks the kinks of a single order statistic.
 
-For normal errors the quantile of the linear part is known, and serves as control variate: the sample only gives the
-shift of the quantile by the quadratic part (P. Glasserman, "Monte Carlo Methods in Financial Engineering", 2003,
-ch. 4.1).
+For normal errors the quantile of the linear part is known and serves as a control variate. The sample then only gives
+the shift of the quantile due to the quadratic part (P. Glasserman, "Monte Carlo Methods in Financial Engineering",
+2003, ch. 4.1).
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from ...model.tolerance.spreads import Shape, error_distribution
 from ..quantity import Array
 from .points import star
 
-_FAINT = 1e-15  # weights below are rounding
-_LEAST = 2.0**-40  # a scrambled point at zero would lie at minus infinity of a normal distribution
+_FAINT = 1e-15  # smaller weights are rounding errors
+_LEAST = 2.0**-40  # a scrambled point at zero would map to minus infinity in a normal distribution
 
 
 @dataclass(frozen=True)
 class Sample:
-    """Sample of machines for a percentile, the same for all designs.
+    """Sample of machines for a percentile, common to all designs.
 
     columns: columns of the uncertain dimensions. shape, samples, seed: distribution, number and seed of the deviations.
     share: fraction of machines below the percentile.
@@ -46,10 +46,13 @@ class Sample:
 
     @cached_property
     def deviations(self) -> Array:
-        """Deviations (samples, 3) in units of the limits: scrambled Sobol points, spread; zero in other columns."""
+        """Deviations (samples, 3) in units of the limits: scrambled Sobol points with the distribution.
+
+        Zero in other columns.
+        """
         from scipy.stats import qmc
 
-        # Sobol points fill evenly in powers of two only.
+        # Sobol points fill space evenly only in powers of two.
         power = (self.samples - 1).bit_length()
         points = qmc.Sobol(len(self.columns), scramble=True, rng=np.random.default_rng(self.seed)).random_base2(power)
         deviations = np.zeros((len(points), 3))
@@ -58,7 +61,7 @@ class Sample:
 
     @cached_property
     def weights(self) -> Array:
-        """Weight of each order statistic, ascending, in the quantile, (samples,)."""
+        """Weight of each ascending order statistic in the quantile, (samples,)."""
         from scipy.special import betainc
 
         count = len(self.deviations)
@@ -68,12 +71,12 @@ class Sample:
 
     @cached_property
     def interpolation(self) -> Array:
-        """Matrix from values at the star to the sample: (points, samples)."""
+        """Matrix from values at the star to values at the sample: (points, samples)."""
         return np.ascontiguousarray((_monomials(self.deviations, self.columns) @ self._fit).T)
 
     @cached_property
     def linear(self) -> Array:
-        """Matrix from values at the star to slopes along the uncertain dimensions: (d, points)."""
+        """Matrix from values at the star to slopes by the uncertain dimensions: (d, points)."""
         return self._fit[1 : 1 + len(self.columns)]
 
     @cached_property
@@ -116,29 +119,29 @@ class Sample:
         return quantile, slope + _einsum_by_design("nq,nqd->nd", by_control, slopes[rows, :, top])
 
     def _ranked(self, machines: Array) -> tuple[IntArray, Array]:
-        """Return the machines (n, s), ascending, that determine the quantile, and their weights (s,)."""
-        first, last = np.flatnonzero(self.weights > _FAINT)[[0, -1]]  # few of many: the others need no order
+        """Return the machines (n, s), in ascending order, that determine the quantile, and their weights (s,)."""
+        first, last = np.flatnonzero(self.weights > _FAINT)[[0, -1]]  # few of many: the others need no sorting
         tail = np.sort(np.argpartition(machines, (first, last), axis=1)[:, first : last + 1], axis=1)
         order = np.argsort(np.take_along_axis(machines, tail, axis=1), axis=1, kind="stable")
         return np.take_along_axis(tail, order, axis=1), self.weights[first : last + 1]
 
 
 sample = lru_cache(maxsize=32)(Sample)
-"""The sample of these columns, deviations and share, kept for the next designs."""
+"""The sample for these columns, deviations and fraction, cached for the next designs."""
 
 
 def linear_quantile(coefficients: Array, share: float) -> tuple[Array, Array]:
     """Return the quantile (n,) of c . z and its gradient by c (n, d); z is normal, its limits three deviations."""
     from scipy.special import ndtri
 
-    sigmas = float(ndtri(share)) / 3.0  # `error_distribution` takes the limit as three deviations
+    sigmas = float(ndtri(share)) / 3.0  # `error_distribution` also takes the limit as three deviations
     size = np.sqrt((coefficients**2).sum(axis=1))
     slope = coefficients / np.where(size > 0.0, size, 1.0)[:, None]
     return sigmas * size, sigmas * slope
 
 
 def _monomials(points: Array, columns: tuple[int, ...]) -> Array:
-    """Return the monomials up to the second degree at points (q, 3), (q, m)."""
+    """Return the monomials of degree two and lower at points (q, 3), (q, m)."""
     constant = np.ones(len(points))
     linear = [points[:, a] for a in columns]
     pairs = [points[:, a] * points[:, b] for i, a in enumerate(columns) for b in columns[i:]]
@@ -146,8 +149,8 @@ def _monomials(points: Array, columns: tuple[int, ...]) -> Array:
 
 
 def _einsum_by_design(sums: str, *factors: Array) -> Array:
-    """Return sums of products; those of a design are the same to the last bit whatever other designs are present.
+    """Return sums of products that are identical to the last bit for a design, whatever other designs are present.
 
-    BLAS sums differently for other numbers of rows, einsum for other strides.
+    BLAS sums in another order if the number of rows changes, einsum if the strides change.
     """
     return np.asarray(np.einsum(sums, *map(np.ascontiguousarray, factors), optimize=False))

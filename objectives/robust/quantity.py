@@ -25,32 +25,31 @@ Side = Literal["high", "low"]
 Case = Literal["worst case", "percentile"]
 
 SAMPLES = 2048
-"""Machines of a percentile."""
+"""Default number of machines for a percentile."""
 _LEAST = 64
 _MOST = 65536
 _MOST_PIECES = 8  # pieces of a worst case that may tie
 _LABEL_STEP = 100.0  # rad, between the labels of different corners
-_STEP = 0.05  # of the limits, see `_linear`
-_BLOCK = 1 << 22  # numbers of a sample held at once
+_STEP = 0.05  # in units of the limits, see `_linear`
+_BLOCK = 1 << 22  # numbers of a sample held in memory together
 
 
 @dataclass(frozen=True, kw_only=True)
 class RobustQuantity(Quantity):
-    """A quantity as it is within the tolerances of crank, rod and offset.
+    """A quantity within the tolerances of crank, rod and offset.
 
-    inner: the quantity. side: the bad side, "high" if it should be low.
-    case "worst case", order 1: f + sum_i |df/dx_i| T_i (high) or f - sum_i |df/dx_i| T_i (low). Order 2: the exact
-    worst f in the box, hence with the second and all higher orders. It is at a corner, at offset zero if the limits
-    span it, or inside, where `within` finds an extreme of f. If the limits span offset zero, order 1 becomes order 2:
-    quantities that depend on its size have no derivative there.
-    case "percentile": the value that a fraction of all machines meets, `P(f <= v) = share` (high) or
-    `P(f >= v) = share` (low). Errors are independent, with the distribution `shape`, in units of the limits
-    T_i = absolute + fraction |x_i|. samples: number of machines, see `quantile`; rounded up to a power of two. seed:
-    seed of their scrambling. suffix: suffix of name and field.
+    inner: the nominal quantity. side: the bad side, "high" if low values are better. case "worst case", order 1: f +
+    sum_i |df/dx_i| T_i (high) or f - sum_i |df/dx_i| T_i (low). Order 2: the exact worst f in the box, including terms
+    of second and all higher orders. The worst f is at a corner, at offset zero if the limits span it, or inside, at an
+    extreme found by `worst_points`. If the limits span offset zero, order 1 becomes order 2, because quantities that
+    depend on its magnitude have no derivative there. case "percentile": the value that a fraction of all machines
+    meets, `P(f <= v) = share` (high) or `P(f >= v) = share` (low). Errors are independent, with the distribution
+    `shape`, in units of the limits T_i = absolute + fraction |x_i|. samples: number of machines, rounded up to a power
+    of two; see `quantile`. seed: seed for scrambling. suffix: suffix of name and column key.
 
-    The slope of a percentile has small steps where machines change places, and larger ones where peaks tie among the
-    machines: a design there may have the status "best found" rather than stationary. Infinite, on the bad side, where a
-    corner or a point of the star does not rotate fully. Raises `InputError` for options out of range.
+    The slope of a percentile has small steps where machines change rank, and larger ones where peaks tie within
+    machines. A design at such a step may have the status "best found" rather than stationary. Infinite on the bad side
+    if a corner or a point of the star does not rotate fully. Raises `InputError` for options that are out of range.
     """
 
     name: str = _field(init=False)
@@ -75,13 +74,13 @@ class RobustQuantity(Quantity):
             "key": f"{self.inner.stem}_{self.suffix}",
             "title": f"{self.inner.short_title}, {whose}",
             "short": "",
-            "signed": True,  # errors may take a quantity beyond what any linkage has
+            "signed": True,  # errors may take a quantity beyond the range of nominal linkages
             "domain": None,
             "floor": None,
             "in_line": None,
             "bounds": None,
         }
-        for fact in fields(Quantity):  # the others are those of the quantity
+        for fact in fields(Quantity):  # the other facts are those of the nominal quantity
             object.__setattr__(self, fact.name, facts.get(fact.name, getattr(self.inner, fact.name)))
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -94,7 +93,7 @@ class RobustQuantity(Quantity):
         return (self.inner,)
 
     def with_parts(self, parts: tuple[Quantity, ...]) -> RobustQuantity:
-        """Return the robust quantity of another quantity with the same name."""
+        """Return the robust version of another quantity with the same name."""
         return replace(self, inner=parts[0])
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
@@ -109,17 +108,15 @@ class RobustQuantity(Quantity):
         return Values(values, pieces.gradients[np.arange(len(values)), first])
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
-        """Return the quantity as the greatest of smooth pieces, or their least on the low side."""
+        """Return the quantity as the maximum of smooth pieces, or their minimum on the low side."""
         dimensions = np.asarray(dimensions, dtype=np.float64)
-        limits = limits_of(mechanism, dimensions)  # refuses what it must
+        limits = limits_of(mechanism, dimensions)  # raises for unusable tolerances
         columns = uncertain(mechanism)
         if not columns:
             pieces = self.inner.pieces(mechanism, dimensions)
             if self.side == "high":
                 return pieces
-            return replace(pieces, least=True).take(
-                np.argmax(pieces.values, axis=1)[:, None]
-            )  # the one piece that it is
+            return replace(pieces, least=True).take(np.argmax(pieces.values, axis=1)[:, None])  # its only active piece
         if self.case == "percentile":
             return self._quantile(mechanism, dimensions, tuple(columns))
         low = self.side == "low"
@@ -136,9 +133,9 @@ class RobustQuantity(Quantity):
         )
 
     def estimate(self, mechanism: Mechanism, dimensions: Array, inner: Values) -> Array:
-        """Return the first-order estimate (n,) from values and gradients of the quantity itself.
+        """Return the first-order estimate (n,) from values and gradients of the nominal quantity.
 
-        For a percentile, it assumes a normal distribution with the same variance. Used to sort many designs.
+        A percentile is estimated from a normal distribution with the same variance. Used to rank many designs.
         """
         assert inner.gradients is not None
         limits = limits_of(mechanism, dimensions)
@@ -163,7 +160,8 @@ class RobustQuantity(Quantity):
         inner_points = worst_inner_points(self.inner, mechanism, dimensions, columns, at_corners, low=low)
         if not len(inner_points.rows):
             return values, slopes, labels
-        # Further points within the box where they are worse: there they stay while the design, and its box, moves.
+        # Further points in the box where they are worse than the corners; they stay fixed while the design and its box
+        # move.
         count = inner_points.points.shape[1]
         at_inner = evaluate_points(self.inner, mechanism, dimensions[inner_points.rows], inner_points.points)
         worse, slope, label = self._bad_side(at_inner)
@@ -190,14 +188,15 @@ class RobustQuantity(Quantity):
             )
         values, slopes = point_values.highest(point_values.gradients)
         point = np.broadcast_to(_LABEL_STEP * np.arange(values.shape[1]), values.shape)
-        # Infinite where friction locks: nothing is high there.
+        # Infinite where friction locks the linkage: nothing is high there.
         return np.where(point_values.turns & (values < np.inf), values, -np.inf), slopes, point
 
     def _linear(self, mechanism: Mechanism, dimensions: Array, columns: list[int]) -> tuple[Array, Array, Array]:
         """Return the linear extrapolation of every piece to every corner.
 
-        Directional derivatives are central differences over a small fraction h of the limits. Their error is h^2 of the
-        third order, 1/400 of the terms that first order neglects anyway. Their gradients follow from exact gradients.
+        Directional derivatives are central differences over a small fraction h of the limits. Their error is h^2 times
+        the third order, 1/400 of the terms that first order neglects anyway. Their gradients follow from exact
+        gradients.
         """
         signs = corners(columns)
         point_values = evaluate_points(
@@ -205,12 +204,12 @@ class RobustQuantity(Quantity):
         )
         values, slopes, has_twin = match_pieces(point_values)
         centre, slope = values[:, :1], slopes[:, :1]
-        ahead, opposite = np.s_[:, 1:], np.s_[:, :0:-1]  # opposite corners are mirrored rows
+        ahead, opposite = np.s_[:, 1:], np.s_[:, :0:-1]  # opposite corners are in mirrored rows
         on_both_sides = has_twin[ahead] & has_twin[opposite]
         with np.errstate(invalid="ignore"):
             change = (values[ahead] - values[opposite]) / (2.0 * _STEP)
         change_slope = (slopes[ahead] - slopes[opposite]) / (2.0 * _STEP)
-        # A peak that vanishes nearby is hardly the highest: its own slope suffices.
+        # A peak that vanishes nearby is hardly the highest, so its own slope suffices.
         limits = limits_of(mechanism, dimensions)
         plain = np.einsum("npi,ci->ncp", slope[:, 0, :, :3] * limits[:, None, :], signs)
         values = np.where(np.isfinite(centre), centre + np.where(on_both_sides, change, plain), -np.inf)
@@ -231,7 +230,7 @@ class RobustQuantity(Quantity):
         values, slopes, has_twin = match_pieces(star_values)
         has_all_twins: Mask = np.logical_and.reduce(has_twin, axis=1)
         values = np.where(has_all_twins[:, None, :], values, -np.inf)
-        # If a peak is absent at some points but matters at others, the greatest of all peaks is taken as one piece.
+        # If a peak is absent at some points but matters at others, the maximum over all peaks is taken as one piece.
         top, steepest = star_values.highest(star_values.gradients)
         greatest: Array = values.max(axis=2, initial=-np.inf)
         lost = np.flatnonzero((greatest < top).any(axis=1))
@@ -239,7 +238,7 @@ class RobustQuantity(Quantity):
         slopes[lost, :, 0] = steepest[lost]
         share = self.share if self.side == "high" else 1.0 - self.share
         drawn = sample(columns, self.shape, self.samples, self.seed, share)
-        # Quantities that depend on the size of an offset have a kink at zero, which machines of the sample may reach.
+        # Quantities that depend on |offset| have a kink at zero, which machines in the sample may reach.
         widest = np.abs(drawn.deviations[:, 2]).max()
         kinked = (2 in columns) & (np.abs(dimensions[:, 2]) < widest * limits_of(mechanism, dimensions)[:, 2])
         good = np.isfinite(top).all(axis=1) & ~kinked
@@ -257,7 +256,7 @@ class RobustQuantity(Quantity):
 
 
 def _row_blocks(rows: Mask, size: int) -> Iterator[IntArray]:
-    """Yield the indices of rows in blocks that fit in memory together. size: number of values in each row."""
+    """Yield the indices of rows in blocks that fit in memory. size: number of values per row."""
     places, step = np.flatnonzero(rows), max(1, _BLOCK // size)
     for begin in range(0, len(places), step):
         yield places[begin : begin + step]
@@ -266,7 +265,10 @@ def _row_blocks(rows: Mask, size: int) -> Iterator[IntArray]:
 def _merge_parts(
     count: int, parts: list[tuple[IntArray, tuple[Array, Array, Array]]], *, absent: float
 ) -> tuple[Array, Array, Array]:
-    """Return values, gradients and labels of all designs from parts with some each; missing pieces are `absent`."""
+    """Return values, gradients and labels for all designs, merged from parts with some each.
+
+    Missing pieces are `absent`.
+    """
     if len(parts) == 1:
         return parts[0][1]
     widest = max(values.shape[1] for _, (values, _, _) in parts)

@@ -1,4 +1,4 @@
-"""The worst point of the tolerance box besides corners: at offset zero, or at an extreme of the quantity."""
+"""Worst points in the tolerance box besides its corners: at offset zero, or at an extreme of the quantity."""
 
 from __future__ import annotations
 
@@ -12,9 +12,11 @@ from ...model.machine.mechanism import Mechanism
 from ..quantity import Array, Quantity
 from .points import PointValues, corners, evaluate_points, in_line, limits_of, match_pieces
 
-_SIDE_STEP = 1e-6  # of the limits: how far from offset zero tells a kink there from a curve that turns nearby
-_LOST = 1e-13  # of a value: what a point must be worse by than another one
-_FLAT = 1e-9  # of a value, over the limits: slopes below do not tell where a curve turns
+_SIDE_STEP = (
+    1e-6  # in units of the limits: distance from offset zero that distinguishes a kink there from a nearby extreme
+)
+_LOST = 1e-13  # relative: margin by which a point must be worse than another
+_FLAT = 1e-9  # of a value, over the limits: smaller slopes do not show where a curve has its extreme
 _STEPS = 60
 _EXACT = 1e-15
 
@@ -36,12 +38,12 @@ def worst_inner_points(
     *,
     low: bool,
 ) -> InnerPoints:
-    """Return points inside the box of designs (n, 3 + k) that may be worse than all its corners.
+    """Return points inside the boxes of designs (n, 3 + k) that may be worse than all their corners.
 
-    at_corners: the quantity at the corners. low: whether the least value is the worst, else the greatest.
-    1. Quantities that depend on |offset| have an extreme at zero: those points are included if the limits span it.
-    2. At the worst of all these points the quantity must improve in every direction into the box, to first order.
-       If it does not, it has an extreme inside: sequential quadratic programming finds the worst value from there.
+    at_corners: the quantity at the corners. low: whether the minimum is the worst value, else the maximum. 1.
+    Quantities that depend on |offset| have an extreme at zero; those points are included if the limits span it. 2. At
+    the worst of all these points, the quantity must improve in every direction into the box, to first order.
+       Otherwise it has an extreme inside, and sequential quadratic programming finds the worst value from there.
     """
     limits = limits_of(mechanism, dimensions)
     spanning, points = in_line(columns, dimensions, limits)
@@ -74,7 +76,7 @@ def worst_inner_points(
     count = len(ends) // 2 if len(spanning) else 0
     inner_points = np.repeat(
         start[rows][:, None], count + 1, axis=1
-    )  # designs without an inner point repeat their worst one
+    )  # designs without an inner point repeat their worst point
     if len(spanning):
         inner_points[np.searchsorted(rows, spanning), :count] = points
     for index, row in enumerate(rows.tolist()):
@@ -90,17 +92,20 @@ def _losses(point_values: PointValues, low: bool) -> tuple[Array, Array, Mask]:
 
 
 def _slopes_at_worst(worst: Array, slopes: Array) -> Array:
-    """Return the slopes (n, 3) at the worst of the points."""
+    """Return the slopes (n, 3) at the worst point of each design."""
     return np.take_along_axis(slopes, np.argmax(worst, axis=1)[:, None, None], axis=1)[:, 0]
 
 
 def _search_worst_point(
     quantity: Quantity, mechanism: Mechanism, design: Array, columns: list[int], start: Array, low: bool
 ) -> Array:
-    """Return the worst point (3,) near a start. If it is the least of a maximum, peaks may tie there (minimax)."""
+    """Return the worst point (3,) near a start.
+
+    If the worst value is the minimum of a maximum, peaks may tie there (minimax).
+    """
     from scipy.optimize import minimize
 
-    search: Any = minimize  # its stubs do not follow SLSQP's
+    search: Any = minimize  # its stubs do not match SLSQP's signature
     at_start = evaluate_points(quantity, mechanism, design[None], start[None])
     many = (
         np.isfinite(at_start.values[0, 0])
@@ -123,7 +128,7 @@ def _search_worst_point(
         counted_pieces = many & has_twin[0, 1]
         return np.where(counted_pieces, values[0, 1], -np.inf)[many] / size, local[0, 1][many] * tolerances / size
 
-    # Unknowns: the point and, of a minimax, the bound that no piece exceeds.
+    # Unknowns: the point and, for a minimax, the bound that no piece exceeds.
     begin = start[columns]
     bounds: Any = [(-1.0, 1.0)] * len(columns)
     limits_met: Any = ()

@@ -1,4 +1,4 @@
-"""All quantities of designs, with the names and units of tables and JSON."""
+"""All quantities for designs, with the names and units of tables and JSON."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ if TYPE_CHECKING:
 
 
 def analyse(mechanism: Mechanism, dimensions: Array, *, custom: Sequence[Quantity] = ()) -> pd.DataFrame:
-    """Return a table with every quantity of fully rotating designs (n, 3 + k): crank, rod, offset, m, and more.
+    """Return a table with every quantity for fully rotating designs (n, 3 + k): crank, rod, offset, m, and more.
 
-    custom: quantities outside the registry; a free phase or shift of a target motion gets a column too. The values
-    of the machine's k varying numbers come after the offset, under the keys of `varying_column`. Columns carry their
-    unit. Dead centres are crank angles, deg; the slow stroke is that of `stroke_times.slow_stroke`, the loaded stroke
-    that of `loaded_stroke`. Quantities that a machine does not define are NaN, such as position errors without
-    tolerances. Raises `AssemblyError` for a linkage that does not rotate fully.
+    custom: quantities outside the registry; a free phase or shift of a target motion gets a column, too. The machine's
+    k variables come after the offset, under the keys from `varying_column`. Columns carry their unit. Dead centres are
+    crank angles, deg; the slow stroke is that from `stroke_times.slow_stroke`, the loaded stroke that from
+    `loaded_stroke`. Quantities that a machine does not define are NaN, such as position errors without tolerances.
+    Raises `AssemblyError` for a linkage that does not rotate fully.
     """
     import pandas as pd
 
@@ -46,7 +46,7 @@ def analyse(mechanism: Mechanism, dimensions: Array, *, custom: Sequence[Quantit
 
 
 def columns_of(mechanism: Mechanism, dimensions: Array, *, custom: Sequence[Quantity] = ()) -> dict[str, NDArray[Any]]:
-    """Return the columns (n,) of the table of `analyse`: importing pandas takes longer than computing one design."""
+    """Return the columns (n,) of the `analyse` table: importing pandas takes longer than computing one design."""
     dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64))
     dimensions = dimensions.copy()
     dimensions[:, 2] = without_rounding(dimensions[:, 1], dimensions[:, 2])

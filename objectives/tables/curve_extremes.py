@@ -1,10 +1,10 @@
-"""Least and greatest value of every curve of one design, over the continuous crank angle.
+"""Minimum and maximum of every curve of one design, over the continuous crank angle.
 
-The turn is cut where torque and forces may jump or have a kink (`model.cycle.cycle.breakpoints`), at the dead centres,
-and where the crank is normal to the slider's line. Within a piece every curve is sampled closely, and each of its
-highest and lowest samples is refined by golden sections between its neighbours. At the ends of a piece the one-sided
-limits count. Golden sections need no derivative and also find the cusps of magnitudes, where there is none.
-Source: R. P. Brent, Algorithms for Minimization without Derivatives (1973), chapter 5.
+The turn is cut at possible jumps and kinks of torque and forces (`model.cycle.cycle.breakpoints`), at the dead centres,
+and where the crank is normal to the slider line. Within a piece every curve is sampled densely, and each of its highest
+and lowest samples is refined by golden sections between its neighbours. At the ends of a piece the one-sided limits
+count. Golden-section search needs no derivative, and so also finds the cusps of magnitudes. Source: R. P. Brent,
+Algorithms for Minimization without Derivatives (1973), chapter 5.
 """
 
 from __future__ import annotations
@@ -34,17 +34,19 @@ from .cycle_curves import Curve, cycle_curves
 
 _TURN = 2.0 * math.pi
 _SAMPLES = 2048
-"""Over a turn, crowded as the curves are steep. The nearest singularity then is dozens of samples away."""
-_LEAST_SAMPLES = 33  # in a piece, however short
+"""Over a turn, in crowded angles, which are denser where the curves are steep. The nearest singularity is then dozens
+of samples away."""
+_LEAST_SAMPLES = 33  # minimum in a piece, however short
 _INSET = 1e-8
-"""Distance from an end of a piece, rad, at which the stroke is beyond doubt; limits are extrapolated from it."""
+"""Distance from an end of a piece, rad, at which the stroke is unambiguous; limits are extrapolated from there."""
 _TOLERATED_STEPS = 4.0
-"""Rise of a curve above a sample, in differences of neighbouring samples: one at a tip, less where it is smooth."""
-_CANDIDATES = 60  # of each curve and side; there are more only where samples are equal but for rounding
+"""Rise of a curve above a sample, in differences between neighbouring samples: one at a cusp, less where it is
+smooth."""
+_CANDIDATES = 60  # maximum per curve and side; only samples equal to rounding would give more
 _SECTIONS = 64  # 0.618^64 = 4e-14 of a bracket
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
-_EQUAL = 1e-14  # of the curve's size: an end of a piece is then as high as what lies beside it
-_CONSTANT = 1e-12  # of the greatest size of all curves with the same unit
+_EQUAL = 1e-14  # of the curve's magnitude: within it, an end of a piece counts as high as its neighbourhood
+_CONSTANT = 1e-12  # relative to the maximum magnitude of all curves with the same unit
 _NEEDS: dict[str, tuple[Need, ...]] = {
     **dict.fromkeys(("slider_velocity", "slider_acceleration", "slider_jerk"), (SPEED,)),
     "torque": (DRIVEN,),
@@ -71,7 +73,7 @@ class Extreme:
 
 @dataclass(frozen=True)
 class CurveExtremes:
-    """Extremes of a curve of `cycle_curves`, or of the resultant of a joint force."""
+    """Extremes of one curve in `cycle_curves`, or of the magnitude of a joint force."""
 
     name: str
     title: str
@@ -83,10 +85,10 @@ class CurveExtremes:
 def curve_extremes(mechanism: Mechanism, linkage: Linkage) -> list[CurveExtremes]:
     """Return the extremes of every curve that the machine defines, for one fully rotating linkage.
 
-    Leaves out velocity, acceleration, jerk and power without a crank speed, torque and joint forces without masses
-    and loads, the load without loads, and position errors without tolerances. At a jump an extreme is the limit from
-    its side. For a spike narrower than a few hundred-millionths of a radian, the values beside it count.
-    Raises `InputError` for arrays of linkages and for a linkage on another branch than the mechanism's.
+    Omits velocity, acceleration, jerk and power without a crank speed, torque and joint forces without masses and
+    loads, the load without loads, and position errors without tolerances. At a jump, an extreme is the one-sided limit.
+    For a spike narrower than a few hundred-millionths of a radian, the values beside it count. Raises `InputError` for
+    arrays of linkages and for a linkage on another branch than the mechanism's.
     """
     linkage = single(mechanism, linkage)
     first = defined_curves(mechanism, linkage, np.zeros(1))
@@ -112,14 +114,14 @@ def curve_extremes(mechanism: Mechanism, linkage: Linkage) -> list[CurveExtremes
 def defined_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> list[Curve]:
     """Return the curves that `curve_extremes` examines, at crank angles (n,), rad.
 
-    The rod angle of the crossed branch, about pi, is given in [0, 2 pi), where it does not jump.
+    On the crossed branch, the rod angle is about pi; it is given in [0, 2 pi), where it does not jump.
     """
     every = every_curve(mechanism, linkage, crank_angle)
     return [curve for curve in every if not undefined_because(curve.name, mechanism)]
 
 
 def every_curve(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> list[Curve]:
-    """Return the curves of `defined_curves` and those that the machine does not define, which are meaningless."""
+    """Return the curves of `defined_curves` plus those that the machine does not define, which are meaningless."""
     every = {curve.name: curve for curve in cycle_curves(mechanism, linkage, crank_angle)}
     del every["crank_angle"]
     if linkage.branch == "crossed":
@@ -128,7 +130,7 @@ def every_curve(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> l
     curves = []
     for curve in every.values():
         joint = curve.name.removesuffix("_x")
-        if joint != curve.name:  # the resultant comes before its components
+        if joint != curve.name:  # the magnitude comes before its components
             size = np.hypot(curve.values, every[f"{joint}_y"].values)
             curves.append(Curve(joint, f"{joint.replace('_', ' ')} force", size, curve.kind))
         curves.append(curve)
@@ -143,9 +145,9 @@ def undefined_because(name: str, mechanism: Mechanism) -> str:
 
 
 def cuts_of(mechanism: Mechanism, linkage: Linkage) -> Array:
-    """Return ascending crank angles (k,) of a cycle from 0, rad, between which every curve is smooth.
+    """Return ascending crank angles (k,) in a cycle from 0, rad, between which every curve is smooth.
 
-    If friction locks the linkage, the angles are those without friction: forces are then undetermined anyway.
+    If friction locks the linkage, the angles are those without friction, because the forces are undetermined anyway.
     """
     dimensions = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
     locks = not float(locking_margin(mechanism.friction, dimensions)[0][0]) > 0.0
@@ -162,13 +164,13 @@ def cuts_of(mechanism: Mechanism, linkage: Linkage) -> Array:
 
 
 def _smooth_pieces(mechanism: Mechanism, linkage: Linkage) -> list[Array]:
-    """Return crank angles of each smooth piece of the turn, with its ends moved inward by `_INSET`."""
+    """Return the crank angles of each smooth piece of the turn, with its ends moved inward by `_INSET`."""
     cuts = cuts_of(mechanism, linkage)
     kappa = crowding(float(linkage.crank), float(linkage.rod), float(linkage.offset))
     pieces = []
     for start, end in zip(cuts, [*cuts[1:], cuts[0] + cycle_turns(mechanism) * _TURN], strict=True):
         if end - start < 8.0 * _INSET:
-            continue  # cuts that are the same but for rounding
+            continue  # cuts that are equal to rounding
         low, high = crowded(start, kappa), crowded(end, kappa)
         count = max(_LEAST_SAMPLES, math.ceil((high - low) / _TURN * _SAMPLES))
         inner = [uncrowded(tau, kappa) for tau in np.linspace(low, high, count)[1:-1]]
@@ -179,7 +181,7 @@ def _smooth_pieces(mechanism: Mechanism, linkage: Linkage) -> list[Array]:
 
 
 def _curve_sizes(curves: list[Curve], samples: list[Array]) -> Array:
-    """Return the greatest magnitude (m, 2) of each curve, and of all curves with its unit; NaN if undetermined."""
+    """Return the maximum magnitude (m, 2) of each curve, and of all curves with its unit; NaN if undetermined."""
     magnitudes = np.max([np.abs(values).max(axis=1) for values in samples], axis=0)
     units = [curve.kind.unit for curve in curves]
     shared = [
@@ -192,9 +194,9 @@ def _curve_sizes(curves: list[Curve], samples: list[Array]) -> Array:
 def _extremes_at_ends(
     values: Callable[[Array], Array], pieces: list[Array], samples: list[Array], sizes: Array, period: float
 ) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
-    """Return the least value of each curve with its crank angle, and the same for its greatest value.
+    """Return the minimum of each curve with its crank angle, and likewise its maximum.
 
-    All are refined together: a section of many brackets takes hardly longer than that of a few.
+    All brackets are refined together: many take hardly longer than a few.
     """
     sides = [_coarse_extremes(pieces, samples, sizes, sign) for sign in (-1.0, 1.0)]
     rows, left, right = (np.concatenate(parts) for parts in zip(*(side[1:] for side in sides), strict=True))
@@ -221,9 +223,10 @@ def _extremes_at_ends(
 def _coarse_extremes(
     pieces: list[Array], samples: list[Array], sizes: Array, sign: float
 ) -> tuple[list[tuple[float, float]], Array, Array, Array]:
-    """Return each curve's best piece end, times the sign, and the brackets in which it may be exceeded.
+    """Return each curve's best piece end, times the sign, and the brackets that may contain a better value.
 
-    For a constant or undetermined curve, its value instead. Brackets: row of the curve, left and right crank angle.
+    For a constant or undetermined curve, return its value instead. Brackets: row of the curve, left and right crank
+    angle.
     """
     ends: list[tuple[float, float]] = []
     brackets: list[tuple[int, float, float]] = []
@@ -242,7 +245,7 @@ def _coarse_extremes(
 
 
 def _best_end(curve: list[Array], pieces: list[Array]) -> tuple[float, float]:
-    """Return the greatest one-sided limit at the piece ends, linearly extrapolated, and its crank angle."""
+    """Return the maximum one-sided limit at the piece ends, linearly extrapolated, and its crank angle."""
     ends = []
     for angles, values in zip(pieces, curve, strict=True):
         ends.append((2.0 * values[0] - values[1], angles[0] - _INSET))
@@ -262,7 +265,7 @@ def _maxima_at_cuts(curve: list[Array], pieces: list[Array]) -> tuple[Array, Arr
 
 
 def _maximum_brackets(curve: list[Array], pieces: list[Array]) -> list[tuple[float, float]]:
-    """Return the neighbours on both sides of each local maximum that may be next to the greatest value."""
+    """Return the neighbours on both sides of each local maximum that may be next to the global maximum."""
     brackets: list[tuple[float, float, float]] = []
     for angles, values in zip(pieces, curve, strict=True):
         padded = np.concatenate([[-np.inf], values, [-np.inf]])
@@ -280,7 +283,7 @@ def _maximum_brackets(curve: list[Array], pieces: list[Array]) -> list[tuple[flo
 def golden(
     function: Callable[[Array], Array], left: Array, right: Array, sections: int = _SECTIONS
 ) -> tuple[Array, Array]:
-    """Return the greatest value of a function (n,) -> (n,) in each bracket, and its place, by golden sections."""
+    """Return the maximum of a function (n,) -> (n,) in each bracket, and its location, by golden sections."""
     if not len(left):
         return left, right
     low, high = left + (1.0 - _GOLDEN) * (right - left), left + _GOLDEN * (right - left)

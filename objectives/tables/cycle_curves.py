@@ -1,4 +1,4 @@
-"""Curves of one design over a turn of the crank, with names, titles and units."""
+"""Curves of one design over a crank turn, with names, titles and units."""
 
 from __future__ import annotations
 
@@ -41,15 +41,15 @@ LEAST, MOST = 4, 100_000
 _RATES = SPEED, ACCELERATION, JERK
 _RATES_PER_ANGLE = PER_ANGLE, PER_SQUARED_ANGLE, PER_CUBED_ANGLE
 KINDS = (ANGLE, LENGTH, *_RATES, TORQUE, POWER, FORCE)
-"""Kinds of the curves of a machine with a crank speed."""
+"""Kinds of curves for a machine with a crank speed."""
 _FORCES = ("pivot_x", "pivot_y", "crank_pin_x", "crank_pin_y", "slider_pin_x", "slider_pin_y")
 
 
 @dataclass(frozen=True)
 class Curve:
-    """A curve over crank angle.
+    """A curve over the crank angle.
 
-    name: without a unit. values: (n,), SI; NaN where it is not defined.
+    name: without its unit. values: (n,), SI; NaN where the curve is undefined.
     """
 
     name: str
@@ -67,11 +67,11 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
     """Return the curves of one fully rotating linkage at crank angles (n,), rad; the angle comes first.
 
     Forces act from the frame on the crank (pivot), from the crank on the rod (crank pin), from the rod on the slider
-    (slider pin), and from the guide on the slider along +y. Torque and power are those of the drive. With several
-    cylinders they are over the shaft angle; all other curves belong to one cylinder, over the angle of its own crank.
-    Without a crank speed, velocity, acceleration and jerk are for one radian per second, hence derivatives by the crank
-    angle, and power is NaN. Position errors are NaN without tolerances. For values at jumps of a load and errors
-    raised, see `model.cycle.cycle`.
+    (slider pin), and from the guide on the slider along +y. Torque and power refer to the drive. With several
+    cylinders, torque and power are over the shaft angle; all other curves belong to one cylinder, over its own crank
+    angle. Without a crank speed, velocity, acceleration and jerk are for one radian per second, that is, derivatives by
+    the crank angle, and power is NaN. Position errors are NaN without tolerances. For values at load jumps and for
+    errors raised, see `model.cycle.cycle`.
     """
     acting = cycle(mechanism, linkage, crank_angle)
     moving = acting if mechanism.speed else cycle(replace(mechanism, speed=1.0), linkage, crank_angle)
@@ -116,10 +116,10 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
 
 
 def cycle_table(mechanism: Mechanism, linkage: Linkage, angles: int | ArrayLike = 360) -> pd.DataFrame:
-    """Return the curves of one fully rotating linkage as a table in SI, with a row for each crank angle.
+    """Return the curves of one fully rotating linkage as a table in SI, with one row per crank angle.
 
-    angles: number of crank angles, evenly spaced over the cycle from 0 (two turns if a load has a cycle of two); or
-    crank angles (n,), rad. Columns: the names of `cycle_curves` with the unit, such as torque_Nm. Raises `InputError`
+    angles: number of crank angles, evenly spaced over the cycle from 0 (two turns if a load has a two-turn cycle); or
+    crank angles (n,), rad. Columns: the names of `cycle_curves` with their unit, such as torque_Nm. Raises `InputError`
     for too few or too many angles, and for angles that are not finite.
     """
     if isinstance(angles, int | np.integer) and not isinstance(angles, bool):

@@ -1,4 +1,4 @@
-"""Designs as callers pass them: arrays, lists, or pandas tables with a column for each number of a design."""
+"""Designs as callers pass them: arrays, lists, or pandas tables with a column for each number in a design."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from ...model.machine.mechanism import Mechanism
 from ..quantity import Array
 
 _LEAST, _MOST = 1e-50, 1e50
-"""Lengths, m: the fifth power of those beyond may be no number in double precision."""
+"""Lengths, m: the fifth power of anything longer may overflow double precision."""
 _WARNED = "lengths warned of"
-"""Kept in a machine or problem: it warns once."""
+"""Stored in a machine or problem so that it warns only once."""
 
 
 def numbers_of(mechanism: Mechanism) -> tuple[str, ...]:
-    """Return the names of a design's numbers for a machine, in their order."""
+    """Return the names of the numbers in a design for a machine, in order."""
     return (*DIMENSIONS, *(item.name for item in mechanism.varying))
 
 
@@ -37,10 +37,10 @@ def require_machine(mechanism: object) -> None:
 
 
 def given_designs(designs: object, names: Sequence[str]) -> Array:
-    """Return designs (..., k) as an array, SI, with their numbers in the order of names.
+    """Return designs (..., k) as an array, SI, with numbers in the order of the names.
 
-    Columns of a table, or the index of one row, are found by these names, in any order and among others; without names
-    their order counts. Raises `InputError` for values other than real numbers, for other columns, and other widths.
+    Table columns, or the index of one row, are found by these names, in any order and among others; without names their
+    order counts. Raises `InputError` for values other than real numbers, for other columns, and other widths.
     """
     needed = ", ".join(names)
     table_or_array = _by_name(designs, names)
@@ -66,10 +66,10 @@ def given_designs(designs: object, names: Sequence[str]) -> Array:
 
 
 def warn_of_lengths(owner: object, designs: Array, greatest: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
-    """Warn about designs (..., 3 + k) with lengths beyond any machine, which are in mm rather than in m.
+    """Warn about designs (..., 3 + k) with implausible lengths, probably in mm instead of m.
 
-    Warns once for each machine or problem `owner`, attributed to the caller's caller, also where others were warned
-    about on the same line. greatest: intended crank, rod and offset, m, whatever their size.
+    Warns once for each machine or problem `owner`, attributed to the caller's caller, even if other owners had a
+    warning at the same line. greatest: intended crank, rod and offset, m, which never cause a warning.
     """
     if _WARNED in vars(owner):
         return
@@ -77,7 +77,7 @@ def warn_of_lengths(owner: object, designs: Array, greatest: Sequence[float] = (
     if doubt is not None:
         vars(owner)[_WARNED] = True
         user = sys._getframe(2)
-        # Without a registry of the module, Python's default filter shows the sentence again for the next owner.
+        # Without the module's warning registry, Python's default filter repeats the message for the next owner.
         warnings.warn_explicit(
             f"lengths of designs must be in m: {doubt}",
             InputWarning,
@@ -88,7 +88,7 @@ def warn_of_lengths(owner: object, designs: Array, greatest: Sequence[float] = (
 
 
 def countable(designs: Array) -> Mask:
-    """Return which designs (n, 3 + k) have finite numbers, with lengths whose powers are finite too."""
+    """Return which designs (n, 3 + k) contain only finite numbers, and lengths whose powers are finite, too."""
     return np.asarray(np.isfinite(designs).all(axis=1) & (designs[:, 0] > _LEAST) & (designs[:, 1] < _MOST))
 
 

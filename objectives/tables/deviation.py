@@ -1,8 +1,9 @@
-"""Deviation of measured curves from the computed ones of one design, and the shifts that fit them best.
+"""Deviation of measured curves from the computed curves of one design, and the best-fit shifts.
 
-The shift of the crank angle and the constant shift minimise the sum of squared residuals. The constant has a closed
-form: minus the mean. The angle is found on a grid over the whole turn, then by golden sections around the lowest
-points. For this search alone, many samples are first averaged in groups of neighbouring crank angles.
+The shifts of the crank angle and of the value minimise the sum of squared residuals. The value shift has a closed form:
+minus the mean residual. The angle shift is found on a grid over the whole turn, then by golden sections around the
+lowest points. For this search alone, a large number of samples is first averaged in groups of neighbouring crank
+angles.
 """
 
 from __future__ import annotations
@@ -22,13 +23,13 @@ from .curve_extremes import defined_curves, golden
 
 _TURN = 2.0 * math.pi
 _SHIFTS = 1440  # of the grid
-_NODES = 2880  # of the computed curve that the grid interpolates
-_GROUPS = 2048  # a group then spans 0.2 deg of evenly measured samples
+_NODES = 2880  # samples of the computed curve from which the grid interpolates
+_GROUPS = 2048  # a group then spans 0.2 deg if samples are evenly spaced
 _CANDIDATES = 6
 _SECTIONS = 40  # to 1e-10 rad
-_SAME_ANGLE = 1e-3  # rad: crank angles nearer than this, as of times that were rounded, count as one
-_CONSTANT = 1e-12  # of the greatest size
-_EQUAL = 1e-9  # relative: among equally good shifts, the smaller one is reported
+_SAME_ANGLE = 1e-3  # rad: crank angles closer than this, such as those from rounded times, count as one
+_CONSTANT = 1e-12  # relative to the maximum magnitude
+_EQUAL = 1e-9  # relative: among shifts that fit within this of each other, the smaller one is reported
 
 
 @dataclass(frozen=True)
@@ -48,9 +49,9 @@ class Fit:
 class Deviation:
     """Deviation, measured minus computed, of one curve; SI, NaN where friction leaves the curve undetermined.
 
-    count: number of samples. rms: root mean square. largest: deviation of the greatest size, with its sign.
+    count: number of samples. rms: root mean square. largest: deviation of largest magnitude, with its sign.
     crank_angle, sample: its crank angle, rad in [0, 2 pi), and sample. fit: best shifts; None for samples at fewer than
-    three crank angles, and for a curve that is constant or undetermined somewhere.
+    three crank angles, and for a curve that is constant or somewhere undetermined.
     """
 
     name: str
@@ -68,10 +69,11 @@ class Deviation:
 def deviations(
     mechanism: Mechanism, linkage: Linkage, crank_angle: Array, measured: Mapping[str, Array]
 ) -> list[Deviation]:
-    """Return the deviations of measured curves from the computed ones of one fully rotating linkage.
+    """Return the deviations of measured curves from the computed curves of one fully rotating linkage.
 
     crank_angle: (n,), rad, in any order and over any number of turns. measured: (n,) by the name of a curve of
-    `defined_curves`, SI; NaN where nothing was measured, not everywhere. Raises the same errors as `defined_curves`.
+    `defined_curves`, SI; NaN where nothing was measured, but not everywhere. Raises the same errors as
+    `defined_curves`.
     """
     require_one_turn(mechanism, "the comparison with measured curves")
     theta = np.mod(crank_angle, _TURN)
@@ -106,7 +108,7 @@ def _rms(values: Array) -> float:
 def _best_shifts(
     mechanism: Mechanism, linkage: Linkage, name: str, angles: Array, values: Array, nodes: Array, table: Array
 ) -> Fit | None:
-    """Return the best shifts. nodes, table: crank angles over a turn and the computed curve there."""
+    """Return the best shifts. nodes, table: crank angles over a turn and the computed curve at these angles."""
     varies = float(np.ptp(table)) > _CONSTANT * float(np.abs(table).max())  # and is not NaN
     if not varies or not _has_three_angles(angles):
         return None
@@ -137,7 +139,7 @@ def _best_shifts(
     lowest = np.flatnonzero((coarse <= np.roll(coarse, 1)) & (coarse <= np.roll(coarse, -1)))
     lowest = lowest[np.argsort(coarse[lowest], kind="stable")][:_CANDIDATES]
     best, shifts = golden(at_shifts, grid[lowest] - step, grid[lowest] + step, _SECTIONS)
-    # Also try no shift: it is as good as others where a curve is piecewise constant.
+    # Also try no shift: it is as good as others if a curve is piecewise constant.
     best, shifts = np.append(best, at_shifts(np.zeros(1))), np.append(shifts, 0.0)
     shifts = math.pi - np.mod(math.pi - shifts, _TURN)  # in (-pi, pi]
     size = float(np.abs(means).max())
@@ -159,7 +161,7 @@ def _has_three_angles(angles: Array) -> bool:
 
 
 def _group_neighbours(angles: Array, values: Array) -> tuple[Array, Array, Array]:
-    """Return mean crank angles and values of groups of neighbours, and their fractions of the samples."""
+    """Return mean crank angles and values for groups of neighbours, and their fractions of the samples."""
     order = np.argsort(angles, kind="stable")
     ends = np.unique(np.linspace(0, len(order), min(len(order), _GROUPS) + 1).astype(np.intp))
     counts = np.diff(ends)

@@ -1,4 +1,4 @@
-"""Quantities of many designs by name as one array, with their derivatives by the design's numbers."""
+"""Quantities of many designs by name as one array, with their derivatives by the numbers in a design."""
 
 from __future__ import annotations
 
@@ -52,24 +52,24 @@ def evaluate(
     own: Sequence[Quantity] = (),
     swing: Swing | None = None,
 ) -> Array | tuple[Array, Array]:
-    """Return quantities (n, q) of designs (n, 3 + k), SI; with `gradients` the Jacobian too.
+    """Return quantities (n, q) for designs (n, 3 + k), SI; with `gradients`, the Jacobian too.
 
-    A design is crank, rod, offset, m, and the values of the machine's k varying numbers. Any number of axes may come
-    before the last: one design (3 + k,) gives (q,). A pandas table has these names as columns. quantities: names or
+    A design is crank, rod, offset, m, followed by the values of the machine's k variables. Any number of axes may
+    precede the last: one design (3 + k,) gives (q,). A pandas table has these names as columns. quantities: names or
     formulas as in job files. own: custom quantities that may be named besides the built-in ones. swing: motion that
-    designs must make in place of a full turn.
+    designs must make instead of a full turn.
 
     The row of a design that does not rotate fully, or that contains NaN, is NaN. A quantity that is zero for every
-    design of the machine, such as a torque without masses and loads, is 0 here, and undefined in `analyse`. Where
+    design of the machine, such as a torque without masses and loads, is 0 here but undefined in `analyse`. Where
     friction locks the linkage, quantities computed from forces take their worst value, as a search needs it: infinity,
-    or zero for a safety. `analyse` then has the reason instead of a value.
+    or zero for a safety factor. `analyse` then gives the reason instead of a value.
 
-    Peaks come from the vectorised search of `screening`. If that does not support the signal, or the torque peaks on a
-    kink, they come from the exact search of `peaks`. At a tie of two peaks the slope is that of one of them.
+    Peaks come from the vectorised search of `screening`. If that does not support the signal, or the torque peak is at
+    a kink, they come from the exact search in `peaks`. If two peaks tie, the slope is that of one of them.
 
     Raises `InputError` for an unknown name, for arrays of another width, and for a quantity that the machine does not
-    define (a position error without tolerances). Also for a quantity of a full turn with a swing, and for the gradient
-    of a function without one. Warns once for each machine about lengths that are probably in mm.
+    define (a position error without tolerances). Also raises it for a full-turn quantity with a swing, and for the
+    gradient of a function that has none. Warns once for each machine about lengths that are probably in mm.
 
     >>> from slidercrank import Mechanism, evaluate
     >>> evaluate(Mechanism(), [[0.04, 0.1, 0.02], [0.08, 0.1, 0.03]], ["stroke", "time_ratio"]).round(4)
@@ -91,7 +91,7 @@ def evaluated(
     own: Sequence[Quantity] = (),
     swing: Swing | None = None,
 ) -> Array | tuple[Array, Array]:
-    """Return the values of `evaluate` for designs (..., 3 + k) as an array."""
+    """Return the values from `evaluate` for designs (..., 3 + k) as an array."""
     if isinstance(quantities, str):
         raise InputError(f"quantities must be a list of names; got {quantities!r}; write [{quantities!r}]")
     quantities = list(quantities)
@@ -125,7 +125,7 @@ def evaluated(
 
 
 def moving(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
-    """Return which designs (n, 3 + k) rotate fully; with a swing, which can make it."""
+    """Return which designs (n, 3 + k) rotate fully or, if a swing is given, can make it."""
     if swing is not None:
         return passes(mechanism, swing, designs)
     crank, rod, offset = designs[:, 0], designs[:, 1], designs[:, 2]
@@ -134,7 +134,7 @@ def moving(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
 
 
 def running(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
-    """Return which designs (n, 3 + k) rotate fully; with a swing, which can make it despite friction."""
+    """Return which designs (n, 3 + k) rotate fully or, if a swing is given, can make it despite friction."""
     return moving(mechanism, None, designs) if swing is None else driven(mechanism, swing, designs)
 
 

@@ -1,4 +1,4 @@
-"""Measured curves of a machine: meanings of table columns, and samples in SI over the crank angle."""
+"""Measured curves of a machine: meanings of table columns, and samples over the crank angle in SI."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ if TYPE_CHECKING:
 
 Table = Mapping[str, ArrayLike]
 Units = Callable[[str, Kind], float | None]
-"""Value of a unit in SI, as it stands in a column's name; None for what is no unit of a kind."""
+"""Value in SI of a unit as spelled in a column name; None if the text is not a unit of a kind."""
 CRANK_ANGLE, TIME_OF = "crank_angle", "time"
-_FARTHEST = 1e9  # rad or s: beyond, a double does not tell a crank angle to a millionth
+_FARTHEST = 1e9  # rad or s: above this, a double does not resolve a crank angle to a millionth
 _ANGLE_NEEDED = "a measured table has the column crank_angle_deg, or time_s at constant speed"
 _BRACKETED = re.compile(r"(.*?)[\s,:/]*[\[(](.*)[\])]\s*", re.DOTALL)
 
 
 @dataclass(frozen=True)
 class Column:
-    """Meaning of a column: the measured curve, crank angle or time. factor: factor from its values to SI."""
+    """Meaning of a column: the measured curve, crank angle or time. factor: factor from the column's values to SI."""
 
     name: str
     factor: float
@@ -42,11 +42,11 @@ class Column:
 
 @dataclass(frozen=True)
 class Measured:
-    """Measured samples, SI. crank_angle: (n,), rad. values: (n,) by the name of a curve; NaN where there is none.
+    """Measured samples, SI. crank_angle: (n,), rad. values: (n,) by the name of a curve; NaN where there is no value.
 
-    left_out: columns that are unknown or empty. without_angle: number of rows left out because they have no crank
-    angle. by_time: whether the crank angle is the crank speed times the time. understood: summary in words of the
-    contents read from a file.
+    left_out: columns that are unknown or empty. without_angle: number of rows omitted because they have no crank angle.
+    by_time: whether the crank angle is the crank speed times the time. understood: summary of what was read from a
+    file, in words.
     """
 
     crank_angle: Array
@@ -62,13 +62,15 @@ def columns_of(
 ) -> dict[str, Column]:
     """Return the columns that have a meaning: crank angle, or else time, and curves of the machine.
 
-    Columns have the names of this project's tables: slider_position_mm, slider_position_in, "slider position [m]",
-    torque_N_m, "torque in N m". units: further units besides the display units. Raises `InputError` for a known name
-    without its unit or with one of another kind, for two columns with one meaning, and without a crank angle or a
+    Columns have the names in this project's tables: slider_position_mm, slider_position_in, "slider position [m]",
+    torque_N_m, "torque in N m". units: additional units besides the display units. Raises `InputError` for a known name
+    without a unit or with a unit of another kind, for two columns with the same meaning, and without a crank angle or a
     curve.
     """
     names = [str(name) for name in names]
-    moving = mechanism if mechanism.speed else replace(mechanism, speed=1.0)  # velocities have their usual units
+    moving = (
+        mechanism if mechanism.speed else replace(mechanism, speed=1.0)
+    )  # velocities have the units usual for their kind
     curves = {curve.name: curve for curve in every_curve(moving, linkage, np.zeros(1))}
     spoken = {_plain_text(curve.title): name for name, curve in curves.items()} | {name: name for name in curves}
     spoken |= {CRANK_ANGLE: CRANK_ANGLE, TIME_OF: TIME_OF}
@@ -114,7 +116,7 @@ def columns_of(
 def measured_from(
     table: Table | pd.DataFrame, mechanism: Mechanism, linkage: Linkage, units: Units | None = None
 ) -> Measured:
-    """Return the samples of a table; columns without a number are left out.
+    """Return the samples in a table; columns without any number are left out.
 
     Raises `InputError` as `columns_of` does, for impossible values, and for curves that the machine does not define.
     """
@@ -163,7 +165,7 @@ def measured_from(
 
 
 def _one_turn(name: str, values: Array, linkage: Linkage) -> Array:
-    """Return rod angles within the same turn as the computed ones; other curves unchanged."""
+    """Return rod angles in the same turn as the computed ones; other curves are unchanged."""
     if name != "rod_angle":
         return values
     start = -np.pi if linkage.branch == "open" else 0.0
@@ -174,14 +176,14 @@ def _one_turn(name: str, values: Array, linkage: Linkage) -> Array:
 def _column_meaning(
     text: str, spoken: Mapping[str, str], kinds: Mapping[str, Kind], units: Units | None
 ) -> Column | None:
-    """Return the meaning of a column; None if it has none."""
+    """Return the meaning of a column; None if it has no meaning."""
     bracketed = _BRACKETED.fullmatch(text)
     stem = _plain_text(text if bracketed is None else bracketed[1])
     if bracketed is not None:
         curve_name, unit = (stem if stem in spoken else None), bracketed[2].strip()
     else:
         curve_name = max((name for name in spoken if f"{stem}_".startswith(f"{name}_")), key=len, default=None)
-        # Any characters may separate the words of the name; the rest is the unit.
+        # Any characters may separate the words in the name; the rest is the unit.
         pattern = "[^a-z0-9]*" + "[^a-z0-9]+".join((curve_name or "").split("_"))
         unit = "" if curve_name is None else re.sub(pattern, "", text, count=1, flags=re.IGNORECASE).strip(" _,:/")
     if curve_name is None:
@@ -207,13 +209,13 @@ def _column_meaning(
         if _unit_factor(unit, other_kind) or (units is not None and units(unit, other_kind))
     )
     other_kind = next(matching_kinds, None)
-    if other_kind is None:  # no unit: more of a name that is none here
+    if other_kind is None:  # not a unit: part of a longer, unknown name
         return None
     raise InputError(f"{curve_name} is {kind.name}; got {text!r}, {other_kind.name}; write it like {example}")
 
 
 def _unit_factor(unit: str, kind: Kind) -> float | None:
-    """Return the SI value of a table's unit; None if the kind does not have it."""
+    """Return the SI value of a unit in a table; None if the kind does not have it."""
     for display_unit in _display_units(kind):
         if squeezed(unit) in (squeezed(display_unit.symbol), squeezed(display_unit.suffix)):
             return 1.0 / display_unit.factor
@@ -229,13 +231,13 @@ def _plain_text(text: str) -> str:
 
 
 def _likely_curve(name: str, spoken: Iterable[str]) -> str | None:
-    """Return the curve that a column may mean: one with its first word, or else one with a similar name."""
+    """Return the curve that a column may mean: one with the same first word, or else one with a similar name."""
     word = _plain_text(name).partition("_")[0]
     return next((curve for curve in spoken if word in curve.split("_")), None) or _likely_word(name, spoken)
 
 
 def _likely_word(name: str, words: Iterable[str]) -> str | None:
-    """Return the word that a misspelt name probably means; None if none is near."""
+    """Return the word that a misspelt name probably means; None if none is close."""
     return next(iter(difflib.get_close_matches(_plain_text(name)[:60], list(words), n=1)), None)
 
 

@@ -1,8 +1,9 @@
-"""Reasons why a design has no value for a quantity that is defined for its machine.
+"""Reasons why a design has no value for a quantity that its machine defines.
 
-Where friction locks a linkage, `Quantity.evaluate` gives the search the worst possible value: infinite torques, a
-safety of zero. An analysis shows no such substitute: it shows the determined values, and the reason for each missing
-one. A quantity may be infinite by definition, such as the ratio of the rod to an offset of zero; that is its value.
+Where friction locks a linkage, `Quantity.evaluate` gives the search the worst possible value: an infinite torque, a
+safety factor of zero. An analysis shows no such substitute. It shows the values that are determined, and the reason for
+each missing one. A quantity may be infinite by definition, such as the ratio of the rod to a zero offset; infinity is
+then its value.
 """
 
 from __future__ import annotations
@@ -38,10 +39,10 @@ _FORMULA = "a formula has a value where it is finite; got an infinite one; chang
 def missing_value_reason(
     quantity: Quantity, value: float, mechanism: Mechanism, linkage: Linkage, swing: Swing | None = None
 ) -> str:
-    """Return the reason why a design has no value for a defined quantity; empty if it has one.
+    """Return the reason why a design has no value for a quantity that its machine defines; empty if it has one.
 
-    value: value of `Quantity.evaluate`, in any unit. mechanism: machine with its variables fixed. swing: motion in
-    place of a full turn.
+    value: value from `Quantity.evaluate`, in any unit. mechanism: machine with its variables fixed. swing: motion
+    instead of a full turn.
     """
     designs = np.array([[linkage.crank, linkage.rod, linkage.offset]], dtype=np.float64)
     (reason,) = missing_value_reasons(quantity, np.array([value]), mechanism, designs, swing)
@@ -51,7 +52,7 @@ def missing_value_reason(
 def missing_value_reasons(
     quantity: Quantity, values: Array, mechanism: Mechanism, designs: Array, swing: Swing | None = None
 ) -> list[str]:
-    """Return `missing_value_reason` for designs (n, 3) that all rotate fully, or swing. values: (n,)."""
+    """Return `missing_value_reason` for designs (n, 3) that can all make the motion. values: (n,)."""
     reasons = [""] * len(designs)
     locked = locked_designs(mechanism, designs, swing)
     rows = np.flatnonzero(locked)
@@ -75,9 +76,9 @@ def locked_designs(mechanism: Mechanism, designs: Array, swing: Swing | None = N
 
 
 def _undetermined_by_friction(quantity: Quantity, mechanism: Mechanism, designs: Array) -> Mask:
-    """Return for which locked designs (n, 3) friction leaves a quantity or one of its parts undetermined.
+    """Return the locked designs (n, 3) for which friction leaves a quantity or one of its parts undetermined.
 
-    These have the worst possible value, infinite or zero, and another one without friction.
+    These designs have the worst possible value, infinite or zero, but another value without friction.
     """
     parts = [_undetermined_by_friction(part, mechanism, designs) for part in quantity.made_of]
     undetermined = np.any(parts, axis=0) if parts else np.zeros(len(designs), np.bool_)
@@ -95,7 +96,7 @@ def _undetermined_by_friction(quantity: Quantity, mechanism: Mechanism, designs:
 
 
 def _missing_value_reason(quantity: Quantity, value: float, mechanism: Mechanism, design: Array) -> str:
-    """Return the reason why a running design (1, 3) has no finite value; empty if infinity is its value."""
+    """Return the reason why a moving design (1, 3) has no finite value; empty if infinity is its value."""
     if np.isnan(value):
         return quantity.blank
     finite = all(np.isfinite(part.evaluate(mechanism, design).values[0]) for part in quantity.made_of)

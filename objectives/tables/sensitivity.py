@@ -1,4 +1,4 @@
-"""Sensitivity of every quantity of one design to each dimension: exact derivatives, as a table."""
+"""Sensitivity of every quantity of one design to each dimension: a table of exact derivatives."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ from ..quantity import Array, Quantity
 from ..registry import QUANTITIES
 from .swinging import swing_quantities, swinging
 
-_TIE = 1e-9  # of a quantity: pieces that differ by less are equal
-_ROUNDING = 1e-12  # of a quantity, over the rod: changes below are zero but for rounding
-_TIP = 1e-6  # of the rod, a small offset at which a quantity that vanishes without offset is far above rounding
-_SIDE_OF_ZERO = 1e-100  # m, an offset of zero as seen from one side: less than rounding
+_TIE = 1e-9  # relative to a quantity: pieces that differ by less count as equal
+_ROUNDING = 1e-12  # in units of a quantity over the rod: smaller changes are rounding errors
+_TIP = 1e-6  # in units of the rod: a small offset that lifts a quantity, zero without offset, far above rounding
+_SIDE_OF_ZERO = 1e-100  # m: less than rounding, a zero offset seen from one side
 
 
 @dataclass(frozen=True)
 class _DeadCentre:
-    """A position or a crank angle of a dead centre; `formula` is that of the open branch."""
+    """A position or a crank angle of a dead centre; `formula` applies to the open branch."""
 
     name: str
     title: str
@@ -38,7 +38,7 @@ class _DeadCentre:
     formula: Callable[[Any, Any, Any], Any]
 
     def value_and_slopes(self, linkage: Linkage) -> tuple[float, list[float]]:
-        """Return value and gradient, SI; on the crossed branch x -> -x and theta -> pi - theta."""
+        """Return value and gradient, SI; the crossed branch has x -> -x and theta -> pi - theta."""
         at = [float(linkage.crank), float(linkage.rod), float(linkage.offset)]
         value, slopes = float(self.formula(*at)), []
         for n in range(3):
@@ -61,18 +61,19 @@ _DEAD_CENTRES = (
 def sensitivity(mechanism: Mechanism, dimensions: Array, swing: Swing | None = None) -> pd.DataFrame:
     """Return the sensitivity of each quantity of a design (3,), crank, rod, offset, m, to each dimension.
 
-    swing: motion in place of a full turn, with the same ends whatever the dimensions; the rows are then its quantities.
-    There is one row per quantity, for all of the registry and the dead centres, with the columns quantity, title, unit,
-    value (in that unit) and for each dimension
+    swing: motion instead of a full turn, whose ends do not change with the dimensions; the rows are then the swing's
+    quantities. There is one row per quantity in the registry, and per dead centre. The columns are quantity, title,
+    unit, value (in that unit) and for each dimension
     - <dimension>_per_mm: exact derivative towards larger values, in the display unit per mm;
-    - <dimension>_percent: percent of the quantity per percent of the dimension (for an offset, of its size); NaN where
-      quantity or dimension is zero, and for the crank angle of a dead centre, whose zero is arbitrary;
-    - <dimension>_tolerance: first-order change for the dimension's tolerance, in the display unit;
-    - the same three with _below: from the derivative towards smaller values (for a percentage, sizes).
-    The two differ where the quantity has a kink: at two equal peaks, or at zero offset if it depends on the offset's
-    size. Derivatives within rounding are exactly zero. An infinite quantity has NaN in all these columns, and so has a
-    position error without tolerances, which is undefined.
-    Raises `AssemblyError` unless the linkage rotates fully, or swings as far as `swing` requires.
+    - <dimension>_percent: percent change of the quantity per percent change of the dimension (for an offset, of its
+      magnitude); NaN if quantity or dimension is zero, and for the crank angle of a dead centre, which has an arbitrary
+      zero;
+    - <dimension>_tolerance: first-order change due to the dimension's tolerance, in the display unit;
+    - the same three with _below: from the derivative towards smaller values (for a percentage, smaller magnitudes).
+    The two differ if the quantity has a kink: at two equal peaks, or at zero offset if it depends on |offset|.
+    Derivatives that are zero to rounding are exactly zero. An infinite quantity has NaN in all these columns, and so
+    does a position error without tolerances, which is undefined.
+    Raises `AssemblyError` unless the linkage rotates fully, or can make the `swing`.
     """
     design = np.asarray(dimensions, dtype=np.float64).reshape(3)
     linkage = Linkage(design[0], design[1], design[2], mechanism.branch)
@@ -95,10 +96,10 @@ def sensitivity(mechanism: Mechanism, dimensions: Array, swing: Swing | None = N
 
 
 def _one_sided(quantity: Quantity, mechanism: Mechanism, design: Array) -> tuple[float, Array, Array]:
-    """Return the value of a design and its derivatives (3,) below and above, SI.
+    """Return the value for a design and its derivatives (3,) below and above, SI.
 
-    A maximum of pieces grows with the steepest of its equal pieces on either side: their greatest slope above, their
-    least slope below. For a minimum of pieces it is the other way round.
+    A maximum of pieces changes with its steepest tied piece on either side: the largest slope above, the smallest slope
+    below. For a minimum of pieces it is the reverse.
     """
     value = float(quantity.evaluate(mechanism, design[None]).values[0])
     if design[2] == 0.0 and _is_tip(quantity, mechanism, design, value):
@@ -117,11 +118,11 @@ def _one_sided(quantity: Quantity, mechanism: Mechanism, design: Array) -> tuple
 
 
 def _steepest_derivatives(quantity: Quantity, mechanism: Mechanism, at: Array, side: float) -> Array:
-    """Return the derivatives (3,) towards one side of a design, for the steepest of its equal pieces."""
+    """Return the derivatives (3,) towards one side of a design, for the steepest of its tied pieces."""
     pieces = quantity.pieces(mechanism, at[None])
     values, slopes = pieces.values[0], pieces.gradients[0]
     best = values.min() if pieces.least else values.max()
-    if np.isnan(best):  # not determined: without masses and loads there is no force to compare
+    if np.isnan(best):  # undefined: without masses and loads there is no force to compare
         return np.full(3, np.nan)
     with np.errstate(invalid="ignore"):
         equal = np.abs(values - best) <= _TIE * abs(best)
@@ -132,18 +133,18 @@ def _steepest_derivatives(quantity: Quantity, mechanism: Mechanism, at: Array, s
 
 
 def _is_tip(quantity: Quantity, mechanism: Mechanism, design: Array, value: float) -> bool:
-    """Whether a quantity vanishes at an offset of zero: its value and the places of its peaks are then rounding."""
+    """Whether a quantity vanishes at zero offset: its value and the locations of its peaks are then rounding errors."""
     nearby = design + np.array([0.0, 0.0, _TIP * design[1]])
     return abs(value) <= _TIE * abs(float(quantity.evaluate(mechanism, nearby[None]).values[0]))
 
 
 def _one_sided_slopes(quantity: Quantity, mechanism: Mechanism, design: Array, side: float) -> Array:
-    """Return the derivatives (3,) on one side of an offset of zero, from those at two small offsets."""
+    """Return the derivatives (3,) on one side of zero offset, extrapolated from those at two small offsets."""
     near, far = (
         _steepest_derivatives(quantity, mechanism, design + np.array([0.0, 0.0, side * share * _TIP * design[1]]), side)
         for share in (1.0, 2.0)
     )
-    slopes = 2.0 * near - far  # terms that grow with the offset cancel
+    slopes = 2.0 * near - far  # terms proportional to the offset cancel
     return np.where(np.abs(slopes) <= _TIE * np.abs(slopes).max(), 0.0, slopes)
 
 
@@ -166,7 +167,7 @@ def _sensitivity_row(
     for n, dimension in enumerate(DIMENSIONS):
         defined = relative and is_finite and value != 0.0 and design[n] != 0.0
         slope_below, slope_above = (float(side[n]) if is_finite else math.nan for side in sides)
-        # More of a negative offset's size lies below it.
+        # For a negative offset, a larger magnitude lies below it.
         smaller, larger = (slope_below, slope_above) if design[n] >= 0.0 else (slope_above, slope_below)
         for suffix, slope, share in (("", slope_above, larger), ("_below", slope_below, smaller)):
             row[f"{dimension}_per_mm{suffix}"] = unit.factor * slope * 1e-3

@@ -47,11 +47,11 @@ def sweep(
 ) -> pd.DataFrame:
     """Return a table with a row for every combination of axis values; the first axis varies slowest.
 
-    dimensions: (3,) crank, rod, offset, m, of the starting design; swept parameters replace its values. quantity_names:
-    names of quantities, or formulas. custom: quantities that may be named besides those of the registry.
-    Columns: crank_mm, rod_mm, offset_mm, speed_rpm, each quantity under its field in its display unit, and reason: the
-    reason why the row lacks values (NaN), else "". An infinite quantity (rod to offset without offset) stays infinite.
-    Raises `InputError` for unknown names, an axis given twice, or more than a million rows.
+    dimensions: (3,) crank, rod, offset, m, of the base design; swept parameters replace its values. quantity_names:
+    names of quantities, or formulas. custom: quantities that may be named besides those in the registry. Columns:
+    crank_mm, rod_mm, offset_mm, speed_rpm, each quantity under its key in its display unit, and reason: why the row
+    lacks values (NaN), else "". An infinite quantity (rod to offset at zero offset) stays infinite. Raises `InputError`
+    for unknown names, a repeated axis, or more than a million rows.
     """
     quantities = resolve_quantities(quantity_names, mechanism, custom)
     names = [axis.parameter for axis in axes]
@@ -96,7 +96,7 @@ def sweep(
 
 
 def _join_reasons(missing: Mapping[str, Sequence[str]], count: int) -> str:
-    """Return the reasons for a row. missing: titles by reason; left out if all share one reason."""
+    """Return the reasons for a row. missing: titles by reason; omitted if all share one reason."""
     is_shared = any(len(titles) == count for titles in missing.values())
     return "; ".join(reason if is_shared else f"{', '.join(titles)}: {reason}" for reason, titles in missing.items())
 

@@ -1,4 +1,4 @@
-"""Curves of a swing of one design, both strokes, and the kinds of their values."""
+"""Curves of one design over a swing, forward and return stroke, and the kinds of their values."""
 
 from __future__ import annotations
 
@@ -32,12 +32,15 @@ if TYPE_CHECKING:
     import pandas as pd
 
 POINTS = 181
-"""Of one way, in curves and figures."""
+"""Points per stroke, in curves and figures."""
 
 
 @dataclass(frozen=True)
 class SwingCurve:
-    """A curve over a swing. name: key without unit. attribute: name in `SwingCurves`. timed: not for a slow swing."""
+    """A curve over a swing.
+
+    name: key without unit. attribute: name in `SwingCurves`. timed: whether it needs a duration.
+    """
 
     name: str
     attribute: str
@@ -56,7 +59,7 @@ class SwingCurve:
 
 
 def motion_and_drive(swing: Swing) -> tuple[SwingCurve, ...]:
-    """Return the curves of a swing except the joint forces; without time, none that needs it."""
+    """Return the curves of a swing except the joint forces; without a duration, only curves that do not need it."""
     drive = "force on the slider" if swing.driver == "slider" else "torque on the crank"
     angle_title = "transmission angle" if swing.driver == "crank" else "angle between rod and crank"
     error = "slider position error" if swing.driver == "crank" else "crank angle error"
@@ -98,12 +101,12 @@ def force_magnitudes() -> tuple[SwingCurve, ...]:
 
 
 def drive_kind(swing: Swing) -> Kind:
-    """Return the kind of the driver's effort: a torque or a force."""
+    """Return the kind of the drive effort: a torque or a force."""
     return TORQUE if swing.driver == "crank" else FORCE
 
 
 def error_kind(swing: Swing) -> Kind:
-    """Return the kind of the driven side's error: in slider position or in crank angle."""
+    """Return the kind of the error at the driven side: in slider position or in crank angle."""
     return LENGTH if swing.driver == "crank" else ANGLE
 
 
@@ -113,7 +116,7 @@ def driven_side(swing: Swing) -> str:
 
 
 def curves_of_both_strokes(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> tuple[SwingCurves, SwingCurves]:
-    """Return the curves of the forward and the return stroke, at evenly spaced times."""
+    """Return the curves for the forward and the return stroke, at evenly spaced times."""
     checked, share = require_swing(mechanism, linkage, swing), np.linspace(0.0, 1.0, POINTS)
     swing = placed(mechanism, checked, swing)
     return (
@@ -125,10 +128,10 @@ def curves_of_both_strokes(mechanism: Mechanism, linkage: Linkage, swing: Swing)
 def curves_at_even_times(
     mechanism: Mechanism, linkage: Linkage, swing: Swing, count: int
 ) -> tuple[SwingCurves, SwingCurves]:
-    """Return the curves at evenly spaced times of a swing, for the forward and the return stroke.
+    """Return the curves at evenly spaced times in a swing, for the forward and the return stroke.
 
-    swing: swing between two crank angles, of a linkage that can make it. count: number of all times, even; the first
-    one is the start, the middle one the end, which belongs to the forward stroke.
+    swing: swing between two crank angles that the linkage can make. count: even number of times. The first time is the
+    start of the swing; the middle one is its end, which belongs to the forward stroke.
     """
     place: Array = np.arange(count, dtype=np.float64) * (2.0 / count)
     return (
@@ -138,7 +141,7 @@ def curves_at_even_times(
 
 
 def has_position_error(mechanism: Mechanism, swing: Swing) -> bool:
-    """Return whether the driven side has an error."""
+    """Return whether an error is defined for the driven side."""
     return mechanism.tolerances.are_stated or swing.actuator_tolerance > 0.0
 
 
@@ -149,10 +152,10 @@ def defined_curves(mechanism: Mechanism, swing: Swing) -> list[SwingCurve]:
 
 
 def swing_table(mechanism: Mechanism, linkage: Linkage, swing: Swing, points: int | ArrayLike = 360) -> pd.DataFrame:
-    """Return the curves of both strokes as a table in SI, a row for each of evenly spaced times.
+    """Return the curves of both strokes as a table in SI, one row for each of the evenly spaced times.
 
     The first row is the start of the swing, the middle one its end. Columns: way, "forth" or "back", time_s unless the
-    swing is slow, and the names of the curves with the unit. Raises `InputError` for an odd number of points, too few
+    swing is slow, and the names of the curves with their unit. Raises `InputError` for an odd number of points, too few
     or too many, and `AssemblyError` for a linkage that cannot make the swing.
     """
     count, checked = even_points(points, MOST), require_swing(mechanism, linkage, swing)
@@ -171,7 +174,10 @@ def swing_table(mechanism: Mechanism, linkage: Linkage, swing: Swing, points: in
 
 
 def even_points(count: object, limit: int) -> int:
-    """Return a number of points of both strokes. Raises `InputError` unless it is even, and from `LEAST` to a limit."""
+    """Return a valid number of points for both strokes together.
+
+    Raises `InputError` unless it is even and between `LEAST` and a limit.
+    """
     if isinstance(count, int | np.integer) and LEAST <= count <= limit and not count % 2:
         return int(count)
     raise InputError(

@@ -27,12 +27,12 @@ def swing_facts() -> tuple[SwingQuantity, ...]:
 
 
 def swing_quantities(swing: Swing) -> tuple[SwingQuantity, ...]:
-    """Return the quantities that a swing has."""
+    """Return the quantities that are defined for a swing."""
     return tuple(replace(fact, swing=swing) for fact in swing_facts() if fact.unfit(swing) is None)
 
 
 def why_not(name: str, swing: Swing | None) -> str | None:
-    """Return the reason why a motion lacks a swing quantity; None if it has it, and for other names."""
+    """Return the reason why a motion does not have a swing quantity; None if it does, and for other names."""
     fact = FACTS.get(name)
     if not isinstance(fact, SwingQuantity):
         return None
@@ -45,7 +45,7 @@ def why_not(name: str, swing: Swing | None) -> str | None:
 
 
 def require_in_motion(names: Iterable[str], custom: Iterable[Quantity], swing: Swing | None) -> None:
-    """Raise `InputError` if a motion lacks a named quantity of a swing. custom: quantities of the problem."""
+    """Raise `InputError` if a motion does not have a named swing quantity. custom: quantities of the problem."""
     custom_names = {item.name for item in custom}
     for name in names:
         reason = None if name in custom_names else why_not(name, swing)
@@ -54,7 +54,7 @@ def require_in_motion(names: Iterable[str], custom: Iterable[Quantity], swing: S
 
 
 def require_loads(mechanism: Mechanism) -> None:
-    """Raise `InputError` for features of a full turn: loads from a dead centre, cylinders, a speed profile."""
+    """Raise `InputError` for features that need a full turn: loads from a dead centre, cylinders, a speed profile."""
     of_turns = {
         "cylinders": mechanism.arrangement,
         "speed_profile": mechanism.speed_profile,
@@ -84,7 +84,7 @@ def require_loads(mechanism: Mechanism) -> None:
 
 
 def require_of_swing(key: str, quantity: Quantity) -> None:
-    """Raise `InputError` for a quantity that needs a crank that rotates fully."""
+    """Raise `InputError` for a quantity that needs a fully rotating crank."""
     for leaf in leaves_of([quantity]):
         if leaf.turning:
             swing_names = ", ".join(fact.name for fact in swing_facts())
@@ -95,14 +95,14 @@ def require_of_swing(key: str, quantity: Quantity) -> None:
 
 
 def swinging(custom: Sequence[Quantity]) -> tuple[Quantity, ...]:
-    """Return the quantities of a swing's designs, in order of place. custom: quantities of the problem."""
+    """Return the quantities of designs with a swing, in display order. custom: quantities of the problem."""
     every: Iterable[Quantity] = (*QUANTITIES.values(), *custom)
     quantities = [item for item in every if not any(leaf.turning for leaf in leaves_of([item]))]
     return tuple(sorted(quantities, key=lambda item: item.place))
 
 
 def columns_of(mechanism: Mechanism, dimensions: Array, custom: Sequence[Quantity]) -> dict[str, NDArray[Any]]:
-    """Return the columns (n,) of swinging designs (n, 3 + k), like `analysis.columns_of` for fully rotating ones."""
+    """Return the columns (n,) for designs with a swing (n, 3 + k), as `analysis.columns_of` does for a full turn."""
     dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64)).copy()
     dimensions[:, 2] = without_rounding(dimensions[:, 1], dimensions[:, 2])
     columns: dict[str, NDArray[Any]] = {

@@ -1,4 +1,4 @@
-"""Columns besides quantities in the table of a crank that rotates fully."""
+"""Columns besides quantities in the table for a fully rotating crank."""
 
 SLOW_STROKE, LOADED_STROKE = "slow_stroke", "loaded_stroke"
 OUTER_DEAD_CENTRE, INNER_DEAD_CENTRE = "outer_dead_centre_deg", "inner_dead_centre_deg"

@@ -1,4 +1,4 @@
-"""Columns of a design's numbers in tables and JSON, and their units there."""
+"""Columns for the numbers of a design in tables and JSON, with their units."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..kinds import KINDS, LENGTH, DisplayUnit
 
 
 def varying_column(varying: Varying) -> tuple[str, DisplayUnit]:
-    """Return the key of a varying number in tables and JSON, and the unit there.
+    """Return the key of a variable in tables and JSON, and its unit there.
 
     The key is the name without a leading "mechanism", with underscores, and the unit: "mechanism.slider.mass" becomes
     slider_mass_kg, "load.1.force" load_1_force_N. A fraction of a dimension has no unit.
@@ -23,12 +23,12 @@ def varying_column(varying: Varying) -> tuple[str, DisplayUnit]:
 
 
 def number_in_words(name: str) -> str:
-    """Return the words for a number of a job from its name or key: "slider mass", "crank pin diameter"."""
+    """Return the words for a number in a job from its name or key: "slider mass", "crank pin diameter"."""
     words = re.sub("[._]", " ", name.removeprefix("mechanism."))
     return re.sub("^sections pins (.+)", r"\1 diameter", words)
 
 
 def columns_of_numbers(varying: Sequence[Varying]) -> dict[str, tuple[str, DisplayUnit]]:
-    """Return key and unit of every number of a design by name: crank, rod, offset, and extra variables."""
+    """Return key and unit for each number of a design by name: crank, rod, offset, and extra variables."""
     lengths = {name: (f"{name}{LENGTH.metric.suffix}", LENGTH.metric) for name in DIMENSIONS}
     return lengths | {item.name: varying_column(item) for item in varying}

@@ -1,4 +1,4 @@
-"""Excesses of designs over allowable values."""
+"""Violations of allowable values by designs."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from ..quantity import Array
 from ..registry import QUANTITIES
 
 _ROUNDING = 1e-8
-"""Share of an allowable value: designs meet a constraint at the same value to this."""
+"""Relative tolerance: a design within this fraction of an allowable value meets it."""
 
 
 def violations(mechanism: Mechanism, values_of: Callable[[str], ArrayLike | None]) -> dict[str, Array]:
-    """Return the excess (n,) of designs over each allowable value, SI, by the name of its quantity.
+    """Return the violation (n,) of each allowable value by designs, SI, by the name of the quantity.
 
-    values_of: returns the values (n,) of a quantity by its name, SI; NaN for a design without one, None without any.
-    Zero for a design within the allowable value; quantities that no design exceeds are left out.
+    values_of: returns the values (n,) of a quantity by name, SI; NaN for a design without a value, None if no design
+    has one. Zero for a design within the allowable value; quantities that no design violates are left out.
     """
     excesses = {}
     for name, quantity in QUANTITIES.items():
