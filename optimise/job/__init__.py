@@ -153,7 +153,7 @@ def parse_job(
         stated = with_values(stated, values, "values") if values else stated
         problem = problem_of(stated, folder=folder, installed=custom.installed, require_feasible=require_feasible)
         doubts += plain_bounds(problem, data)
-        sentences = [] if stated.choice else torque_warnings(problem.mechanism)
+        sentences = [] if stated.choice else torque_warnings(problem.mechanism, data)
         warned = tuple(dict.fromkeys([*(item.warning for item in doubts if item.warning), *sentences]))
         return replace(problem, warnings=warned) if warned else problem
     except ValidationError as error:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar
 
 from pydantic import BeforeValidator, Discriminator, Tag
 
 from ...model.machine import drive as model
 from ...model.machine.mechanism import Mechanism
+from ..problem.remark import Change, Remark
 from .part_kinds import Kinds
+from .raw_tables import table_in
 from .values import (
     AngularSpeed,
     Built,
@@ -119,8 +122,11 @@ class DrivePart(Checked[model.Drive]):
     recovery: Recovery = optional("fraction of the braking energy that the supply takes back", 0.8, default=0.0)
 
 
-def torque_warnings(mechanism: Mechanism) -> list[str]:
-    """Return a warning if the motor gives more torque continuously than briefly, as stated and for all designs."""
+def torque_warnings(mechanism: Mechanism, tables: Mapping[str, Any]) -> list[str]:
+    """Return a warning if the motor gives more torque continuously than briefly, as stated and for all designs.
+
+    tables: those of the job, for the change that swaps the two.
+    """
     drive = mechanism.drive
     varying = {path for item in mechanism.varying for path in item.paths}
     if drive is None or varying & {"drive.rated_torque", "drive.greatest_torque"}:
@@ -128,7 +134,12 @@ def torque_warnings(mechanism: Mechanism) -> list[str]:
     rated, greatest = drive.rated_torque, drive.greatest_torque
     if rated is None or greatest is None or rated <= greatest:
         return []
+    stated = table_in(tables, "drive")
+    swapped = {"rated_torque": stated.get("greatest_torque"), "greatest_torque": stated.get("rated_torque")}
     return [
-        f"drive.rated_torque: a motor gives it continuously, and greatest_torque briefly; got {rated:.6g} N m, more "
-        f"than {greatest:.6g} N m; swap the two, or correct one"
+        Remark(
+            f"drive.rated_torque: a motor gives it continuously, and greatest_torque briefly; got {rated:.6g} N m, "
+            f"more than {greatest:.6g} N m; swap the two, or correct one",
+            None if None in swapped.values() else Change("drive", {**stated, **swapped}, "Swap the two torques"),
+        )
     ]

@@ -67,8 +67,12 @@ class PlainNumbers:
         return Remark(sentence, self._writing(number, usual))
 
     def _writing(self, number: float, text: str) -> Change | None:
-        """Return the change that writes the value as a text, if it is that number alone."""
-        return Change(self.key, text, f"Write {text}") if self.value == number else None
+        """Return the change that writes the number as a text, if it is the value or an entry of it."""
+        if self.value == number:
+            return Change(self.key, text, f"Write {text}")
+        if isinstance(self.value, list | tuple) and number in self.value:
+            return Change(self.key, [text if entry == number else entry for entry in self.value], f"Write {text}")
+        return None
 
     def _list_in(self, unit: str, doubtful: list[float]) -> list[str | float] | None:
         """Return a list with a unit after each number but zero; None for others, or if some are credible."""

@@ -11,7 +11,7 @@ import math
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import TypeVar
 
 import numpy as np
@@ -21,6 +21,7 @@ from ...model.cycle.stroke_times import massless_machine, slow_stroke
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...objectives.registry import QUANTITIES
+from ...optimise.feasibility.best import wanting
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective
 from ...optimise.problem.violation import FEASIBLE, constraints_of
@@ -58,6 +59,7 @@ class Possible:
     requirement. slow_strokes: slow strokes of the designs that meet every checked requirement, else of those that
     rotate fully; "equal" only if no design has a slow stroke. feasible: fraction of the `sampled` designs that meet
     every checked requirement. hardest: requirement that the fewest fully rotating designs meet, and their fraction.
+    nearest: value of its quantity, SI, that one in ten samples that meet all others reach, if none meets all.
     example: crank, rod and offset, m, near the middle of the feasible designs, else the nearest to it; None if no
     design rotates fully. unchecked: requirements too slow to check.
     """
@@ -70,6 +72,7 @@ class Possible:
     feasible: float
     sampled: int
     hardest: tuple[str, float] | None
+    nearest: float | None
     example: tuple[float, float, float] | None
     example_feasible: bool
     unchecked: tuple[str, ...]
@@ -98,6 +101,9 @@ def possible(problem: Problem) -> Possible:
         feasible=sample.feasible,
         sampled=sample.sampled,
         hardest=hardest,
+        nearest=None
+        if hardest is None or feasible.any()
+        else run_within(PATIENCE, partial(_nearest_value, light if screening is None else problem, hardest[0])),
         example=lengths_of(example_of(sample.designs, sample.violation, box[turning])),
         example_feasible=bool(feasible.any()),
         unchecked=costly if screening is None else (),
@@ -240,6 +246,26 @@ def _hardest_requirement(problem: Problem, designs: Array) -> tuple[str, float] 
         if not constraint.equality and len(designs)
     }
     return min(shares.items(), key=lambda item: item[1]) if shares else None
+
+
+def _nearest_value(problem: Problem, name: str) -> float | None:
+    """Return a value of a quantity, SI, as near to its requirement as one in ten samples that meet all others have.
+
+    The very nearest would be met by so few designs that the samples of a job that asks for it may have none.
+    """
+    constraint = next(item for item in constraints_of(problem) if item.quantity == name)
+    others = tuple(item for item in problem.constraints if item.quantity != name)
+    if constraint.lower is not None and constraint.upper is not None:
+        sought = wanting(problem, name, "target", 0.5 * (constraint.lower + constraint.upper))
+    else:
+        sought = wanting(problem, name, "minimise" if constraint.lower is None else "maximise")
+    sample = screened(replace(sought, constraints=others))
+    rows = np.flatnonzero(sample.is_feasible)
+    if not len(rows):
+        return None
+    row = rows[np.argsort(sample.objectives[rows, 0])[len(rows) // 10]]
+    value = float(QUANTITIES[name].evaluate(problem.mechanism, sample.designs[[row]]).values[0])
+    return value if math.isfinite(value) else None
 
 
 def example_of(designs: Array, violation: Array, fallback: Array) -> Array | None:

@@ -23,6 +23,7 @@ from ...optimise.job.schema import schema_of
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.remark import Change, Remark
 from ...optimise.problem.requirements import Constraint, Word
+from ...optimise.problem.violation import constraints_of
 from .feasibility import Ends, Possible, possible
 from .partial_job import geometry, left_out
 from .swinging import PossibleSwing, possible_swing
@@ -173,20 +174,34 @@ def infeasibility_sentences(
         ends: Ends | None = getattr(possible_values, name)
         if name in constraints and ends is not None:
             sentences += _nearest_possible(problem, constraints[name], ends)
-    if possible_values.example is None:
+    if possible_values.turning == 0.0 and not possible_values.example_feasible:
         sentences.append(_locking_sentence(problem, tables))
     elif possible_values.sampled and not possible_values.example_feasible and not sentences:
-        hardest = ""
-        if possible_values.hardest is not None and possible_values.hardest[1] < 1.0:
-            name, share = possible_values.hardest
-            percent = f"{100.0 * share:.0f} %" if share >= 0.01 or share == 0.0 else "less than 1 %"
-            hardest = f"; on its own, {problem.quantity(name).title} is met by {percent} of those that rotate fully"
-        values = f" with the job's values of {', '.join(fixed_names)}" if fixed_names else ""
-        sentences.append(
-            f"none of {counted(possible_values.sampled, 'design')} tried{values} meets every requirement{hardest}; "
-            "the search looks more closely"
-        )
+        sentences.append(_none_sentence(problem, possible_values, fixed_names))
     return sentences
+
+
+def _none_sentence(problem: Problem, possible_values: Possible, fixed_names: Sequence[str]) -> str:
+    """Return a sentence on samples of which none meets everything: the hardest requirement, and a value to ask for."""
+    hardest, change = "", None
+    if possible_values.hardest is not None and possible_values.hardest[1] < 1.0:
+        name, share = possible_values.hardest
+        title = problem.quantity(name).title
+        percent = f"{100.0 * share:.0f} %" if share >= 0.01 or share == 0.0 else "less than 1 %"
+        hardest = f"; on its own, {title} is met by {percent} of those that rotate fully"
+        constraint = next(item for item in constraints_of(problem) if item.quantity == name)
+        nearest = possible_values.nearest
+        for word, bound in constraint.sides:
+            item = None if nearest is None else missed(problem, constraint, word, bound, nearest)
+            if item is not None:
+                hardest += f", and one in ten that meet all others has {item.relation} {item.with_unit}"
+                change = _asking(problem, constraint, word, item)
+    values = f" with the job's values of {', '.join(fixed_names)}" if fixed_names else ""
+    return Remark(
+        f"none of {counted(possible_values.sampled, 'design')} tried{values} meets every requirement{hardest}; "
+        "the search looks more closely",
+        change,
+    )
 
 
 def _locking_sentence(problem: Problem, tables: Mapping[str, Any]) -> str:
@@ -197,14 +212,16 @@ def _locking_sentence(problem: Problem, tables: Mapping[str, Any]) -> str:
     fixed = all(item.lower == item.upper for item in (crank, rod, offset))
     subject = "this crank does not rotate" if fixed else "no crank within these ranges rotates"
     rule = f"{subject} fully: the rod must be longer than crank and offset together"
-    if needed < rod.upper:
-        return f"{rule}; hardly any of these are: allow longer rods"
     at_least, at_most = ("", "") if fixed else ("at least ", "at most ")
     longer = f" by more than {1e3 * (needed - rod.upper):.6g} mm" if needed > rod.upper else ""
-    sentence = (
-        f"{rule}, which take {at_least}{1e3 * needed:.6g} mm; got {at_most}{1e3 * rod.upper:.6g} mm; "
-        f"lengthen the rod{longer}"
-    )
+    if needed < rod.upper:
+        needed = crank.upper + max(abs(offset.lower), abs(offset.upper))
+        sentence = f"hardly any {rule.removeprefix('no ')}; allow longer rods"
+    else:
+        sentence = (
+            f"{rule}, which take {at_least}{1e3 * needed:.6g} mm; got {at_most}{1e3 * rod.upper:.6g} mm; "
+            f"lengthen the rod{longer}"
+        )
     longest = f"{math.ceil(100.0 * _LONGER * 1e3 * needed) / 100.0:.10g} mm"
     stated = tables["variables"]["rod"]
     if isinstance(stated, list) and len(stated) == 2:
@@ -225,14 +242,13 @@ def _nearest_possible(problem: Problem, constraint: Constraint, ends: Ends) -> l
         item = missed(problem, constraint, word, bound, nearest) if is_beyond else None
         if item is not None:
             item = replace(item, alone=bool(is_constant(ends)))
-            label = f"Ask for {item.relation} {item.with_unit}"
-            change = Change(f"constraints.{constraint.quantity}", _restated(problem, constraint, word, item), label)
-            sentences.append(Remark(item.sentence(other_requirements=_REST), change))
+            sentences.append(Remark(item.sentence(other_requirements=_REST), _asking(problem, constraint, word, item)))
     return sentences
 
 
-def _restated(problem: Problem, constraint: Constraint, word: Word, item: Relaxation) -> dict[str, str | float]:
-    """Return a requirement as a job writes it, with the reachable value on one of its sides."""
+def _asking(problem: Problem, constraint: Constraint, word: Word, item: Relaxation) -> Change:
+    """Return the change that asks for the reachable value on one side of a requirement."""
     unit = problem.quantity(constraint.quantity).unit
     bounds = {side: bound * unit.factor for side, bound in constraint.sides} | {word: item.number}
-    return {side: f"{bound:.10g} {unit.symbol}" if unit.symbol else bound for side, bound in bounds.items()}
+    value = {side: f"{bound:.10g} {unit.symbol}" if unit.symbol else bound for side, bound in bounds.items()}
+    return Change(f"constraints.{constraint.quantity}", value, f"Ask for {item.relation} {item.with_unit}")

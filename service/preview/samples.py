@@ -37,9 +37,13 @@ _VALUES = 8  # within bands, each with as many samples as the others
 
 @dataclass(frozen=True)
 class Screening:
-    """Designs (n, 3), their greatest relative violation (n,), and whether each is one of the uniform samples (n,)."""
+    """Designs (n, 3) with minimised objectives (n, m) and greatest relative violation (n,).
+
+    is_uniform: whether each is one of the uniform samples.
+    """
 
     designs: Array
+    objectives: Array
     violation: Array
     is_uniform: NDArray[np.bool_]
 
@@ -93,6 +97,7 @@ def screened(problem: Problem) -> Screening:
     end = time.monotonic() + _MOMENT
     columns = _length_columns(problem)
     designs, violations, uniform = [np.zeros((0, len(columns)))], [np.zeros(0)], [np.zeros(0, dtype=bool)]
+    objectives = [np.zeros((0, len(problem.objectives)))]
     parts = _exact_parts(problem)
     for place, part in enumerate(parts):
         branches = elimination_branches(part)
@@ -101,13 +106,14 @@ def screened(problem: Problem) -> Screening:
             if not is_uniform and time.monotonic() > end:
                 continue
             for begin in range(0, len(points), BATCH):
-                screened_designs, _, violation = evaluators[index].screen(points[begin : begin + BATCH])
+                screened_designs, values, violation = evaluators[index].screen(points[begin : begin + BATCH])
                 designs.append(screened_designs[:, columns])
+                objectives.append(values)
                 violations.append(violation)
                 uniform.append(np.full(len(violation), is_uniform))
                 if time.monotonic() > end:
                     break
-    return Screening(np.concatenate(designs), np.concatenate(violations), np.concatenate(uniform))
+    return Screening(*map(np.concatenate, (designs, objectives, violations, uniform)))
 
 
 def _exact_parts(problem: Problem) -> list[Problem]:

@@ -125,6 +125,9 @@ NOT_MET = {
         "variables": WIDE,
         "constraints": {"time_ratio": {"min": 2, "max": 3}, "transmission_angle": {"min": "40 deg"}},
     },
+    "hardly long enough rods": {
+        "variables": {"crank": ["50 mm", "60 mm"], "rod": ["60 mm", "81 mm"], "offset": ["30 mm", "90 mm"]}
+    },
     "beyond the ranges": {"variables": WIDE, "constraints": {"stroke": {"equals": "400 mm"}}},
 }
 
@@ -283,6 +286,9 @@ def test_a_requirement_that_no_design_meets_is_blamed_and_not_one_that_most_meet
         (said,) = allowed["said"]
         assert "on its own, static safety is met by 0 % of those that rotate fully" in said
         assert "transmission angle" not in said
+        (change,) = allowed["changes"]
+        job["constraints"]["static_safety"] = change["value"]
+        assert preview(shared, job)["allowed"]["said"] == []
     job["constraints"]["static_safety"] = {"min": 0.01}
     allowed = preview(shared, job)["allowed"]
     assert allowed["said"] == []

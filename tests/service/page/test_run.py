@@ -71,7 +71,7 @@ def test_a_page_says_as_soon_as_a_worker_has_the_job(open_page: Open, store: Sto
     expect(page.get_by_text("Waits for a worker. Every worker is busy (1).")).to_be_hidden(timeout=5_000)
     taken(store)
     expect(page.get_by_text("Waits for a worker.")).to_be_hidden(timeout=2_000)
-    expect(page.get_by_text("Nothing yet.").first).to_be_visible()
+    expect(page.get_by_text("The front appears after the first round.")).to_be_visible()
 
 
 def test_an_estimate_that_is_not_renewed_vanishes(open_page: Open, store: Store) -> None:
@@ -163,6 +163,7 @@ def test_a_running_job_is_cancelled_and_keeps_what_it_found(open_page: Open, sto
     page.get_by_role("button", name="Finish now run 1").click()
     expect(page.get_by_text("stopping")).to_be_visible()
     claim.finish(replace(solved.result, status="cancelled", message="cancelled: 8 designs"))
+    expect(page.locator(".state")).to_have_text("◼ stopped")
     expect(page.get_by_role("heading", name="Stopped early")).to_be_visible()
     expect(page.get_by_text("a longer search finds better designs. Cancelled: 8 designs.", exact=False)).to_be_visible()
     expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()

@@ -99,7 +99,7 @@ def test_a_run_is_cancelled_and_resumed_from_the_list(open_page: Open, store: St
     job = submit(store, TABLES)
     page = open_page(store)
     page.get_by_role("button", name="Cancel run 1").click()
-    expect(page.get_by_role("listitem")).to_contain_text("cancelled")
+    expect(page.get_by_role("listitem")).to_contain_text("stopped")
     assert store.job(job.id).state == "cancelled"
     page.get_by_role("button", name="Resume run 1").press("Enter")
     expect(page.get_by_role("listitem")).to_contain_text("queued")

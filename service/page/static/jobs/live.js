@@ -297,7 +297,7 @@ export function watch(place, job, { signal, changed }) {
         { class: "quiet" },
         waits
           ? `Waits for a worker. ${now.reason && `${capital(inWords(now.reason))}.`}`
-          : "Nothing yet.",
+          : "The front appears after the first round.",
       ),
     );
     if (waits) soon(AGAIN); // what it waits for changes without an event
@@ -325,7 +325,7 @@ export function watch(place, job, { signal, changed }) {
     course.add(job.progress);
     showState(job.progress, job.state === "running");
     if (job.progress.front) drawFront(job.progress.front);
-  } else fill(curve, h("p", { class: "quiet" }, "Nothing yet."));
+  } else fill(curve, h("p", { class: "quiet" }, "The curve begins with the first round."));
   return () => {
     over = true;
     rest();

@@ -35,7 +35,7 @@ export function outcome(job) {
     return said(
       job.progress?.feasible
         ? "Stopped before its designs were collected"
-        : "The run was cancelled before it found a design",
+        : "Stopped before it found a design",
       job.reason,
       ["Resume it above to continue."],
     );

@@ -13,7 +13,7 @@ const SIGNS = {
   failed: "✕",
 };
 /** @type {Record<string, string>} */
-const WORDS = { infeasible: "no solution" };
+const WORDS = { infeasible: "no solution", cancelled: "stopped" }; // paused, finished early, or never started
 /** @type {Api.Job["state"][]} */
 export const STATES = ["queued", "running", "done", "infeasible", "cancelled", "failed"];
 /** @type {string[]} */
