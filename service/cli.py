@@ -1,10 +1,10 @@
 """The command line: `slidercrank COMMAND`.
 
-Exit codes: 0 done; 1 a fault of this software; 2 wrong input, or a run or place that cannot be used; 3 nothing
-feasible: the input is valid, but no design meets it; 4 not proven within the budget; 130 interrupted (Ctrl-C).
+Exit codes: 0 done; 1 fault of this software; 2 wrong input, or an unusable run or location; 3 valid input, but no
+feasible design; 4 not proven within the budget; 130 interrupted (Ctrl-C).
 
-A command is imported when it is named. Slow imports are avoided here and at the top of the command modules: `--help`,
-which names all commands, stays quick.
+A command module is imported only when the command is invoked. Slow imports are avoided here and at the top of the
+command modules: `--help`, which lists all commands, stays fast.
 """
 
 from __future__ import annotations
@@ -52,19 +52,19 @@ _MODULES |= dict.fromkeys(("check", "schema", "quantities"), "job_files")
 _MODULES |= dict.fromkeys(("front", "export", "report"), "designs_of_run")
 _MODULES |= dict.fromkeys(("serve", "worker", "mcp"), "serving")
 _MODULES |= dict.fromkeys(("jobs", "cancel", "resume", "delete"), "queue")
-"""Modules of the commands that have none of their own name."""
+"""Modules of commands that are not named after their module."""
 
 
 class Commands(TyperGroup):
-    """Group that loads and runs the named command, and turns its exceptions into one message and an exit code."""
+    """Command group that imports and runs one command, and turns its exceptions into a message and an exit code."""
 
     def __init__(self, **given: Any) -> None:
-        """Accept the arguments of typer, and the names of the commands."""
+        """Accept the arguments of typer and the command names."""
         super().__init__(**given)
         self.commands = dict.fromkeys(_COMMANDS)  # type: ignore[assignment]
 
     def get_command(self, ctx: typer.Context, cmd_name: str) -> Any:  # type: ignore[override]
-        """Return the command with a name, None if there is none."""
+        """Return the command with a name, or None."""
         if cmd_name in self.commands and self.commands[cmd_name] is None:
             module = import_module(f"{__package__}.commands.{_MODULES.get(cmd_name, cmd_name)}")
             alone = typer.Typer(rich_markup_mode=None, add_completion=False)
@@ -106,7 +106,7 @@ class Commands(TyperGroup):
 
 @contextlib.contextmanager
 def _input_warnings_said() -> Iterator[None]:
-    """Print each input warning once, on a separate line, without file and line of the program."""
+    """Print each input warning once, on its own line, without source file and line."""
     with warnings.catch_warnings():
         show_other, already_said = warnings.showwarning, set[str]()
 
@@ -124,7 +124,7 @@ def _input_warnings_said() -> Iterator[None]:
 
 
 def _reword_option_error(error: Exception) -> None:
-    """Give an option value that its type rejects the same message as in a job."""
+    """Report an option value of the wrong type with the message that a job would give."""
     refused: Any = error.__cause__
     if not (isinstance(error, typer.BadParameter) and hasattr(refused, "errors")):
         return
@@ -136,7 +136,7 @@ def _reword_option_error(error: Exception) -> None:
 
 
 def _short_of_memory(error: BaseException | None) -> bool:
-    """Whether a lack of memory or of threads is the cause of an error."""
+    """Whether an error was caused by lack of memory or threads."""
     while error is not None:
         words = str(error)
         if isinstance(error, MemoryError) or (isinstance(error, OSError) and error.errno == errno.ENOMEM):
@@ -148,7 +148,7 @@ def _short_of_memory(error: BaseException | None) -> bool:
 
 
 def _log_of(error: Exception) -> str:
-    """Return the place of the traceback: the log of the run if there is one, else a new file."""
+    """Return the location of the traceback: the log of the run, or a new file if there is none."""
     for note in getattr(error, "__notes__", []):
         if note.startswith("log: "):
             return str(note.removeprefix("log: "))
@@ -195,22 +195,23 @@ def slidercrank(
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
     ] = False,
 ) -> None:
-    """Size offset slider-crank mechanisms: from what a machine must do to the Pareto front of designs."""
+    """Size offset slider-crank mechanisms: from requirements to the Pareto front of designs."""
 
 
 def main() -> None:
     """Run the command line and exit."""
-    # Before NumPy is loaded: its other threads busy-wait for matrices that are never large enough.
+    # Before NumPy is loaded: its extra threads would only busy-wait, as the matrices are never large enough for them.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # else all installed packages are searched for plugins
-    gc.set_threshold(200_000, 20, 20)  # imports leave no garbage: saves a tenth of a short command
+    # Otherwise all installed packages are searched for plugins.
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+    gc.set_threshold(200_000, 20, 20)  # imports leave no garbage; skipping collection saves a tenth of a short command
     guard_streams()
     try:
         app(prog_name="slidercrank")
-    except OutputLost as error:  # of the help, which no command prints
+    except OutputLost as error:  # used by the help, which no command prints
         print_message(f"slidercrank: {error}")
         sys.exit(WRONG_INPUT)
-    except MemoryError:  # while reporting another error
+    except MemoryError:  # while another error is reported
         print_message(_MORE_MEMORY)
         sys.exit(WRONG_INPUT)
     finally:

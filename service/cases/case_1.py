@@ -1,4 +1,4 @@
-"""Case 1: Norton's row c by Boyle and Liu, with lengths taken as metres."""
+"""Case 1: Mechanism in Norton's row c by Boyle and Liu, with lengths taken as metres."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def numbers() -> Numbers:
     )
     pin = polygons(linkage(), ANGLE).position[1]
     vertices = len(Polygons.POSITION) + len(Polygons.VELOCITY) + len(Polygons.ACCELERATION)
-    given_coordinates = 9  # of each polygon the origin and the slider's line
+    given_coordinates = 9  # origin and slider line of each polygon
     return Numbers(
         exact
         | {

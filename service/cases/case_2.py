@@ -27,7 +27,8 @@ LOOSE = Mechanism(
     gravity=(0.0, -9.81),
     clearance=Clearance(joint="crank pin", radius=1e-3, journal_radius=0.01),
 )
-"""With the 1 mm of clearance that the report simulates, taken as radial; it gives neither pin nor restitution."""
+"""Includes the 1 mm of clearance that the report simulates, taken as radial; the report states neither pin nor
+restitution."""
 _KG_MM2 = 1e6
 
 
@@ -42,7 +43,7 @@ def numbers() -> Numbers:
     exact["slider_mass"] = mass
     exact |= _inertias("slider", (mass * (a**2 + b**2) / 12, mass * (a**2 + c**2) / 12, mass * (b**2 + c**2) / 12))
     theta = np.linspace(0.0, 2.0 * math.pi, 200)
-    # The report starts with a rod angle of 180 deg; its rod points from slider to crank.
+    # The report starts at a rod angle of 180 deg; its rod points from slider to crank.
     iterated = solve_loop(SIEVE, theta, start=(0.040, 0.0))
     positions = np.degrees(np.linspace(0.0, 2.0 * math.pi, 4))
     return Numbers(

@@ -14,7 +14,7 @@ ANGLE, SPEED, LOAD = math.radians(60.0), 10.0, -100.0
 
 
 def numbers() -> Numbers:
-    """Return the values of the model, and those of the report's formulas, by key."""
+    """Return the values of the model and those of the report's formulas, by key."""
     at = LINKAGE.at(ANGLE, speed=SPEED)
     x = float(at.slider_position)
     forces = static_forces(LINKAGE, ANGLE, load=LOAD)

@@ -1,4 +1,4 @@
-"""Case 4: position error of the tilting support. Lengths that fit its Table 1, with the offset of the mirror image."""
+"""Case 4: position error of the tilting support. Lengths fitted to its Table 1, with the offset of the mirror image."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ COLUMNS = ("crank", "rod", "offset", "crank_angle", "total")
 
 
 def printed_table() -> dict[str, NDArray[np.float64]]:
-    """Return Table 1 as numbers, by the names of its file's columns."""
+    """Return Table 1 as numbers, by the column names of its file."""
     lines = read_table("position_error_table1.csv")
     return {name: np.array([float(line[name]) for line in lines]) for name in lines[0]}
 
 
 def contributions(crank_angle: ArrayLike) -> dict[str, NDArray[np.float64]]:
-    """Return the exact first-order contributions, mm, by `COLUMNS`, at crank angles, rad; the total with their signs.
+    """Return the exact first-order contributions, mm, by `COLUMNS`, at crank angles, rad; the total is signed.
 
-    The paper's offset error is positive if its offset, the negative of the offset here, grows.
+    The paper's offset error is positive if its offset, which is the negative of ours, grows.
     """
     i = LINKAGE.error_influences(crank_angle)
     r, l, e = float(LINKAGE.crank), float(LINKAGE.rod), float(LINKAGE.offset)

@@ -33,19 +33,19 @@ def linkage(offset: float) -> Linkage:
 
 
 def masses() -> tuple[float, float]:
-    """Return rotating and reciprocating mass, kg, with both links split in half as in the paper."""
+    """Return the rotating and the reciprocating mass, kg, with both links split in half as in the paper."""
     return rotating_and_reciprocating(MACHINE, linkage(0.020))
 
 
 def exact_torque(offset: float, crank_angle: Array) -> Array:
-    """Return the drive torque against the inertia of the reciprocating mass, N m: virtual work, m3 x_t x_tt / w."""
+    """Return the drive torque against the inertia of the reciprocating mass, N m, by virtual work: m3 x_t x_tt / w."""
     at = linkage(offset).at(crank_angle, speed=SPEED)
     torque: Array = masses()[1] * at.slider_velocity * at.slider_acceleration / SPEED
     return torque
 
 
 def formula_torque(offset: float, crank_angle: Array, *, as_equation_20: bool = False) -> Array:
-    """Return the drive torque by T = k F_i tan(alpha), N m, in one of its two readings."""
+    """Return the drive torque T = k F_i tan(alpha), N m, in one of its two readings."""
     rotating, reciprocating = masses()
     torque: Array = tangent_torque(
         linkage(offset),
@@ -59,7 +59,7 @@ def formula_torque(offset: float, crank_angle: Array, *, as_equation_20: bool = 
 
 
 def numbers() -> Numbers:
-    """Return the values of the model, and those of the paper's formulas, by key."""
+    """Return the values of the model and those of the paper's formulas, by key."""
     feeder, half = linkage(0.020), linkage(0.010)
     inner, outer = (float(angle) for angle in feeder.dead_centre_angles)
     forward = (outer - inner) % _TURN
@@ -149,9 +149,9 @@ def formulas(t: float, e: float) -> dict[str, float]:
 
 
 def _greatest_torques() -> dict[str, float]:
-    """Return greatest torques, N m: exact ones and those of the paper's formula."""
+    """Return the peak torques, N m: exact ones and those by the paper's formula."""
     torques: dict[str, float] = {}
-    machine = Mechanism(speed=SPEED, slider_mass=masses()[1])  # as the paper: all mass that moves, on the slider
+    machine = Mechanism(speed=SPEED, slider_mass=masses()[1])  # as in the paper, with all moving mass on the slider
     for offset in OFFSETS:
         name = f"{1e3 * offset:.0f}"
         designs = np.array([[CRANK, ROD, -offset]])

@@ -1,4 +1,4 @@
-"""The published cases with the values of the model, and as tables for people."""
+"""Published cases with the values of the model, and as tables for people."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ def collect(numbers: Sequence[int] = CASES) -> list[Case]:
 
 
 def show_case(screen: Console, case: Case, *, full: bool) -> None:
-    """Write one case: its numbers with their verdicts, and below them the reasons.
+    """Write one case: its numbers with verdicts, followed by the reasons.
 
-    full: whether to show every cell of a long printed table; else one line for each of its columns.
+    full: whether to show every cell of a long printed table instead of one line per column.
     """
     screen.print(f"Case {case.number}: {case.title}", style="bold", soft_wrap=True)
     screen.print(f"{case.source}.", style="dim", soft_wrap=True)

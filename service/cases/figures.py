@@ -1,4 +1,4 @@
-"""Figures of the five publications, redrawn: the data of each, and the files."""
+"""Figures of the five publications, redrawn: their data and their files."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _SIEVE = "crank 140, rod 310, offset −60 mm, 300 rpm"
 
 
 def draw_cases(numbers: Sequence[int], folder: Path) -> Iterator[Path]:
-    """Write the figures of the cases, case_<number>_<what>.png; yield each file as soon as it is written."""
+    """Write the case figures as case_<number>_<what>.png; yield each file as soon as it is written."""
     folder.mkdir(parents=True, exist_ok=True)
     for number in numbers:
         for name, make in FIGURES[number].items():
@@ -45,14 +45,14 @@ def polygon_figure() -> PanelFigure:
 def over_turns(
     title: str, *curves: tuple[str, Array], theta: Array = _TURN, styles: Sequence[int] = (0, 1, 2)
 ) -> Panel:
-    """Return a panel of named curves over the crank angle, each in a separate line style."""
+    """Return a panel of labelled curves over the crank angle, each in its own line style."""
     degrees = np.degrees(theta)
     lines = (Line(label, degrees, y, style) for style, (label, y) in zip(styles, curves, strict=False))
     return crank_angle_panel(title, *lines)
 
 
 def sieve_figure() -> PanelFigure:
-    """Return rod and slider motion of the sieve over the cycle (case 2, its Figs. 4 to 6 and 19)."""
+    """Return rod and slider motion of the sieve over the cycle (Figs. 4 to 6 and 19 of case 2)."""
     at = case_2.SIEVE.at(_TURN, speed=case_2.SPEED)
     panels = (
         over_turns("slider position, mm", ("", 1e3 * at.slider_position)),
@@ -68,7 +68,7 @@ def sieve_figure() -> PanelFigure:
 
 
 def sensitivity_figure() -> PanelFigure:
-    """Return slider motion with a longer crank and with a longer rod, one at a time (case 2, its Figs. 7 to 12)."""
+    """Return slider motion with a longer crank and with a longer rod, one at a time (Figs. 7 to 12 of case 2)."""
     designs = (("as designed", case_2.SIEVE), ("crank 150 mm", case_2.LONGER_CRANK), ("rod 320 mm", case_2.LONGER_ROD))
     designed, *changed = ((name, linkage.at(_TURN, speed=case_2.SPEED)) for name, linkage in designs)
     panels = tuple(
@@ -110,7 +110,7 @@ def in_line_figure() -> PanelFigure:
 
 
 def position_error_figure() -> PanelFigure:
-    """Return the contributions to the position error, exact and as printed (case 4, its Figs. 3 to 7)."""
+    """Return the contributions to the position error, exact and as printed (Figs. 3 to 7 of case 4)."""
     printed = case_4.printed_table()
     at = printed["crank_angle_deg"]
     fine = np.linspace(at[0], at[-1], 361)
@@ -140,7 +140,7 @@ def position_error_figure() -> PanelFigure:
 
 
 def offset_figure() -> PanelFigure:
-    """Return acceleration and inertia torque over two cycles for the three offsets (case 5, its Figs. 15 to 18)."""
+    """Return acceleration and inertia torque over two cycles for the three offsets (Figs. 15 to 18 of case 5)."""
     theta = np.linspace(0.0, 4.0 * math.pi, 2881)
     exact, formula = (partial(torque, crank_angle=theta) for torque in (case_5.exact_torque, case_5.formula_torque))
     two_turns = partial(over_turns, theta=theta)
@@ -173,7 +173,7 @@ def offset_figure() -> PanelFigure:
             "inertia torque, e = 20 mm, N m",
             ("exact", exact(0.020)),
             ("k F tan(alpha)", formula(0.020)),
-            styles=(0, 2),  # as in the panel before
+            styles=(0, 2),  # same as in the previous panel
         ),
     )
     return PanelFigure(
@@ -186,7 +186,7 @@ def offset_figure() -> PanelFigure:
 
 
 def clearance_figure() -> PanelFigure:
-    """Return slider motion with a loose joint at three speeds (case 2); simulated, which takes some 20 s."""
+    """Return slider motion with a loose joint at three speeds (case 2); the simulation takes about 20 s."""
     return speeds_figure(speed_runs(case_2.LOOSE, case_2.SIEVE))
 
 

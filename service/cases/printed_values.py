@@ -1,8 +1,8 @@
 """Printed numbers of publications, and the verdict on each.
 
-Each case has a data file with its printed numbers, as text: the printed digits state their claimed accuracy. The exact
-value comes from the model by the row's key. A number that the model does not confirm needs a reason, written by the
-project, in `why`. Only this module decides whether a number is confirmed.
+The data file of each case has its printed numbers as text, since the printed digits state the claimed accuracy. The
+exact value comes from the model by the row's key. A number that the model contradicts needs a reason in `why`, written
+by the project. Only this module decides whether a number is confirmed.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from typing import Any, Literal
 
 CASES = (1, 2, 3, 4, 5)
 _SAME = 1e-9
-"""Relative error allowed to a printed formula: rounding of either value, and no more."""
+"""Relative error allowed in a printed formula: covers only the rounding of either value."""
 Verdict = Literal["agrees", "misprint", "differs", "not checkable", "not printed"]
 
 
 @dataclass(frozen=True)
 class Numbers:
-    """Values by the rows' keys, in the rows' units: exact ones, and those from the formulas of a publication."""
+    """Values by row key, in the units of the rows: exact values, and values from published formulas."""
 
     exact: Mapping[str, float]
     formulas: Mapping[str, float] = field(default_factory=dict)
@@ -33,8 +33,9 @@ class Numbers:
 class Row:
     """A number of a publication.
 
-    where: its place there. printed: number as printed, None if not printed; with `formula`, the value of a printed
-    formula. exact: exact value in the same unit, None if it cannot be computed. why: reason if the two disagree.
+    where: its place there. printed: number as printed, None if there is none; if `formula` is set, the value of a
+    printed formula. exact: exact value in the same unit, None if it cannot be computed. why: reason if the two
+    disagree.
     """
 
     key: str
@@ -49,13 +50,13 @@ class Row:
 
     @property
     def column(self) -> str:
-        """The key without its row in a printed table; the whole key of any other number."""
+        """Key without the row number in a printed table; for any other number the whole key."""
         return self.key.rpartition("_")[0] if ", row " in self.where else self.key
 
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """A publication with all its numbers. given: the mechanism, in words."""
+    """Publication with all its numbers. given: the mechanism, in words."""
 
     number: int
     title: str
@@ -79,7 +80,7 @@ def read_table(name: str) -> list[dict[str, str]]:
 
 
 def _table_rows(data: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Return the cells of a printed table as rows; the key is column and row number."""
+    """Return the cells of a printed table as rows; keys consist of column and row number."""
     if "table" not in data:
         return []
     table = data["table"]
@@ -125,15 +126,15 @@ def _row_of_entry(entry: Mapping[str, Any], numbers: Numbers) -> Row:
 def confirmed(entry: Mapping[str, Any], exact: float) -> bool:
     """Return whether a printed number equals the exact one to its printed accuracy.
 
-    tolerance: allowed difference; by default one unit of the last printed digit, since sources truncate as well as
-    round. decimals: digits printed after the point if the source drops trailing zeros.
+    tolerance: allowed difference; by default one unit of the last printed digit, because sources truncate as well as
+    round. decimals: digits printed after the decimal point, if the source drops trailing zeros.
     """
     printed = str(entry["printed"])
     if printed.startswith("< "):
         return exact < number(printed)
     decimals = int(entry.get("decimals", len(printed.partition(".")[2])))
     tolerance = float(entry.get("within", 10.0**-decimals))
-    # Rounding errors in the difference itself must not decide.
+    # Rounding errors in the difference itself must not decide the verdict.
     return abs(exact - number(printed)) <= tolerance * (1.0 + 1e-9) + 1e-9 * abs(exact)
 
 

@@ -1,4 +1,4 @@
-"""A service from Python: jobs submitted and watched, fronts read.
+"""Python client of a service: submit and watch jobs, read fronts.
 
 with Client("http://127.0.0.1:8765", token) as client:
     job = client.submit("feeder.toml")
@@ -29,26 +29,27 @@ if TYPE_CHECKING:
     import pandas as pd
 
 JobSource = str | PathLike[str] | Mapping[str, Any]
-"""A job: the path of its file, the text of one in TOML, or its tables. A text has more than one line."""
+"""Job: path of its file, its TOML text, or its tables. Text is recognised by its line breaks."""
 
 _PAGE = 1000
 _ENDED = ("done", "infeasible", "cancelled", "failed")
-_PAUSES = (0.1, 1.0)  # s between two checks of an awaited job: first, longest
+_PAUSES = (0.1, 1.0)  # s between two checks of an awaited job: initial, maximum
 
 
 class Client(Designs):
-    """A service. Threads may share it. Also a context manager, which closes it.
+    """A service. Threads may share it. Can be used as a context manager, which closes it.
 
     Every method raises `NotFound` for a missing job, design or figure and `InputError` for an invalid request. It
-    raises `RunError` for a request that the state of a job does not allow, and `ServiceError` if the service refuses or
-    does not answer. All errors have the words of the service. Requests that are safe to send twice are retried while
+    raises `RunError` if the state of a job does not allow the request, and `ServiceError` if the service refuses or
+    does not answer. All error messages are those of the service. Requests that are safe to send twice are retried while
     the service does not answer.
     """
 
     def __init__(self, url: str, token: str | None = None, *, patience: float = 30.0) -> None:
-        """Prepare; nothing is sent yet.
+        """Prepare the client; nothing is sent yet.
 
-        url: address of the service, also with the token, as the service prints it. patience: time to keep retrying, s.
+        url: address of the service, which may contain the token, as the service prints it. patience: time to keep
+        retrying, s.
         """
         super().__init__(Connection(url, token, patience))
 
@@ -72,9 +73,9 @@ class Client(Designs):
     ) -> Record:
         """Queue a job and return it.
 
-        limits: seconds, evaluations, memory_bytes. key: key of this submission; a key used before queues nothing and
-        returns the earlier job. By default a key is generated, so that retries after a lost answer do not create a
-        second job. Raises `InputError` for an invalid job.
+        limits: seconds, evaluations, memory_bytes. key: key of this submission; repeating an earlier key queues nothing
+        and returns the earlier job. By default a key is generated, so that a retry after a lost answer does not create
+        a second job. Raises `InputError` for an invalid job.
         """
         body = {"job": tables_of(job), "priority": priority, "limits": dict(limits or {})}
         return self._connection.post("jobs", body, key=key or uuid.uuid4().hex)
@@ -104,9 +105,10 @@ class Client(Designs):
     ) -> list[Record]:
         """Return jobs. states: all if empty. name: part of the name. sort: newest, oldest, name, state or decided.
 
-        before: number of a job; only those that follow it.
+        before: number of a job; returns only jobs that follow it in the list.
 
-        Each has the fields of a list; `job` gives all fields of one job, `front_points` some designs of several.
+        Each has the fields of a list entry; `job` returns all fields of one job, `front_points` some designs of
+        several.
         """
         query = {"state": list(states), "name": name, "limit": limit, "sort": sort, **without_none(before=before)}
         listed: list[Record] = self._connection.ask("jobs", query)["jobs"]
@@ -119,8 +121,7 @@ class Client(Designs):
     def front_points(self, numbers: Collection[int]) -> list[Record]:
         """Return some designs of the fronts (so far) of at most 100 jobs: job, columns, points.
 
-        At most 64 designs of each, in the first two objectives. Jobs are in the order of their numbers; deleted jobs
-        are omitted.
+        At most 64 designs of each, in the first two objectives. Jobs are in order of number; deleted jobs are omitted.
         """
         fronts: list[Record] = self._connection.ask("front-points", {"job": list(numbers)})["fronts"]
         return fronts
@@ -130,7 +131,7 @@ class Client(Designs):
         return self._connection.ask(f"jobs/{number}/job")
 
     def cancel(self, number: int) -> Record:
-        """Cancel a job and return it; it keeps its result so far, and can continue."""
+        """Cancel a job and return it; its results are kept, and it can be resumed."""
         return self._connection.post(f"jobs/{number}/cancel")
 
     def resume(self, number: int) -> Record:
@@ -144,12 +145,13 @@ class Client(Designs):
     def events(self, number: int, *, after: int = 0) -> Iterator[Record]:
         """Yield the events of a job as they happen, until it has ended: number, at, kind and data of each.
 
-        after: number of an event; only later events. After a broken connection it continues with the next event.
+        after: number of an event; returns only later events. After a broken connection it continues with the next
+        event.
         """
         return events_until_end(self._connection, number, after)
 
     def wait(self, number: int, *, seconds: float | None = None) -> Record:
-        """Wait until a job has ended, and return it. Raises `ServiceError` after a time limit, s."""
+        """Wait until a job has ended, and return it. Raises `ServiceError` after a timeout, s."""
         end = None if seconds is None else time.monotonic() + seconds
         pause, longest = _PAUSES
         while (job := self.job(number))["state"] not in _ENDED:
@@ -176,10 +178,10 @@ class Client(Designs):
         reverse: bool = False,
         columns: str | None = None,
     ) -> pd.DataFrame:
-        """Return designs of a front as a table, by their numbers in it.
+        """Return designs of a front as a table, indexed by their numbers.
 
-        where: conditions such as "transmission_angle >= 45 deg". sort: a quantity or column, best or smallest first.
-        columns: names, separated by commas, all if None.
+        where: conditions such as "transmission_angle >= 45 deg". sort: quantity or column, best or smallest first.
+        columns: comma-separated names, all if None.
         """
         import pandas as pd
 
@@ -195,10 +197,10 @@ class Client(Designs):
         keys = [column["key"] for column in page["columns"]]
         table = pd.DataFrame(rows, index=pd.Index(numbers, name="number"), columns=keys)
         undefined = [key for key in keys if rows and table[key].isna().all()]
-        return table.astype(dict.fromkeys(undefined, "float64"))  # JSON has null for them, which is not a number
+        return table.astype(dict.fromkeys(undefined, "float64"))  # JSON represents them as null, which is not a number
 
     def design(self, number: int, design: int) -> Row:
-        """Return a design by its number in the front, counted from 1; the number comes first."""
+        """Return a design by its number on the front, counted from 1; the number comes first."""
         row = self._connection.ask(f"jobs/{number}/designs/{design}")["design"]
         return {"number": design, **read_row(row)}
 
@@ -211,7 +213,7 @@ class Client(Designs):
         lexicographic: str | None = None,
         where: Collection[str] = (),
     ) -> Record:
-        """Return one design as `number` and `design`, chosen among those that meet conditions, as in `front`.
+        """Return one selected design as `number` and `design`; conditions restrict the designs, as in `front`.
 
         topsis: weights, "peak_torque=2, transmission_angle=1". lexicographic: a ranking, "peak_torque: 5 %, crank".
         """
@@ -219,7 +221,7 @@ class Client(Designs):
         return self._connection.ask(f"jobs/{number}/pick", {"where": list(where), **ways})
 
     def comparison(self, numbers: Collection[int], **inputs: float) -> Record:
-        """Return the comparison of several jobs' fronts, as `slidercrank compare --json` prints it.
+        """Return the comparison of the fronts of several jobs, as printed by `slidercrank compare --json`.
 
         inputs: tolerance, the fraction of an objective's range that counts as equal.
         """
@@ -229,15 +231,15 @@ class Client(Designs):
         return record
 
     def figures(self, number: int) -> list[str]:
-        """Return the names of the figures of a front; each design has one too, called design_1 and so on."""
+        """Return the names of the figures of a front; each design has one too, such as design_1."""
         return [figure["name"] for figure in self._connection.ask(f"jobs/{number}/figures")["figures"]]
 
     def figure(self, number: int, name: str, path: str | PathLike[str]) -> Path:
-        """Write a figure to a PNG or SVG file, by its ending, and return the file."""
+        """Write a figure to a PNG or SVG file, depending on its ending, and return the file."""
         return self._save(f"jobs/{number}/figures/{name}", Path(path), ("png", "svg"))
 
     def export(self, number: int, path: str | PathLike[str]) -> Path:
-        """Write all designs of a front to a CSV, JSON or Parquet file, by its ending, and return the file."""
+        """Write all designs of a front to a CSV, JSON or Parquet file, depending on its ending, and return the file."""
         return self._save(f"jobs/{number}/export", Path(path), ("csv", "json", "parquet"))
 
     def _save(self, path: str, file: Path, kinds: tuple[str, ...]) -> Path:
@@ -254,7 +256,10 @@ class Client(Designs):
         return self._connection.ask("schema")
 
     def check(self, job: JobSource) -> Record:
-        """Return a job in words, as understood; nothing is queued. Raises `InputError` for an invalid job."""
+        """Return a job in words, as the service understood it; nothing is queued.
+
+        Raises `InputError` for an invalid job.
+        """
         return self._connection.post("check", {"job": tables_of(job)})
 
     def analyse(
@@ -266,14 +271,17 @@ class Client(Designs):
         offset: str | None = None,
         show: Collection[str] = (),
     ) -> Record:
-        """Return all numbers of any design for a job. Lengths as "40 mm"; lengths fixed by the job may be omitted."""
+        """Return all numbers for any design of a job.
+
+        Lengths are texts such as "40 mm"; those fixed by the job may be omitted.
+        """
         body = {"job": tables_of(job), "crank": crank, "rod": rod, "offset": offset, "show": list(show)}
         numbers: Record = self._connection.post("analyse", body)["analysis"]
         return numbers
 
 
 def tables_of(job: JobSource) -> Record:
-    """Return the tables of a job file, including the content of files beside it. Raises `JobError`."""
+    """Return the tables of a job file, including the contents of the files beside it. Raises `JobError`."""
     from ...optimise.job import with_files
     from ...optimise.job.file import read, toml_tables
 

@@ -1,4 +1,4 @@
-"""Requests to a service, and events of a job: retried if safe; refusals in the words of the service."""
+"""Requests to a service, and events of a job: retried if safe; refusals keep the service's wording."""
 
 from __future__ import annotations
 
@@ -16,28 +16,28 @@ with NamingExtra("clients of a service need"):
     import httpx
 
 PREFIX = "/api/v1"
-_TIMEOUT = 60.0  # s without a byte
-_FIRST_PAUSE, _LONGEST_PAUSE = 0.1, 5.0  # s between tries, doubled every time
+_TIMEOUT = 60.0  # s without receiving a byte
+_FIRST_PAUSE, _LONGEST_PAUSE = 0.1, 5.0  # s between attempts, doubled each time
 _LOOPBACK = ("localhost", "127.0.0.1", "::1")
 _NEVER_SENT = (httpx.ConnectError, httpx.ConnectTimeout)
 _ENDED, _AWAY = 204, 503
-_INFEASIBLE = "infeasible"  # problem type: the request is valid, but no design can meet it
+_INFEASIBLE = "infeasible"  # problem type: a valid request, but no feasible design
 Record = dict[str, Any]
 Event = Record
 
 
 class Away(ServiceError):
-    """Answer of the service that it cannot do it now, but later."""
+    """Error for a service that is temporarily unavailable."""
 
 
 class Connection:
-    """A connection to a service. Threads may share it."""
+    """Connection to a service. Threads may share it."""
 
     def __init__(self, url: str, token: str | None, patience: float) -> None:
         """Prepare a connection; nothing is sent yet.
 
-        url: "http://host:port", also with "?token=...", as the service prints it. patience: time to keep retrying a
-        request, s. Raises `InputError` for an address of another kind.
+        url: "http://host:port", optionally with "?token=...", as the service prints it. patience: time to keep retrying
+        a request, s. Raises `InputError` for any other form of address.
         """
         parts = urlsplit(url)
         if parts.scheme not in ("http", "https") or not parts.hostname:
@@ -45,14 +45,14 @@ class Connection:
                 f"the address of a service must be http://host:port or https://host; got {url[:200]!r}; correct it"
             )
         token = token or next(iter(parse_qs(parts.query).get("token", [])), None)
-        # Without the token: errors show this address.
+        # Without the token, since errors show this address.
         self.url = f"{parts.scheme}://{parts.netloc}{parts.path.rstrip('/')}"
         self.patience = patience
         self._http = httpx.Client(
             base_url=f"{self.url}{PREFIX}/",
             headers={} if token is None else {"Authorization": f"Bearer {token}"},
             timeout=_TIMEOUT,
-            verify=parts.scheme == "https",  # else certificates would be read for nothing, 15 ms
+            verify=parts.scheme == "https",  # saves 15 ms for certificates that are not used
             trust_env=parts.hostname not in _LOOPBACK,  # no proxy for this machine
         )
 
@@ -63,7 +63,7 @@ class Connection:
     def request(self, method: str, path: str, *, again: bool, **content: Any) -> httpx.Response:
         """Return the answer to a request. Raises the errors of `refusal`, and `ServiceError` without an answer.
 
-        again: whether the request may be sent twice. A request that the service cannot have seen is retried anyway.
+        again: whether the request may be sent twice. A request that cannot have reached the service is always retried.
         """
         tries = Tries(self)
         while True:
@@ -84,13 +84,13 @@ class Connection:
                 raise refusal(response)
 
     def post(self, path: str, body: Record | None = None, *, again: bool = True, key: str | None = None) -> Record:
-        """Return the JSON answer to a body. key: key of a submission."""
+        """Return the JSON answer to a request with a body. key: key of a submission."""
         headers = None if key is None else {"Idempotency-Key": key}
         record: Record = self.request("POST", path, again=again, json=body, headers=headers).json()
         return record
 
     def ask(self, path: str, query: Record | None = None, body: Record | None = None) -> Record:
-        """Return the JSON at a path, or the answer to a body sent there."""
+        """Return the JSON at a path, or the answer to a body posted there."""
         method = "GET" if body is None else "POST"
         record: Record = self.request(method, path, again=True, params=query, json=body).json()
         return record
@@ -101,7 +101,7 @@ class Connection:
 
     @contextmanager
     def stream(self, path: str, headers: Mapping[str, str]) -> Iterator[httpx.Response]:
-        """Enter the answer to a GET before its content arrives; raises the errors of httpx and of `refusal`."""
+        """Yield the answer to a GET request before its content arrives; raises the errors of httpx and of `refusal`."""
         with self._http.stream("GET", path, headers=dict(headers)) as response:
             if not response.is_success:
                 response.read()
@@ -109,7 +109,7 @@ class Connection:
             yield response
 
     def unreachable(self, error: Exception) -> ServiceError:
-        """Return the error for a service that does not answer."""
+        """Return the error for a service that does not respond."""
         return ServiceError(
             f"the service must answer; {self.url} gave: {str(error) or type(error).__name__}; "
             "see that `slidercrank serve` runs there"
@@ -117,7 +117,7 @@ class Connection:
 
 
 class Tries:
-    """Attempts of one request, with growing pauses, until the patience is used up."""
+    """Attempts of one request, with growing pauses, until patience runs out."""
 
     def __init__(self, connection: Connection) -> None:
         self.made = 0
@@ -126,7 +126,7 @@ class Tries:
 
     @property
     def has_patience(self) -> bool:
-        """Whether there is patience for another attempt."""
+        """Whether another attempt is allowed."""
         return time.monotonic() < self._end
 
     def pause(self) -> None:
@@ -135,18 +135,18 @@ class Tries:
         self.made += 1
 
     def wait(self, error: Exception) -> None:
-        """Wait before the next attempt after an error. Raises `ServiceError` if there is no patience left."""
+        """Wait before the next attempt after an error. Raises `ServiceError` if patience has run out."""
         if not self.has_patience:
             raise error if isinstance(error, Away) else self._connection.unreachable(error) from error
         self.pause()
 
 
 def refusal(response: httpx.Response) -> SlidercrankError:
-    """Return the exception for a refusal by a service, with its sentence.
+    """Return the exception for a refusal by a service, with the service's sentence.
 
-    `NotFound` for 404, `InputError` for an invalid request, `InfeasibleError` for a valid one that no design can
-    meet, `RunError` for a request that the state of a job does not allow. All others give `ServiceError`, of which
-    `Away` is temporary.
+    `NotFound` for 404, `InputError` for an invalid request, `InfeasibleError` for a valid request without a feasible
+    design, `RunError` for a request that the state of a job does not allow. Any other refusal gives a `ServiceError`,
+    of which `Away` is temporary.
     """
     kind = None
     try:
@@ -164,7 +164,7 @@ def refusal(response: httpx.Response) -> SlidercrankError:
 def events_until_end(connection: Connection, number: int, after: int) -> Iterator[Event]:
     """Yield the events of a job after a given one as they happen, until the service has no more.
 
-    Every connection names the last event received, so none is missed or repeated.
+    Each new connection names the last event received, so that none is lost or repeated.
     """
     tries = Tries(connection)
     while True:
@@ -187,7 +187,7 @@ def events_until_end(connection: Connection, number: int, after: int) -> Iterato
 
 
 def _events(lines: Iterator[str]) -> Iterator[Event | None]:
-    """Yield the data of server-sent events, None for a sign of life; omit a truncated event.
+    """Yield the data of server-sent events, or None for a keep-alive comment; discard a truncated event.
 
     WHATWG, HTML standard, 9.2.6.
     """

@@ -1,4 +1,4 @@
-"""Single designs for a client: their numbers, questions about them, and bookmarks."""
+"""Single designs for a client: their numbers, questions about them, and their bookmarks."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ class Designs:
         self._connection = connection
 
     def analysis(self, number: int, design: int, *, show: Collection[str] = ()) -> Record:
-        """Return all numbers of a design, and an object for each topic of `show`, as `analyse --json` prints them."""
+        """Return all numbers for a design, with an object for each topic in `show`, as printed by `analyse --json`."""
         return self._ask_design(number, design, "analysis", {"show": list(show)})
 
     def ask(self, number: int, design: int | None, question: str, /, **inputs: object) -> Record:
-        """Return the answer to a question, a topic of `analyse --show` or a command, as `--json` prints it.
+        """Return the answer to a question, which is a topic of `analyse --show` or a command, as printed by `--json`.
 
-        design: number of the design, None for the whole front: `client.ask(7, None, "certify", epsilon=0.02)`. inputs:
-        inputs of the question by their names in the API, which end with their metric unit: touch_distance_mm=12.
+        design: number of the design, or None for the whole front: `client.ask(7, None, "certify", epsilon=0.02)`.
+        inputs: inputs of the question by API name, which ends with the metric unit: touch_distance_mm=12.
         """
         if question in FRONT_OR_JOB_QUESTIONS:
             if not FRONT_OR_JOB_QUESTIONS[question].path:
@@ -58,33 +58,32 @@ class Designs:
         velocity_m_s: float | None = None,
         acceleration_m_s2: float | None = None,
     ) -> Record:
-        """Return every crank angle of a design for a slider position, as `slidercrank inverse --json` prints it."""
+        """Return every crank angle of a design for a slider position, as printed by `slidercrank inverse --json`."""
         rates = {"slider_velocity_m_s": velocity_m_s, "slider_acceleration_m_s2": acceleration_m_s2}
         return self.ask(number, design, "inverse", slider_position_mm=position_mm, **rates)
 
     def swing(self, number: int, design: int, **motion: float | str | None) -> Record:
-        """Return the numbers of a swing of a design, as `slidercrank swing --json` prints them.
+        """Return the numbers for a swing of a design, as printed by `slidercrank swing --json`.
 
-        motion: inputs by their names in the API, start_deg=30, end_deg=90, driver="slider". Omitted ones come from the
-        job.
+        motion: inputs by API name, such as start_deg=30, end_deg=90, driver="slider". Omitted inputs come from the job.
         """
         return self.ask(number, design, "swing", **motion)
 
     def wish(self, number: int, at: Mapping[str, str], *, design: int | None = None) -> Record:
-        """Return the optimal design nearest to wishes, as `slidercrank wish --json` prints it.
+        """Return the optimal design nearest to wishes, as printed by `slidercrank wish --json`.
 
-        at: for each objective a value, "110 N m", or "improve", "keep", "may worsen to 120 N m" or "free". design:
-        number of the design that these classes refer to.
+        at: for each objective a value ("110 N m"), "improve", "keep", "may worsen to 120 N m" or "free". design: number
+        of the reference design for these classes.
         """
         return self.ask(number, design, "wish", at=dict(at))
 
     def wishes(self, number: int) -> list[Record]:
-        """Return the wishes made on the front of a job, the latest first, with design and time."""
+        """Return the wishes recorded for the front of a job, newest first, with design and time."""
         made: list[Record] = self._connection.ask(f"jobs/{number}/wishes")["made"]
         return made
 
     def bookmarks(self, number: int) -> list[Record]:
-        """Return the bookmarks of a job: name, note, star, decision and all numbers of each."""
+        """Return the bookmarks of a job, each with name, note, star, decision and all its numbers."""
         designs: list[Record] = self._connection.ask(f"jobs/{number}/kept")["designs"]
         return designs
 
@@ -96,9 +95,9 @@ class Designs:
         dimensions: Mapping[str, float | str] | None = None,
         **remarks: Any,
     ) -> Record:
-        """Bookmark a design of a front, or one with other dimensions such as {"rod_mm": 330}, and return it.
+        """Bookmark a design on a front, or one with other dimensions such as {"rod_mm": 330}, and return the bookmark.
 
-        remarks: name, note, star, decided, reason. A bookmark that the design already has takes them over.
+        remarks: name, note, star, decided, reason. An existing bookmark of the same design takes them over.
         """
         body = {"design": design, "dimensions": dict(dimensions or {}), **remarks}
         return self._connection.post(f"jobs/{number}/kept", body, again=False)
@@ -114,9 +113,9 @@ class Designs:
         self._connection.delete(f"jobs/{number}/kept/{bookmark}")
 
     def measured(self, number: int, design: int, csv: str | PathLike[str]) -> Record:
-        """Return the deviation of measured curves from those of a design, as `analyse --measured --json` prints it.
+        """Return the deviation of measured curves from those of a design, as printed by `analyse --measured --json`.
 
-        csv: path of a CSV file, or its text, which has more than one line.
+        csv: path of a CSV file, or its text, which is recognised by its line breaks.
         """
         from ..designs.measured_file import measured_text
 
@@ -133,10 +132,10 @@ class Designs:
         count: int = 5,
         units: System = "metric",
     ) -> Record:
-        """Return the best rounded neighbours of a design, as `slidercrank round --json` prints them.
+        """Return the best rounded neighbours of a design, as printed by `slidercrank round --json`.
 
-        to: step for all lengths, "0.5 mm", or steps, also by name: ["0.5 mm", "rod=1 mm"]. allow: amounts by which
-        designs may miss requirements, "stroke=0.1 mm".
+        to: step for all lengths, "0.5 mm", or several steps, also by name: ["0.5 mm", "rod=1 mm"]. allow: amounts by
+        which designs may miss requirements, "stroke=0.1 mm".
         """
         return self._ask_wider(
             FRONT_OR_JOB_QUESTIONS["round"], number, design, {"to": to, "allow": allow, "count": count}, units
@@ -161,7 +160,7 @@ class Designs:
     def _ask_design(
         self, number: int, design: int, topic: str, query: Record | None = None, body: Record | None = None
     ) -> Record:
-        """Return the answer to a question about a design, posted where it has a body."""
+        """Return the answer to a question about a design, posted if the question has a body."""
         path = f"jobs/{number}/designs/{design}/{topic}"
         record: Record = self._connection.ask(path, query, body)[topic]
         return record

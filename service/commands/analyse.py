@@ -1,4 +1,4 @@
-"""`slidercrank analyse`: all numbers of one design, and its figures."""
+"""`slidercrank analyse`: all numbers for one design, and its figures."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ _INPUT_OPTIONS = tuple(map(option_of, INPUTS.values()))
 
 @dataclass(frozen=True)
 class Setting(Dimensions):
-    """A design as given, and changes to the machine in JOB."""
+    """Dimensions of a design, and changes to the machine in JOB."""
 
     speed: Annotated[Speed, 'Crank speed, such as "300 rpm"; negative is clockwise.'] = None
     replaced_values: Annotated[
@@ -58,7 +58,7 @@ class Setting(Dimensions):
 
 @dataclass(frozen=True)
 class Files:
-    """Files read and written besides the numbers."""
+    """Files read and written in addition to the numbers."""
 
     measured: Annotated[
         File,
@@ -86,8 +86,9 @@ def analyse(
 
     Without JOB there are no masses, loads or tolerances, and only motion and proportions are analysed. The offset then
     defaults to zero, and results that depend on speed need --speed. Dimensions that JOB fixes need not be repeated.
-    With --design, give a run instead of JOB; the dimensions are those of the design. If a topic does not apply to the
-    design, the reason is printed at the end; the exit code is then 2 if the topic was named, and 0 with `--show all`.
+    With --design, name a run instead of JOB; the dimensions are then those of the design. If a topic does not apply to
+    the design, the reason is printed at the end; the exit code is then 2 if the topic was named, and 0 with `--show
+    all`.
     """
     require_ending("--cycle", files.cycle, ".csv")
     topics = chosen_topics(show or (), job=job is not None)
@@ -143,7 +144,7 @@ def _measured(file: Path, mechanism: Mechanism, linkage: Linkage) -> BoundQuesti
 
 
 def _topic_options(texts: Mapping[str, str | None], topics: tuple[str, ...]) -> dict[str, dict[str, Any]]:
-    """Return the options of each topic. Raises `InputError` for one whose topic is not shown."""
+    """Return the options for each topic. Raises `InputError` for an option whose topic is not shown."""
     options: dict[str, dict[str, Any]] = {topic: {} for topic in topics}
     for name, text in texts.items():
         if text is not None:

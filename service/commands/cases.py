@@ -1,4 +1,4 @@
-"""`slidercrank cases`: the published mechanisms, the printed values, and the exact ones."""
+"""`slidercrank cases`: published mechanisms, with printed and exact values."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ def cases(
     figures: Annotated[Figures, "Redraw the published figures as PNG files in this folder."] = None,
     json: Json = False,
 ) -> None:
-    """Show published mechanisms: printed values, exact values and a verdict.
+    """Show published mechanisms with printed values, exact values and a verdict.
 
-    Where they disagree, both are shown, with the reason. A printed value agrees if it differs from the exact one by at
+    Where they disagree, both are shown with the reason. A printed value agrees if it differs from the exact one by at
     most one unit in its last digit.
     """
     from dataclasses import asdict

@@ -1,4 +1,4 @@
-"""`slidercrank front`, `export` and `report`: the designs of a run, on the screen and as files."""
+"""`slidercrank front`, `export` and `report`: the designs of a run, on screen and as files."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ def front(
     units: Units = "metric",
     json: Json = False,
 ) -> None:
-    """Show the front of a run, part of it, or one design chosen from it.
+    """Show the front of a run, part of it, or one selected design.
 
-    --knee, --topsis and --lexicographic choose among the designs that meet --where; --design names one.
+    --knee, --topsis and --lexicographic select among the designs that meet --where; --design names one.
     """
     folder, result = run_of(run, runs)
     if not result.designs:
@@ -84,7 +84,7 @@ def front(
 
 
 _FILES = {f"--{name}": endings for name, endings in ENDINGS.items()}
-"""Options that write one design, and how their files may end."""
+"""Options that write one design, and the allowed file endings."""
 
 
 @dataclass(frozen=True)
@@ -96,13 +96,13 @@ class Tables:
 
     @property
     def requested(self) -> bool:
-        """Whether there is one."""
+        """Whether any file is requested."""
         return self.csv is not None or self.json is not None
 
 
 @dataclass(frozen=True)
 class DesignFiles:
-    """Files with one design, see `_FILES`."""
+    """Files with one design; see `_FILES`."""
 
     dxf: Annotated[File, "Write the linkage of one design as DXF, at true scale."] = None
     svg: Annotated[File, "Write the same drawing as SVG."] = None
@@ -113,7 +113,7 @@ class DesignFiles:
 
 @dataclass(frozen=True)
 class TableSelection(Selection):
-    """The designs in a table, also the candidates for a choice."""
+    """Designs to write in a table, which are also the candidates for a selection."""
 
     where: Where = None
     sort: Annotated[
@@ -134,8 +134,8 @@ def export(
 ) -> None:
     """Write the designs of a run to a file, or one design as a CAD drawing or an animation.
 
-    Choose one design by its number, or with --knee, --topsis or --lexicographic. --where restricts the designs, both
-    for the table and for the choice.
+    Select one design by its number, or with --knee, --topsis or --lexicographic. --where restricts the designs, both
+    for the table and for the selection.
     """
     from ..designs.stored_designs import stored_design
 
@@ -200,9 +200,9 @@ def report(
     runs: Runs = None,
     units: Units = "metric",
 ) -> None:
-    """Write a design review report: job, front, the design with all its values, tolerances, versions.
+    """Write a design-review report: job, front, the design with all its values, tolerances, versions.
 
-    The HTML report is one self-contained file without scripts, to view and print in a browser.
+    The HTML report is one self-contained file without scripts, for viewing and printing in a browser.
     """
     if out is not None and pdf and out.suffix.lower() in (".html", ".htm"):
         raise InputError(f"with --pdf the file name must end in .pdf; got --out {out}; rename it, or leave --pdf out")

@@ -1,4 +1,4 @@
-"""`slidercrank doctor`: check of the service on this machine, and a backup of its store."""
+"""`slidercrank doctor`: checks the service on this machine, and backs up its store."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
     from ..store.database import Database
 
 UNHEALTHY = 1
-"""Exit code where something is not in order; 2 is for wrong input."""
+"""Exit code if a check fails; 2 is for wrong input."""
 Grade = Literal["ok", "note", "problem"]
 _LEAST_SPACE, _LITTLE_SPACE = 200e6, 2e9  # bytes
-_CLOCKS = 2.0  # s between clocks that is worth a note
+_CLOCKS = 2.0  # difference between clocks, s, that deserves a note
 _REMEDY = "; stop the service and restore a backup, see docs/service.md"
 _PACKAGES = ("slidercrank", "numpy", "numba", "scipy", "sqlalchemy", "alembic", "fastapi", "uvicorn")
 _OPTIONAL = ("psycopg", "distributed", "pyarrow")
@@ -42,10 +42,10 @@ def doctor(
     backup: Annotated[File, "Copy a store on disk to a new file, even while it is in use."] = None,
     json: Json = False,
 ) -> None:
-    """Check store, workers, disks and software; the exit code is 1 if anything is wrong.
+    """Check store, workers, disks and software; the exit code is 1 if any check fails.
 
-    Checks the database, its tables and its clock for damage and differences, jobs that wait without a worker, folders
-    to write to, free disk space and versions. No job is changed.
+    Checks the database, its tables and its clock, jobs that wait without a worker, writable folders, free disk space
+    and versions. No job is changed.
     """
     address = store_address(store, runs)
     if backup is not None:
@@ -77,7 +77,7 @@ def _back_up(store: str | None, runs: Path | None, target: Path) -> None:
 
 
 class Check(NamedTuple):
-    """A check with its outcome. text: finding, and the remedy unless it is ok."""
+    """Check with its outcome. text: finding, and the remedy unless it is ok."""
 
     name: str
     grade: Grade
@@ -85,9 +85,9 @@ class Check(NamedTuple):
 
 
 def diagnose(address: str, runs: Path, *, named: bool = False) -> list[Check]:
-    """Check a store, given by its address, the folder of runs and this machine; change no job.
+    """Check the store at an address, the folder of runs and this machine; change no job.
 
-    named: whether the address was specified; otherwise the store may be missing.
+    named: whether the address was specified; if not, the store may be missing.
     """
     return [
         *_check_store(address, named),
@@ -122,7 +122,7 @@ def _check_store(address: str, named: bool) -> Iterator[Check]:
 
 
 def _check_access(file: Path) -> Iterator[Check]:
-    """Check who may access the file of a store: it holds everything that a service's token protects."""
+    """Check who may access a store file, which holds everything that the service's token protects."""
     from ..store.database import may_use, remedy_of_rights
 
     if not may_use(file):
@@ -216,7 +216,7 @@ def _free_space(name: str, folder: Path) -> Check:
 
 
 def _check_compiled_model() -> Check:
-    """Check the folder of the compiled model; without one, every process compiles it for minutes."""
+    """Check the folder with the compiled model; without it, every process spends minutes on compilation."""
     from ...model.kernel.folder import choose_folder
 
     folder, _, refused, other_folders = choose_folder()

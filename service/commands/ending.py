@@ -1,4 +1,4 @@
-"""The end of a command: exit codes, and signals that request a stop without losses."""
+"""End of a command: exit codes, and signals that request a stop without data loss."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from ..text.screen import print_message, print_output
 
 FAULT, WRONG_INPUT, NOTHING_FEASIBLE, NOT_PROVEN, INTERRUPTED = 1, 2, 3, 4, 130
 EXIT_CODES = {"done": 0, "infeasible": NOTHING_FEASIBLE, "cancelled": INTERRUPTED, "failed": WRONG_INPUT}
-"""By the state of a job."""
+"""Exit codes by job state."""
 
 
 class NoDesigns(InfeasibleError):
-    """A run without designs when a design is needed."""
+    """Error for a run without designs where one is needed."""
 
     def __init__(self, result: Result) -> None:
         super().__init__(result.message)
@@ -29,7 +29,7 @@ class NoDesigns(InfeasibleError):
 
 
 def with_infeasible_json(command: Callable[..., None]) -> Callable[..., None]:
-    """Return a command that, with --json, prints an infeasible input as the JSON of a run without designs."""
+    """Return a command that, with --json, prints infeasible input as the JSON of a run without designs."""
 
     @wraps(command)
     def run(**given: Any) -> None:
@@ -45,15 +45,15 @@ def with_infeasible_json(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def end_without_design(message: str) -> NoReturn:
-    """End a command whose search found no design, or where no design meets the conditions."""
+    """End a command if its search found no design, or no design meets the conditions."""
     print_message(f"slidercrank: {message}")
     raise typer.Exit(NOTHING_FEASIBLE)
 
 
 class Interruption:
-    """While entered, a first Ctrl-C requests a stop at the next good moment; a second one stops immediately.
+    """Within this context, the first Ctrl-C requests a stop at the next safe point; the second stops immediately.
 
-    service: whether SIGTERM requests a stop too, and no message is printed.
+    service: whether SIGTERM also requests a stop, and no message is printed.
     """
 
     def __init__(self, *, service: bool = False) -> None:

@@ -42,7 +42,7 @@ def like(
     units: Units = "metric",
     json: Json = False,
 ) -> None:
-    """Answer the question; end without a design where none meets the conditions."""
+    """Answer the question; exit without a design if none meets the conditions."""
     folder, front = front_of_run(run, runs, number)
     with show_activity("searching"):
         nearest = LIKE.ask(front, inputs, row=number - 1, words=LIKE.flags)
@@ -63,7 +63,7 @@ def round(
     units: Units = "metric",
     json: Json = False,
 ) -> None:
-    """Answer the question; where no design meets all, tell which options would do."""
+    """Answer the question; if no design meets all requirements, report which options would be sufficient."""
     folder, front = front_of_run(run, runs, number)
     with search_listener("rounding") as watch:
         rounded = ROUND.ask(front, inputs, row=number - 1, words=ROUND.flags, listener=watch)
@@ -79,7 +79,7 @@ def round(
 
 
 def _remedy(designs: list[dict[str, Any]]) -> str:
-    """Return the options that would accept the designs, amounts rounded up; empty without designs."""
+    """Return the options that would accept the designs, amounts rounded up; empty if there are no designs."""
     largest_miss: dict[str, tuple[float, str]] = {}
     for miss in (miss for row in designs for miss in row["misses"] if miss["amount"] > miss["allowed"]):
         largest_miss[miss["quantity"]] = max(
@@ -93,7 +93,7 @@ def _remedy(designs: list[dict[str, Any]]) -> str:
 
 
 def _rounded_up(amount: float) -> float:
-    """Return an amount with one digit, never less."""
+    """Return an amount rounded up to one significant digit."""
     size = 10.0 ** math.floor(math.log10(amount))
     return math.ceil(amount / size) * size
 
@@ -110,7 +110,7 @@ def certify(
     units: Units = "metric",
     json: Json = False,
 ) -> None:
-    """Answer the question, keep the certificate, and tell by the exit code whether it is proven."""
+    """Answer the question, save the certificate, and set the exit code to whether the accuracy is proven."""
     folder, front = front_of_run(run, runs, empty=True)
     with Interruption() as interruption, search_listener("bounding the design box", interruption.requested) as watch:
         certificate = CERTIFY.ask(front, inputs, words=CERTIFY.flags, listener=watch)
@@ -158,7 +158,7 @@ def compare(
 
 
 def _draw(compared: Sequence[tuple[ComparedRun, Result]], folder: Path) -> Path:
-    """Draw the results of runs, in the requested units, in a folder."""
+    """Draw the results of runs in a unit system into a folder."""
     import numpy as np
 
     from ..figures.comparison import MOST_RUNS, PlottedRun, comparison_matrix
@@ -191,7 +191,7 @@ def sweep(
     units: Units = "metric",
     json: Json = False,
 ) -> None:
-    """Answer the question, and draw the answer."""
+    """Answer the question and draw the answer."""
     problem = turning_problem(job, "sweep")
     swept = SWEEP.ask(problem, inputs, words=SWEEP.flags)
     print_record(json, swept.record(units)["rows"], lambda screen: print_blocks(screen, swept.blocks, units))

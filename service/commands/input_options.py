@@ -18,7 +18,7 @@ _Command = Callable[..., None]
 
 
 def option_of(item: Input) -> inspect.Parameter:
-    """Return the command-line option of an input."""
+    """Return the command-line option for an input."""
     least, has_default = None, False
     if isinstance(item, TypedInput):
         kind: Any = item.type if get_origin(item.type) is None else list[str]
@@ -41,13 +41,13 @@ def option_of(item: Input) -> inspect.Parameter:
 
 
 def options_of(question: FrontOrJobQuestion, *, optional: bool = False) -> tuple[inspect.Parameter, ...]:
-    """Return the options of all inputs. optional: whether the command works without them."""
+    """Return the options for all inputs. optional: whether the command works without them."""
     options = tuple(map(option_of, question.inputs))
     return tuple(option.replace(default=None) for option in options) if optional else options
 
 
 def with_question_help(question: FrontOrJobQuestion, addition: str = "") -> Callable[[_Command], _Command]:
-    """Return a decorator that gives a command the help of its question, and a text on the command itself."""
+    """Return a decorator that adds the help of a question, and a text specific to the command."""
 
     def with_help(command: _Command) -> _Command:
         command.__doc__ = f"{question.help} {addition}".rstrip()
@@ -58,6 +58,6 @@ def with_question_help(question: FrontOrJobQuestion, addition: str = "") -> Call
 
 @contextmanager
 def search_listener(text: str, cancelled: Callable[[], bool] = lambda: False) -> Iterator[SearchListener]:
-    """Enter a context that shows an activity and the progress while an answer is searched."""
+    """Enter a context that shows activity and progress during a search."""
     with show_activity(text) as status:
         yield SearchListener(cancelled=cancelled, report=lambda words: None if status is None else status.update(words))

@@ -1,4 +1,4 @@
-"""`slidercrank check`, `schema` and `quantities`: job files before anything runs, and what they may name."""
+"""`slidercrank check`, `schema` and `quantities`: job files before a run, and the names allowed in them."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def check(
 
 
 def _in_words(sentence: str, path: str, value: Any, label: str) -> str:
-    """Return a change that settles a warning, as a line of a job file."""
+    """Return a change that resolves a warning, as a line of a job file."""
     from ...optimise.job.messages import toml
 
     return label if value is None else f"{label}: {path} = {toml(value)}"
@@ -74,9 +74,9 @@ def quantities(
     *,
     json: Json = False,
 ) -> None:
-    """List the quantities for objectives and constraints, or explain some.
+    """List the quantities for objectives and constraints, or explain some of them.
 
-    Explains meaning, formula, unit and column, and what a job must have.
+    Explains meaning, formula, unit and column, and the data that a job must contain.
     """
     from ..designs.quantity_facts import facts_of_all
 

@@ -1,4 +1,4 @@
-"""One design named on the command line: by dimensions and perhaps a job, or by number in a run."""
+"""Design named on the command line: by dimensions, with or without a job, or by number in a run."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Machine(NamedTuple):
-    """A machine and a linkage named on the command line, and the problem of job or run, if any."""
+    """Machine and linkage named on the command line, and the problem of the job or run, if any."""
 
     mechanism: Mechanism
     linkage: Linkage
@@ -41,10 +41,10 @@ def machine_of(
     replaced_values: Sequence[str] = (),
     turning: bool = False,
 ) -> Machine:
-    """Return the machine for dimensions, with a job if there is one, or for a design of a run.
+    """Return the machine for given dimensions, optionally with a job, or for a design of a run.
 
-    command: its name in messages. replaced_values: "PATH=VALUE" for numbers of the job. turning: whether to reject a
-    swinging crank. Without a job nothing has mass.
+    command: its name in messages. replaced_values: "PATH=VALUE" replacements for numbers in the job. turning: whether
+    to reject a swinging crank. Without a job all parts are massless.
     """
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
@@ -66,7 +66,7 @@ def machine_of(
 def turning_problem(job: Path, command: str) -> Problem:
     """Return the problem of a job file for the analysis of a given design; the job need not be feasible.
 
-    Raises `InputError` for a swinging crank, in the words of a command.
+    Raises `InputError` for a swinging crank, phrased for a command.
     """
     from ...optimise.job import load_job
 
@@ -76,9 +76,9 @@ def turning_problem(job: Path, command: str) -> Problem:
 
 
 def problem_of_job(job: Path | None, replaced_values: Sequence[str] = ()) -> Problem | None:
-    """Return the problem of a job file with numbers at other values, "PATH=VALUE"; None without a job.
+    """Return the problem of a job file after "PATH=VALUE" replacements of numbers; None without a job.
 
-    The analysis is of a given design, so that the job need not be feasible.
+    The job need not be feasible, as the design to analyse is given.
     """
     if job is None:
         if replaced_values:
@@ -101,9 +101,9 @@ def problem_of_job(job: Path | None, replaced_values: Sequence[str] = ()) -> Pro
 def design_of_run(
     command: str, run: Path | None, design: int, place: Path | None, options: Mapping[str, object]
 ) -> StoredDesign:
-    """Return a design of a run. Raises `InputError` without a run, and if dimensions are given too.
+    """Return a design of a run. Raises `InputError` without a run, or if dimensions are given too.
 
-    command: name of the command, for messages. place: folder of runs. options: options that the design replaces.
+    command: name of the command, for messages. place: folder of runs. options: options that conflict with the design.
     """
     from ..designs.stored_designs import stored_design
 

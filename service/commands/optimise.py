@@ -1,4 +1,4 @@
-"""`slidercrank optimise`: from a job file to a front on the screen and a run on the disk."""
+"""`slidercrank optimise`: from a job file to a front on screen and a run on disk."""
 
 from __future__ import annotations
 
@@ -35,19 +35,19 @@ if TYPE_CHECKING:
 
 _FILES = ("front.csv", "front.json", "certificate.csv", "certificate.json", "job.toml", "job.json", "log.txt")
 SEARCH = "slidercrank.optimise slidercrank.model", ("slidercrank.optimise.job", "slidercrank.optimise.solve")
-"""Packages whose kernels a search needs, and modules that import them."""
+"""Packages with the kernels of a search, and modules that import these packages."""
 _NOTHING_GIVEN = "optimise needs a job file, or a run to continue; got neither; name a job or use --resume RUN"
 
 
 @dataclass(frozen=True)
 class Places:
-    """Places of runs and jobs, as given."""
+    """Locations of runs and jobs, as given."""
 
     runs: Runs = None
     store: Address = None
 
     def command_again(self, run: str) -> str:
-        """Return the command that resumes a run, with the named places but without passwords."""
+        """Return the command that resumes a run, with the given locations but without passwords."""
         from ..store.address import without_secrets
 
         options = ["--runs", str(self.runs)] if self.runs else []
@@ -75,8 +75,8 @@ def optimise(
     """Find the Pareto front of a job.
 
     Prints the front, and saves job, designs, figures and log in a new folder. Ctrl-C stops within about a second and
-    keeps the designs found so far. --resume continues in the folder of that run, with the same result as if it had
-    never stopped. The run is also in the store, where `jobs` and the service see it.
+    keeps the designs found so far. --resume continues in the folder of that run, with the same result as an
+    uninterrupted search. The run is also in the store, where `jobs` and the service can see it.
     """
     from ...model.kernel.disk import compile_ahead
 
@@ -124,7 +124,7 @@ def optimise(
                 sys.stdout.flush()
         except OutputLost as error:
             lost = error
-        if drawn:  # while the front is read
+        if drawn:  # while the user reads the front
             _draw(front, run, interruption, units)
     if lost is not None:
         raise lost
@@ -141,7 +141,7 @@ def optimise(
 
 @contextlib.contextmanager
 def _store_or_temporary(places: Places) -> Iterator[tuple[Store, bool]]:
-    """Yield the store, or a temporary one for this run if it is unusable, and which of the two."""
+    """Yield the store, or a temporary one for this run if it is unusable, and whether it is temporary."""
     from ..store import Store
 
     with contextlib.ExitStack() as opened:
@@ -160,7 +160,7 @@ def _store_or_temporary(places: Places) -> Iterator[tuple[Store, bool]]:
 
 
 def show_files(run: Path) -> None:
-    """Print the places of a run's files."""
+    """Print the locations of a run's files."""
     screen = console()
     screen.print(f"\nFiles: {path_text(run)}", soft_wrap=True)
     listed = [name for name in _FILES if (run / name).exists()]
@@ -171,7 +171,7 @@ def show_files(run: Path) -> None:
 
 
 def _problem(job: Path, settings: SettingOptions) -> tuple[Problem, dict[str, Any], list[Artefact]]:
-    """Return the problem of a job file and its tables, both with the given options, and its files."""
+    """Return the problem of a job file and its tables, both with the given options applied, and its files."""
     from ...optimise.job import load_job, needed_files, read_job
     from ...optimise.job.job_notes import notes_of
     from ..jobs.direct_run import files_of

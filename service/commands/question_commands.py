@@ -1,4 +1,4 @@
-"""Commands for questions about one design, such as `slidercrank inverse`, and for sizing parts of it."""
+"""Commands for questions about one design, such as `slidercrank inverse`, and for sizing its parts."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def design_command(name: str) -> Callable[..., None]:
 
 
 def sizing_command(name: str) -> Callable[..., None]:
-    """Return the command of a question that sizes, for `for_typer`."""
+    """Return the command of a sizing question, for `for_typer`."""
     question, says = DESIGN_QUESTIONS[name], QUESTION_COMMANDS[name]
 
     def command(
@@ -104,7 +104,7 @@ def sizing_command(name: str) -> Callable[..., None]:
 
 
 def _print_numbers(bound_question: BoundQuestion, units: System, json: bool) -> list[str]:
-    """Print the answer; return further messages."""
+    """Print the answer; return additional messages."""
     from ..render.terminal import print_blocks
 
     with show_activity("computing"):

@@ -72,7 +72,7 @@ def jobs(
 def cancel(job: Name, store: Address = None, json: Json = False) -> None:
     """Cancel a job.
 
-    The designs found so far are kept, and `resume` continues the job. Its worker notices within 2 s.
+    The designs found so far are kept, and `resume` continues the job. Its worker responds within 2 s.
     """
     with store_that_is_there(store) as opened:
         after = opened.cancel(find_job(opened, job).id)
@@ -86,7 +86,7 @@ def resume(job: Name, store: Address = None, json: Json = False) -> None:
 
 
 def delete(job: Name, store: Address = None, json: Json = False) -> None:
-    """Permanently delete a job that has ended, with all its data."""
+    """Permanently delete an ended job with all its data."""
     with store_that_is_there(store) as opened:
         deleted = find_job(opened, job)
         opened.delete(deleted.id)
@@ -114,7 +114,7 @@ def _progress_or_result(job: Job) -> str:
     if job.state in ("done", "cancelled") and job.summary is not None and job.summary["designs"]:
         best = []
         for column, value in job.summary["best"].items():
-            name, unit, _ = split_unit(column)  # titles of quantities would take their imports
+            name, unit, _ = split_unit(column)  # titles of quantities would require slow imports
             best.append(f"{name.replace('_', ' ')} {value:.4g} {unit}".rstrip())
         return f"{counted(job.summary['designs'], 'design')}; best {', '.join(best)}"
     if job.state == "running" and job.progress is not None:

@@ -1,4 +1,4 @@
-"""A run named on the command line, and one of its designs: by number, or chosen as in `front`."""
+"""Run named on the command line, and one of its designs: by number, or selected as in `front`."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def run_of(name: str, runs: Path | None) -> tuple[Path, Result]:
-    """Return the folder and the result of a run. runs: folder of runs as given."""
+    """Return the folder and the result of a run. runs: folder of runs, as given."""
     folder = find_run(name, runs_place(runs))
     return folder, read_run(folder)
 
@@ -35,9 +35,9 @@ def run_of(name: str, runs: Path | None) -> tuple[Path, Result]:
 def front_of_run(
     name: str, runs: Path | None, number: int | None = None, *, empty: bool = False
 ) -> tuple[Path, ParetoFront]:
-    """Return the folder and the front of a run. empty: whether it may lack designs.
+    """Return the folder and the front of a run. empty: whether the front may be empty.
 
-    Raises `InputError` if it has no design with this number, `NoDesigns` if it has none at all.
+    Raises `InputError` if there is no design with this number, `NoDesigns` if there is none at all.
     """
     from ..designs.stored_designs import front_of
 
@@ -52,11 +52,11 @@ def front_of_run(
 def result_in_units(result: Result, units: System, folder: Path | None) -> Result:
     """Return the result of a run in the requested units.
 
-    folder: folder of the run, if its trade-offs are shown; else None.
+    folder: folder of the run if trade-offs are shown, otherwise None.
     """
     problem = None
     if units != "metric" and folder is not None and result.trade_offs:
-        with contextlib.suppress(SlidercrankError):  # its job is of another version
+        with contextlib.suppress(SlidercrankError):  # its job is from another version
             problem = problem_of(folder, result)
     return result_in(result, units, problem)
 
@@ -71,13 +71,13 @@ Where = Annotated[
 
 @dataclass(frozen=True)
 class Choice(Pick):
-    """Options that name one design of a run."""
+    """Options that select one design of a run."""
 
     def number(self, result: Result, run: str, conditions: Sequence[str] | None) -> int:
-        """Return the number of the design that the options name, counted from 1.
+        """Return the number of the design that the options select, counted from 1.
 
-        Exits with 3 if the conditions leave none. Raises `NoDesigns` for an empty front, `InputError` for a number that
-        the run does not have, and unless exactly one choice is given.
+        Exits with code 3 if no design meets the conditions. Raises `NoDesigns` for an empty front, and `InputError` for
+        an unknown number or unless exactly one selection is given.
         """
         if not result.designs:
             raise NoDesigns(result)

@@ -36,7 +36,7 @@ _SHORTEST = 16
 
 @dataclass(frozen=True)
 class WorkOptions:
-    """Options of workers, and permissions and limits of their jobs."""
+    """Options of workers, with permissions and limits for their jobs."""
 
     lease: Annotated[
         float,
@@ -63,7 +63,7 @@ class WorkOptions:
     log_format: Annotated[Format, "Log format on standard error: text, or one JSON object per line."] = "text"
 
     def settings(self, address: str, engine: EngineOptions, processes: int, *, drain: bool = False) -> WorkerSettings:
-        """Return the settings of each worker of a store. drain: whether to end as soon as no job waits."""
+        """Return the settings for each worker of a store. drain: whether to exit as soon as no job waits."""
         from ..store import Limits
         from ..workers.worker import Terms
         from ..workers.worker_process import WorkerSettings
@@ -92,17 +92,18 @@ def worker(
     options: WorkOptions,
     engine: EngineOptions,
 ) -> None:
-    """Solve the jobs in a store until stopped. Each worker is a process, which is restarted if it dies.
+    """Solve the jobs in a store until stopped. Each worker is a separate process, which is restarted if it dies.
 
-    Ctrl-C and SIGTERM let each job finish its round, or hand it back if that takes longer than --grace; another worker
-    then continues after its last round. With a store on PostgreSQL workers may run on any number of machines.
+    Ctrl-C and SIGTERM let each job finish its round, or return it to the queue if that takes longer than --grace;
+    another worker then continues after its last round. With a PostgreSQL store, workers may run on any number of
+    machines.
     """
-    required("psutil", "workers need")  # it is used to end processes that a job leaves behind
+    required("psutil", "workers need")  # needed to end processes that a job leaves behind
     from ..workers.supervisor import Supervisor
 
     settings = options.settings(store_address(store), engine, processes, drain=drain)
     with Interruption(service=True) as termination:
-        with open_store(store) as opened:  # only this process reports faults, immediately
+        with open_store(store) as opened:  # faults are reported immediately, by this process only
             opened.require_writable()
         set_up_logs(options.log_format)
         with Supervisor(settings, processes) as supervisor:
@@ -148,7 +149,7 @@ def serve(
     """Serve the API and solve its jobs until stopped.
 
     Prints the address, including the token, once the service is listening. Ctrl-C and SIGTERM let each job finish its
-    round, or hand it back if that takes longer than --grace. The service continues it after a restart.
+    round, or return it to the queue if that takes longer than --grace. After a restart the service continues it.
     """
     from ..api.app import MODULES, computing_app, create_app
     from ..api.computing import Computing
@@ -181,12 +182,12 @@ def serve(
         set_up_logs(work.log_format)
         with closing(computing), Supervisor(work, processes) as supervisor:
             run_server(app, socket, stop_requested=termination.requested, stopping=supervisor.leave)
-    end_children()  # the fork server takes half a second to end by itself
+    end_children()  # the fork server takes half a second to exit on its own
     _leave_requests()
 
 
 def _leave_requests() -> None:
-    """End immediately if requests are still running: nobody waits for answers, and all jobs are handed back."""
+    """Exit immediately despite running requests: no client waits for answers, and all jobs are back in the queue."""
     from ..workers.heartbeat import leave
 
     if any(not thread.daemon and thread is not threading.main_thread() for thread in threading.enumerate()):
@@ -196,7 +197,7 @@ def _leave_requests() -> None:
 
 
 def _token(token: str | None, without_token: bool, host: str) -> tuple[str | None, bool]:
-    """Return the token, and whether it was generated here. Raises `InputError` for one that protects nothing."""
+    """Return the token, and whether it was generated here. Raises `InputError` for a token that is too weak."""
     import secrets
 
     from ..api.server import is_loopback
@@ -224,8 +225,8 @@ def _token(token: str | None, without_token: bool, host: str) -> tuple[str | Non
 def mcp(runs: Runs = None, allow_quantity: AllowQuantity = None) -> None:
     """Serve agents over the Model Context Protocol, on standard input and output, until the input ends.
 
-    The agent's client starts it. Runs and the store are read and written in the folder of runs; other messages go to
-    standard error. Ctrl-C stops it, and a running search keeps the designs found so far.
+    The agent's client starts this command. It reads and writes runs and the store in the folder of runs; other messages
+    go to standard error. Ctrl-C stops it, and a running search keeps the designs found so far.
     """
     required("mcp", "serving agents needs")
     from ...model.kernel.disk import compile_ahead
@@ -237,6 +238,6 @@ def mcp(runs: Runs = None, allow_quantity: AllowQuantity = None) -> None:
 
 
 def _leave() -> None:
-    """End immediately: a thread still reads standard input."""
+    """Exit immediately, although a thread still reads standard input."""
     print_message("slidercrank: interrupted")
     os._exit(INTERRUPTED)

@@ -58,14 +58,14 @@ def submit(
 ) -> None:
     """Queue a job for the workers of a store; see `serve` and `worker`.
 
-    It is checked first. With --watch the exit code is that of the job, as for optimise; 2 if it fails.
+    The job is checked first. With --watch the exit code is that of the job, as for optimise; 2 if the job fails.
     """
     from ...optimise.job import load_job, read_job
     from ..jobs.submission import functions_of
     from ..jobs.submission import submit as put_in
     from ..store import Limits
 
-    load_job(job)  # for its messages, which name the file
+    load_job(job)  # its messages contain the file name
     tables = read_job(job)
     functions = sorted(set(functions_of(tables).values()))
     memory = None if job_limits.memory is None else size_of(job_limits.memory, "--memory")
@@ -93,7 +93,7 @@ def submit(
 def watch(job: Name, store: Address = None, json: Json = False) -> None:
     """Show past and new events of a job until it ends; --json prints one event per line.
 
-    The exit code is that of the job, as for optimise; 2 if it failed. Ctrl-C stops watching; the job continues.
+    The exit code is that of the job, as for optimise; 2 if the job failed. Ctrl-C stops watching; the job continues.
     """
     with store_that_is_there(store) as opened:
         watched = find_job(opened, job)
@@ -114,7 +114,7 @@ def _print_worker_requirements(functions: Sequence[str], job: Path) -> None:
 
 
 def _original_job(job: Path) -> Artefact | None:
-    """Return the original job file; None if it names other files, which the job's tables contain."""
+    """Return the original job file; None if it refers to other files, whose contents are in the job's tables."""
     from ...optimise.job import needed_files
     from ..store import Artefact
 
@@ -125,7 +125,7 @@ def _original_job(job: Path) -> Artefact | None:
 
 
 def _write_events(store: Store, job: Job, *, json: bool) -> int:
-    """Write the events of a job until it ends and return its exit code; 0 once the reader stops."""
+    """Write the events of a job until it ends and return its exit code; 0 if the reader stops."""
     try:
         with _event_writer(json) as show:
             for event in events_until_end(store, job.id):
@@ -142,9 +142,9 @@ def _write_events(store: Store, job: Job, *, json: bool) -> int:
 
 
 def events_until_end(store: Store, number: int) -> Iterator[Event]:
-    """Yield the past and future events of a job until it has ended; wait while the database is unreachable.
+    """Yield past and future events of a job until it has ended; wait while the database is unreachable.
 
-    Raises `NotFound` if the job is deleted meanwhile.
+    Raises `NotFound` if the job is deleted in the meantime.
     """
     from ..store.database import Unavailable
     from ..store.records import ENDED
@@ -152,7 +152,7 @@ def events_until_end(store: Store, number: int) -> Iterator[Event]:
     last, away = 0, False
     while True:
         try:
-            ended = store.job(number).state in ENDED  # checked first: an ended job has all its events
+            ended = store.job(number).state in ENDED  # checked first: an ended job already has all its events
             events = store.events(number, after=last)
         except Unavailable as error:
             if not away:
@@ -172,7 +172,7 @@ def events_until_end(store: Store, number: int) -> Iterator[Event]:
 
 @contextlib.contextmanager
 def _event_writer(json: bool) -> Iterator[Callable[[Event], None]]:
-    """Yield the writer of events: as JSON, or in words, with a progress bar on a terminal."""
+    """Yield the event writer: JSON, or words with a progress bar on a terminal."""
     if json:
         from ..store.serialisation import text_of
 
@@ -206,7 +206,7 @@ def in_words(event: Event) -> str:
 
 
 def _write_front(store: Store, job: Job) -> None:
-    """Write the front of an ended job, if there is one."""
+    """Print the front of an ended job, if there is one."""
     from ..text.tables import show_front
 
     if job.summary is None or not job.summary["designs"]:

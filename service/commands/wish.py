@@ -52,7 +52,7 @@ def wish(
     units: Units = "metric",
     json: Json = False,
 ) -> None:
-    """Answer the question and note the wish, or list those that were noted."""
+    """Answer the question and record the wish, or list the recorded wishes."""
     if earlier == bool(inputs["at"]):
         received = "both" if earlier else "neither"
         raise InputError(f"give either a wish or --list; got {received}; write it like {_EXAMPLE}")
@@ -75,7 +75,7 @@ def wish(
 
 
 def _list(folder: Path, front: ParetoFront, units: System, *, json: bool) -> None:
-    """Write the wishes made on a run, the latest first, each solved again."""
+    """Print the wishes recorded for a run, newest first, each solved again."""
     from ...optimise.decisions.wish import Wishes
     from ..questions.wish.analysis import answered, wish_in_words
 

@@ -1,4 +1,4 @@
-"""A design of a stored front with other numbers: quantities, broken requirements, comparison with the front."""
+"""Design of a stored front with other numbers: quantities, unmet requirements, comparison with the front."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .choice_options import minimised_values, target_sizes
 from .judged_requirements import ranges_of, requirements_of, unmet_columns
 from .stored_designs import StoredDesign
 
-_SAME = 1e-9  # of an objective's range over the front, or of a number: a difference below is rounding
+_SAME = 1e-9  # relative to an objective's range over the front, or to a number: smaller differences are rounding
 _ROUNDS = 30
 _CONVERGED = 1e-12  # of a target
 _HALVINGS = 12
@@ -32,11 +32,11 @@ Lengths = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Variation:
-    """A design with other numbers, judged against its job and front. row: every quantity and the slacks.
+    """Design with other numbers, judged against its job and front. row: every quantity and the slacks.
 
-    broken: columns of constraints that are not met. outside: columns of ranges left. dominated_by: positions in the
-    front of designs at least as good in every objective and better in one. dominates: positions of designs that this
-    one beats in the same sense. Both list the greatest difference first.
+    broken: columns of unmet constraints. outside: columns whose range is left. dominated_by: positions of the front
+    designs that dominate it. dominates: positions of the front designs that it dominates. Both lists begin with the
+    largest difference.
     """
 
     row: Row
@@ -50,9 +50,9 @@ class Variation:
 def with_numbers(
     design: StoredDesign, lengths: Sequence[float], values: Mapping[str, float] | None = None
 ) -> StoredDesign:
-    """Return a design with other lengths, m, and other extra variables, by column in its unit; the rest stays.
+    """Return a design with other lengths, m, and other extra variables, by column in its unit; the rest is unchanged.
 
-    Raises `InputError` for lengths that do not rotate fully, and for a number that does not vary or leaves its range.
+    Raises `InputError` for lengths that do not rotate fully, and for a number that is not variable or out of range.
     """
     numbers = list(design.values[3:])
     columns = [varying_column(item) for item in design.part.mechanism.varying]
@@ -78,9 +78,9 @@ def with_numbers(
 
 
 def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Variation:
-    """Return the variation of a design that need not be in the front.
+    """Return the variation for a design that need not be on the front.
 
-    minimised: objectives from `minimised_values(result)`, computed once for many designs.
+    minimised: result of `minimised_values(result)`, computed once for many designs.
     """
     from ...optimise.search.assemble import columns_of
 
@@ -97,7 +97,7 @@ def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Vari
 
 
 def _dominating_and_dominated(result: Result, row: Row, minimised: Array) -> dict[str, list[int]]:
-    """Return the positions of designs that dominate a row, and of those that it dominates."""
+    """Return the positions of designs that dominate a row, and of those that the row dominates."""
     from ...optimise.front.constant_numbers import column_ranges
 
     values = minimised_values(replace(result, designs=[row], exact=None))[0]
@@ -106,7 +106,7 @@ def _dominating_and_dominated(result: Result, row: Row, minimised: Array) -> dic
     if not bounded.any() or not np.isfinite(values).all():
         return {"dominated_by": [], "dominates": []}
     span = column_ranges(finite[bounded], size=target_sizes(result))
-    gain = (values - finite) / np.where(span > 0.0, span, 1.0)  # positive where the design of the front is better
+    gain = (values - finite) / np.where(span > 0.0, span, 1.0)  # positive where the front design is better
     positions = {}
     for name, way in (("dominated_by", gain), ("dominates", -gain)):
         rows = np.flatnonzero(bounded & (way >= -_SAME).all(axis=1) & (way > _SAME).any(axis=1))
@@ -115,10 +115,10 @@ def _dominating_and_dominated(result: Result, row: Row, minimised: Array) -> dic
 
 
 def hold_equalities(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
-    """Return lengths, m, near the given ones that meet every equality of the job; the changed length stays as given.
+    """Return lengths, m, near the given ones that meet every equality of the job; the changed length stays fixed.
 
-    Newton's method in the other free lengths. Each step is the shortest that meets the linearised equalities, halved
-    while the linkage would not rotate fully, or not swing as required. Raises `InputError` if it finds none.
+    Uses Newton's method in the other free lengths. Each step is the shortest that meets the linearised equalities,
+    halved until the linkage rotates fully or swings as required. Raises `InputError` if the iteration fails.
     """
     part = design.part
     equal = [constraint for constraint in part.constraints if constraint.equality]
@@ -148,10 +148,10 @@ def hold_equalities(design: StoredDesign, lengths: Lengths, moved: str) -> Lengt
 
 
 def _misses(design: StoredDesign, equal: list[Constraint], values: Array) -> tuple[Array, Array, Array]:
-    """Return the residuals of the equalities (m,), their slopes (m, 3 + k), and the sizes of the targets (m,)."""
+    """Return the equality residuals (m,), their derivatives (m, 3 + k), and the magnitudes of the targets (m,)."""
     targets = np.array([constraint.lower or 0.0 for constraint in equal])
     part, names = design.part, [constraint.quantity for constraint in equal]
-    # Not `Problem.evaluate`, which warns about lengths given by people: these are intermediate.
+    # Not `Problem.evaluate`, which warns about lengths entered by users: these are intermediate.
     reached, slopes = evaluated(part.mechanism, values[None], names, gradients=True, own=part.own, swing=part.motion)
     return reached[0] - targets, slopes[0], np.maximum(np.abs(targets), 1e-6)
 

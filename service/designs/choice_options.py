@@ -1,4 +1,4 @@
-"""Options that choose one design of a stored run: `--design`, `--knee`, `--topsis`, `--lexicographic`."""
+"""Options that select one design of a stored run: `--design`, `--knee`, `--topsis`, `--lexicographic`."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _LEXICOGRAPHIC = '"peak_torque: 5 %, transmission_angle"'
 
 
 def require_single_choice(design: int, result: Result, *, has_other_choice: bool) -> None:
-    """Raise `InputError` for a number that the run does not have, or one combined with another way of choosing."""
+    """Raise `InputError` for a number that the run does not have, or one combined with another selection option."""
     if has_other_choice:
         raise InputError("a design must be chosen in one way; got its number and another way; keep one of them")
     if not 1 <= design <= len(result.designs):
@@ -31,7 +31,10 @@ def require_single_choice(design: int, result: Result, *, has_other_choice: bool
 def chosen_row(
     result: Result, rows: Sequence[int], *, knee: bool, topsis: str | None, lexicographic: str | None
 ) -> int | None:
-    """Return the index of the row that the options choose, None without such an option. Raises `InputError` for two."""
+    """Return the index of the row that the options select, or None without such an option.
+
+    Raises `InputError` for two selection options.
+    """
     from ...optimise.front import choose_design
 
     ways = [
@@ -56,7 +59,7 @@ def chosen_row(
 
 
 def minimised_values(result: Result) -> Array:
-    """Return the objectives (n, m) of a stored run as they are minimised, in display units."""
+    """Return the objectives (n, m) of a stored run, all minimised, in display units."""
     import numpy as np
 
     values = [[objective.rank(row) for objective in result.objectives] for row in result.designs]
@@ -64,7 +67,7 @@ def minimised_values(result: Result) -> Array:
 
 
 def target_sizes(result: Result) -> list[float]:
-    """Return the targets of objectives, in display units, 0 without one: the scale for rounding distances from them."""
+    """Return the targets of objectives, in display units, or 0: the scale for rounding errors in their distances."""
     return [abs(objective.target or 0.0) for objective in result.objectives]
 
 
@@ -112,7 +115,7 @@ def _tolerance(part: str, value: str, objective: StoredObjective) -> tuple[float
 
 
 def _parts(text: str, example: str) -> list[str]:
-    parts = [part.strip() for part in re.split(r",(?![^()]*\))", text)]  # not those between the brackets of min and max
+    parts = [part.strip() for part in re.split(r",(?![^()]*\))", text)]  # except commas within min and max
     if not all(parts):
         raise InputError(f"objectives must be separated by single commas; got {text!r}; write it like {example}")
     return parts

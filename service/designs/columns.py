@@ -1,4 +1,4 @@
-"""Columns of the table of designs, by the names that people use, with their units."""
+"""Columns of the table of designs with their units, by the names that people use."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from ...objectives.kinds import System
 if TYPE_CHECKING:
     from ...objectives.quantity import Group
 
-_MOST = 12  # keys of a message
+_MOST = 12  # maximum number of keys in a message
 
 
 @dataclass(frozen=True)
 class Column:
-    """A column. key: key in JSON and CSV. title: title for people. factor: one SI unit in its unit.
+    """Table column. key: key in JSON and CSV. title: title for people. factor: one SI unit in its unit.
 
-    plain: factor from a number without a unit to the column's unit: 25.4 for `crank_mm` called `crank_in`; None for a
-    column with a unit called by a name without one. group: group in which it is shown.
+    plain: factor from a number without a unit to the column's unit, such as 25.4 for `crank_mm` entered as `crank_in`;
+    None if the column has a unit but the name does not. group: group under which it is shown.
     """
 
     key: str
@@ -39,8 +39,8 @@ class Column:
 def find_column(name: str, keys: Collection[str]) -> Column:
     """Return the column for a name: a key of the table, or a quantity as in job files ("peak_torque").
 
-    Keys of every system of units are accepted: `crank_in` is `crank_mm`.
-    Raises `InputError` with the nearest names.
+    Keys of every unit system are accepted: `crank_in` is `crank_mm`. Raises `InputError` that suggests the nearest
+    names.
     """
     name = name.strip()
     metric = metric_key(name)
@@ -68,7 +68,7 @@ def find_column(name: str, keys: Collection[str]) -> Column:
 
 @functools.cache
 def _group_of(key: str) -> Group:
-    """Return the group that a metric column is shown in."""
+    """Return the group under which a metric column is shown."""
     from ...objectives.peak_torque import PEAK_TORQUE
     from ...objectives.quantity import Group
     from ...objectives.registry import FACTS
@@ -82,7 +82,7 @@ def _group_of(key: str) -> Group:
 
 
 def chosen_columns(keys: Iterable[str]) -> list[str]:
-    """Return the columns of choices besides the dimensions: those between the offset and the quantities."""
+    """Return the choice columns, which are those between the offset and the quantities."""
     from_offset = itertools.dropwhile(lambda key: metric_key(key) != "offset_mm", keys)
     return list(
         itertools.takewhile(
@@ -93,14 +93,14 @@ def chosen_columns(keys: Iterable[str]) -> list[str]:
 
 @functools.cache
 def _quantity_titles() -> dict[str, str]:
-    """Return the titles of the columns of quantities, by their keys."""
+    """Return the titles of quantity columns, by key."""
     from ...objectives.registry import FACTS
 
     return {quantity.field: quantity.title for quantity in FACTS.values()}
 
 
 def _key_of_name(name: str, keys: Collection[str]) -> str:
-    """Return the key for a name without a unit. Raises `InputError` with the nearest names."""
+    """Return the key for a name without a unit. Raises `InputError` that suggests the nearest names."""
     from ...objectives.registry import QUANTITIES
 
     system: System = "metric" if "crank_mm" in keys or "crank_in" not in keys else "inch"
@@ -108,7 +108,7 @@ def _key_of_name(name: str, keys: Collection[str]) -> str:
     aliases |= {quantity.name: key_in(quantity.field, system)[0] for quantity in QUANTITIES.values()}
     for plain, key in ((split_unit(key)[0], key) for key in keys if "_robust" in key):
         for quantity in QUANTITIES.values():
-            stem = split_unit(quantity.field)[0]  # a robust quantity's key and name end alike
+            stem = split_unit(quantity.field)[0]  # key and name of a robust quantity have the same ending
             if plain.startswith(f"{stem}_robust"):
                 aliases[quantity.name + plain.removeprefix(stem)] = key
     aliases |= {split_unit(key)[0]: key for key in keys if split_unit(key)[0] not in aliases}
@@ -116,7 +116,7 @@ def _key_of_name(name: str, keys: Collection[str]) -> str:
     names = {alias: key for alias, key in aliases.items() if key in keys}
     if name in names:
         return names[name]
-    # The key of a custom quantity has its unit after its name.
+    # In the key of a custom quantity the unit follows the name.
     longer = [key for key in keys if name and key.startswith(f"{name}_") and metric_key(key) not in _quantity_titles()]
     if len(longer) == 1:
         return longer[0]
@@ -134,7 +134,7 @@ def _listed(keys: Collection[str]) -> str:
 
 
 def all_columns(keys: Collection[str]) -> list[Column]:
-    """Return the columns of a table by its keys."""
+    """Return the columns of a table, by key."""
     return [find_column(key, keys) for key in keys]
 
 

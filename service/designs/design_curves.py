@@ -1,4 +1,4 @@
-"""Curves of a design that rotates fully or swings: as CSV, and at evenly spaced points of its cycle."""
+"""Curves of a design that rotates fully or swings: as CSV, and at evenly spaced points over its cycle."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _LEFT_OUT = ("slider_jerk", "rod_angle", "power")
 
 @dataclass(frozen=True)
 class CurveColumn:
-    """A curve. key: key in JSON. values: values over the crank angles; NaN where friction leaves it undetermined."""
+    """Curve. key: key in JSON. values: values over the crank angles; NaN where friction leaves it undetermined."""
 
     key: str
     title: str
@@ -53,7 +53,7 @@ class CurveColumn:
 def cycle_table(mechanism: Mechanism, linkage: Linkage, *, angles: int = 360, turns: int = 1) -> list[CurveColumn]:
     """Return the curves of one fully rotating linkage at evenly spaced crank angles from 0 deg, in metric units.
 
-    turns: crank revolutions that the angles span. The curves are those of `objectives.tables.cycle_curves`;
+    turns: number of crank revolutions that the angles span. The curves are those of `objectives.tables.cycle_curves`;
     raises `InputError` for too few or too many angles.
     """
     from ...objectives.tables.cycle_curves import cycle_curves, even_angles
@@ -67,9 +67,9 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, *, angles: int = 360, tu
 
 
 def cycle_csv(mechanism: Mechanism, linkage: Linkage, system: System = "metric", *, machine: bool = True) -> str:
-    """Return a row for each degree of a cycle, a column for each curve of `cycle_curves`; empty where undefined.
+    """Return a row per degree of a cycle, with a column for each curve of `cycle_curves`; empty where undefined.
 
-    machine: whether masses, loads and tolerances are known; else only the motion is returned.
+    machine: whether masses, loads and tolerances are known; otherwise only the motion is returned.
     """
     from ...model.machine.two_turns import cycle_turns
     from ...objectives.tables.cycle_curves import cycle_curves, even_angles
@@ -86,10 +86,11 @@ def cycle_csv(mechanism: Mechanism, linkage: Linkage, system: System = "metric",
 
 @dataclass(frozen=True)
 class DesignCurves:
-    """Curves of a design at evenly spaced points of its cycle. turns: crank revolutions per cycle; 0 for a swing.
+    """Curves of a design at evenly spaced points over its cycle. turns: crank revolutions per cycle; 0 for a swing.
 
-    seconds: duration of the cycle; None without a speed, and for a slow swing. centres: crank angles of the inner and
-    the outer dead centre, deg; None for a swing. slider_ends: slider positions there, or at both ends of a swing, mm.
+    seconds: duration of the cycle; None without a speed, and for a quasi-static swing. centres: crank angles of the
+    inner and outer dead centres, deg; None for a swing. slider_ends: slider positions there, or at both ends of a
+    swing, mm.
     """
 
     turns: int
@@ -100,10 +101,11 @@ class DesignCurves:
 
 
 def design_curves(design: StoredDesign, count: int) -> DesignCurves:
-    """Return the curves at N points: crank angles from 0 deg, or even times of a swing back and forth.
+    """Return the curves at N points: crank angles from 0 deg, or evenly spaced times for a swing back and forth.
 
-    A cycle of 720 deg has both revolutions. For a swing the first point is its start, the middle one its end, and the
-    number is even. Raises `InputError` for too few or too many points, and the errors of the design's motion.
+    A 720 deg cycle includes both revolutions. For a swing, the number of points is even; the first point is the start
+    and the middle one the end. Raises `InputError` for too few or too many points, and the errors of the design's
+    motion.
     """
     if design.part.motion is None:
         turns = cycle_turns(design.mechanism)

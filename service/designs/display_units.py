@@ -1,6 +1,6 @@
-"""Results in a system of units: keys, values and sentences.
+"""Results in a unit system: keys, values and sentences.
 
-All stored data are metric. They are converted to inches here, at the edge, and nowhere else.
+All stored data is metric. Conversion to inches happens only here, at the edge.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
 
 def row_in(row: Mapping[str, Any], system: System) -> Row:
-    """Return a design with keys and values of a system: `crank_mm` 50.8 is `crank_in` 2 in the inch system."""
+    """Return a design with the keys and values of a unit system: `crank_mm` 50.8 is `crank_in` 2 in the inch system."""
     return rows_in([dict(row)], system)[0]
 
 
 def rows_in(rows: Sequence[Row], system: System) -> list[Row]:
-    """Return designs of the same keys, as `row_in` does."""
+    """Return designs that share their keys, converted as by `row_in`."""
     if system == "metric" or not rows:
         return list(rows)
     names = {key: key_in(key, system) for key in rows[0]}
@@ -32,9 +32,9 @@ def rows_in(rows: Sequence[Row], system: System) -> list[Row]:
 
 
 def record_in(record: Any, system: System) -> Any:
-    """Return a JSON record with keys and values of a system of units, at any depth.
+    """Return a JSON record with the keys and values of a unit system, at any depth.
 
-    Numbers and lists of numbers are converted from the unit in their key, and the key is renamed to the new unit.
+    Numbers and lists of numbers are converted from the unit in their key, and the key gets the new unit.
     """
     if system == "metric":
         return record
@@ -45,10 +45,10 @@ def record_in(record: Any, system: System) -> Any:
 
 
 def result_in(result: Result, system: System, problem: Problem | None = None) -> Result:
-    """Return the result of a run in the units of a system. The order of designs and all choices among them stay.
+    """Return the result of a run in a unit system. The order of designs and all selections are unchanged.
 
-    problem: problem of the run; the trade-offs at the knee, stored in metric units, are recomputed with it and omitted
-    without it.
+    problem: problem of the run; recomputes the trade-offs at the knee, which are stored in metric units; without it
+    they are omitted.
     """
     if system == "metric":
         return result
@@ -63,7 +63,7 @@ def result_in(result: Result, system: System, problem: Problem | None = None) ->
 
 
 def objective_in(objective: StoredObjective, system: System) -> StoredObjective:
-    """Return an objective in the units of a system."""
+    """Return an objective in a unit system."""
     column, factor = key_in(objective.column, system)
     target = None if objective.target is None else objective.target * factor
     return replace(objective, column=column, unit=metric_unit_in(objective.unit, system)[0], target=target)
@@ -83,7 +83,7 @@ def _trade_offs(problem: Problem, result: Result, system: System) -> list[str]:
 
 
 def _scaled(value: Any, factor: float) -> Any:
-    if isinstance(value, Mapping):  # what names itself without a unit, such as a vertex, has that of its record
+    if isinstance(value, Mapping):  # a key without a unit, such as a vertex, has the unit of its record
         return {key: item if split_unit(key)[1] else _scaled(item, factor) for key, item in value.items()}
     if isinstance(value, list):
         return [_scaled(item, factor) for item in value]

@@ -1,4 +1,4 @@
-"""Jobs that follow from a front: its active constraints with wider limits, and a search near one of its designs."""
+"""Jobs derived from a front: wider limits for its active constraints, and a search near one of its designs."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from .judged_requirements import requirements_of
 from .stored_designs import stored_design
 
 _REST = 1e-6
-"""Share of a range, or of a bound, within which a design rests on it: searches end there to about 1e-9."""
+"""Fraction of a range or bound within which the constraint counts as active: searches end within about 1e-9 of it."""
 _WIDER = 0.25  # of a range
 _FURTHER = 0.1  # of a bound
 _LONGEST_NAME = 80  # of a job
 SHARE = 0.1
-"""Of a length, on either side of it."""
+"""Fraction of a length, on either side."""
 Side = Literal["lower", "upper"]
 _WORDS: dict[Side, str] = {"lower": "at least", "upper": "at most"}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Limit:
-    """Limit that a job sets, in its unit. of: its place in the job, such as "variables.rod".
+    """Limit that a job sets, in its unit. of: its path in the job, such as "variables.rod".
 
-    designs: numbers of the designs of the front that lie on it, from 1. wider: wider value to try; None if the job
-    states the limit in a way that a number cannot replace. size: reference value for relative distances from it.
+    designs: numbers of the front designs at the limit, from 1. wider: wider value to try; None if the job states the
+    limit in a form that no number can replace. size: reference value for relative distances from it.
     """
 
     of: str
@@ -48,14 +48,14 @@ class Limit:
 
     @property
     def words(self) -> str:
-        """The limit in words, such as "rod at most 400 mm"."""
+        """Limit in words, such as "rod at most 400 mm"."""
         return f"{self.title} {_WORDS[self.side]} {_with_unit(self.value, self.unit)}"
 
 
 def active_limits(problem: Problem, result: Result, tables: Mapping[str, Any]) -> list[Limit]:
-    """Return the limits on which designs of a front lie, those with most designs first. tables: tables of the job.
+    """Return the active limits of a front, those with the most designs first. tables: tables of the job.
 
-    Values that the job fixes, or requires exactly, are not limits: every design lies on them.
+    Values that the job fixes, or requires exactly, are not limits, since every design lies on them.
     """
     variants = range(max(1, len(problem.variants)))
     limits = {variant: _limits_of(problem.part(variant), tables) for variant in variants}
@@ -78,9 +78,9 @@ def active_limits(problem: Problem, result: Result, tables: Mapping[str, Any]) -
 def widen_limits(
     problem: Problem, tables: Mapping[str, Any], new_values: Sequence[tuple[str, Side, float]]
 ) -> dict[str, Any]:
-    """Return the tables of a job with other limits, each by its place, side and value in its unit.
+    """Return the tables of a job with other limits, each given by path, side and value in its unit.
 
-    Raises `InputError` for a limit that the job does not have, or that a number cannot replace.
+    Raises `InputError` for a limit that the job does not have, or that no number can replace.
     """
     limits = {(limit.of, limit.side): limit for part in problem.parts() for limit in _limits_of(part, tables)}
     job = deepcopy(dict(tables))
@@ -129,7 +129,7 @@ def _limits_of(part: Problem, tables: Mapping[str, Any]) -> list[Limit]:
         for side, value in _stated_sides(low, high):
             step = _WIDER * (high - low)
             if side == "lower" and value > 0.0:
-                step = min(step, _WIDER * value)  # a length stays one
+                step = min(step, _WIDER * value)  # a length stays a length
             wider = _round_to_step(value - step if side == "lower" else value + step, step)
             changed = wider if isinstance(stated_range, list | tuple) and len(stated_range) == 2 else None
             limits.append(Limit(side=side, value=value, wider=changed, **range_fields))
@@ -157,7 +157,7 @@ def _limits_of(part: Problem, tables: Mapping[str, Any]) -> list[Limit]:
 
 
 def _variable_ranges(part: Problem) -> list[tuple[str, str, str, str, float, float]]:
-    """Return the variables: place in [variables], column, title, unit, and both ends in that unit."""
+    """Return the variables: path in [variables], column, title, unit, and both bounds in that unit."""
     ranges = [(name, f"{name}_mm", name, "mm", getattr(part, name), 1e3) for name in DIMENSIONS]
     for item in part.mechanism.varying:
         key, unit = varying_column(item)
@@ -171,7 +171,7 @@ def _stated_sides(lower: float | None, upper: float | None) -> list[tuple[Side, 
 
 
 def _table_and_key(table: Any, path: str) -> tuple[Any, str]:
-    """Return the table that a path leads to, and the key there; a key may be in quotes."""
+    """Return the table that a path leads to, and the key in it; a key may be in quotes."""
     while path not in table and "." in path:
         step, _, rest = path.partition(".")
         table, path = table.get(step, {}), rest
@@ -179,7 +179,7 @@ def _table_and_key(table: Any, path: str) -> tuple[Any, str]:
 
 
 def _round_to_step(value: float, step: float) -> float:
-    """Return a value rounded to half of the first digit of a step."""
+    """Return a value rounded to half of the leading digit of a step."""
     digit = 0.5 * 10.0 ** math.floor(math.log10(step))
     return float(f"{digit * round(value / digit):.12g}")
 
@@ -191,10 +191,12 @@ def _with_unit(value: float, unit: str) -> str:
 def job_near_lengths(
     problem: Problem, tables: Mapping[str, Any], lengths: tuple[float, float, float], *, share: float = SHARE
 ) -> dict[str, Any]:
-    """Return the tables of a job whose crank, rod and offset vary around lengths, mm. Lengths that the job fixes stay.
+    """Return the tables of a job whose crank, rod and offset vary around given lengths, mm.
+
+    Lengths that the job fixes are unchanged.
 
     share: fraction of each length, on either side; for the offset at least that fraction of the crank. Raises
-    `InputError` if the job fixes all three.
+    `InputError` if the job fixes all three lengths.
     """
     part = problem.parts()[0]
     free = [name for name in DIMENSIONS if (bounds := getattr(part, name)).lower < bounds.upper]
@@ -212,6 +214,6 @@ def job_near_lengths(
 
 
 def _renamed(job: dict[str, Any], change: str) -> dict[str, Any]:
-    """Return a job with a change in its name, unless that grows too long."""
+    """Return a job with a change appended to its name, unless the name becomes too long."""
     name = f"{job['name']}, {change}"
     return job | {"name": name} if len(name) <= _LONGEST_NAME else job

@@ -1,4 +1,4 @@
-"""Comparison of several fronts in words: which reaches farthest, which beats which, and where."""
+"""Comparison of several fronts in words: which extends furthest, which dominates which, and where."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ if TYPE_CHECKING:
     from ...model.arrays import Array
 
 _SAME = 1e-6
-"""Share of an objective's range that counts as equal: designs are exact to about that."""
+"""Fraction of an objective's range that counts as equal: about the accuracy of designs."""
 NEAR = 0.02
-"""Share of an objective's range within which a design matches another: two samples of one front lie side by side."""
+"""Fraction of an objective's range within which designs match: two samples of one front lie side by side."""
 _TO = f"to {100 * NEAR:g} % of each range"
 
 
 def comparison_sentences(names: Sequence[str], results: Sequence[Result], system: System = "metric") -> list[str]:
-    """Compare fronts with each other in sentences.
+    """Compare fronts with one another in sentences.
 
-    names: names of the runs. results: results with designs. Only objectives that all runs share, in the same sense, are
-    compared.
+    names: names of the runs. results: results with designs. Only objectives that all runs share, with the same sense,
+    are compared.
     """
     shared = _shared_objectives(results)
     if not shared:
@@ -54,7 +54,7 @@ def _shared_objectives(results: Sequence[Result]) -> list[StoredObjective]:
 
 
 def _minimised_shared(result: Result, shared: Sequence[StoredObjective]) -> Array:
-    """Return the shared objectives of a result (n, m), as they are minimised; infinite if undefined."""
+    """Return the shared objectives of a result (n, m), all minimised; infinite if undefined."""
     order = [item.quantity for item in result.objectives]
     values = minimised_values(result)[:, [order.index(item.quantity) for item in shared]]
     return np.asarray(np.where(np.isfinite(values), values, np.inf))
@@ -69,14 +69,14 @@ def _best_front_text(
     span: Array,
     system: System,
 ) -> str:
-    """Return the front with the best value of one objective, and the best values of the others."""
+    """Return the front with the best value of an objective, and the best values of the other fronts."""
     rows = [int(np.argmin(front[:, index])) for front in fronts]
     least = np.array([front[row, index] for front, row in zip(fronts, rows, strict=True)])
     values = [
         _with_unit(result.designs[row][objective.column], objective, system)
         for result, row in zip(results, rows, strict=True)
     ]
-    shown = values[int(np.argmin(least))]  # what reads the same is the same
+    shown = values[int(np.argmin(least))]  # values that read the same are equal
     first = [n for n in range(len(names)) if least[n] <= least.min() + _SAME * span[index] or values[n] == shown]
     title = f"best {objective.title}"
     if len(first) == len(names):
@@ -111,14 +111,14 @@ def _unmatched_sentence(
 
 
 def unmatched(front: Array, other_front: Array) -> NDArray[np.bool_]:
-    """Return the designs (n, m) that no other one (k, m) matches or beats; scaled objectives, as they are minimised."""
+    """Return the designs (n, m) that no other design (k, m) matches or beats; scaled objectives, all minimised."""
     return np.array([not bool((other_front <= point + NEAR).all(axis=1).any()) for point in front])
 
 
 def _range_in_words(
     result: Result, free: NDArray[np.bool_], objective: StoredObjective, values: Array, system: System
 ) -> str:
-    """Return the part of an objective's range where the chosen designs lie; empty if they cover most of it."""
+    """Return the part of an objective's range that contains the selected designs; empty if they cover most of it."""
     low, high = values[free].min(), values[free].max()
     is_between = (values >= low) & (values <= high)
     if is_between.mean() > 0.7:

@@ -1,4 +1,4 @@
-"""Requirements of a job on a design: ranges of the dimensions, constraints, and the amount by which each is missed."""
+"""Requirements of a job for a design: ranges of the dimensions, constraints, and the amount by which each is missed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _RPM = 9.549296585513721  # in one rad/s
 MET = 1e-8
-"""Share of a bound to which designs meet their constraints."""
+"""Relative tolerance within which designs meet their constraints."""
 
 
 @dataclass(frozen=True)
@@ -34,11 +34,11 @@ class Requirement:
 
     @property
     def slack(self) -> str:
-        """Column of the distance to the nearer bound."""
+        """Column with the distance to the nearer bound."""
         return f"slack_{self.column}"
 
     def missed_by(self, row: Row) -> float | None:
-        """Return the amount by which a design misses it, zero if met; None for a design without the number."""
+        """Return the amount by which a design misses the requirement, zero if met, None without the quantity."""
         value = _number_or_none(row.get(self.column))
         if value is None:
             return None
@@ -50,7 +50,7 @@ class Requirement:
 
 @dataclass(frozen=True, kw_only=True)
 class JudgedRule:
-    """A rule of a job at one design, in the display unit of its quantity.
+    """Rule of a job evaluated at one design, in the display unit of its quantity.
 
     lower, upper: None leaves a side open. value: None if the design does not have the quantity. missed_by: zero if the
     rule is met, None without a value.
@@ -67,14 +67,17 @@ class JudgedRule:
 
     @property
     def digits(self) -> int:
-        """Significant digits, at least six, that tell the value from the bound that it misses."""
+        """Significant digits, at least six, that distinguish the value from the bound that it misses."""
         ratio = abs(self.value / self.missed_by) if self.value and self.missed_by else 1.0
         return min(12, max(6, math.ceil(math.log10(ratio)) + 2)) if 0.0 < ratio < math.inf else 6
 
 
 @dataclass(frozen=True, kw_only=True)
 class JudgedChoice:
-    """A combination of a job's choices at one design. labels: chosen options. missed: rules that fail with it."""
+    """Combination of a job's choices, evaluated at one design.
+
+    labels: chosen options. missed: rules violated with it.
+    """
 
     labels: tuple[str, ...]
     missed: tuple[JudgedRule, ...]
@@ -82,9 +85,9 @@ class JudgedChoice:
 
 @dataclass(frozen=True, kw_only=True)
 class Judgement:
-    """A job judged at one design.
+    """Evaluation of a job at one design.
 
-    rules: its rules, without limits that come with a choice. choices: its combinations of choices.
+    rules: rules of the job, except limits that depend on a choice. choices: combinations of its choices.
     """
 
     rules: list[JudgedRule]
@@ -92,7 +95,7 @@ class Judgement:
 
 
 def requirements_of(part: Problem) -> list[Requirement]:
-    """Return the constraints of a problem without choices, with the default floors where it sets none."""
+    """Return the constraints of a problem without choices; default minimum values replace missing ones."""
     from ...optimise.problem.violation import constraints_of
 
     requirements = []
@@ -131,7 +134,7 @@ def unmet_columns(rules: Iterable[Requirement], row: Row) -> list[str]:
 
 
 def faults_in_words(row: Row, broken: Iterable[str], outside: Iterable[str]) -> list[str]:
-    """Name requirements a design misses and variables outside its job: "misses stroke", "outside the job: rod".
+    """Describe missed requirements and variables out of range: "misses stroke", "outside the job: rod".
 
     broken: columns of requirements. outside: columns of ranges.
     """
@@ -143,17 +146,17 @@ def faults_in_words(row: Row, broken: Iterable[str], outside: Iterable[str]) -> 
 
 
 def speed_rpm(mechanism: Mechanism) -> float:
-    """Return the crank speed, rpm, counter-clockwise positive."""
+    """Return the crank speed, rpm, positive counter-clockwise."""
     return _RPM * float(mechanism.speed)
 
 
 def judge_rules(problem: Problem, row: Row, system: System = "metric") -> list[JudgedRule]:
-    """Return the ranges of crank, rod and offset and the constraints of a job, judged at a design's metric row.
+    """Return the ranges of crank, rod and offset and the constraints of a job, evaluated at a design's metric row.
 
-    system: system of units of the answer.
+    system: unit system of the answer.
     """
     lengths = ([rule for rule in ranges_of(part) if rule.quantity in DIMENSIONS] for part in problem.parts())
-    alternatives = zip(*lengths, strict=True)  # of several, where it is chosen
+    alternatives = zip(*lengths, strict=True)  # the common part if the job has choices
     ranges = [min(same_length, key=lambda rule: rule.missed_by(row) or 0.0) for same_length in alternatives]
     return [_judge_rule(rule, row, system) for rule in (*ranges, *requirements_of(problem))]
 

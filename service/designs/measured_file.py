@@ -1,4 +1,4 @@
-"""Measured curves in a file, as written by loggers and spreadsheets."""
+"""Measured curves in a file, as written by data loggers and spreadsheets."""
 
 from __future__ import annotations
 
@@ -19,12 +19,15 @@ _NAME = "a measured file"
 
 
 def measured_text(path: Path) -> str:
-    """Return the text of a file. Raises `InputError` if it cannot be read, is too large or is not text."""
+    """Return the text of a file. Raises `InputError` for a file that cannot be read, is too large or is not text."""
     return text_of(bytes_of(path, f"{_NAME}, {path},", _LARGEST), _NAME)
 
 
 def read_measured(text: str, mechanism: Mechanism, linkage: Linkage) -> Measured:
-    """Return the samples of a file's text. Raises `InputError` if it is not a table, or has impossible values."""
+    """Return the samples in the text of a file.
+
+    Raises `InputError` if the text is not a table, or has impossible values.
+    """
     table = read_table(text, _NAME, ragged=True)
     names = [name for name in table.heads if name]
     curve_names = columns_of(names, mechanism, linkage, _any_unit)
@@ -36,6 +39,6 @@ def read_measured(text: str, mechanism: Mechanism, linkage: Linkage) -> Measured
 
 
 def _any_unit(text: str, kind: Kind) -> float | None:
-    """Return the size of any unit known to jobs, in SI; None for a unit of another kind."""
+    """Return the SI value of any unit that jobs may use; None for a unit of another kind."""
     symbol = symbol_in(text.replace("_", " "), kind)
     return None if symbol is None else to_si(f"1 {symbol}", kind)

@@ -1,4 +1,4 @@
-"""Facts on dimensions and quantities, for forms and agents: meaning, formula, unit, source."""
+"""Facts about dimensions and quantities, for forms and agents: meaning, formula, unit, source."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from ...objectives.kinds import LENGTH
 from ...objectives.quantity import MECHANICS, Group, Quantity
 
 _STATED = ("name", "title", "sentence", "advice", "formula", "section", "source", "picture", "better", "allowed_by")
-"""Facts of a quantity that are given as they are."""
+"""Facts about a quantity that are passed on unchanged."""
 
 
 def facts_of_all() -> list[dict[str, Any]]:
-    """Return the facts on the dimensions and on every quantity, in display order."""
+    """Return the facts about the dimensions and about every quantity, in display order."""
     from ...objectives.registry import FACTS
 
     return [*map(_dimension, _DIMENSIONS), *map(_quantity, FACTS.values())]
@@ -35,7 +35,7 @@ _LENGTH: dict[str, Any] = {
     **{"unit": LENGTH.metric.symbol, "kind": LENGTH.plain, "group": Group.DIMENSIONS.value, "source": MECHANICS},
     **{"better": "", "allowed_by": "", "needs": "", "offered": [], "motion": ""},
 }
-"""Facts that the dimensions have in common."""
+"""Facts that all dimensions share."""
 
 
 def _dimension(name: str) -> dict[str, Any]:
@@ -69,4 +69,4 @@ _DIMENSIONS = {
         "e; the slider line is y = e",
     ),
 }
-"""What is told of each dimension: `_TEXT_FIELDS`."""
+"""Facts about each dimension: `_TEXT_FIELDS`."""

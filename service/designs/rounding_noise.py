@@ -1,4 +1,4 @@
-"""Numbers of a design that rounding alone separates from zero."""
+"""Numbers of a design that differ from zero only by rounding."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from ...objectives.column_keys import split_unit
 from ..runs.result import Cell, Row
 
 _NOISE = 1e-12
-"""Relative to the greatest number in the same unit: sums over a cycle leave some 1e-16 of their terms each."""
+"""Relative to the largest number in the same unit: sums over a cycle leave about 1e-16 of each term."""
 _SLACK = "slack_"
 
 
 def without_noise(row: Mapping[str, Cell]) -> Row:
-    """Return a design with zero for numbers below the rounding of its others in the same unit.
+    """Return a design in which numbers below the rounding error of those in the same unit are zero.
 
-    The mean torque of a machine without losses is such a sum of large terms, and so is a slack at its bound. Numbers
-    without a unit have no common scale; of these, only slacks are compared, with their own quantity.
+    Examples are the mean torque of a lossless machine, which is a sum of large terms, and a slack at its bound.
+    Dimensionless numbers have no common scale; of these, only slacks are compared, with their own quantity.
     """
     scales: dict[str, float] = {}
     for key, cell in row.items():
@@ -31,5 +31,5 @@ def without_noise(row: Mapping[str, Cell]) -> Row:
 
 
 def _scale_of(key: str) -> str:
-    """Return the unit of a column; without one its name, which a slack shares with its quantity."""
+    """Return the unit of a column; without a unit its name, which a slack shares with its quantity."""
     return split_unit(key)[1] or key.removeprefix(_SLACK)

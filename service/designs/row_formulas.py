@@ -26,7 +26,7 @@ from .columns import Column, find_column
 
 @dataclass(frozen=True)
 class RowFormula:
-    """A formula over columns. node: parsed formula. columns: columns of its names. kind: kind of its value."""
+    """Formula over columns. node: parsed formula. columns: columns of its names. kind: kind of its value."""
 
     text: str
     node: Node
@@ -34,7 +34,7 @@ class RowFormula:
     kind: Kind
 
     def evaluate(self, row: Row) -> float:
-        """Return its value at a design, SI; NaN if undefined, such as a division by zero."""
+        """Return its value at a design, SI; NaN if undefined, for example by a division by zero."""
         leaves = {name: Values(_si_values(row, column), None) for name, column in self.columns}
         with np.errstate(all="ignore"):
             value = float(fold(self.node, Slopes(leaves, 1, 0, False)).values[0])
@@ -43,7 +43,7 @@ class RowFormula:
 
 
 def find_formula(text: str, keys: Collection[str]) -> Column | RowFormula:
-    """Return the existing column of a formula in a table, or the formula to compute.
+    """Return the existing column that a formula names, or the formula to compute.
 
     Raises `InputError`, with rule, value and remedy, for an invalid formula and for names that are not columns.
     """
@@ -52,9 +52,8 @@ def find_formula(text: str, keys: Collection[str]) -> Column | RowFormula:
     for key in keys:
         if split_unit(key)[0] == key_of(written) or key == key_of(written):
             stored_column = find_column(key, keys)
-            return replace(
-                stored_column, plain=None if stored_column.unit else 1.0
-            )  # it was called by a name without its unit
+            # It was referred to without its unit.
+            return replace(stored_column, plain=None if stored_column.unit else 1.0)
     columns = {name: _column_of_name(name, keys) for name in names_in(node)}
     if not columns:
         raise InputError(
@@ -68,7 +67,7 @@ def find_formula(text: str, keys: Collection[str]) -> Column | RowFormula:
 
 
 def _column_of_name(name: str, keys: Collection[str]) -> Column:
-    """Return the column of a name in a formula; an extra variable may also be named by its path."""
+    """Return the column for a name in a formula; an extra variable may also be named by its path."""
     if "." not in name:
         return find_column(name, keys)
     plain = re.sub("[^a-z0-9]+", "_", name.removeprefix("mechanism.").lower()).strip("_")

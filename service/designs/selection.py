@@ -1,4 +1,4 @@
-"""Selection of designs: conditions such as "transmission_angle >= 40 deg", order, part of a front."""
+"""Selection of designs: conditions such as "transmission_angle >= 40 deg", sorting, part of a front."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .row_formulas import RowFormula
 
 _TOLERANCE = 1e-8
-"""Relative: designs meet their constraints to this, so that one that sits on a bound counts as meeting it."""
+"""Relative tolerance of constraints, so that a design exactly at a bound counts as meeting it."""
 
 _FORM = re.compile(r"\s*([^<>=!≥≤]*[^<>=!≥≤\s])\s*(>=|<=|==|=|!=|>|<|≥|≤)\s*(\S.*?)\s*", re.ASCII | re.DOTALL)
 _SIGN = re.compile(r"[-+*/^(.\s]")
@@ -40,7 +40,7 @@ _EXAMPLE = '"transmission_angle >= 40 deg"'
 class Condition:
     """Comparison of a column or a formula with a value in its unit, or of a column with a word.
 
-    column: column of the table, or a new column whose values the formula gives, SI.
+    column: column of the table, or a new column for the values of the formula, SI.
     """
 
     column: Column
@@ -49,11 +49,14 @@ class Condition:
     formula: RowFormula | None = None
 
     def cell(self, row: Row) -> Cell:
-        """Return the cell or value that the condition compares for a design."""
+        """Return the cell or value of a design that the condition compares."""
         return row[self.column.key] if self.formula is None else self.formula.evaluate(row)
 
     def holds(self, row: Row) -> bool:
-        """Return whether a design meets it; a design without a value does not. Equality holds to 1e-8 relative."""
+        """Return whether a design meets the condition; a design without a value does not.
+
+        Equality holds to 1e-8 relative.
+        """
         cell = self.cell(row)
         if isinstance(self.value, str) or isinstance(cell, str) or cell is None:
             return _OPERATORS[self.comparison](cell, self.value)
@@ -64,10 +67,10 @@ class Condition:
 
 
 def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition:
-    """Return the condition in a text: quantity, column or formula of these, comparison, value with unit.
+    """Return the condition in a text: quantity, column or formula, then comparison, then value with unit.
 
-    keys: keys of the table. example: one of its rows, to distinguish columns of words from columns of numbers.
-    Raises `InputError` for anything else.
+    keys: keys of the table. example: one of its rows, which distinguishes text columns from numeric ones. Raises
+    `InputError` for any other form.
     """
     match = _FORM.fullmatch(text)
     if match is None:
@@ -91,7 +94,7 @@ def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition
 
 
 def _require_order(text: str, name: str, comparison: str, value: str) -> None:
-    """Raise an error for a condition that begins with its value, or compares twice."""
+    """Raise an error for a condition that begins with its value, or has two comparisons."""
     from ...objectives.units import is_value
 
     if re.search("[<>=]", value):
@@ -104,11 +107,11 @@ def _require_order(text: str, name: str, comparison: str, value: str) -> None:
 
 
 def _column_and_formula(name: str, keys: Collection[str]) -> tuple[Column, RowFormula | None]:
-    """Return the column for a name, or a new column for a formula, with the formula."""
+    """Return the column for a name, or a new column and the formula."""
     if not _SIGN.search(name.strip()):
         return find_column(name, keys), None
 
-    from .row_formulas import find_formula  # imports the computing modules
+    from .row_formulas import find_formula  # slow import of the computing modules
 
     formula = find_formula(name, keys)
     if isinstance(formula, Column):
@@ -118,7 +121,7 @@ def _column_and_formula(name: str, keys: Collection[str]) -> tuple[Column, RowFo
 
 
 def plain_number(text: str) -> float | None:
-    """Return the number in a text, None if it is not a number or has a unit."""
+    """Return the number in a text, or None if it is not a number or has a unit."""
     try:
         return float(text)
     except ValueError:
@@ -126,9 +129,9 @@ def plain_number(text: str) -> float | None:
 
 
 def parse_value(key: str, value: object, kind: Kind, *, sign: Any = "any") -> float:
-    """Return the SI value of a text with its unit, or of a number in SI.
+    """Return the SI value of a text with a unit, or of a number in SI.
 
-    Raises `InputError` that begins with the key.
+    Raises `InputError`, whose message begins with the key.
     """
     from ...objectives.units import quote, to_si
 
@@ -142,7 +145,7 @@ def parse_value(key: str, value: object, kind: Kind, *, sign: Any = "any") -> fl
 
 
 def _number_in_unit(match: re.Match[str], column: Column) -> float:
-    """Return the value in the column's unit; a missing unit is allowed only if the column's name has it."""
+    """Return the value in the column's unit; the unit may be omitted only if the column's name has it."""
     from ...objectives.catalogue_amount import kind_of_amount
     from ...objectives.formula.formulas import is_formula
     from ...objectives.units import to_si
@@ -185,9 +188,8 @@ def chosen_rows(
 ) -> list[int]:
     """Return the positions of the designs that meet all conditions.
 
-    sort: a quantity, column or formula of these: best first for an objective, else smallest first; None for the order
-    of the front. reverse: whether to reverse the order. Raises `InputError` for an invalid condition and for an unknown
-    column.
+    sort: quantity, column or formula: best first for an objective, otherwise smallest first; None for the order of the
+    front. reverse: whether to reverse the order. Raises `InputError` for an invalid condition or an unknown column.
     """
     chosen = select(result.designs, conditions)
     if sort is not None and result.designs:
@@ -204,12 +206,12 @@ def chosen_rows(
 
 
 def numbered_rows(rows: Sequence[Row], chosen: Sequence[int] | None = None) -> list[Row]:
-    """Return all rows, or the chosen ones, each with the number of its design first, counted from 1."""
+    """Return all rows, or the selected ones, each preceded by the number of its design, counted from 1."""
     return [{"number": row + 1, **rows[row]} for row in (range(len(rows)) if chosen is None else chosen)]
 
 
 def result_part(result: Result, rows: Sequence[int]) -> Result:
-    """Return the result with only these designs, and only the marks among them."""
+    """Return the result with only these designs and the marks among them."""
     place = {row: index for index, row in enumerate(rows)}
     knee = place.get(result.knee) if result.knee is not None else None
     return replace(
@@ -224,7 +226,7 @@ def result_part(result: Result, rows: Sequence[int]) -> Result:
 
 
 def no_match_message(result: Result, texts: Collection[str]) -> str:
-    """Return the message for a front where no design meets the conditions."""
+    """Return the message for a front without a design that meets the conditions."""
     rows = result.designs
     conditions = " and ".join(text.strip() for text in texts)
     parsed = (parse_condition(text, list(rows[0]), rows[0]) for text in texts if rows)

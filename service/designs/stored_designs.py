@@ -28,7 +28,7 @@ _MILLIMETRES = {"crank_mm": 1e3, "rod_mm": 1e3, "offset_mm": 1e3}
 
 @dataclass(frozen=True)
 class StoredDesign:
-    """A design of a stored front. values: crank, rod, offset, m, and each extra variable, SI.
+    """Design of a stored front. values: crank, rod, offset, m, and each extra variable, SI.
 
     part: problem that it solves, with its choices applied. variant: index of these choices, counted from 0.
     """
@@ -39,18 +39,18 @@ class StoredDesign:
 
     @cached_property
     def mechanism(self) -> Mechanism:
-        """The machine, with the extra variables of the design."""
+        """Machine with the extra variables of the design."""
         return self.part.mechanism.with_values(self.values[3:])
 
     @cached_property
     def linkage(self) -> Linkage:
-        """The linkage, on the branch of the machine."""
+        """Linkage on the branch of the machine."""
         crank, rod, offset = self.values[:3]
         return Linkage(crank, rod, offset, self.mechanism.branch)
 
 
 def design_of(problem: Problem, row: Row) -> StoredDesign:
-    """Return a design from its row in the table of a problem's front, its shown dimensions unchanged.
+    """Return a design from its row in the table of a problem's front; its displayed dimensions are unchanged.
 
     Raises `RunError` for a row that does not belong to the problem.
     """
@@ -60,7 +60,7 @@ def design_of(problem: Problem, row: Row) -> StoredDesign:
 
 
 def stored_design(problem: Problem, result: Result, number: int) -> StoredDesign:
-    """Return a design of a result by its number, counted from 1: exact if stored so, else as in `design_of`."""
+    """Return a design of a result by its number, counted from 1: exact if stored so, otherwise as by `design_of`."""
     if result.exact is None:
         return design_of(problem, result.designs[number - 1])
     variants, values = result.exact.variants, tuple(result.exact.dimensions[number - 1].tolist())
@@ -69,7 +69,7 @@ def stored_design(problem: Problem, result: Result, number: int) -> StoredDesign
 
 
 def front_of(problem: Problem, result: Result) -> ParetoFront:
-    """Return a stored front with its problem; without `Result.exact`, the slopes at the designs are unknown."""
+    """Return a stored front with its problem; without `Result.exact`, the derivatives at the designs are unknown."""
     from ...optimise.front.front import ParetoFront
     from .choice_options import minimised_values
 
@@ -95,7 +95,7 @@ def front_of(problem: Problem, result: Result) -> ParetoFront:
 
 
 def _reconstruct_designs(problem: Problem, rows: Sequence[Row]) -> Exact:
-    """Reconstruct the designs from their shown rows: everything but slopes, which have no piece and no unknown."""
+    """Reconstruct the designs from their displayed rows: everything except derivatives, which stay empty."""
     sizes = _variable_factors(problem.mechanism)
     dimensions = [_variable_values(row, sizes) for row in rows]
     variants = [_matching_variant(problem, *row_and_values) for row_and_values in zip(rows, dimensions, strict=True)]
@@ -109,7 +109,7 @@ def _reconstruct_designs(problem: Problem, rows: Sequence[Row]) -> Exact:
 
 
 def _matching_variant(problem: Problem, row: Row, values: Sequence[float]) -> int:
-    """Return the index of the variant with a design's labels; if several match, the one whose ranges fit best."""
+    """Return the index of the variant with the labels of a design; if several match, the one whose ranges fit best."""
     if not problem.variants:
         return 0
     labels = tuple(_cell(row, choice_field(name)) for name in problem.choices)
@@ -139,7 +139,7 @@ def _variable_values(row: Row, factors: Mapping[str, float]) -> tuple[float, ...
 
 
 def _si(row: Row, key: str, factor: float) -> float:
-    """Return the number whose product with the factor is exactly the shown value."""
+    """Return the number whose product with the factor is exactly the displayed value."""
     displayed = _cell(row, key)
     if not isinstance(displayed, float) or not math.isfinite(displayed):
         raise _foreign_run_error(f"its {key} is {displayed}")

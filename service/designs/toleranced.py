@@ -9,7 +9,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 
 _DIGITS = 2
-"""Of a tolerance; more say nothing."""
+"""Significant digits of a tolerance; more convey nothing."""
 
 
 def tolerances_of(mechanism: Mechanism, linkage: Linkage) -> dict[str, float]:
@@ -19,7 +19,7 @@ def tolerances_of(mechanism: Mechanism, linkage: Linkage) -> dict[str, float]:
 
 
 def decimals_of(tolerance: float) -> int:
-    """Return the decimals of a tolerance with at most two digits: 2 for 0.05, 3 for 0.025, none for 12."""
+    """Return the decimals of a tolerance with at most two significant digits: 2 for 0.05, 3 for 0.025, none for 12."""
     exponent = Decimal(f"{tolerance:.{_DIGITS}g}").normalize().as_tuple().exponent
     return max(0, -exponent) if isinstance(exponent, int) else 0
 
@@ -28,5 +28,5 @@ def format_toleranced(length: float, tolerance: float) -> str:
     """Return a length with as many decimals as its tolerance, and the tolerance."""
     decimals = decimals_of(tolerance)
     text = f"{length:.{decimals}f}"
-    text = text if float(text) else f"{0.0:.{decimals}f}"  # no minus before zero
+    text = text if float(text) else f"{0.0:.{decimals}f}"  # avoids a minus sign before zero
     return f"{text} ± {Decimal(f'{tolerance:.{_DIGITS}g}').normalize():f}"

@@ -1,4 +1,4 @@
-"""Trade-off rates at any design of a stored front, from its slopes, which are recomputed if not stored."""
+"""Trade-off rates at any design of a stored front, from its derivatives, recomputed if not stored."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ if TYPE_CHECKING:
     from ...optimise.search.elimination import EliminationBranch
     from .stored_designs import StoredDesign
 
-_NEAR = 1e-9  # relative: how well a point of the unit box must give the design back
+_NEAR = 1e-9  # relative accuracy to which a point of the unit box must reproduce the design
 
 
 def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: System = "metric") -> list[str]:
-    """Return the cost of one objective in the others at a design, in words, the active constraints held.
+    """Return the cost of each objective in terms of the others at a design, in words, with its active constraints held.
 
-    front: front from `front_of`. row: row of the design in it. system: system of units of the sentences.
+    front: front from `front_of`. row: row of the design in it. system: unit system of the sentences.
 
-    Raises `InputError` if there are no such rates: a single objective, an objective without gradient, a design that
+    Raises `InputError` if there are no such rates: a single objective, an objective without gradient, or a design that
     does not meet its constraints.
     """
     from ...optimise.front.hypervolume import scaling
@@ -60,7 +60,7 @@ def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: Sy
 
 
 def _unit_box_point(branch: EliminationBranch, values: Array) -> Array | None:
-    """Return the point of the unit box for a design, None if no point of the branch gives it."""
+    """Return the point of the unit box for a design, or None if no point of the branch gives it."""
     if values[2] * branch.sign < 0.0:
         return None
     sizes = np.abs(values)

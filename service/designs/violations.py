@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 
 def violated_by(mechanism: Mechanism, row: Row) -> dict[str, float]:
-    """Return the excess of a design over each allowable value that it violates, by the quantity's column.
+    """Return the excess of a design over each violated allowable value, by the quantity's column.
 
-    row: metric row of the design; the returned values are metric too.
+    row: metric row of the design; the returned values are also metric.
     """
     from ...objectives.registry import QUANTITIES
     from ...objectives.tables.violations import violations
@@ -30,12 +30,12 @@ def violated_by(mechanism: Mechanism, row: Row) -> dict[str, float]:
 
 
 def violations_in_words(violated: Mapping[str, float], row: Row) -> list[str]:
-    """Return a sentence on each allowable value that a design violates. Row and sentences share a system of units."""
+    """Return a sentence for each allowable value that a design violates. Row and sentences share a unit system."""
     return [_violation_sentence(key, row, excess, "is") for key, excess in violated.items()]
 
 
 def front_violations_in_words(result: Result) -> list[str]:
-    """Return a sentence on each allowable value that designs of a front violate, in the units of the result."""
+    """Return a sentence for each allowable value that designs of a front violate, in the units of the result."""
     count, sentences = len(result.designs), []
     for key, violated in result.violated.items():
         worst = max(range(count), key=violated.__getitem__)

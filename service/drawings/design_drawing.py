@@ -1,4 +1,4 @@
-"""A design at true scale, fully rotating or swinging: in one position, with its ends, paths and dimensions."""
+"""Design at true scale, fully rotating or swinging: one position, with end positions, paths and dimensions."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ from .swing_parts import SwingLook, half_body, swing_look, swing_moving, swing_s
 from .titles import TEXT, TRUE_SCALE, with_title
 
 CRANK_ANGLE = math.radians(60.0)
-"""Crank angle at which a linkage is drawn unless asked otherwise, rad."""
+"""Default crank angle of a drawing, rad."""
 
 
 def design_drawing(
     stored: StoredDesign, *, name: str, design: str = "", crank_angle: float | None = None, system: System = "metric"
 ) -> Drawing:
-    """Return a design at true scale: see `linkage_drawing`, and `swing_drawing` for a swinging crank.
+    """Return a design at true scale; see `linkage_drawing`, and `swing_drawing` for a swinging crank.
 
-    crank_angle: crank angle of the drawing, rad; their default if None. system: system of units in texts.
+    crank_angle: crank angle of the drawing, rad; None for the default. system: unit system of texts.
     """
     texts: dict[str, Any] = {"name": name, "design": design, "system": system}
     if stored.part.motion is not None:
@@ -51,8 +51,8 @@ def linkage_drawing(
     """Return one fully rotating linkage at true scale, mm: crank pivot at (0, 0), slider line at y = offset.
 
     Pivots, paths, dead centres and dimensions are exact. Links with a section in the machine have their true width;
-    other widths, pins and slider are schematic, in proportion. name: name of the run. design: its design, "design 3",
-    for the title. crank_angle: crank angle of the drawing, rad. system: system of units in texts. Raises
+    other widths, pins and slider are schematic, in proportion. name: name of the run. design: design label in the
+    title, such as "design 3". crank_angle: crank angle of the drawing, rad. system: unit system of texts. Raises
     `AssemblyError` for a linkage that does not rotate fully.
     """
     look = look_of(mechanism, linkage)
@@ -81,8 +81,8 @@ def swing_drawing(
     """Return one swinging linkage at true scale, mm: crank pivot at (0, 0), slider line at y = offset.
 
     Pivots, ends of the swing, paths of the pins and dimensions are exact. crank_angle: crank angle of the drawing,
-    within the swing up to full revolutions; half-way if None. name, design: as for `linkage_drawing`. Raises
-    `InputError` for a crank angle outside, and the errors of `require_swing`.
+    within the swing up to full revolutions; None for half-way. name, design: as for `linkage_drawing`. Raises
+    `InputError` for a crank angle outside the swing, and the errors of `require_swing`.
     """
     drawn = swing_look(mechanism, linkage, swing)
     angle = _angle_in_swing(drawn.swing, crank_angle)
@@ -116,7 +116,7 @@ def _angle_in_swing(swing: Swing, angle: float | None) -> float:
 def _stroke_dimensions(
     pin: Point, slider: Point, look: Look, letters: Lettering, tolerances: Mapping[str, float]
 ) -> list[Shape]:
-    """Return the skeleton and the dimension lines of a rotating linkage: the stroke lies outside."""
+    """Return the skeleton and the dimension lines of a rotating linkage, with the stroke dimension outside."""
     side = -1.0 if pin[1] >= 0.0 else 1.0  # away from crank and rod
     outside = max(look.crank + 0.5 * look.crank_width, side * look.offset + 0.72 * look.block)
     through = (look.inner[0], side * (outside + 3.0 * letters.height))
@@ -127,7 +127,7 @@ def _stroke_dimensions(
 def _swing_dimensions(
     drawn: SwingLook, angle: float, pin: Point, slider: Point, letters: Lettering, tolerances: Mapping[str, float]
 ) -> list[Shape]:
-    """Return the skeleton and the dimension lines of a swing: the travel lies outside, the angle within."""
+    """Return the skeleton and the dimension lines of a swing, with travel outside and angle inside."""
     look, swing, height, bend = drawn.look, drawn.swing, letters.height, _outer_side(pin, slider)
     left, low, _, high = drawn.extent
     through = (look.inner[0], low - 3.0 * height if drawn.bearing_below else high + 3.0 * height)
@@ -135,9 +135,9 @@ def _swing_dimensions(
     body = -math.inf if drawn.body is None else bend * drawn.body[1] + half_body(look)
     first, last = sorted(math.degrees(at) for at in (swing.start, swing.end))
     arc = Arc(on.DIMENSIONS, (0.0, 0.0), 0.45 * look.crank, first, last)
-    share = 0.25 if bend > 0.0 else 0.75  # on the side of the crank that its own dimension is not on
+    share = 0.25 if bend > 0.0 else 0.75  # on the side opposite the crank's own dimension
     place, arc_end = arc.point_at(first + share * (last - first)), arc.point_at(math.degrees(angle))
-    anchor: Anchor = "start" if place[0] > arc_end[0] else "end"  # the words run away from the crank
+    anchor: Anchor = "start" if place[0] > arc_end[0] else "end"  # the text runs away from the crank
     text = Label(on.DIMENSIONS, f"{last - first:.6g} deg", place, height, anchor=anchor)
     return [*_dimensions(pin, slider, look, travel, letters, tolerances, left=left, body=body), arc, text]
 
@@ -153,7 +153,7 @@ def _dimensions(
     left: float,
     body: float = -math.inf,
 ) -> list[Shape]:
-    """Return the skeleton, the dimension lines of crank and rod beside the links, the travel, the offset at the left.
+    """Return the skeleton, the dimension lines for crank and rod, the travel, and the offset at the left.
 
     left: left end of the drawing. body: outer edge of a body on the crank, on the side of the crank's dimension.
     """
@@ -174,7 +174,7 @@ def _dimensions(
 
 
 def _outer_side(pin: Point, slider: Point) -> float:
-    """Return the side of crank and rod, 1 for the left, that is outside of the bend between them."""
+    """Return the side of crank and rod, 1 for the left, that lies outside the bend between them."""
     return -1.0 if pin[0] * (slider[1] - pin[1]) - pin[1] * (slider[0] - pin[0]) > 0.0 else 1.0
 
 

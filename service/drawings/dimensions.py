@@ -1,4 +1,4 @@
-"""Dimensions with their graphics: extension lines, a line with arrows, and the text."""
+"""Dimensions with their graphics: extension lines, dimension line with arrows, and text."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from ..designs.toleranced import format_toleranced
 from .layers import DIMENSIONS
 from .shapes import WIDE, Dimension, Label, Line, Point, Wedge
 
-_ARROW = 1.2  # length over the height of the text; a sixth as wide to either side
-_GAP, _BEYOND = 0.4, 0.6  # of an extension line, before its point and beyond the dimension line, over that height
+_ARROW = 1.2  # arrow length relative to text height; a sixth as wide to either side
+_GAP, _BEYOND = 0.4, 0.6  # of an extension line: before its point and past the dimension line, relative to text height
 
 
 @dataclass(frozen=True)
 class Lettering:
-    """Texts of dimensions. height: text height, mm. system: system of units."""
+    """Lettering of dimensions. height: text height, mm. system: unit system."""
 
     height: float
     system: System = "metric"
 
     @property
     def factor(self) -> float:
-        """Conversion factor from mm to the unit of the texts."""
+        """Conversion factor from mm to the unit in the texts."""
         return metric_unit_in("mm", self.system)[1]
 
 
@@ -37,7 +37,7 @@ def dimension(
     look: Lettering,
     tolerance: float = 0.0,
 ) -> Dimension:
-    """Return the dimension of two points along `angle`, deg, its line through a point.
+    """Return the dimension between two points along `angle`, deg, with its line through a given point.
 
     tolerance: tolerance, mm; it sets the digits of the text, seven without one. If arrows and text do not fit between
     the points, they are drawn outside, with the text beyond the end.
@@ -85,7 +85,7 @@ def aligned(name: str, start: Point, end: Point, away: float, look: Lettering, t
     length = math.hypot(x, y)
     through = (start[0] - away * y / length, start[1] + away * x / length)
     angle = math.degrees(math.atan2(y, x))
-    angle += 180.0 if angle <= -90.0 else -180.0 if angle > 90.0 else 0.0  # so that texts are not upside down
+    angle += 180.0 if angle <= -90.0 else -180.0 if angle > 90.0 else 0.0  # keeps texts upright
     return dimension(name, start, end, through, angle, look=look, tolerance=tolerance)
 
 

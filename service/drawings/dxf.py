@@ -1,4 +1,4 @@
-"""A drawing as DXF, for CAD: AutoCAD 2000 format, units millimetres, real dimensions."""
+"""Drawing as DXF, for CAD: AutoCAD 2000 format, units millimetres, real dimension entities."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
     from ezdxf.layouts.base import BaseLayout
 
-_VERSION = "R2000"  # read by everything, and the first with units
+_VERSION = "R2000"  # readable by all programs, and the first version with units
 _MILLIMETRES = 4
 _STYLE = "SLIDERCRANK"
-# Name, description, pattern relative to the size of the drawing: total, then dash, gap, dash ...
+# Name, description, and pattern relative to the size of the drawing: total, then dash, gap, dash ...
 _DASHES: dict[Dashes, tuple[str, str, tuple[float, ...]]] = {
     "continuous": ("CONTINUOUS", "", ()),
     "dashed": ("DASHED", "Dashed __ __ __ __", (0.016, 0.010, -0.006)),
@@ -35,7 +35,7 @@ def dxf_file(drawing: Drawing) -> bytes:
 
 
 def document(drawing: Drawing) -> Document:
-    """Return the drawing as a document of ezdxf."""
+    """Return the drawing as an ezdxf document."""
     with NamingExtra("DXF files need"):
         from ezdxf.filemanagement import new
 
@@ -66,9 +66,9 @@ def document(drawing: Drawing) -> Document:
 
 
 def _dimension_style(document: Document, drawing: Drawing) -> None:
-    """Create the style with which CAD redraws dimensions as they are drawn here."""
+    """Create the style with which CAD redraws the dimensions as they are drawn here."""
     height = next((shape.height for shape in drawing.shapes if isinstance(shape, Dimension)), 2.5)
-    # As many decimals as give seven digits of the size; DXF allows eight at most.
+    # Enough decimals for seven digits of the size; DXF allows at most eight.
     decimals = min(8, max(0, 6 - math.floor(math.log10(drawing.size))))
     values = {
         "dimtxt": height, "dimasz": 1.2 * height, "dimexo": 0.4 * height, "dimexe": 0.6 * height,
@@ -98,7 +98,7 @@ def _add_shape(document: Document, space: BaseLayout, shape: Shape) -> None:
 
 
 def _add_label(space: BaseLayout, shape: Label, attributes: dict[str, Any]) -> None:
-    # Without characters that would end its line or be taken for a code.
+    # Remove characters that would end the line or act as control codes.
     plain = " ".join(shape.text.replace("%%", "% %").split()).replace("^", "^ ")
     text = space.add_text(plain, height=shape.height, rotation=shape.angle, dxfattribs=attributes)
     text.dxf.insert = shape.position
@@ -107,7 +107,7 @@ def _add_label(space: BaseLayout, shape: Label, attributes: dict[str, Any]) -> N
 
 
 def _add_dimension(document: Document, space: BaseLayout, shape: Dimension, attributes: dict[str, Any]) -> None:
-    """Add a dimension with the picture drawn here: that of ezdxf needs the fonts of the machine."""
+    """Add a dimension with graphics drawn here: those of ezdxf depend on installed fonts."""
     block = document.blocks.new_anonymous_block(type_char="D")
     for part in shape.parts:
         _add_shape(document, block, part)
@@ -129,7 +129,7 @@ def _add_dimension(document: Document, space: BaseLayout, shape: Dimension, attr
 
 
 def _tolerance_settings(shape: Dimension) -> dict[str, Any]:
-    """Return the settings by which CAD writes a tolerance as it is written here."""
+    """Return the settings with which CAD writes a tolerance as it is written here."""
     if not shape.tolerance:
         return {}
     decimals = decimals_of(shape.tolerance)

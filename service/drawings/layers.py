@@ -1,4 +1,4 @@
-"""The layers of a linkage drawing. CAD users switch them on and off, so their names must never change."""
+"""Layers of a linkage drawing. CAD users switch layers on and off, so the names must never change."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ DIMENSIONS = Layer("DIMENSIONS", "crank, rod, offset and stroke", "continuous", 
 NOTES = Layer("NOTES", "title and notes", "continuous", INK, _BLACK, 0.25)
 
 LAYERS = (AXES, PATHS, INNER, OUTER, FRAME, SLIDER, ROD, CRANK, PINS, SKELETON, DIMENSIONS, NOTES)
-"""All of those of a linkage that turns through, the ones drawn first first."""
+"""Layers of a linkage that rotates fully, in drawing order."""
 GAS_LAYERS = (AXES, PATHS, INNER, OUTER, FRAME, CYLINDER, SLIDER, ROD, CRANK, PINS, SKELETON, DIMENSIONS, NOTES)
-"""Those of one whose slider is the piston of a cylinder."""
+"""Layers of a linkage whose slider is a piston."""
 SWING_LAYERS = (AXES, PATHS, START, END, FRAME, ACTUATOR, SLIDER, ROD, CRANK, BODY, PINS, SKELETON, DIMENSIONS, NOTES)
-"""Those of one that swings; `ACTUATOR` has something where the slider drives, `BODY` where the crank has a mass."""
+"""Layers of a swinging linkage; `ACTUATOR` is used if the slider drives, `BODY` if the crank has a mass."""

@@ -1,4 +1,4 @@
-"""Shapes of a lever, its turning cylinder and their bearings, mm: pins and pivots exact, widths schematic."""
+"""Shapes of a lever, its pivoting cylinder and their bearings, mm: pins and pivots exact, widths schematic."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from .linkage_shapes import bar, pivot_bearing
 from .shapes import Arc, Circle, Layer, Line, Outline, Point, Shape
 
 _MM = 1e3
-_LEVER, _BARREL, _ROD, _PIN = 0.06, 0.075, 0.03, 0.014  # of the greater of crank and frame
-_NECK = 0.93  # barrel, of the shortest length
+_LEVER, _BARREL, _ROD, _PIN = 0.06, 0.075, 0.03, 0.014  # fraction of the greater of crank and frame
+_NECK = 0.93  # length of the barrel as a fraction of the shortest length
 
 
 def lever_shapes(machine: LeverMachine, swing: LeverSwing, angle: float) -> list[Shape]:
-    """Return bearings, the path of the pin, both ends dashed, and the lever with its cylinder at an angle, rad."""
+    """Return bearings, path of the pin, both ends dashed, and the lever with its cylinder at an angle, rad."""
     size = _size(machine)
     shapes: list[Shape] = []
     for pivot in (0j, _pivot(machine)):
@@ -37,7 +37,7 @@ def lever_shapes(machine: LeverMachine, swing: LeverSwing, angle: float) -> list
 
 
 def lever_extent(machine: LeverMachine, swing: LeverSwing) -> tuple[float, float, float, float]:
-    """Return left, bottom, right and top of the lever and its cylinder over the swing, with their widths, mm."""
+    """Return left, bottom, right and top of the lever and its cylinder over the swing, widths included, mm."""
     angles = np.linspace(swing.start, swing.end, 91)
     places = [np.zeros(1, np.complex128), np.array([_pivot(machine)])]
     places.append(machine.sizes.crank * np.exp(1j * (angles + machine.sizes.pin_angle)))
@@ -63,7 +63,7 @@ def _links(layers: tuple[Layer, Layer, Layer], machine: LeverMachine, swing: Lev
 
 
 def _strip(layer: Layer, start: complex, end: complex, width: float) -> Outline:
-    """Return a rectangle about a line between two places, m. width: mm."""
+    """Return a rectangle around a line between two points, m. width: mm."""
     across = 0.5j * width * (end - start) / abs(end - start) / _MM
     corners = (start - across, end - across, end + across, start + across)
     return Outline(layer, tuple(_point(corner) for corner in corners), (0.0, 0.0, 0.0, 0.0))

@@ -1,4 +1,4 @@
-"""Shapes of a linkage in a position, and of its fixed surroundings: in mm, on their layers."""
+"""Shapes of a linkage in one position, and of its fixed surroundings: in mm, on their layers."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from . import layers as on
 from .shapes import Circle, Layer, Line, Outline, Point, Shape
 
 _MM = 1e3
-_FEET = 200  # hatching lines of a rail at most
+_FEET = 200  # maximum number of hatch lines along a rail
 
 
 @dataclass(frozen=True)
 class Barrel:
-    """A cylinder about the slider line, mm: its bore, and the positions of its open end and its head."""
+    """Cylinder on the slider line, mm: bore, and positions of its open end and its head."""
 
     bore: float
     foot: float
@@ -30,13 +30,13 @@ class Barrel:
 
 @dataclass(frozen=True)
 class Look:
-    """A drawn linkage, mm. crank, rod, offset: its dimensions.
+    """Sizes of a drawn linkage, mm. crank, rod, offset: its dimensions.
 
-    inner, outer: slider pins at the dead centres, or at the ends of a swing. reach: least and greatest slider position.
-    extent: approximate left, bottom, right and top of the moving parts. crank_width, rod_width: widths of the links.
-    block: height of the slider; the bore for a piston. along: two thirds of its length. pin: radius of pins. barrels:
-    barrels of cylinders. own: whether a link is described by its section, so that its width is true; everything else is
-    schematic.
+    inner, outer: slider pins at the dead centres, or at the ends of a swing. slider_range: minimum and maximum slider
+    position. extent: approximate left, bottom, right and top of the moving parts. crank_width, rod_width: widths of the
+    links. block: height of the slider; the bore for a piston. slider_size: two thirds of its length. pin: radius of
+    pins. barrels: barrels of cylinders. has_sections: whether a link has a section, so that its width is true;
+    everything else is schematic.
     """
 
     crank: float
@@ -56,13 +56,16 @@ class Look:
 
     @property
     def size(self) -> float:
-        """The greater side of the extent."""
+        """Longer side of the extent."""
         left, low, right, high = self.extent
         return max(right - left, high - low)
 
 
 def look_of(mechanism: Mechanism, linkage: Linkage) -> Look:
-    """Return the look of a machine's linkage. Raises `AssemblyError` for one that does not rotate fully."""
+    """Return the drawn sizes for a machine's linkage.
+
+    Raises `AssemblyError` for a linkage that does not rotate fully.
+    """
     inner, outer = (_MM * float(x) for x in linkage.dead_centres)
     r = _MM * float(linkage.crank)
     look = look_between(mechanism, linkage, (inner, outer), (min(inner, outer), max(inner, outer)), (-r, -r, r, r))
@@ -72,7 +75,7 @@ def look_of(mechanism: Mechanism, linkage: Linkage) -> Look:
 def _with_cylinders(mechanism: Mechanism, look: Look) -> Look:
     """Return a linkage with its slider drawn as the piston of a machine's cylinders.
 
-    Bore and clearance are true; the piston length is schematic.
+    Bore and clearance are true to scale; the piston length is schematic.
     """
     gas = [load for _, load in cylinders(mechanism)]
     if not gas:
@@ -101,7 +104,7 @@ def look_between(
     slider_range: tuple[float, float],
     swept: tuple[float, float, float, float],
 ) -> Look:
-    """Return the look of a linkage whose slider moves between two positions, mm; see `Look`.
+    """Return the drawn sizes of a linkage whose slider moves between two positions, mm; see `Look`.
 
     swept: left, bottom, right and top of the path of the crank's axis.
     """
@@ -123,14 +126,14 @@ def look_between(
 
 
 def lengths_in_words(linkage: Linkage, system: System = "metric", *, digits: int = 7, stroke: bool = False) -> str:
-    """Return the dimensions of a linkage, its stroke on request, and its branch."""
+    """Return the dimensions of a linkage, its stroke on request, and its branch, as text."""
     names, unit = (*DIMENSIONS, *(["stroke"] if stroke else [])), LENGTH.display_unit(system)
     lengths = (f"{name} {unit.factor * float(getattr(linkage, name)):.{digits}g} {unit.symbol}" for name in names)
     return f"{', '.join(lengths)}; {linkage.branch} branch"
 
 
 def pin_positions(linkage: Linkage, angle: float) -> tuple[Point, Point]:
-    """Return crank pin and slider pin at a crank angle, rad."""
+    """Return the positions of crank pin and slider pin at a crank angle, rad."""
     r, x = _MM * float(linkage.crank), _MM * float(linkage.at(angle).slider_position)
     return (r * math.cos(angle), r * math.sin(angle)), (x, _MM * float(linkage.offset))
 
@@ -173,7 +176,7 @@ def axes(look: Look) -> list[Shape]:
 
 
 def bar(layer: Layer, start: Point, end: Point, width: float) -> Outline:
-    """Return a round-ended outline about two pivots."""
+    """Return a round-ended outline around two pivots."""
     length = math.dist(start, end)
     x, y = (0.5 * width * (end[0] - start[0]) / length, 0.5 * width * (end[1] - start[1]) / length)
     corners = (
@@ -186,7 +189,7 @@ def bar(layer: Layer, start: Point, end: Point, width: float) -> Outline:
 
 
 def block(layer: Layer, pin: Point, look: Look) -> Outline:
-    """Return the outline of a slider about its pin."""
+    """Return the outline of a slider around its pin."""
     x, y = 0.75 * look.slider_size, 0.5 * look.block
     corners = tuple((pin[0] + u * x, pin[1] + v * y) for u, v in ((-1, -1), (1, -1), (1, 1), (-1, 1)))
     return Outline(layer, corners, (0.0, 0.0, 0.0, 0.0))
@@ -202,7 +205,7 @@ def link_shapes(layers: tuple[Layer, Layer, Layer], pin: Point, slider: Point, l
 
 
 def rails(look: Look) -> list[Shape]:
-    """Return the guide of the slider, hatched."""
+    """Return the hatched guide of the slider."""
     shapes: list[Shape] = []
     start, end = look.slider_range[0] - 0.95 * look.slider_size, look.slider_range[1] + 0.95 * look.slider_size
     for side in (-1.0, 1.0):
@@ -217,12 +220,12 @@ def rails(look: Look) -> list[Shape]:
 
 
 def bearing(look: Look, *, is_below: bool) -> list[Shape]:
-    """Return the bearing of the crank pivot. is_below: whether it stands below it."""
+    """Return the bearing of the crank pivot. is_below: whether the bearing stands below the pivot."""
     return pivot_bearing((0.0, 0.0), 1.5 * max(look.pin, 0.3 * look.crank_width), is_below=is_below)
 
 
 def pivot_bearing(pivot: Point, foot: float, *, is_below: bool) -> list[Shape]:
-    """Return the stand of a fixed pivot. foot: half the distance of its legs on the ground, mm."""
+    """Return the stand of a fixed pivot. foot: half the distance between its feet on the ground, mm."""
     x, y = pivot[0], pivot[1] + (-2.0 * foot if is_below else 2.0 * foot)
     legs = [Line(on.FRAME, pivot, (x + side, y)) for side in (-foot, foot)]
     return [*legs, Line(on.FRAME, (x - 1.8 * foot, y), (x + 1.8 * foot, y))]

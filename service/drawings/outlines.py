@@ -1,4 +1,4 @@
-"""Sizes and positions of the parts of a design as in drawings, mm, for clients that draw it."""
+"""Sizes and positions of the drawn parts of a design, mm, for clients that draw it."""
 
 from __future__ import annotations
 
@@ -16,10 +16,9 @@ from .swing_parts import Cylinder, half_body, swing_look
 class Outlines:
     """Drawn parts of a design, mm.
 
-    extent: left, bottom, right and top of all parts and their motion. slider: its length and height; those of the
-    piston if it is one. barrels: barrels of the machine's cylinders. actuator: actuator of a driven slider. body: mass
-    centre of the body on a swinging crank, along the crank and across it. body_side: side of the square that represents
-    it.
+    extent: left, bottom, right and top of all parts over their motion. slider: length and height of the slider or
+    piston. barrels: barrels of the machine's cylinders. actuator: actuator of a driven slider. body: mass centre of the
+    body on a swinging crank, along and across the crank. body_side: side of the square that represents it.
     """
 
     extent: tuple[float, float, float, float]
@@ -31,7 +30,10 @@ class Outlines:
 
 
 def outlines(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) -> Outlines:
-    """Return the parts of a design that rotates fully or swings. Raises the errors of `look_of` and `swing_look`."""
+    """Return the drawn parts of a design that rotates fully or swings.
+
+    Raises the errors of `look_of` and `swing_look`.
+    """
     if swing is None:
         look = look_of(mechanism, linkage)
         return Outlines(look.extent, (1.5 * look.slider_size, look.block), look.barrels, None, None, 0.0)

@@ -12,12 +12,12 @@ Dashes = Literal["continuous", "dashed", "centre", "phantom"]
 Anchor = Literal["start", "middle", "end"]
 
 WIDE = 0.85
-"""Width of a character over the height of capitals, about, of the wider fonts that are usual."""
+"""Approximate ratio of character width to capital height in the wider common fonts."""
 
 
 @dataclass(frozen=True)
 class Layer:
-    """A layer. title: its content. ink: colour, #rrggbb. number: colour in CAD. weight: line width, mm on paper."""
+    """Layer. title: its content. ink: colour, #rrggbb. number: colour in CAD. weight: line width, mm on paper."""
 
     name: str
     title: str
@@ -47,7 +47,7 @@ class Circle:
 
 @dataclass(frozen=True)
 class Arc:
-    """Arc of a circle, counter-clockwise from start to end, deg."""
+    """Circular arc, counter-clockwise from start to end, deg."""
 
     layer: Layer
     centre: Point
@@ -62,14 +62,14 @@ class Arc:
 
     @property
     def points(self) -> list[Point]:
-        """Points along it, a degree apart or less."""
+        """Points along the arc, at most a degree apart."""
         count = max(1, math.ceil(self.end - self.start))
         return [self.point_at(self.start + (self.end - self.start) * k / count) for k in range(count + 1)]
 
 
 @dataclass(frozen=True)
 class Outline:
-    """A closed outline. bulges: bulge of the side after each corner; 0 is straight, 1 a semicircle to the left."""
+    """Closed outline. bulges: bulge of the side after each corner; 0 is straight, 1 a semicircle to the left."""
 
     layer: Layer
     corners: tuple[Point, ...]
@@ -86,7 +86,7 @@ class Wedge:
 
 @dataclass(frozen=True)
 class Label:
-    """A line of text based at a point. height: height of capitals. angle: angle of the text line, deg."""
+    """Line of text at a point. height: height of capitals. angle: angle of the text line, deg."""
 
     layer: Layer
     text: str
@@ -98,7 +98,7 @@ class Label:
 
 @dataclass(frozen=True)
 class Dimension:
-    """The distance of two points along a direction, with its graphics.
+    """Distance between two points along a direction, with its graphics.
 
     name: name of the length. angle: angle of the dimension line, deg. through: point on that line. tolerance:
     tolerance, mm, 0 for none. parts: its lines, arrows and text; CAD redraws them when a point is moved.
@@ -117,7 +117,7 @@ class Dimension:
 
     @property
     def length(self) -> float:
-        """The measured distance, mm."""
+        """Measured distance, mm."""
         direction = (math.cos(math.radians(self.angle)), math.sin(math.radians(self.angle)))
         return abs((self.end[0] - self.start[0]) * direction[0] + (self.end[1] - self.start[1]) * direction[1])
 
@@ -127,7 +127,7 @@ Shape = Line | Circle | Arc | Outline | Wedge | Label | Dimension
 
 @dataclass(frozen=True)
 class Drawing:
-    """A drawing. size: reference length for line types and texts, mm. notes: notes on the drawing."""
+    """Drawing. size: reference length for line types and texts, mm. notes: notes on the drawing."""
 
     layers: tuple[Layer, ...]
     shapes: tuple[Shape, ...]
@@ -141,13 +141,13 @@ class Drawing:
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
-        """Left, bottom, right and top of everything."""
+        """Left, bottom, right and top of all shapes."""
         x, y = zip(*(point for shape in self.shapes for point in _extreme_points(shape)), strict=True)
         return min(x), min(y), max(x), max(y)
 
 
 def pairs(outline: Outline) -> Iterator[tuple[Point, Point, float]]:
-    """Yield the sides of an outline: from, to, bulge."""
+    """Yield the sides of an outline as start, end and bulge."""
     corners = outline.corners
     yield from zip(corners, (*corners[1:], corners[0]), outline.bulges, strict=True)
 
@@ -179,7 +179,7 @@ def _extreme_points(shape: Shape) -> Iterable[Point]:
 
 
 def _box_corners(start: Point, end: Point, bulge: float) -> tuple[Point, ...]:
-    """Return corners of a box around a side; for an arc, the box of its semicircle or less."""
+    """Return the corners of a box around a side; for an arc, at most the box of its semicircle."""
     if not bulge:
         return start, end
     half = 0.5 * math.dist(start, end)

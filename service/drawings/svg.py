@@ -1,4 +1,4 @@
-"""A drawing as an SVG file, true to scale when printed at 100 %, with a group for each layer."""
+"""Drawing as an SVG file, true to scale when printed at 100 %, with a group for each layer."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from xml.sax.saxutils import escape, quoteattr
 
 from .shapes import Arc, Circle, Dashes, Dimension, Drawing, Label, Layer, Line, Outline, Point, Shape, Wedge, pairs
 
-_MARGIN = 0.03  # of the drawing's size
-_LINE = 0.004  # width of a line of weight 0.5, of that size
+_MARGIN = 0.03  # relative to the size of the drawing
+_LINE = 0.004  # width of a line with weight 0.5, relative to that size
 _DASHES: dict[Dashes, tuple[float, ...]] = {
     "continuous": (),
     "dashed": (0.010, 0.006),
@@ -44,7 +44,7 @@ def svg_text(drawing: Drawing) -> str:
 
 
 def group(layer: Layer, size: float) -> str:
-    """Return the start of the group of a layer. size: of the drawing."""
+    """Return the opening tag for a layer's group. size: size of the drawing."""
     attributes = {
         "id": layer.name,
         "inkscape:groupmode": "layer",
@@ -67,7 +67,7 @@ def elements(shape: Shape) -> list[str]:
         x, y = shape.centre
         return [f'<circle cx="{_number(x)}" cy="{_number(-y)}" r="{_number(shape.radius)}"/>']
     if isinstance(shape, Arc):
-        # Counter-clockwise here, where y points downward, is opposite to the flag.
+        # Counter-clockwise is opposite to the flag, because y points downward here.
         start, end = _point_text(shape.point_at(shape.start)), _point_text(shape.point_at(shape.end))
         radius, large = _number(shape.radius), int(shape.end - shape.start > 180.0)
         return [f'<path d="M{start}A{radius} {radius} 0 {large} 0 {end}"/>']
@@ -90,7 +90,7 @@ def _outline_svg(shape: Outline) -> str:
         if not bulge:
             parts.append(f"L{_point_text(end)}")
             continue
-        # The angle of an arc is 4 atan(bulge); y points downward here, so that left becomes right.
+        # The angle of an arc is 4 atan(bulge); y points downward here, so left becomes right.
         radius = 0.5 * math.dist(start, end) / math.sin(2.0 * math.atan(abs(bulge)))
         parts.append(f"A{_number(radius)} {_number(radius)} 0 0 {int(bulge < 0.0)} {_point_text(end)}")
     return "".join(parts) + "Z"
@@ -99,7 +99,7 @@ def _outline_svg(shape: Outline) -> str:
 def _label_svg(shape: Label) -> str:
     x, y = _number(shape.position[0]), _number(-shape.position[1])
     turned = f' transform="rotate({_number(-shape.angle)} {x} {y})"' if shape.angle else ""
-    # Capitals are 0.716 of the size of the font.
+    # Capitals are 0.716 times as high as the font size.
     size = _number(shape.height / 0.716)
     return (
         f'<text x="{x}" y="{y}" font-size="{size}" text-anchor="{shape.anchor}" fill="{shape.layer.ink}" '

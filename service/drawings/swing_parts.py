@@ -16,15 +16,15 @@ from .linkage_shapes import Look, axes, bearing, link_shapes, look_between, movi
 from .shapes import Arc, Circle, Layer, Line, Outline, Point, Shape
 
 _MM = 1e3
-_BODY = 0.15  # half the side of the body, of the crank
+_BODY = 0.15  # half the side of the body, relative to the crank
 
 
 @dataclass(frozen=True)
 class Cylinder:
-    """A schematic cylinder along the slider line, mm: the job states only that it drives.
+    """Schematic cylinder on the slider line, mm: the job states only that it drives.
 
-    side: +1 if it is beyond the slider along +x, -1 on the other side. face, foot: ends of its barrel, the face towards
-    the slider. width: width of the barrel.
+    side: +1 if it lies beyond the slider along +x, -1 on the other side. face, foot: ends of its barrel, the face
+    towards the slider. width: width of the barrel.
     """
 
     side: float
@@ -35,9 +35,9 @@ class Cylinder:
 
 @dataclass(frozen=True)
 class SwingLook:
-    """A drawn swinging linkage. swing: swing between crank angles. cylinder: None if the crank drives.
+    """Sizes of a drawn swinging linkage. swing: swing between crank angles. cylinder: None if the crank drives.
 
-    body: mass centre of a crank given by its mass, along it and across it, mm; None for other cranks.
+    body: mass centre of a crank with a given mass, along and across the crank, mm; None for other cranks.
     """
 
     linkage: Linkage
@@ -48,7 +48,7 @@ class SwingLook:
 
     @property
     def extent(self) -> tuple[float, float, float, float]:
-        """Approximate left, bottom, right and top of everything fixed or moving."""
+        """Approximate left, bottom, right and top of all fixed and moving parts."""
         left, low, right, high = self.look.extent
         if self.cylinder is not None:
             ends = (self.cylinder.near_end, self.cylinder.foot)
@@ -57,12 +57,12 @@ class SwingLook:
 
     @property
     def bearing_below(self) -> bool:
-        """Whether the bearing stands below the pivot: away from the crank in the middle of the swing."""
+        """Whether the bearing stands below the pivot: away from the crank at mid-swing."""
         return math.sin(0.5 * (self.swing.start + self.swing.end)) >= 0.0
 
 
 def swing_look(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingLook:
-    """Return the look of a swinging linkage. Raises the errors of `require_swing`."""
+    """Return the drawn sizes of a swinging linkage. Raises the errors of `require_swing`."""
     checked = require_swing(mechanism, linkage, swing)
     swing = placed(mechanism, checked, swing)
     turning = [dead_angle for dead in dead_points(checked) for dead_angle in swing.occurrences(dead)]
@@ -84,7 +84,7 @@ def _body_centre(mechanism: Mechanism, linkage: Linkage) -> Point | None:
 
 
 def half_body(look: Look) -> float:
-    """Return half the side of the body, mm."""
+    """Return half the side of the body's square, mm."""
     return _BODY * look.crank
 
 
@@ -134,7 +134,7 @@ def swing_scenery(drawn: SwingLook) -> list[Shape]:
 
 
 def swing_moving(drawn: SwingLook, angle: float) -> list[Shape]:
-    """Return the cylinder's rod, the links with their pins and the body at a crank angle, rad."""
+    """Return the cylinder's rod, the links with their pins, and the body at a crank angle, rad."""
     pin, slider = pin_positions(drawn.linkage, angle)
     pushed = [] if drawn.cylinder is None else [_piston_rod(on.ACTUATOR, slider, drawn.cylinder, drawn.look)]
     turned = [] if drawn.body is None else body_shapes(drawn.body, drawn.look, angle)
@@ -142,7 +142,7 @@ def swing_moving(drawn: SwingLook, angle: float) -> list[Shape]:
 
 
 def body_shapes(body: Point, look: Look, angle: float) -> list[Shape]:
-    """Return the body on a crank at an angle, rad: a square about its mass centre, which has a cross."""
+    """Return the body on a crank at an angle, rad: a square around its mass centre, marked by a cross."""
     half, mark = half_body(look), 0.5 * half_body(look)
     cosine, sine = math.cos(angle), math.sin(angle)
 
@@ -170,7 +170,7 @@ def _piston_rod(layer: Layer, slider: Point, cylinder: Cylinder, look: Look) -> 
 
 
 def cylinder_parts(cylinder: Cylinder, look: Look) -> tuple[Outline, Outline]:
-    """Return the cylinder's complete rod about the slider pin, and its barrel."""
+    """Return the cylinder's complete rod relative to the slider pin, and its barrel."""
     near = look.slider_range[0] if cylinder.side > 0.0 else look.slider_range[1]
     rod = box(
         on.ACTUATOR, (cylinder.side * 0.75 * look.block, 0.0), (cylinder.near_end - near, 0.0), 0.3 * cylinder.width
@@ -179,7 +179,7 @@ def cylinder_parts(cylinder: Cylinder, look: Look) -> tuple[Outline, Outline]:
 
 
 def box(layer: Layer, start: Point, end: Point, width: float) -> Outline:
-    """Return a rectangle about a horizontal line."""
+    """Return a rectangle around a horizontal line."""
     half = 0.5 * width
     corners = (
         (start[0], start[1] - half),
@@ -191,7 +191,7 @@ def box(layer: Layer, start: Point, end: Point, width: float) -> Outline:
 
 
 def _barrel(cylinder: Cylinder, look: Look) -> list[Shape]:
-    """Return the barrel of the cylinder, and its mount."""
+    """Return the barrel of the cylinder and its mount."""
     y, half = look.offset, 0.8 * cylinder.width
     hatch = [
         Line(

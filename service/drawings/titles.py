@@ -9,7 +9,7 @@ from . import layers as on
 from .shapes import Drawing, Label, Layer, Shape
 
 TEXT = 0.022
-"""Height of dimensions, of the drawing's size."""
+"""Text height of dimensions, relative to the size of the drawing."""
 TRUE_SCALE: dict[System, str] = {
     "metric": "Dimensions in millimetres",
     "inch": "Dimensions in inches",
@@ -24,7 +24,7 @@ def with_title(
     title: str,
     notes: tuple[str, ...],
 ) -> Drawing:
-    """Return the drawing of shapes with its title and its notes below them. extent: left, bottom, right, top; mm."""
+    """Return the drawing of shapes with title and notes below them. extent: left, bottom, right, top; mm."""
     left, low, _, _ = extent
     y = min(Drawing((), tuple(shapes), size, "", ()).bounds[1], low) - 0.06 * size
     words = [

@@ -1,1 +1,1 @@
-"""Figures of fronts, designs and topics: their content as data, and its drawing."""
+"""Figures of fronts, designs and topics: their content as data, and the drawing code."""

@@ -1,4 +1,4 @@
-"""Several fronts in one scatter matrix, each with its marker: fronts of runs, or robust and nominal ones."""
+"""Several fronts in one scatter matrix, each with its marker: fronts of runs, or robust and nominal fronts."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .design_marks import BETTER, with_better_arrow
 from .scatter import MOST, triangle
 from .style import INK, SMALL, heading, legend_at, new_figure, padded_limits, style_axes, write_text
 
-# Fill, edge and marker: neighbours differ clearly in grey, colours of Okabe and Ito (see `style`).
+# Fill, edge and marker: neighbours differ clearly in greyscale, with the colours of Okabe and Ito (see `style`).
 _STYLES = (
     ("#0072b2", "#0072b2", "o"),
     ("none", "#d55e00", "s"),
@@ -35,13 +35,13 @@ _STYLES = (
     ("#f0e442", INK, "^"),
 )
 MOST_RUNS = len(_STYLES)
-"""Runs that can be told apart in one figure."""
+"""Maximum number of runs that can be told apart in one figure."""
 _LEFT, _BOTTOM, _TOP, _RIGHT, _GAP, _KEY, _NOTE = 0.95, 0.75, 0.55, 0.3, 0.18, 0.24, 0.18  # inches
 
 
 @dataclass(frozen=True)
 class PlottedRun:
-    """A run in the figure. label: text in the legend. values: its objectives (n, m), in display units."""
+    """Run in the figure. label: text in the legend. values: its objectives (n, m), in display units."""
 
     label: str
     values: NDArray[np.float64]
@@ -54,7 +54,7 @@ def comparison_matrix(
     title: str = "Fronts compared",
     notes: Sequence[str] = (),
 ) -> Figure:
-    """Return the scatter matrix of several runs' fronts with two objectives or more. notes: lines below it."""
+    """Return the scatter matrix for the fronts of several runs with at least two objectives. notes: lines below it."""
     count = min(len(objectives), MOST) - 1
     side = max(1.6, min(4.2 if count == 1 else 2.6, 8.4 / count))
     width = max(_LEFT + count * (side + _GAP) + _RIGHT, 6.4)
@@ -79,7 +79,7 @@ def comparison_matrix(
 def robustness_figure(front: ParetoFront) -> Figure | None:
     """Return nominal and robust front in one scatter matrix, with the cost of robustness below.
 
-    None without a nominal front to compare with.
+    Returns None without a nominal front to compare with.
     """
     comparison = robust_cost(front)
     if comparison is None:

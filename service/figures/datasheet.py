@@ -37,13 +37,13 @@ _LEFT, _SPLIT, _RIGHT, _TOP, _BOTTOM = 0.25, 6.55, 0.3, 0.75, 0.6
 _GAP = 0.34
 _TABLE = 2.05
 
-_ROWS = 9  # of each of two columns
-_LETTERS = 24  # of a title that fits beside its number
+_ROWS = 9  # rows per column of a two-column table
+_LETTERS = 24  # characters of a title that fit beside its number
 SAMPLES = 720
 _TURN = 2.0 * np.pi
 _SIDE_STEP = 1e-7
-"""rad from a peak to the samples that show its height where the curve jumps there."""
-_STEP = 1e-5  # of the value: smooth curves change less between these samples
+"""Offset in rad between a peak and the samples beside it, which show its height where the curve jumps."""
+_STEP = 1e-5  # relative to the value: smooth curves change less between these samples
 
 
 def design_datasheet(
@@ -59,9 +59,9 @@ def design_datasheet(
 ) -> Figure:
     """Return the datasheet of one fully rotating linkage.
 
-    numbers: its metric row of the table of quantities; missing numbers, None and NaN are omitted. bold: columns always
-    shown, in bold, with their titles: the objectives. torque: whether the drive torque is known. system: system of
-    units of the sheet.
+    numbers: metric row of the design in the table of quantities; missing numbers, None and NaN are omitted. bold:
+    columns always shown, in bold, with their titles: the objectives. torque: whether the drive torque is known. system:
+    unit system of the datasheet.
     """
     figure = new_figure(_WIDTH, _HEIGHT)
     heading(figure, textwrap.shorten(title, 120, placeholder=" ..."), subtitle)
@@ -96,7 +96,7 @@ def design_datasheet(
 
 
 def _table_rows(numbers: Mapping[str, Any], objectives: Mapping[str, str]) -> list[tuple[str, str]]:
-    """Return column and title of the table's entries: all objectives, and as many others as fit."""
+    """Return columns and titles of the table entries: all objectives, and as many other quantities as fit."""
 
     def has_value(key: str) -> bool:
         value = numbers.get(key)
@@ -117,9 +117,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Curves:
-    """The curves of one design. angles: (n,), deg. inner, outer: dead centres of a turn, deg.
+    """Curves of one design. angles: (n,), deg. inner, outer: dead centres of one revolution, deg.
 
-    panels: one per curve, the slow stroke shaded; a marked extremum is a second line with one point of the curve.
+    panels: one per curve, with the slow stroke shaded; a marked extremum is a second line with one point of the curve.
     """
 
     angles: Array
@@ -136,7 +136,7 @@ class Curves:
 def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True) -> Curves:
     """Return the curves of one fully rotating linkage; all marked angles are among the sampled ones.
 
-    Without a crank speed, velocity and acceleration are given for one radian per second: per unit of crank speed.
+    Without a crank speed, velocity and acceleration are for one radian per second, that is per unit of crank speed.
     """
     dimensions = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
     moving = mechanism if mechanism.speed else replace(mechanism, speed=1.0)
@@ -155,7 +155,7 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True)
     }
     kappa = crowding(*dimensions[0])
     crowded = [uncrowded(tau, kappa) for tau in np.linspace(0.0, 2.0 * np.pi, SAMPLES // 2)]
-    # At a step of a load, the curve has different values on the two sides of the peak.
+    # At a load step, the curve has different values on the two sides of the peak.
     near_extremes = [
         extreme[1] + side for extreme in extremes.values() if extreme for side in (-_SIDE_STEP, 0.0, _SIDE_STEP)
     ]
@@ -171,7 +171,7 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True)
     x_title, shaded = CRANK_ANGLE, tuple[tuple[float, float], ...]()
     if slow in ("outward", "inward"):
         x_title += f" (shaded: {slow} stroke, the slow one)"
-        # Counter-clockwise, the outward stroke runs from the inner to the outer dead centre.
+        # For counter-clockwise rotation, the outward stroke runs from the inner to the outer dead centre.
         start, end = dead if (slow == "outward") == (mechanism.direction > 0.0) else dead[::-1]
         shaded = ((start, end),) if start < end else ((0.0, end), (start, 360.0))
     panels = []
@@ -202,7 +202,7 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True)
 
 
 def draw_curves(panels: Sequence[Axes], curves: Curves, system: System = "metric") -> None:
-    """Draw each curve into its panel, from top to bottom, in a system of units."""
+    """Draw each curve into its panel, from top to bottom, in a unit system."""
     for axes, panel in zip(panels, curves.panels, strict=True):
         draw_panel(axes, panel, system, has_x_title=axes is panels[-1])
         ends = (curves.inner, curves.outer)
@@ -212,7 +212,7 @@ def draw_curves(panels: Sequence[Axes], curves: Curves, system: System = "metric
 
 
 def _name_dead_centres(top: Axes, curves: Curves) -> None:
-    """Write the dead centres over the uppermost panel, within its width and clear of each other."""
+    """Label the dead centres above the topmost panel, within its width and clear of each other."""
     named = sorted([(curves.inner, "inner"), (curves.outer, "outer")])
     turns = curves.last_turn_end / 360.0
     close = named[1][0] - named[0][0] < 110.0 * turns

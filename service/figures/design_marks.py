@@ -1,4 +1,4 @@
-"""Designs marked alike in every figure of a front: the best in each objective, and the knee."""
+"""Designs marked in the same way in every figure of a front: the best in each objective, and the knee."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from ..render.numerals import with_unit
 from .style import INK, KNEE_MARKER, MARKERS, VERMILION
 
 BETTER = {"maximise": 1, "minimise": -1, "target": 0}
-"""The way to better values of an objective, upward positive, by its sense."""
+"""Direction of better values of an objective, upward positive, by its sense."""
 
 
 def with_better_arrow(title: str, better: int) -> str:
     """Return an axis title with the direction of better values below it. better: as in `Axis`.
 
-    Also correct for titles along y, which are rotated: there the arrows point up and down.
+    This is also correct for y titles, which are rotated: there the arrows point up and down.
     """
     return f"{title}\n{'→' if better > 0 else '←'} better" if better else title
 
 
 @dataclass(frozen=True)
 class Mark:
-    """A marked design. row: row in the front's table. names: its figure files. labels: for people. size: in points."""
+    """Marked design. row: row in the front's table. names: its figure files. labels: for people. size: in points."""
 
     row: int
     names: tuple[str, ...]
@@ -50,7 +50,7 @@ class Mark:
 
     @property
     def style(self) -> dict[str, Any]:
-        """The marker as arguments of `Axes.plot` and `Line2D`."""
+        """Marker as arguments of `Axes.plot` and `Line2D`."""
         return {
             "marker": self.marker,
             "markersize": self.size,
@@ -63,7 +63,10 @@ class Mark:
 
 @dataclass(frozen=True)
 class Axis:
-    """A column as an axis. title: with unit. values: (n,), as shown. better: +1 upward, -1 downward, 0 neither."""
+    """Column shown on an axis.
+
+    title: with unit. values: (n,), as displayed. better: +1 upward, -1 downward, 0 neither.
+    """
 
     title: str
     unit: str
@@ -72,7 +75,7 @@ class Axis:
 
     @property
     def varies(self) -> bool:
-        """Whether its values differ between designs, beyond rounding."""
+        """Whether its values differ between designs by more than rounding."""
         return not is_constant(self.values)
 
 
@@ -90,14 +93,14 @@ def marks(front: ParetoFront) -> list[Mark]:
         names, words = zip(*pairs, strict=True)
         if names == ("knee",):
             marker, size = KNEE_MARKER, 11.0
-        else:  # smaller and smaller, so that marks on the same spot stay visible
+        else:  # decreasing sizes, so that marks at the same point stay visible
             marker, size = MARKERS[order % len(MARKERS)], max(5.5, 9.5 - order)
         marked.append(Mark(row, names, words, marker, size))
     return marked
 
 
 def objective_axis(front: ParetoFront, objective: Objective, system: System = "metric") -> Axis:
-    """Return the axis of an objective, in the units of a system."""
+    """Return the axis of an objective, in a unit system."""
     quantity = front.problem.quantity(objective.quantity)
     symbol, factor = metric_unit_in(quantity.unit.symbol, system)
     values = front.columns[quantity.field] * factor
@@ -106,7 +109,7 @@ def objective_axis(front: ParetoFront, objective: Objective, system: System = "m
 
 
 def dimension_axes(front: ParetoFront, system: System = "metric") -> list[Axis]:
-    """Return the axes of crank, rod, offset and the extra variables, in the units of a system."""
+    """Return the axes for crank, rod, offset and the extra variables, in a unit system."""
     columns = ("crank", "rod", "offset")
     length, unit_factor = metric_unit_in("mm", system)
     axes = [

@@ -1,4 +1,4 @@
-"""A mechanism drawn to scale for people: the linkage of `service.drawings`, with annotations."""
+"""Mechanism drawn to scale for people: the linkage of `service.drawings`, with annotations."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .style import BLUE, INK, MUTED, SMALL, VERMILION
 
 
 def draw_mechanism(axes: Axes, mechanism: Mechanism, linkage: Linkage, system: System = "metric") -> None:
-    """Draw one fully rotating linkage, in mm, at its least transmission angle; lengths are labelled in a system.
+    """Draw one fully rotating linkage, in mm, at its least transmission angle, with lengths labelled in a unit system.
 
     The dead centres are outlined in grey. Links with a section have their true width.
     """
@@ -37,12 +37,12 @@ def draw_mechanism(axes: Axes, mechanism: Mechanism, linkage: Linkage, system: S
 
 
 def least_transmission_crank_angle(linkage: Linkage) -> float:
-    """Return the crank angle, rad, where |sin(phi)| = |e - r sin(theta)| / l is greatest."""
+    """Return the crank angle, rad, at which |sin(phi)| = |e - r sin(theta)| / l is greatest."""
     return math.pi * (0.5 if float(linkage.offset) < 0.0 else 1.5)
 
 
 def _draw_rotation(axes: Axes, r: float, speed: float) -> None:
-    """Show the direction of rotation on the crank circle, away from the slider.
+    """Show the direction of rotation on the crank circle, on the side away from the slider.
 
     r, speed: with reversed sign on the crossed branch.
     """
@@ -84,12 +84,12 @@ def _transmission_angle(axes: Axes, pin: Point, slider: Point, degrees: float) -
 
 
 def _annotate(axes: Axes, text: str, at: Point, away: Point, colour: str, **style: Any) -> None:
-    """Write a text some points away from a place."""
+    """Write a text at a distance in points from a position."""
     axes.annotate(text, xy=at, xytext=away, textcoords="offset points", fontsize=SMALL, color=colour, zorder=8, **style)
 
 
 def _dimension_stroke(axes: Axes, look: Look, size: float, system: System) -> None:
-    """Dimension the stroke on the side of the guide that is away from the crank pivot."""
+    """Dimension the stroke on the side of the guide away from the crank pivot."""
     (inner, e), (outer, _) = look.inner, look.outer
     side = 1.0 if e >= 0.0 else -1.0
     y = e + side * (0.9 * look.slider_size + 0.5 * (look.block - look.slider_size) + 0.035 * size)
@@ -101,7 +101,7 @@ def _dimension_stroke(axes: Axes, look: Look, size: float, system: System) -> No
 
 
 def _dimension_offset(axes: Axes, left: float, e: float, size: float, system: System) -> None:
-    """Dimension the offset, unless it is too small to draw arrows in."""
+    """Dimension the offset, unless it is too small for arrows."""
     if abs(e) < 0.06 * size:
         return
     x = left - 0.045 * size
@@ -116,7 +116,7 @@ def _draw_arrow(axes: Axes, start: Point, end: Point) -> None:
 
 
 def scale_bar(axes: Axes, x: float, y: float, size: float, system: System) -> None:
-    """Draw a scale bar of a round length, about a sixth of the picture."""
+    """Draw a scale bar with a round length, about a sixth of the picture."""
     unit, factor = metric_unit_in("mm", system)
     longest = size / 6.0 * factor
     power = 10.0 ** math.floor(math.log10(longest))

@@ -1,4 +1,4 @@
-"""The figures of a front by name, each drawn on request."""
+"""Figures of a front by name, each drawn on request."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from .swing import swing_figure
 
 @dataclass(frozen=True)
 class FrontFigure:
-    """A figure. names: names of its files; several if designs coincide. title: its content."""
+    """Figure. names: names of its files; several if designs coincide. title: its content."""
 
     names: tuple[str, ...]
     title: str
@@ -36,9 +36,9 @@ class FrontFigure:
 
 
 def front_figures(front: ParetoFront, system: System = "metric") -> list[FrontFigure]:
-    """Return the figures of a front that has designs, in the units of a system.
+    """Return the figures of a front that has designs, in a unit system.
 
-    scatter_matrix (two objectives and two designs or more), parallel_coordinates (two designs or more), and one
+    scatter_matrix (at least two objectives and two designs), parallel_coordinates (at least two designs), and one
     datasheet for each extreme design, best_<quantity>, and for the knee.
     """
     figures = []
@@ -59,8 +59,8 @@ def front_figures(front: ParetoFront, system: System = "metric") -> list[FrontFi
 def draw_front(front: ParetoFront, folder: Path, system: System = "metric") -> Iterator[Path]:
     """Write the figures of a front that has designs; yield each file as soon as it is written.
 
-    Those of `front_figures`; coinciding ones are copied. Also robust.png for a robust problem with two objectives or
-    more, for which the nominal problem is solved. system: system of units of the figures.
+    Writes those of `front_figures`; coinciding ones are copied. Adds robust.png for a robust problem with at least two
+    objectives, for which the nominal problem is solved. system: unit system of the figures.
     """
     folder.mkdir(parents=True, exist_ok=True)
     for item in front_figures(front, system):
@@ -81,7 +81,7 @@ def draw_front(front: ParetoFront, folder: Path, system: System = "metric") -> I
 def datasheet_of(
     front: ParetoFront, row: int, label: str, system: System = "metric", changed: Variation | None = None
 ) -> Figure:
-    """Return the datasheet of a design of a front. label: its role among the others. system: system of units.
+    """Return the datasheet for a design on a front. label: its role on the front. system: unit system.
 
     changed: the design with other lengths, if changed.
     """

@@ -1,4 +1,4 @@
-"""Figure of a lever with its turning cylinder: the machine to scale, force, length and angle over the lever angle."""
+"""Figure of a lever with its pivoting cylinder: a scale drawing above force, length and angle over the lever angle."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _X = "lever angle, deg"
 
 
 def lever_figure(machine: LeverMachine, swing: LeverSwing, cylinder: Cylinder, system: System = "metric") -> Figure:
-    """Return the lever half-way between both ends, which are dashed, above its curves."""
+    """Return the lever at mid-swing with both ends dashed, above its curves."""
     found = lever_curves(machine, swing, np.linspace(0.0, 1.0, POINTS))
     degrees, rub = np.degrees(found.lever_angle), cylinder.seal_friction
     forces = [Line("extending", degrees, found.push + rub), Line("retracting", degrees, found.push - rub, DASHED)]

@@ -1,4 +1,4 @@
-"""Shapes of a drawing on axes of matplotlib, and a whole drawing as a figure."""
+"""Shapes of a drawing on matplotlib axes, and a whole drawing as a figure."""
 
 from __future__ import annotations
 
@@ -29,15 +29,15 @@ _DASHES: dict[Dashes, object] = {
 }
 _FILLED = {on.CRANK.name: LINK, on.ROD.name: LINK, on.SLIDER.name: "#f4f4f4", on.PINS.name: "#ffffff"}
 _FILLED |= {on.ACTUATOR.name: "#f4f4f4", on.BODY.name: "none"}
-_POINTS = 2.6  # line width, points, of a weight of one
-_CAPITALS = 0.729  # height of capitals over the size of the font, DejaVu Sans
+_POINTS = 2.6  # line width, points, for a weight of one
+_CAPITALS = 0.729  # ratio of capital height to font size, DejaVu Sans
 _WIDTH, _TALLEST = 9.0, 6.4  # inches
-_FILLS = 0.97  # share of a figure that its drawing fills
+_FILLS = 0.97  # fraction of a figure that its drawing fills
 _ALIGNED = {"start": "left", "middle": "center", "end": "right"}
 
 
 def drawing_figure(drawing: Drawing) -> Figure:
-    """Return a drawing as a figure, the same scale in both directions."""
+    """Return a drawing as a figure, at the same scale in both directions."""
     left, bottom, right, top = drawing.bounds
     width, height = (right - left) / _FILLS, (top - bottom) / _FILLS
     scale = min(_WIDTH / width, _TALLEST / height) * _FILLS  # inches a mm
@@ -80,7 +80,7 @@ def show_rectangle(axes: Axes, left: float, low: float, right: float, high: floa
 
 
 def paint(axes: Axes, shapes: Iterable[Shape]) -> list[Artist]:
-    """Draw lines, circles, outlines and wedges, not texts, later ones above earlier ones; return the artists."""
+    """Draw lines, circles, outlines and wedges without texts, later ones above earlier ones; return the artists."""
     artists: list[Artist] = []
     for order, shape in enumerate(shapes):
         style: dict[str, Any] = {
@@ -108,10 +108,10 @@ def paint(axes: Axes, shapes: Iterable[Shape]) -> list[Artist]:
 
 
 def _arc_points(start: Point, end: Point, bulge: float) -> list[Point]:
-    """Return points along a side, without its end."""
+    """Return points along a side, except its end."""
     if not bulge:
         return [start]
-    # The centre of an arc of the angle 4 atan(bulge) lies to the left of the chord's middle.
+    # The centre of an arc with the angle 4 atan(bulge) lies to the left of the chord's midpoint.
     chord = (end[0] - start[0], end[1] - start[1])
     aside = (1.0 - bulge * bulge) / (4.0 * bulge)
     centre = (0.5 * (start[0] + end[0]) - aside * chord[1], 0.5 * (start[1] + end[1]) + aside * chord[0])

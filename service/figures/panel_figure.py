@@ -1,4 +1,4 @@
-"""A figure of panels with curves, as data: for a topic or a published case."""
+"""Figure of panels with curves, as data: for a topic or a published case."""
 
 from __future__ import annotations
 
@@ -16,16 +16,17 @@ Array = NDArray[np.float64]
 CRANK_ANGLE = "crank angle, deg"
 _TURN = 2.0 * np.pi
 SOLID, DASHED, FAINT, DOTS, SAMPLES = 5, 6, 7, 8, 9
-"""Styles: full of detail, what that is compared with, swinging behind another line, points, points behind a line."""
+"""Styles: finely detailed curve, reference for comparison, oscillating background line, points, points behind a
+line."""
 
 
 @dataclass(frozen=True)
 class Line:
-    """A curve through (x, y), each (n,), in the units of its panel; NaN in y leaves a gap.
+    """Curve through (x, y), each (n,), in the units of its panel; NaN in y leaves a gap.
 
-    points: whether single points are drawn instead of a line.
+    points: whether to draw single points instead of a line.
 
-    style: which of the line styles.
+    style: index of the line style.
     """
 
     label: Text
@@ -39,10 +40,11 @@ class Line:
 class Panel:
     """Lines over a common axis.
 
-    title, x_title: titles of the axes. kind, x_kind: kinds of the numbers y and x, then in SI; without a kind, numbers
-    are drawn unchanged and the title contains their unit. names: (text, x, y) of named points. equal: whether both
-    directions have the same scale. turns: whether x is a crank angle in deg, with ticks at fractions of a revolution.
-    level: horizontal line, with its name. shaded: parts of the axis (from, to). note: text at the right of the title.
+    title, x_title: titles of the axes. kind, x_kind: kinds of the numbers y and x, which are then in SI; without a
+    kind, numbers are drawn unchanged and the title contains their unit. names: (text, x, y) of named points. equal:
+    whether both directions have the same scale. turns: whether x is a crank angle in deg, with ticks at fractions of a
+    revolution. level: horizontal line with its name. shaded: parts of the x axis (from, to). note: text at the right of
+    the title.
     """
 
     title: Text
@@ -60,10 +62,10 @@ class Panel:
 
 @dataclass(frozen=True)
 class PanelFigure:
-    """Panels row by row, `columns` in each row. subtitle: description of the mechanism.
+    """Panels row by row, with `columns` panels per row. subtitle: description of the mechanism.
 
     width: width of a panel with its margins, or of the panels in each column, inches; height: likewise. stacked:
-    whether the panels of a column share one axis, labelled at the lowest.
+    whether the panels in a column share one axis, labelled below the lowest.
     """
 
     title: Text
@@ -83,7 +85,7 @@ def crank_angle_panel(
 
 
 def panel_in_units(panel: Panel, system: System) -> Panel:
-    """Return a panel ready to draw: numbers in the units of a system, and texts with these units."""
+    """Return a panel ready to draw: numbers in a unit system, and texts with these units."""
     x, y = (None if kind is None else kind.display_unit(system) for kind in (panel.x_kind, panel.kind))
     x_factor, y_factor = (1.0 if unit is None else unit.factor for unit in (x, y))
 
@@ -108,9 +110,9 @@ def panel_in_units(panel: Panel, system: System) -> Panel:
 
 
 def sampled_turn(*marked: Sequence[float] | Array, samples: int = 720, turns: int = 1) -> Array:
-    """Return crank angles, rad, over a turn or two, with those marked just before and just after: jumps stay upright.
+    """Return crank angles, rad, over one revolution or two; pairs of angles at each mark keep jumps vertical.
 
-    samples: number of samples per revolution. Marks on one revolution apply to each.
+    samples: number of samples per revolution. Marks within one revolution apply to every revolution.
     """
     every = [np.asarray(angles) + number * _TURN for angles in marked for number in range(turns)]
     near_marks = [np.mod(angles + side, turns * _TURN) for angles in every for side in (-1e-9, 1e-9)]

@@ -21,10 +21,10 @@ from .panel_figure import DASHED, DOTS, FAINT, SAMPLES, SOLID, Line, Panel, Pane
 
 Array = NDArray[np.float64]
 FigureSource = PanelFigure | Figure | Callable[[System], Figure]
-"""A sheet, or a figure: drawn before, or in a system of units when it is needed."""
+"""Panels, a finished figure, or a function that draws one in a unit system when needed."""
 
-GREEN = "#009e73"  # of the same palette
-# Distinguishable by their dashes without colour.
+GREEN = "#009e73"  # same palette
+# Their dashes distinguish them without colour.
 _STYLES: dict[int, dict[str, Any]] = {
     0: {"color": style.BLUE, "linewidth": 1.6, "zorder": 3},
     1: {"color": style.VERMILION, "linewidth": 1.5, "linestyle": (0, (5, 2)), "zorder": 3},
@@ -42,11 +42,11 @@ _POINTS: dict[str, Any] = {
     **{"markerfacecolor": "white", "markeredgewidth": 1.4},
 }
 _LEFT, _RIGHT, _FOOT, _HEAD = 0.75, 0.25, 0.5, 0.72  # inches
-_GAP, _AXES_GAP = 0.5, 0.9  # between stacked panels, and between those with axes of their own
+_GAP, _AXES_GAP = 0.5, 0.9  # between stacked panels, and between panels with separate axes
 
 
 def draw_panel_figure(figure_panels: PanelFigure, system: System = "metric", *, space_above: float = 0.0) -> Figure:
-    """Return the figure of a sheet in a system of units. space_above: room, inches, kept free below the heading."""
+    """Return the figure for panels in a unit system. space_above: space kept free below the heading, inches."""
     widths = (
         [figure_panels.width] * figure_panels.columns
         if isinstance(figure_panels.width, float)
@@ -68,19 +68,19 @@ def draw_panel_figure(figure_panels: PanelFigure, system: System = "metric", *, 
 
 
 def figure_of(source: FigureSource, system: System = "metric") -> Figure:
-    """Return a finished figure unchanged, or draw panels or a function's figure in a system of units."""
+    """Return a finished figure unchanged, or draw panels or a function's figure in a unit system."""
     if isinstance(source, Figure):
         return source
     return draw_panel_figure(source, system) if isinstance(source, PanelFigure) else source(system)
 
 
 def save_figure(source: FigureSource, path: Path, system: System = "metric") -> None:
-    """Write what `figure_of` returns as PNG."""
+    """Write the result of `figure_of` as PNG."""
     style.save(figure_of(source, system), path)
 
 
 def draw_panel(axes: Axes, panel: Panel, system: System = "metric", *, has_x_title: bool = True) -> None:
-    """Draw a panel on axes in a system of units. has_x_title: whether the axis below has its title."""
+    """Draw a panel on axes in a unit system. has_x_title: whether the x axis has its title."""
     panel = panel_in_units(panel, system)
     style.style_axes(axes, most_x_ticks=8)
     for start, end in panel.shaded:
@@ -111,7 +111,7 @@ _PLACES = tuple(
     for distance in (5.0, 14.0)
     for x, y in ((1, 1), (-1, 1), (1, -1), (-1, -1), (0, 1.2), (0, -1.2), (1.2, 0), (-1.2, 0))
 )
-"""Places for a name, points from what it names; the first is taken unless another is clearer."""
+"""Candidate label positions, in points from the labelled point; the first is used unless another is clearer."""
 
 
 def _name_points(axes: Axes, panel: Panel) -> None:
@@ -151,7 +151,7 @@ def _name_points(axes: Axes, panel: Panel) -> None:
 
 
 def _dense_points(line: Line) -> Array:
-    """Return points (m, 2) close to each other along a line."""
+    """Return closely spaced points (m, 2) along a line."""
     at = np.linspace(0.0, len(line.x) - 1.0, 60 * len(line.x))
     index = np.arange(len(line.x))
     return np.stack([np.interp(at, index, line.x), np.interp(at, index, line.y)], axis=1)

@@ -1,4 +1,4 @@
-"""Parallel coordinates: dimensions and objectives of every design of a front, one line per design."""
+"""Parallel coordinates: dimensions and objectives of every design on a front, one line per design."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from .design_marks import Axis, dimension_axes, marks, objective_axis
 from .style import FRAME, INK, MUTED, SMALL, TEXT, add_axes, colours, heading, new_figure, padded_limits
 
 _DASHES = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5)), (0, (8, 2)), (0, (2.5, 1)))
-_STEP, _HEIGHT, _SIDE = 1.45, 4.1, 0.75  # inches: between axes, of the axes, beside them
+_STEP, _HEIGHT, _SIDE = 1.45, 4.1, 0.75  # inches: between axes, along the axes, beside them
 
 
 def parallel_coordinates(front: ParetoFront, system: System = "metric") -> Figure:
-    """Return the parallel coordinates of a front with at least one design, in the units of a system."""
+    """Return the parallel coordinates of a front with at least one design, in a unit system."""
     dimensions = dimension_axes(front, system)
     objectives = [objective_axis(front, objective, system) for objective in front.objectives]
     axes = dimensions + objectives
@@ -110,7 +110,7 @@ def _draw_axis(panel: Axes, position: int, axis: Axis, title: str) -> None:
         panel.plot([position - 0.03, position], [at, at], color=FRAME, linewidth=1.0, zorder=2, clip_on=False)
         panel.text(
             position - 0.05,
-            at if axis.varies else at + 0.012,  # all lines meet in a value that is the only one
+            at if axis.varies else at + 0.012,  # all lines meet if there is only one value
             on_scale(tick, low, high, digits=6 if axis.varies else 4),
             ha="right",
             va="center" if axis.varies else "bottom",
@@ -127,7 +127,7 @@ def _draw_axis(panel: Axes, position: int, axis: Axis, title: str) -> None:
 
 
 def _name_axes_group(panel: Axes, first: int, last: int, at: float, title: str) -> None:
-    """Name a group of axes over their titles."""
+    """Name a group of axes above their titles."""
     ends = [first - 0.35, last + 0.35]
     panel.plot(ends, [at, at], color=FRAME, linewidth=0.8, clip_on=False)
     middle = 0.5 * (first + last)

@@ -1,4 +1,4 @@
-"""The scatter matrix: every pair of objectives of a front, coloured by one of them."""
+"""Scatter matrix: every pair of objectives of a front, coloured by one of them."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from .design_marks import Axis, Mark, dimension_axes, marks, objective_axis, wit
 from .style import INK, SMALL, TEXT, add_axes, colours, heading, legend_at, new_figure, padded_limits, style_axes
 
 MOST = 6
-"""Objectives drawn at most: beyond, the panels are too small to read."""
+"""Maximum number of drawn objectives: with more, the panels are too small to read."""
 
 _LEFT, _BOTTOM, _TOP, _RIGHT, _GAP = 0.95, 0.75, 0.7, 0.3, 0.18  # inches
 
 
 def scatter_matrix(front: ParetoFront, system: System = "metric") -> Figure:
-    """Return the scatter matrix of a front with at least two objectives and one design, in a system of units."""
+    """Return the scatter matrix of a front with at least two objectives and one design, in a unit system."""
     axes = [objective_axis(front, objective, system) for objective in front.objectives[:MOST]]
     marked = marks(front)
     count = len(axes) - 1
@@ -36,7 +36,8 @@ def scatter_matrix(front: ParetoFront, system: System = "metric") -> Figure:
     labels = [with_better_arrow(axis.title, axis.better) for axis in axes]
     for panel, x_column, y_column in triangle(figure, labels, left=_LEFT, bottom=_BOTTOM, side=side, gap=_GAP):
         points = _draw_panel(panel, axes[x_column], axes[y_column], axes[0].values, marked)
-    # The empty upper right: legend and colour scale. From five objectives on, two panels are free above one another.
+    # The empty upper right holds legend and colour scale. From five objectives on, two panels one above the other are
+    # free.
     x = _LEFT + (2 if count > 3 else 1) * (side + _GAP) + 2.0 * _GAP
     y = _BOTTOM + (count - 1) * (side + _GAP) + side
     _colour_bar(figure, points, axes[0].title, x, y - 0.45)
@@ -48,9 +49,9 @@ def scatter_matrix(front: ParetoFront, system: System = "metric") -> Figure:
 def triangle(
     figure: Figure, labels: Sequence[str], *, left: float, bottom: float, side: float, gap: float
 ) -> Iterator[tuple[Axes, int, int]]:
-    """Yield empty panels with what goes across and what goes up, places in labels; label the outer ones once drawn.
+    """Yield empty panels, each with the label indices of its x and y axes; label the outer panels once drawn.
 
-    left, bottom: position of the lowest row's first panel. side: side of a panel. gap: gap between panels. All in
+    left, bottom: position of the first panel in the lowest row. side: side of a panel. gap: gap between panels. All in
     inches.
     """
     count = len(labels) - 1
@@ -68,7 +69,7 @@ def triangle(
 
 
 def _single_panel(front: ParetoFront, axes: list[Axis], colour: Axis, marked: list[Mark]) -> Figure:
-    """Return the only panel of two objectives, coloured by the dimension that varies most."""
+    """Return the only panel for two objectives, coloured by the dimension that varies most."""
     figure = new_figure(8.8, 5.2)
     panel = add_axes(figure, _LEFT, _BOTTOM, 4.9, 5.2 - _BOTTOM - _TOP)
     points = _draw_panel(panel, axes[0], axes[1], colour.values, marked)

@@ -1,7 +1,7 @@
 """Style of every figure: sizes, colours that survive greyscale and colour blindness, ticks, and saving.
 
 Figures are `matplotlib.figure.Figure` objects with their own Agg canvas. Neither pyplot nor the global settings of
-matplotlib are touched, so that drawing never affects the caller's own plots.
+matplotlib are used, so that drawing never affects the caller's own plots.
 """
 
 from __future__ import annotations
@@ -39,18 +39,18 @@ FRAME = "#8c8c8c"
 GRID = "#dedede"
 SHADE = "#ededed"
 LINK = "#cfdce8"
-# Okabe and Ito, "Color Universal Design" (2008): distinguishable with every kind of colour vision, and by their greys.
+# Okabe and Ito, "Color Universal Design" (2008): distinguishable with every type of colour vision, and in greyscale.
 BLUE, VERMILION = "#0072b2", "#d55e00"
 
 MARKERS = ("^", "v", "s", "D", "P", "X", "<", ">", "h")
 KNEE_MARKER = "*"
-# Parts of a whole, distinguishable in greyscale too.
+# Colours for parts of a whole, distinguishable in greyscale too.
 GREYS = ("#404040", "#a8a8a8", "#6e6e6e", "#d4d4d4", "#8c8c8c", "#c0c0c0", "#565656", "#ebebeb")
 _HATCHES = ("", "///", "", "...", "xxx", "", "\\\\\\", "ooo")
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """Return an empty figure of a size in inches."""
+    """Return an empty figure with a size in inches."""
     figure = Figure(figsize=(width, height), dpi=DPI, facecolor="white")
     FigureCanvasAgg(figure)
     return figure
@@ -58,8 +58,9 @@ def new_figure(width: float, height: float) -> Figure:
 
 def save(figure: Figure, path: Path | io.BytesIO) -> None:
     """Write a figure as PNG."""
-    # No metadata: the same run gives the same bytes. Without transparency, which no figure has, a fifth quicker and a
-    # tenth smaller; compression 3: a third quicker than 6, no larger.
+    # No metadata, so that the same run gives the same bytes. Omitting transparency, which no figure has, is a fifth
+    # faster and
+    # a tenth smaller; compression 3 is a third faster than 6 and no larger.
     canvas: Any = FigureCanvasAgg(figure)
     canvas.draw()
     drawn = Image.frombuffer("RGBA", canvas.get_width_height(), canvas.buffer_rgba(), "raw", "RGBA", 0, 1)
@@ -77,33 +78,34 @@ def figure_bytes(figure: Figure, kind: str) -> bytes:
 
 
 def add_axes(figure: Figure, left: float, bottom: float, width: float, height: float) -> Axes:
-    """Return axes at a place given in inches from the lower left corner."""
+    """Return axes at a position in inches from the lower left corner."""
     total_width, total_height = figure.get_size_inches()
     return figure.add_axes((left / total_width, bottom / total_height, width / total_width, height / total_height))
 
 
 def write_text(figure: Figure, x: float, y: float, text: str, **style: Any) -> None:
-    """Write text verbatim at a place in inches from the lower left corner, as job names may contain $."""
+    """Write text verbatim at a position in inches from the lower left corner, since job names may contain $."""
     width, height = figure.get_size_inches()
     figure.text(x / width, y / height, text, **{"fontsize": TEXT, "color": INK, "parse_math": False, **style})
 
 
 def heading(figure: Figure, title: str, subtitle: str = "", *, left: float = 0.25) -> None:
-    """Write the title at the upper left of a figure, and its subject below."""
+    """Write the title at the upper left of a figure, and the subtitle below it."""
     height = figure.get_size_inches()[1]
     write_text(figure, left, height - 0.3, title, fontsize=TITLE, weight="bold")
     write_text(figure, left, height - 0.5, subtitle, color=MUTED)
 
 
 def title_panel(axes: Axes, title: str, note: str = "", colour: str = MUTED) -> None:
-    """Write the title over the left end of a panel, and a note, in a colour, over the right one."""
-    # With y given matplotlib does not look for ticks above the panel, a tenth of the time of a figure.
+    """Write the title above the left end of a panel, and a coloured note above the right end."""
+    # With y given, matplotlib does not look for ticks above the panel, which would take a tenth of the time of a
+    # figure.
     axes.set_title(title, loc="left", y=1.0, fontsize=SMALL, color=INK, pad=4)
     axes.set_title(note, loc="right", y=1.0, fontsize=SMALL, color=colour, pad=4)
 
 
 def show_full_turn(axes: Axes) -> None:
-    """Let axes show a crank revolution, in deg."""
+    """Format the x axis for a crank revolution, in deg."""
     axes.set_xlim(0, 360)
     axes.set_xticks(range(0, 361, 45))
 
@@ -116,7 +118,7 @@ def draw_stack(axes: Axes, x: Array, parts: Array, names: Sequence[str]) -> None
 
 
 def legend_at_right(axes: Axes, *, stacked: int = 0) -> None:
-    """Write the legend at the right of axes. stacked: number of first entries to list in reverse, the last on top."""
+    """Add the legend at the right of axes. stacked: number of initial entries to list in reverse, the last on top."""
     handles, labels = axes.get_legend_handles_labels()
     order = [*reversed(range(stacked)), *range(stacked, len(handles))]
     place: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (1.02, 1.0), "borderaxespad": 0.0}
@@ -127,7 +129,7 @@ def legend_at_right(axes: Axes, *, stacked: int = 0) -> None:
 def legend_at(
     figure: Figure, x: float, y: float, handles: Sequence[Artist], labels: Sequence[str], *, spacing: float = 0.5
 ) -> None:
-    """Add a legend to a figure, its upper left corner at (x, y), inches from the lower left."""
+    """Add a legend to a figure, with its upper left corner at (x, y), inches from the lower left."""
     width, height = figure.get_size_inches()
     place: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (x / width, y / height), "borderaxespad": 0.0}
     looks: dict[str, Any] = {"fontsize": SMALL, "frameon": False, "handletextpad": 0.4, "borderpad": 0.0}
@@ -135,7 +137,7 @@ def legend_at(
 
 
 def style_axes(axes: Axes, *, most_x_ticks: int = 5, most_y_ticks: int = 5) -> None:
-    """Give axes the common frame, grid and ticks; most_x_ticks, most_y_ticks: the most ticks along x and y."""
+    """Give axes the common frame, grid and ticks; most_x_ticks, most_y_ticks: maximum number of ticks along x and y."""
     for side, spine in axes.spines.items():
         spine.set_visible(side in ("left", "bottom"))
         spine.set_color(FRAME)
@@ -150,7 +152,7 @@ def style_axes(axes: Axes, *, most_x_ticks: int = 5, most_y_ticks: int = 5) -> N
 
 
 def padded_limits(low: float, high: float, margin: float = 0.06) -> tuple[float, float]:
-    """Return axis limits around a range of values, also around a single one."""
+    """Return axis limits around a range of values, which may be a single value."""
     span = high - low
     if is_constant((low, high)):
         span = 0.1 * abs(high) or 1.0

@@ -22,7 +22,7 @@ from .panel_figure import CRANK_ANGLE, Line, Panel, PanelFigure
 from .panels import draw_panel_figure
 from .style import add_axes
 
-_TALLEST = 3.2  # inches, of the drawing
+_TALLEST = 3.2  # inches, for the drawing
 _ASIDE, _BELOW = 0.4, 0.3
 _DRAWN = ("drive", "slider_position", "driven_angle", "power", "driven_error")
 """Curves of the panels, by their names in `SwingCurves`."""
@@ -37,9 +37,9 @@ def swing_figure(
     title: str = "",
     subtitle: str = "",
 ) -> Figure:
-    """Return the machine half-way between both ends of its swing, which are dashed, above the curves of both strokes.
+    """Return the machine at mid-swing with both ends dashed, above the curves of both strokes.
 
-    title: title instead of the kind of drive. subtitle: text before its dimensions.
+    title: title instead of the type of drive. subtitle: text before its dimensions.
     """
     panel_figure = swing_panels(mechanism, linkage, swing)
     if title:
@@ -52,7 +52,7 @@ def swing_figure(
 def figure_below_machine(
     panel_figure: PanelFigure, shapes: list[Shape], extent: tuple[float, float, float, float], system: System
 ) -> Figure:
-    """Return panels below a machine drawn to scale. extent: its left, bottom, right and top, mm."""
+    """Return panels below a machine drawn to scale. extent: left, bottom, right and top of the machine, mm."""
     left, low, right, high = extent
     size = max(right - left, high - low)
     low -= 0.11 * size
@@ -68,7 +68,7 @@ def figure_below_machine(
 
 
 def swing_panels(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> PanelFigure:
-    """Return the curves of both strokes over the crank angle; the return stroke is drawn if it differs."""
+    """Return the curves of both strokes over the crank angle; the return stroke is drawn only if it differs."""
     ways = curves_of_both_strokes(mechanism, linkage, swing)
     curves = {curve.attribute: curve for curve in motion_and_drive(swing)}
     if not has_position_error(mechanism, swing):

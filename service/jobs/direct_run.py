@@ -1,4 +1,4 @@
-"""Job that the command line solves itself: claimed in the store, and exported to its run folder meanwhile."""
+"""Job that the command line solves itself: claimed in the store, and exported to its run folder during the search."""
 
 from __future__ import annotations
 
@@ -16,9 +16,8 @@ from ..store import RESUMABLE, Artefact, Claim, Job, Store
 from .find_run import find_folder
 
 LEASE = 3600.0
-"""s. A run that is stopped by Ctrl-Z for less goes on where it was; one that was killed is free again after this, or
-when it is resumed."""
-_PATIENCE = 2.0  # s to wait for disk space of the store: a user is waiting
+"""s. A run suspended by Ctrl-Z for less time continues; a killed run becomes free after this time, or when resumed."""
+_PATIENCE = 2.0  # s to wait for disk space for the store: a user is waiting
 _WORKER = "command line"
 _MEDIA = {".toml": "application/toml", ".json": "application/json"}
 
@@ -28,7 +27,7 @@ def _is_patient(waited: float) -> bool:
 
 
 def files_of(job: Path, attached: Sequence[Path]) -> list[Artefact]:
-    """Return a job file and the files beside it that it names, as stored."""
+    """Return a job file and the accompanying files that it names, as stored."""
     files = {
         f"job{job.suffix.lower()}": job,
         **{path_text(file.relative_to(job.parent).as_posix()): file for file in attached},
@@ -50,7 +49,7 @@ def begin(store: Store, folder: RunFolder, tables: Mapping[str, Any], name: str,
 
 
 def stopped_job(store: Store, text: str, place: Path) -> Job:
-    """Return the job of a run to be resumed, given by its number or in a form that `find_run` accepts.
+    """Return the job of a run to resume, given by its number or in a form that `find_run` accepts.
 
     Raises `InputError` for a run that is not in the store, or that cannot be resumed.
     """
@@ -71,7 +70,7 @@ def stopped_job(store: Store, text: str, place: Path) -> Job:
 
 
 def folder_of(store: Store, job: Job, place: Path) -> RunFolder:
-    """Return the folder of a job to be resumed, unchanged, or a new one if there is none here."""
+    """Return the unchanged folder of a job to resume, or a new one if there is none here."""
     path = place / job.run
     if path.is_dir():
         return RunFolder.again(path)
@@ -82,7 +81,7 @@ def folder_of(store: Store, job: Job, place: Path) -> RunFolder:
 
 
 def take_up(store: Store, job: Job) -> Claim:
-    """Claim a stopped job again. Its folder is open, so no other command-line process has it.
+    """Claim a stopped job again. Its folder is open, so no other command-line process uses it.
 
     Raises `InputError` for a job that cannot be resumed.
     """
@@ -95,7 +94,7 @@ def take_up(store: Store, job: Job) -> Claim:
 
 
 def _is_left(job: Job) -> bool:
-    """Whether the command line claims to run a job; its process has ended if the folder is free."""
+    """Whether a command-line process still claims to run a job; if the folder is free, that process has ended."""
     return job.state == "running" and (job.worker or "").startswith(_WORKER)
 
 
@@ -105,9 +104,9 @@ def _refused(job: Job) -> InputError:
 
 @contextlib.contextmanager
 def end_job_on_error(claim: Claim, *, again: str = "") -> Iterator[None]:
-    """While entered, an error ends the job in the store too, so that it can be resumed immediately.
+    """While this context is active, an error also ends the job in the store, so that it can be resumed immediately.
 
-    again: command that continues the run; empty if its store lasts no longer than the run.
+    again: command that continues the run; empty if its store is deleted after the run.
     """
     try:
         yield

@@ -1,4 +1,4 @@
-"""Search for a run: a folder on the disk, or a stored job, whose folder is written on demand."""
+"""Search for a run: a folder on disk, or a stored job, whose folder is written on demand."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _FOUND: tuple[State, ...] = ("done", "infeasible", "cancelled")
 
 
 def find_run(text: str, place: Path) -> Path:
-    """Return the folder of a run: a path, a name or its unique start among the runs, or "latest".
+    """Return the folder of a run, given by path, name, unique prefix of a name, or "latest".
 
-    The number of a job in the store is accepted too; its folder is written if missing. Raises `InputError` if no run,
-    or more than one, matches, `RunError` for a job without a result yet.
+    A job number in the store is accepted too; its folder is written if missing. Raises `InputError` if no run or
+    several runs match, and `RunError` for a job without a result yet.
     """
     if (text == "latest" or not Path(text).exists()) and has_store(None, place):
         with open_store(None, place) as store:
